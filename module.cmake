@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The VTK half: find, scan, build, wrap, install and export the modules. Sets stratus_vtk to ON where it does.
+include(CheckLanguage)
+
+# Named one by one: a bare find of Debian's VTK wants Qt. What consumers need is in the first list, tests and programs want the second.
+set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonTransforms ImagingCore RenderingCore RenderingVolume)
+set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
+  IOImage IOLegacy IOXML RenderingContext2D RenderingContextOpenGL2 RenderingFreeType RenderingOpenGL2 RenderingVolumeOpenGL2 TestingRendering ViewsContext2D)
+
+check_language(CXX)
+if (CMAKE_CXX_COMPILER)
+  enable_language(CXX)
+  find_package(VTK 9.1 QUIET COMPONENTS ${stratus_vtk_components}
+    OPTIONAL_COMPONENTS ${stratus_vtk_programs} Python WrappingPythonCore)
+endif ()
+if (NOT VTK_FOUND)
+  if (STRATUS_BUILD_VTK STREQUAL "AUTO")
+    message(STATUS "No VTK 9.1: building the core alone")
+    return ()
+  endif ()
+  message(FATAL_ERROR "STRATUS_BUILD_VTK is ${STRATUS_BUILD_VTK}, but VTK 9.1 was not found (Debian: libvtk9-dev) ${VTK_NOT_FOUND_MESSAGE}")
+endif ()
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+# Without this property the modules' header that registers object factories is not generated outside VTK's own tree.
+set_property(GLOBAL PROPERTY _vtk_module_autoinit_include "${VTK_AUTOINIT_INCLUDE}")
+vtk_module_find_modules(stratus_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Filters")
+vtk_module_find_modules(stratus_module_files_rendering "${CMAKE_CURRENT_SOURCE_DIR}/Rendering")
+list(APPEND stratus_module_files ${stratus_module_files_rendering})
+if (NOT stratus_module_files)
+  message(WARNING "not there yet: no vtk.module below Filters or Rendering")
+  return ()
+endif ()
+set(stratus_vtk ON)
+vtk_module_scan(
+  MODULE_FILES ${stratus_module_files}
+  PROVIDES_MODULES stratus_modules
+  WANT_BY_DEFAULT ON
+  ENABLE_TESTS OFF)
+vtk_module_build(
+  MODULES ${stratus_modules}
+  PACKAGE Stratus
+  INSTALL_EXPORT StratusModules
+  INSTALL_HEADERS ON
+  HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/stratus"
+  CMAKE_DESTINATION "${stratus_cmake_destination}"
+  LIBRARY_NAME_SUFFIX "stratus"
+  VERSION "${PROJECT_VERSION}"
+  SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+  TEST_DIRECTORY_NAME NONE)
+foreach (module IN LISTS stratus_modules)
+  vtk_module_compile_options("${module}" PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
+endforeach ()
+
+# ---- Python: package `stratus` beside Debian's `vtk`
+if (VTK_WRAP_PYTHON AND TARGET VTK::WrappingPythonCore)
+  # The interpreter VTK was built with, not the first one on PATH.
+  if (NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Interpreter that VTK's wrapping was built for")
+  endif ()
+  find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+endif ()
+set(stratus_python OFF)
+if (Python3_FOUND AND Python3_Development.Module_FOUND)
+  set(stratus_python ON)
+  set(python_folder "lib/python3/dist-packages")
+  vtk_module_wrap_python(
+    MODULES ${stratus_modules}
+    TARGET Stratus::PythonModules
+    INSTALL_EXPORT StratusPython
+    INSTALL_HEADERS OFF
+    MODULE_DESTINATION "${python_folder}"
+    PYTHON_PACKAGE "stratus"
+    CMAKE_DESTINATION "${stratus_cmake_destination}"
+    BUILD_STATIC OFF)
+  set(stratus_python_imports "")
+  foreach (module IN LISTS stratus_modules)
+    _vtk_module_get_module_property("${module}" PROPERTY "library_name" VARIABLE library)
+    string(APPEND stratus_python_imports "from .${library} import *\n")
+  endforeach ()
+  configure_file(cmake/__init__.py.in "${CMAKE_BINARY_DIR}/${python_folder}/stratus/__init__.py" @ONLY)
+  install(FILES "${CMAKE_BINARY_DIR}/${python_folder}/stratus/__init__.py" DESTINATION "${python_folder}/stratus")
+else ()
+  message(STATUS "No Python wrapping: VTK's or Python's development files are missing")
+endif ()
