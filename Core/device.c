@@ -1,0 +1,373 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * OpenCL 1.2: choice of a device, buffers, launches. Calls that release are never refused, so that a lost device frees all. */
+#include "device_state.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PLATFORMS_MAX 16
+#define DEVICES_MAX 64
+/* malloc's promise: enough for the scalar loads that kernels do. A host pointer with less is copied. */
+#define BORROW_ALIGNMENT 16
+
+typedef struct device_list {
+  int count;
+  cl_int error; /* of clGetPlatformIDs */
+  cl_device_id ids[DEVICES_MAX];
+} device_list;
+
+/* ---------------------------------------------------------------- errors */
+
+const char* stratus_device_error_name(int error)
+{
+  static const struct {
+    int code;
+    const char* name;
+  } names[] = {
+#define NAME(code) { code, #code }
+    NAME(CL_SUCCESS), NAME(CL_DEVICE_NOT_FOUND), NAME(CL_DEVICE_NOT_AVAILABLE), NAME(CL_COMPILER_NOT_AVAILABLE),
+    NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE), NAME(CL_OUT_OF_RESOURCES), NAME(CL_OUT_OF_HOST_MEMORY), NAME(CL_PROFILING_INFO_NOT_AVAILABLE),
+    NAME(CL_MEM_COPY_OVERLAP), NAME(CL_IMAGE_FORMAT_MISMATCH), NAME(CL_IMAGE_FORMAT_NOT_SUPPORTED), NAME(CL_BUILD_PROGRAM_FAILURE),
+    NAME(CL_MAP_FAILURE), NAME(CL_MISALIGNED_SUB_BUFFER_OFFSET), NAME(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    NAME(CL_COMPILE_PROGRAM_FAILURE), NAME(CL_LINKER_NOT_AVAILABLE), NAME(CL_LINK_PROGRAM_FAILURE), NAME(CL_DEVICE_PARTITION_FAILED),
+    NAME(CL_KERNEL_ARG_INFO_NOT_AVAILABLE), NAME(CL_INVALID_VALUE), NAME(CL_INVALID_DEVICE_TYPE), NAME(CL_INVALID_PLATFORM),
+    NAME(CL_INVALID_DEVICE), NAME(CL_INVALID_CONTEXT), NAME(CL_INVALID_QUEUE_PROPERTIES), NAME(CL_INVALID_COMMAND_QUEUE),
+    NAME(CL_INVALID_HOST_PTR), NAME(CL_INVALID_MEM_OBJECT), NAME(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR), NAME(CL_INVALID_IMAGE_SIZE),
+    NAME(CL_INVALID_SAMPLER), NAME(CL_INVALID_BINARY), NAME(CL_INVALID_BUILD_OPTIONS), NAME(CL_INVALID_PROGRAM),
+    NAME(CL_INVALID_PROGRAM_EXECUTABLE), NAME(CL_INVALID_KERNEL_NAME), NAME(CL_INVALID_KERNEL_DEFINITION), NAME(CL_INVALID_KERNEL),
+    NAME(CL_INVALID_ARG_INDEX), NAME(CL_INVALID_ARG_VALUE), NAME(CL_INVALID_ARG_SIZE), NAME(CL_INVALID_KERNEL_ARGS),
+    NAME(CL_INVALID_WORK_DIMENSION), NAME(CL_INVALID_WORK_GROUP_SIZE), NAME(CL_INVALID_WORK_ITEM_SIZE), NAME(CL_INVALID_GLOBAL_OFFSET),
+    NAME(CL_INVALID_EVENT_WAIT_LIST), NAME(CL_INVALID_EVENT), NAME(CL_INVALID_OPERATION), NAME(CL_INVALID_GL_OBJECT),
+    NAME(CL_INVALID_BUFFER_SIZE), NAME(CL_INVALID_MIP_LEVEL), NAME(CL_INVALID_GLOBAL_WORK_SIZE), NAME(CL_INVALID_PROPERTY),
+    NAME(CL_INVALID_IMAGE_DESCRIPTOR), NAME(CL_INVALID_COMPILER_OPTIONS), NAME(CL_INVALID_LINKER_OPTIONS),
+    NAME(CL_INVALID_DEVICE_PARTITION_COUNT), { -1001, "CL_PLATFORM_NOT_FOUND_KHR" },
+#undef NAME
+  };
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+    if (names[i].code == error) {
+      return names[i].name;
+    }
+  }
+  return "unknown OpenCL error";
+}
+
+stratus_status stratus_device_check(stratus_context* context, const stratus_device* device, const char* call, cl_int error)
+{
+  if (error == CL_SUCCESS) {
+    return STRATUS_OK;
+  }
+  const bool memory = error == CL_OUT_OF_RESOURCES || error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_HOST_MEMORY;
+  return stratus_fail(context, memory ? STRATUS_OUT_OF_MEMORY : STRATUS_DEVICE_ERROR, "%s failed on %s: %s (%d)", call, device->label,
+    stratus_device_error_name(error), error);
+}
+
+cl_int stratus_device_next_error(stratus_device* device)
+{
+  if (device->calls_left < 0) {
+    return CL_SUCCESS;
+  }
+  if (device->calls_left == 0) {
+    return device->injected;
+  }
+  --device->calls_left;
+  return CL_SUCCESS;
+}
+
+/* The call is evaluated only where no test asked it to fail. */
+#define CALL(context, device, name, call)                                                                                                  \
+  stratus_device_check(context, device, name, stratus_device_next_error(device) != CL_SUCCESS ? (device)->injected : (call))
+
+void stratus_device_fail_after(stratus_device* device, int64_t calls, int error)
+{
+  device->calls_left = calls;
+  device->injected = error;
+}
+
+/* ---------------------------------------------------------------- choice */
+
+static device_list list_devices(void)
+{
+  device_list list = { 0 };
+  cl_platform_id platforms[PLATFORMS_MAX];
+  cl_uint platform_count = 0;
+  list.error = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
+  if (list.error != CL_SUCCESS) {
+    return list;
+  }
+  for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX && list.count < DEVICES_MAX; ++p) {
+    const cl_uint space = (cl_uint)(DEVICES_MAX - list.count);
+    cl_uint found = 0;
+    /* A platform without devices is no error of ours: others may have some. */
+    if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, space, list.ids + list.count, &found) == CL_SUCCESS) {
+      list.count += (int)(found < space ? found : space);
+    }
+  }
+  return list;
+}
+
+static void device_name(cl_device_id id, char* name, size_t capacity)
+{
+  char whole[1024] = "";
+  if (clGetDeviceInfo(id, CL_DEVICE_NAME, sizeof whole - 1, whole, NULL) != CL_SUCCESS) {
+    snprintf(whole, sizeof whole, "unnamed device");
+  }
+  const char* start = whole;
+  while (isspace((unsigned char)*start)) {
+    ++start;
+  }
+  size_t length = strlen(start);
+  while (length && isspace((unsigned char)start[length - 1])) {
+    --length;
+  }
+  snprintf(name, capacity, "%.*s", (int)length, start);
+}
+
+int stratus_device_count(void)
+{
+  return list_devices().count;
+}
+
+stratus_status stratus_device_name(int index, char* name, size_t capacity)
+{
+  const device_list list = list_devices();
+  if (index < 0 || index >= list.count) {
+    return STRATUS_NO_DEVICE;
+  }
+  if (!name || !capacity) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  device_name(list.ids[index], name, capacity);
+  return STRATUS_OK;
+}
+
+static bool contains(const char* text, const char* part)
+{
+  for (; *text; ++text) {
+    size_t i = 0;
+    while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i])) {
+      ++i;
+    }
+    if (!part[i]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Index of the device that the selector means, -1 if none. */
+static int select_device(const device_list* list, const char* selector)
+{
+  const bool automatic = strcmp(selector, "auto") == 0;
+  if (!automatic && selector[strspn(selector, "0123456789")] == '\0') {
+    const unsigned long index = strtoul(selector, NULL, 10);
+    return index < (unsigned long)list->count ? (int)index : -1;
+  }
+  for (int i = 0; i < list->count; ++i) {
+    cl_device_type type = 0;
+    char name[192];
+    device_name(list->ids[i], name, sizeof name);
+    if (automatic ? clGetDeviceInfo(list->ids[i], CL_DEVICE_TYPE, sizeof type, &type, NULL) == CL_SUCCESS && (type & CL_DEVICE_TYPE_GPU)
+                  : contains(name, selector)) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+static stratus_status no_such_device(stratus_context* context, const device_list* list, const char* selector)
+{
+  char text[768] = "";
+  size_t used = 0;
+  for (int i = 0; i < list->count && used < sizeof text - 1; ++i) {
+    char name[192];
+    device_name(list->ids[i], name, sizeof name);
+    const int written = snprintf(text + used, sizeof text - used, "%s%d \"%s\"", i ? ", " : "", i, name);
+    used += written > 0 ? (size_t)written : 0;
+  }
+  if (!list->count) {
+    snprintf(text, sizeof text, "none (clGetPlatformIDs: %s)", stratus_device_error_name(list->error));
+  }
+  return stratus_fail(context, STRATUS_NO_DEVICE, "no OpenCL device \"%.100s\"; there are: %s", selector, text);
+}
+
+static stratus_status query(
+  stratus_context* context, stratus_device* device, cl_device_info what, const char* name, size_t size, void* value)
+{
+  return stratus_device_check(context, device, name, clGetDeviceInfo(device->id, what, size, value, NULL));
+}
+
+static stratus_status describe(stratus_context* context, stratus_device* device)
+{
+  cl_device_type type = 0;
+  cl_ulong largest = 0;
+  cl_bool unified = CL_FALSE;
+  cl_uint align_bits = 0;
+  cl_device_fp_config doubles = 0;
+  TRY(query(context, device, CL_DEVICE_TYPE, "clGetDeviceInfo(CL_DEVICE_TYPE)", sizeof type, &type));
+  TRY(query(context, device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, "clGetDeviceInfo(CL_DEVICE_MAX_MEM_ALLOC_SIZE)", sizeof largest, &largest));
+  TRY(query(context, device, CL_DEVICE_HOST_UNIFIED_MEMORY, "clGetDeviceInfo(CL_DEVICE_HOST_UNIFIED_MEMORY)", sizeof unified, &unified));
+  TRY(query(
+    context, device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, "clGetDeviceInfo(CL_DEVICE_MEM_BASE_ADDR_ALIGN)", sizeof align_bits, &align_bits));
+  /* Devices without the extension may refuse this question instead of answering 0. */
+  if (clGetDeviceInfo(device->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL) != CL_SUCCESS) {
+    doubles = 0;
+  }
+  device->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+  device->has_double = doubles != 0;
+  device->shares_memory = device->is_cpu || unified;
+  device->borrow_alignment = device->is_cpu || align_bits / 8 < BORROW_ALIGNMENT ? BORROW_ALIGNMENT : align_bits / 8;
+  device->largest_allocation = largest > SIZE_MAX ? SIZE_MAX : (size_t)largest;
+  return STRATUS_OK;
+}
+
+static stratus_status open_device(stratus_context* context, cl_device_id id, stratus_device** out)
+{
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_device), &memory));
+  stratus_device* device = memory;
+  device->owner = context;
+  device->id = id;
+  device->calls_left = -1;
+  device_name(id, device->label, sizeof device->label);
+
+  cl_int error = CL_SUCCESS;
+  stratus_status status;
+  TRY_CLEANUP(describe(context, device));
+  device->context = clCreateContext(NULL, 1, &id, NULL, NULL, &error);
+  TRY_CLEANUP(stratus_device_check(context, device, "clCreateContext", error));
+  device->queue = clCreateCommandQueue(device->context, id, 0, &error);
+  TRY_CLEANUP(stratus_device_check(context, device, "clCreateCommandQueue", error));
+cleanup:
+  if (status != STRATUS_OK) {
+    stratus_device_close(device);
+    return status;
+  }
+  *out = device;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device)
+{
+  const device_list list = list_devices();
+  const bool automatic = strcmp(selector, "auto") == 0;
+  const int index = select_device(&list, selector);
+  if (index < 0) {
+    *device = NULL;
+    return automatic ? STRATUS_OK : no_such_device(context, &list, selector);
+  }
+  *device = NULL;
+  const stratus_status status = open_device(context, list.ids[index], device);
+  if (automatic && status == STRATUS_DEVICE_ERROR) {
+    stratus_log(context, STRATUS_LOG_WARNING, "the GPU cannot be used: %s", context->message);
+    return STRATUS_OK;
+  }
+  return status;
+}
+
+void stratus_device_close(stratus_device* device)
+{
+  if (!device) {
+    return;
+  }
+  if (device->queue) {
+    clFinish(device->queue);
+  }
+  stratus_device_programs_release(device);
+  if (device->queue) {
+    clReleaseCommandQueue(device->queue);
+  }
+  if (device->context) {
+    clReleaseContext(device->context);
+  }
+  stratus_release(device->owner, device);
+}
+
+const char* stratus_device_label(const stratus_device* device)
+{
+  return device->label;
+}
+
+bool stratus_device_is_cpu(const stratus_device* device)
+{
+  return device->is_cpu;
+}
+
+bool stratus_device_has_double(const stratus_device* device)
+{
+  return device->has_double;
+}
+
+size_t stratus_device_largest_allocation(const stratus_device* device)
+{
+  return device->largest_allocation;
+}
+
+/* ---------------------------------------------------------------- buffers and launches */
+
+stratus_status stratus_device_buffer(
+  stratus_context* context, cl_mem_flags access, size_t bytes, const void* host, bool borrow, cl_mem* buffer)
+{
+  stratus_device* device = context->device;
+  if (bytes > device->largest_allocation) {
+    return stratus_fail(context, STRATUS_OUT_OF_MEMORY, "a buffer of %zu bytes exceeds the largest allocation of %s, %zu bytes", bytes,
+      device->label, device->largest_allocation);
+  }
+  const bool in_place = borrow && device->shares_memory && (uintptr_t)host % device->borrow_alignment == 0;
+  if (host && bytes) {
+    access |= in_place ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+  } else {
+    host = NULL;
+  }
+  cl_int error = stratus_device_next_error(device);
+  cl_mem result = NULL;
+  if (error == CL_SUCCESS) {
+    result = clCreateBuffer(device->context, access, bytes ? bytes : 1, (void*)(uintptr_t)host, &error);
+  }
+  TRY(stratus_device_check(context, device, "clCreateBuffer", error));
+  *buffer = result;
+  return STRATUS_OK;
+}
+
+void stratus_device_buffer_release(cl_mem buffer)
+{
+  if (buffer) {
+    clReleaseMemObject(buffer);
+  }
+}
+
+stratus_status stratus_device_write(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, const void* host)
+{
+  stratus_device* device = context->device;
+  return bytes == 0 ? STRATUS_OK
+                    : CALL(context, device, "clEnqueueWriteBuffer",
+                        clEnqueueWriteBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
+}
+
+stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, void* host)
+{
+  stratus_device* device = context->device;
+  return bytes == 0 ? STRATUS_OK
+                    : CALL(context, device, "clEnqueueReadBuffer",
+                        clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
+}
+
+stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value)
+{
+  return CALL(context, context->device, "clSetKernelArg", clSetKernelArg(kernel, index, size, value));
+}
+
+stratus_status stratus_device_run(
+  stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local)
+{
+  stratus_device* device = context->device;
+  return CALL(context, device, "clEnqueueNDRangeKernel",
+    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global, local, 0, NULL, NULL));
+}
+
+stratus_status stratus_device_finish(stratus_context* context)
+{
+  stratus_device* device = context->device;
+  return CALL(context, device, "clFinish", clFinish(device->queue));
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Programs and kernels of an OpenCL device, built once for each source and set of defines. */
+#include "device_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Leaves the log from its first error on in the message; a log may be far longer than the message. */
+static stratus_status build_failed(stratus_context* context, stratus_device* device, cl_program program, const char* what, cl_int error)
+{
+  size_t size = 0;
+  void* memory = NULL;
+  const char* log = "no build log";
+  if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size) == CL_SUCCESS &&
+    stratus_allocate_zero(context, size + 1, 1, &memory) == STRATUS_OK &&
+    clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, memory, NULL) == CL_SUCCESS && *(const char*)memory) {
+    log = memory;
+    const char* found = strstr(log, "error:");
+    while (found && found > log && found[-1] != '\n') {
+      --found;
+    }
+    log = found ? found : log;
+  }
+  const stratus_status status = stratus_fail(context, STRATUS_DEVICE_ERROR, "building the kernels of %s for %s failed: %s (%d): %s", what,
+    device->label, stratus_device_error_name(error), error, log);
+  stratus_release(context, memory);
+  return status;
+}
+
+static stratus_status build_program(
+  stratus_context* context, stratus_device* device, const char* source, const char* defines, cached_program* program)
+{
+  const char* text = stratus_kernel_source(source);
+  if (!text) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "no kernel source is named \"%s\"", source);
+  }
+  void* options = NULL;
+  const size_t options_size = strlen(defines) + 32;
+  TRY(stratus_allocate(context, options_size, 1, &options));
+  /* No relaxed mathematics: the device must round as the host does. */
+  snprintf(options, options_size, "-cl-std=CL1.2 %s", defines);
+
+  stratus_status status;
+  const double start = stratus_now_ms();
+  cl_int error = stratus_device_next_error(device);
+  if (error == CL_SUCCESS) {
+    program->program = clCreateProgramWithSource(device->context, 1, &text, NULL, &error);
+  }
+  TRY_CLEANUP(stratus_device_check(context, device, "clCreateProgramWithSource", error));
+  error = stratus_device_next_error(device);
+  if (error == CL_SUCCESS) {
+    error = clBuildProgram(program->program, 1, &device->id, options, NULL, NULL);
+  }
+  if (error == CL_BUILD_PROGRAM_FAILURE || error == CL_INVALID_BUILD_OPTIONS) {
+    status = build_failed(context, device, program->program, source, error);
+  } else {
+    status = stratus_device_check(context, device, "clBuildProgram", error);
+  }
+  if (status == STRATUS_OK) {
+    stratus_log(context, STRATUS_LOG_DEBUG, "built %s %s for %s in %.0f ms", source, defines, device->label, stratus_now_ms() - start);
+  }
+cleanup:
+  stratus_release(context, options);
+  if (status != STRATUS_OK && program->program) {
+    clReleaseProgram(program->program);
+  }
+  return status;
+}
+
+static stratus_status find_program(
+  stratus_context* context, stratus_device* device, const char* source, const char* defines, cached_program** result)
+{
+  for (cached_program* p = device->programs; p; p = p->next) {
+    if (strcmp(p->name, source) == 0 && strcmp(p->defines, defines) == 0) {
+      *result = p;
+      return STRATUS_OK;
+    }
+  }
+  void* memory = NULL;
+  const size_t name_size = strlen(source) + 1;
+  const size_t defines_size = strlen(defines) + 1;
+  TRY(stratus_allocate_zero(context, sizeof(cached_program) + name_size + defines_size, 1, &memory));
+  cached_program* program = memory;
+  memcpy(program->name, source, name_size);
+  memcpy(program->name + name_size, defines, defines_size);
+  program->defines = program->name + name_size;
+  const stratus_status status = build_program(context, device, source, defines, program);
+  if (status != STRATUS_OK) {
+    stratus_release(context, program);
+    return status;
+  }
+  program->next = device->programs;
+  device->programs = program;
+  *result = program;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_device_kernel(
+  stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result)
+{
+  stratus_device* device = context->device;
+  cached_program* program = NULL;
+  TRY(find_program(context, device, source, defines ? defines : "", &program));
+  for (const cached_kernel* k = device->kernels; k; k = k->next) {
+    if (k->program == program && strcmp(k->name, kernel) == 0) {
+      *result = k->kernel;
+      return STRATUS_OK;
+    }
+  }
+  void* memory = NULL;
+  const size_t name_size = strlen(kernel) + 1;
+  TRY(stratus_allocate_zero(context, sizeof(cached_kernel) + name_size, 1, &memory));
+  cached_kernel* entry = memory;
+  cl_int error = stratus_device_next_error(device);
+  if (error == CL_SUCCESS) {
+    entry->kernel = clCreateKernel(program->program, kernel, &error);
+  }
+  if (error != CL_SUCCESS) {
+    stratus_release(context, entry);
+    return stratus_device_check(context, device, "clCreateKernel", error);
+  }
+  memcpy(entry->name, kernel, name_size);
+  entry->program = program;
+  entry->next = device->kernels;
+  device->kernels = entry;
+  *result = entry->kernel;
+  return STRATUS_OK;
+}
+
+void stratus_device_programs_release(stratus_device* device)
+{
+  while (device->kernels) {
+    cached_kernel* kernel = device->kernels;
+    device->kernels = kernel->next;
+    clReleaseKernel(kernel->kernel);
+    stratus_release(device->owner, kernel);
+  }
+  while (device->programs) {
+    cached_program* program = device->programs;
+    device->programs = program->next;
+    clReleaseProgram(program->program);
+    stratus_release(device->owner, program);
+  }
+}
