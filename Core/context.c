@@ -98,7 +98,7 @@ stratus_status stratus_product(stratus_context* context, const char* what, size_
 
 stratus_status stratus_allocate(stratus_context* context, size_t count, size_t size, void** memory)
 {
-  size_t bytes;
+  size_t bytes = 0;
   TRY(stratus_product(context, "allocation", count, size, 1, &bytes));
   void* result = bytes > SIZE_MAX / 2 ? NULL : context->options.allocate(context->options.allocator_user, bytes ? bytes : 1);
   if (!result) {
