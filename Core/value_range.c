@@ -1,0 +1,416 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Least and greatest value of each block of cells, the halo that interpolation reads included.
+ *
+ * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
+ * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
+#include "internal.h"
+#include "structures_device.h"
+
+#include <float.h>
+#include <omp.h>
+#include <string.h>
+
+#define BLOCK_SIZE_DEFAULT 4
+#define LANES 16
+#define ROW_BYTES 8 /* of the widest value or extreme */
+
+/* One row of blocks, and a thread's room to reduce it in. */
+typedef struct span {
+  const stratus_volume* volume;
+  double bias;
+  int64_t nx;         /* values along x */
+  int64_t y0, z0, ny; /* first row, and rows along y */
+  int64_t rows;       /* in all */
+  int64_t blocks;     /* along x */
+  int size;           /* of a block */
+  void *lo, *hi;      /* nx extremes */
+  void* strided;      /* four rows of nx values */
+  uint8_t* bad;       /* nx */
+  float *block_lo, *block_hi;
+  uint8_t* gaps;
+} span;
+
+#define NARROW(a) ((float)(a))
+#define WIDE(a) ((float)((double)(a)-bias))
+#define SAME(v) (v)
+
+#define TYPE int8_t
+#define ACC int8_t
+#define NAME(f) f##_int8
+#define LOAD SAME
+#define FETCH NARROW
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE uint8_t
+#define ACC uint8_t
+#define NAME(f) f##_uint8
+#define LOAD SAME
+#define FETCH NARROW
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE int16_t
+#define ACC int16_t
+#define NAME(f) f##_int16
+#define LOAD SAME
+#define FETCH NARROW
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE uint16_t
+#define ACC uint16_t
+#define NAME(f) f##_uint16
+#define LOAD SAME
+#define FETCH NARROW
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE int32_t
+#define ACC int32_t
+#define NAME(f) f##_int32
+#define LOAD SAME
+#define FETCH WIDE
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE uint32_t
+#define ACC uint32_t
+#define NAME(f) f##_uint32
+#define LOAD SAME
+#define FETCH WIDE
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE int64_t
+#define ACC int64_t
+#define NAME(f) f##_int64
+#define LOAD SAME
+#define FETCH WIDE
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE uint64_t
+#define ACC uint64_t
+#define NAME(f) f##_uint64
+#define LOAD SAME
+#define FETCH WIDE
+#define FLOATS 0
+#include "value_range_rows.h"
+
+#define TYPE float
+#define ACC float
+#define NAME(f) f##_float32
+#define LOAD SAME
+#define FETCH SAME
+#define FLOATS 1
+#include "value_range_rows.h"
+
+/* A double is fetched first: what overflows a float is not finite for anybody. */
+#define TYPE double
+#define ACC float
+#define NAME(f) f##_float64
+#define LOAD WIDE
+#define FETCH SAME
+#define FLOATS 1
+#include "value_range_rows.h"
+
+typedef void (*reduce_function)(const span*);
+
+static reduce_function reduce_of(stratus_type type)
+{
+  switch (type) {
+    case STRATUS_INT8:
+      return reduce_int8;
+    case STRATUS_UINT8:
+      return reduce_uint8;
+    case STRATUS_INT16:
+      return reduce_int16;
+    case STRATUS_UINT16:
+      return reduce_uint16;
+    case STRATUS_INT32:
+      return reduce_int32;
+    case STRATUS_UINT32:
+      return reduce_uint32;
+    case STRATUS_INT64:
+      return reduce_int64;
+    case STRATUS_UINT64:
+      return reduce_uint64;
+    case STRATUS_FLOAT32:
+      return reduce_float32;
+    case STRATUS_FLOAT64:
+      return reduce_float64;
+  }
+  return NULL;
+}
+
+/* A thread's room, from `memory` of room_bytes(). */
+static size_t room_bytes(int64_t nx)
+{
+  const size_t row = ((size_t)nx * ROW_BYTES + 63) / 64 * 64;
+  return 7 * row; /* lo, hi, four strided rows, bad */
+}
+
+static void give_room(span* s, uint8_t* memory)
+{
+  const size_t row = room_bytes(s->nx) / 7;
+  s->lo = memory;
+  s->hi = memory + row;
+  s->strided = memory + 2 * row;
+  s->bad = memory + 6 * row;
+}
+
+static void reduce_row(span* s, const stratus_value_range* ranges, reduce_function reduce, int64_t j, int64_t k)
+{
+  const int64_t *n = s->volume->dimensions, size = ranges->block_size;
+  const int64_t y1 = (j + 1) * size < n[1] ? (j + 1) * size : n[1] - 1;
+  const int64_t z1 = (k + 1) * size < n[2] ? (k + 1) * size : n[2] - 1;
+  const int64_t block = (k * ranges->blocks[1] + j) * ranges->blocks[0];
+  s->y0 = j * size;
+  s->z0 = k * size;
+  s->ny = y1 - s->y0 + 1;
+  s->rows = s->ny * (z1 - s->z0 + 1);
+  s->block_lo = ranges->lo + block;
+  s->block_hi = ranges->hi + block;
+  s->gaps = ranges->gaps + block;
+  reduce(s);
+}
+
+static stratus_status reduce_on_host(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+{
+  const reduce_function reduce = reduce_of(volume->type);
+  const int64_t rows = ranges->blocks[1] * ranges->blocks[2];
+  const int threads = (int64_t)context->threads < rows ? context->threads : (int)rows;
+  const size_t room = room_bytes(volume->dimensions[0]);
+  void* memory = NULL;
+  stratus_status status = STRATUS_OK;
+  int stop = 0;
+
+  TRY(stratus_allocate(context, (size_t)threads, room, &memory));
+#pragma omp parallel num_threads(threads)
+  {
+    const int thread = omp_get_thread_num();
+    span s = { .volume = volume, .bias = ranges->bias, .nx = volume->dimensions[0], .blocks = ranges->blocks[0],
+      .size = ranges->block_size };
+    give_room(&s, (uint8_t*)memory + (size_t)thread * room);
+#pragma omp for schedule(static)
+    for (int64_t row = 0; row < rows; row++) {
+      int stopped;
+#pragma omp atomic read
+      stopped = stop;
+      if (stopped) {
+        continue;
+      }
+      reduce_row(&s, ranges, reduce, row % ranges->blocks[1], row / ranges->blocks[1]);
+      /* Only the caller's thread reports: it has the first share of the rows. */
+      if (thread == 0 && row % ranges->blocks[1] == 0) {
+        status = stratus_progress(context, "value ranges", (double)row * threads / (double)rows);
+        if (status != STRATUS_OK) {
+#pragma omp atomic write
+          stop = 1;
+        }
+      }
+    }
+  }
+  stratus_release(context, memory);
+  return status;
+}
+
+/* Blocks, at most two along each axis, whose values or cells include `at`. cell_centered: a flag is a value's, and a value on a block's
+ * border belongs to both. */
+static int touched(int64_t at, int64_t size, int64_t blocks, int shared, int64_t first[2])
+{
+  int count = 0;
+  if (at / size < blocks) {
+    first[count++] = at / size;
+  }
+  if (shared && at % size == 0 && at > 0) {
+    first[count++] = at / size - 1;
+  }
+  return count;
+}
+
+static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, stratus_value_range* ranges)
+{
+  int64_t n[3];
+  for (int a = 0; a < 3; a++) {
+    n[a] = volume->cell_centered || volume->dimensions[a] == 1 ? volume->dimensions[a] : volume->dimensions[a] - 1;
+  }
+  const int64_t *blocks = ranges->blocks, size = ranges->block_size;
+  for (int64_t k = 0; k < n[2]; k++) {
+    for (int64_t j = 0; j < n[1]; j++) {
+      for (int64_t i = 0; i < n[0]; i++) {
+        if (!hidden[(k * n[1] + j) * n[0] + i]) {
+          continue;
+        }
+        int64_t bx[2], by[2], bz[2];
+        const int nx = touched(i, size, blocks[0], volume->cell_centered, bx);
+        const int ny = touched(j, size, blocks[1], volume->cell_centered, by);
+        const int nz = touched(k, size, blocks[2], volume->cell_centered, bz);
+        for (int c = 0; c < nx * ny * nz; c++) {
+          ranges->gaps[(bz[c / (nx * ny)] * blocks[1] + by[c / nx % ny]) * blocks[0] + bx[c % nx]] = 1;
+        }
+      }
+    }
+  }
+}
+
+/* In lanes, for a single running minimum waits for itself. */
+static void widen_lanes(const float* restrict lo, const float* restrict hi, float* restrict least, float* restrict most)
+{
+  for (int lane = 0; lane < LANES; lane++) {
+    least[lane] = lo[lane] < least[lane] ? lo[lane] : least[lane];
+    most[lane] = hi[lane] > most[lane] ? hi[lane] : most[lane];
+  }
+}
+
+/* A block without values holds INFINITY and -INFINITY, the wrong way round: neither ever wins. */
+static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
+{
+  const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2], groups = count / LANES;
+  float lo = INFINITY, hi = -INFINITY;
+#pragma omp parallel num_threads(context->threads) reduction(min : lo) reduction(max : hi)
+  {
+    float least[LANES], most[LANES];
+    for (int lane = 0; lane < LANES; lane++) {
+      least[lane] = INFINITY;
+      most[lane] = -INFINITY;
+    }
+#pragma omp for schedule(static)
+    for (int64_t g = 0; g < groups; g++) {
+      widen_lanes(ranges->lo + g * LANES, ranges->hi + g * LANES, least, most);
+    }
+    for (int lane = 0; lane < LANES; lane++) {
+      lo = least[lane] < lo ? least[lane] : lo;
+      hi = most[lane] > hi ? most[lane] : hi;
+    }
+  }
+  for (int64_t b = groups * LANES; b < count; b++) {
+    lo = ranges->lo[b] < lo ? ranges->lo[b] : lo;
+    hi = ranges->hi[b] > hi ? ranges->hi[b] : hi;
+  }
+  ranges->whole_lo = lo;
+  ranges->whole_hi = hi;
+}
+
+static stratus_status check_block_size(stratus_context* context, int block_size)
+{
+  if (block_size < 2 || block_size > 32 || (block_size & (block_size - 1)) != 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block_size %d, must be 2, 4, 8, 16 or 32, or 0 for the default", block_size);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status allocate_blocks(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+{
+  int64_t cells[3];
+  size_t count;
+  void* memory;
+  stratus_volume_cells(volume, cells);
+  for (int a = 0; a < 3; a++) {
+    ranges->blocks[a] = cells[a] ? (cells[a] + ranges->block_size - 1) / ranges->block_size : 1;
+  }
+  TRY(stratus_product(context, "blocks", (size_t)ranges->blocks[0], (size_t)ranges->blocks[1], (size_t)ranges->blocks[2], &count));
+  TRY(stratus_allocate(context, count, sizeof *ranges->lo, &memory));
+  ranges->lo = memory;
+  TRY(stratus_allocate(context, count, sizeof *ranges->hi, &memory));
+  ranges->hi = memory;
+  TRY(stratus_allocate(context, count, sizeof *ranges->gaps, &memory));
+  ranges->gaps = memory;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_value_range_create(
+  stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_value_range* ranges = NULL;
+  uint8_t* hidden = NULL;
+  void* memory;
+
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ranges is NULL");
+  }
+  block_size = block_size ? block_size : BLOCK_SIZE_DEFAULT;
+  TRY(check_block_size(context, block_size));
+  TRY(stratus_volume_check(context, volume));
+  TRY(stratus_allocate_zero(context, 1, sizeof *ranges, &memory));
+  ranges = memory;
+  ranges->context = context;
+  ranges->block_size = block_size;
+  ranges->bias = stratus_volume_bias(volume);
+
+  TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
+  TRY_CLEANUP(allocate_blocks(context, volume, ranges));
+  TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
+  if (stratus_structures_on_device(context) && stratus_device_takes_volume(context, volume)) {
+    TRY_CLEANUP(stratus_device_value_range(context, volume, ranges));
+  } else {
+    TRY_CLEANUP(reduce_on_host(context, volume, ranges));
+  }
+  if (hidden) {
+    flag_hidden(volume, hidden, ranges);
+  }
+  reduce_whole(context, ranges);
+  TRY_CLEANUP(stratus_progress(context, "value ranges", 1.0));
+  *out = ranges;
+  ranges = NULL;
+
+cleanup:
+  stratus_release(context, hidden);
+  stratus_value_range_destroy(ranges);
+  return status;
+}
+
+void stratus_value_range_destroy(stratus_value_range* ranges)
+{
+  if (ranges) {
+    stratus_context* context = ranges->context;
+    stratus_release(context, ranges->lo);
+    stratus_release(context, ranges->hi);
+    stratus_release(context, ranges->gaps);
+    stratus_release(context, ranges);
+  }
+}
+
+void stratus_value_range_blocks(const stratus_value_range* ranges, int64_t blocks[3], int* block_size)
+{
+  for (int a = 0; blocks && a < 3; a++) {
+    blocks[a] = ranges->blocks[a];
+  }
+  if (block_size) {
+    *block_size = ranges->block_size;
+  }
+}
+
+stratus_status stratus_value_range_whole(const stratus_value_range* ranges, double* low, double* high)
+{
+  if (!ranges || !(ranges->whole_lo <= ranges->whole_hi)) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (low) {
+    *low = (double)ranges->whole_lo + ranges->bias;
+  }
+  if (high) {
+    *high = (double)ranges->whole_hi + ranges->bias;
+  }
+  return STRATUS_OK;
+}
+
+void stratus_value_range_block(
+  const stratus_value_range* ranges, int64_t i, int64_t j, int64_t k, double* low, double* high, int* gaps)
+{
+  const int64_t block = (k * ranges->blocks[1] + j) * ranges->blocks[0] + i;
+  if (low) {
+    *low = (double)ranges->lo[block] + ranges->bias;
+  }
+  if (high) {
+    *high = (double)ranges->hi[block] + ranges->bias;
+  }
+  if (gaps) {
+    *gaps = ranges->gaps[block];
+  }
+}

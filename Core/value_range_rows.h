@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The inner loops of value_range.c for one type. Included once a type, with
+ *   TYPE     of the values
+ *   ACC      of the extremes: TYPE itself for integers (a range of integers is exact and cheap), float for both floats
+ *   NAME(f)  a function's name with the type's suffix
+ *   LOAD(v)  a value as an ACC; `bias` is in scope
+ *   FETCH(a) an ACC as the fetched value; `bias` is in scope
+ *   FLOATS   1 if values may be NaN or infinite (as floats)
+ * A row is a run of `nx` values along x, already at unit stride. */
+
+/* Row r of a span, copied to unit stride if need be. */
+static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
+{
+  const int64_t y = s->y0 + r % s->ny, z = s->z0 + r / s->ny;
+  const TYPE* values = (const TYPE*)s->volume->values + (z * s->volume->dimensions[1] + y) * s->nx * s->volume->value_stride;
+  if (s->volume->value_stride == 1) {
+    return values;
+  }
+  TYPE* copy = scratch;
+  for (int64_t x = 0; x < s->nx; x++) {
+    copy[x] = values[x * s->volume->value_stride];
+  }
+  return copy;
+}
+
+/* Widens lo and hi, elementwise, by four rows at once: the extremes are loaded and stored once for four values. NaN never wins a
+ * comparison. Returns non-zero if a value is not finite: an infinity that got in must be taken out again by NAME(careful). */
+static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* restrict lo, ACC* restrict hi)
+{
+  const TYPE *restrict a = rows[0], *restrict b = rows[1], *restrict c = rows[2], *restrict d = rows[3];
+  int bad = 0;
+  (void)bias;
+  for (int64_t x = 0; x < nx; x++) {
+    const ACC va = LOAD(a[x]), vb = LOAD(b[x]), vc = LOAD(c[x]), vd = LOAD(d[x]);
+#if FLOATS
+    bad |= !(fabsf(va) <= FLT_MAX) | !(fabsf(vb) <= FLT_MAX) | !(fabsf(vc) <= FLT_MAX) | !(fabsf(vd) <= FLT_MAX);
+#endif
+    ACC least = lo[x], most = hi[x];
+    least = va < least ? va : least;
+    most = va > most ? va : most;
+    least = vb < least ? vb : least;
+    most = vb > most ? vb : most;
+    least = vc < least ? vc : least;
+    most = vc > most ? vc : most;
+    lo[x] = vd < least ? vd : least;
+    hi[x] = vd > most ? vd : most;
+  }
+  return bad;
+}
+
+/* Makes lo[x] the least of lo[x .. x+size], cut at the row's end, by doubling windows; hi likewise. */
+static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
+{
+  for (int step = 1; step <= size; step *= 2) {
+    const int64_t ahead = step < size ? step : 1; /* windows of 2, 4 .. size, and one more value: the halo */
+    for (int64_t x = 0; x < nx - ahead; x++) {
+      lo[x] = lo[x + ahead] < lo[x] ? lo[x + ahead] : lo[x];
+      hi[x] = hi[x + ahead] > hi[x] ? hi[x + ahead] : hi[x];
+    }
+  }
+}
+
+#if FLOATS
+/* The same extremes of the finite values alone, and in bad[x] whether one is not finite. */
+static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
+{
+  const double bias = s->bias;
+  (void)bias;
+  for (int64_t x = 0; x < s->nx; x++) {
+    lo[x] = INFINITY;
+    hi[x] = -INFINITY;
+    bad[x] = 0;
+  }
+  for (int64_t r = 0; r < s->rows; r++) {
+    const TYPE* values = NAME(row)(s, r, s->strided);
+    for (int64_t x = 0; x < s->nx; x++) {
+      const ACC v = LOAD(values[x]);
+      const int finite = fabsf(v) <= FLT_MAX;
+      bad[x] |= (uint8_t)!finite;
+      lo[x] = finite && v < lo[x] ? v : lo[x];
+      hi[x] = finite && v > hi[x] ? v : hi[x];
+    }
+  }
+}
+#endif
+
+/* The ranges of a row of blocks. */
+static void NAME(reduce)(const span* s)
+{
+  ACC *lo = s->lo, *hi = s->hi;
+  const double bias = s->bias;
+  int bad = 0;
+  (void)bias;
+  const TYPE* first = NAME(row)(s, 0, s->strided);
+  for (int64_t x = 0; x < s->nx; x++) {
+    lo[x] = hi[x] = LOAD(first[x]);
+  }
+  for (int64_t r = 0; r < s->rows; r += 4) {
+    const TYPE* rows[4];
+    for (int64_t i = 0; i < 4; i++) { /* the last row again where there are no more: it changes nothing */
+      const int64_t at = r + i < s->rows ? r + i : s->rows - 1;
+      rows[i] = NAME(row)(s, at, (TYPE*)s->strided + i * s->nx);
+    }
+    bad |= NAME(widen)(rows, s->nx, bias, lo, hi);
+  }
+  for (int64_t b = 0; b < s->blocks; b++) {
+    s->gaps[b] = 0;
+  }
+#if FLOATS
+  if (bad) {
+    NAME(careful)(s, lo, hi, s->bad);
+    for (int64_t x = 0; x < s->nx; x++) {
+      const int64_t b = x / s->size < s->blocks ? x / s->size : s->blocks - 1;
+      s->gaps[b] |= s->bad[x];
+      if (x % s->size == 0 && x > 0) { /* the halo of the block before */
+        s->gaps[x / s->size - 1] |= s->bad[x];
+      }
+    }
+  }
+#endif
+  (void)bad;
+  NAME(window)(s->nx, s->size, lo, hi);
+  for (int64_t b = 0; b < s->blocks; b++) {
+    const ACC least = lo[b * s->size], most = hi[b * s->size];
+    s->block_lo[b] = FETCH(least) + 0.0f; /* -0 becomes 0: which zero comes first must not show in the bits */
+    s->block_hi[b] = FETCH(most) + 0.0f;
+  }
+}
+
+#undef TYPE
+#undef ACC
+#undef NAME
+#undef LOAD
+#undef FETCH
+#undef FLOATS
