@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Tests that build something anew, each one line of ctest's summary. What they need must be there: nothing is skipped.
+find_program(CLANG clang REQUIRED)
+find_program(OCLGRIND oclgrind REQUIRED)
+
+# ---- the core alone, without VTK: under sanitizers, and with clang
+function (stratus_add_core_build name)
+  stratus_add_test(${name} builds "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${CMAKE_BINARY_DIR}/${name}"
+    --build-generator "${CMAKE_GENERATOR}" --build-project Stratus
+    --build-options -DSTRATUS_BUILD_VTK=OFF -DSTRATUS_BUILD_TESTING=ON -DSTRATUS_WERROR=ON
+      "-DCMAKE_INSTALL_PREFIX=${CMAKE_BINARY_DIR}/${name}/prefix" ${ARGN}
+    --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
+endfunction ()
+stratus_add_core_build(core_under_sanitizers
+  "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_C_FLAGS_DEBUG=-O1 -g")
+stratus_add_core_build(core_by_clang -DCMAKE_C_COMPILER=${CLANG} -DCMAKE_BUILD_TYPE=Release)
+
+# ---- consumers of what was installed: the core that clang built without VTK, and everything
+function (stratus_add_installation name folder)
+  stratus_add_test(${name} consumers "${CMAKE_COMMAND}" --install "${folder}" --prefix "${CMAKE_BINARY_DIR}/${name}")
+  set_tests_properties(${name} PROPERTIES FIXTURES_SETUP ${name})
+endfunction ()
+function (stratus_add_consumer name source prefix)
+  stratus_add_test(${name} consumers "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}/${source}" "${CMAKE_BINARY_DIR}/${name}"
+    --build-generator "${CMAKE_GENERATOR}" --build-noclean --build-project ${name}
+    --build-options "-DCMAKE_PREFIX_PATH=${CMAKE_BINARY_DIR}/${prefix}" -DCMAKE_BUILD_TYPE=Release
+    --test-command ${ARGN})
+  set_tests_properties(${name} PROPERTIES FIXTURES_REQUIRED ${prefix})
+endfunction ()
+stratus_add_installation(install_core "${CMAKE_BINARY_DIR}/core_by_clang")
+set_tests_properties(core_by_clang PROPERTIES FIXTURES_SETUP core_by_clang)
+set_tests_properties(install_core PROPERTIES FIXTURES_REQUIRED core_by_clang)
+stratus_add_consumer(consumer_of_core Testing/Consumers/Core install_core "${CMAKE_BINARY_DIR}/consumer_of_core/consumer")
+stratus_add_consumer(example_c_alone Examples/C install_core "${CMAKE_BINARY_DIR}/example_c_alone/cloud" "${CMAKE_BINARY_DIR}/example_c_alone/cloud.ppm")
+if (stratus_vtk)
+  stratus_add_installation(install_all "${CMAKE_BINARY_DIR}")
+  stratus_add_consumer(consumer_of_vtk Testing/Consumers/VTK install_all ${stratus_display} "${CMAKE_BINARY_DIR}/consumer_of_vtk/consumer")
+  if (stratus_python)
+    stratus_add_test(python_of_installation consumers "${CMAKE_COMMAND}" -E env
+      "PYTHONPATH=${CMAKE_BINARY_DIR}/install_all/lib/python3/dist-packages" "${Python3_EXECUTABLE}" -c
+      "import vtk, stratus; assert 'install_all' in stratus.__file__; assert issubclass(stratus.vtkStratusVolumeMapper, vtk.vtkVolumeMapper)")
+    set_tests_properties(python_of_installation PROPERTIES FIXTURES_REQUIRED install_all)
+  endif ()
+endif ()
+
+# ---- every kernel through clang's own OpenCL front end, warnings as errors
+set(kernel_flags -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Werror "-I${PROJECT_SOURCE_DIR}/kernels")
+file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/kernels/*.cl")
+foreach (kernel IN LISTS kernels)
+  get_filename_component(name "${kernel}" NAME_WE)
+  foreach (width IN ITEMS 1 16)
+    stratus_add_test(kernel_${name}_width_${width} kernels "${CLANG}" ${kernel_flags} -DSTRATUS_WIDTH=${width} "${kernel}")
+  endforeach ()
+  stratus_add_test(kernel_${name}_width_16_avx512 kernels "${CLANG}" ${kernel_flags} -DSTRATUS_WIDTH=16 -mavx512f "${kernel}")
+endforeach ()
+
+# ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
+stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}" "${stratus_test_folder}/test_device_tiny")
