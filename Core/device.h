@@ -26,6 +26,9 @@ size_t stratus_device_largest_allocation(const stratus_device* device);
  * cached in the device by source and defines; the kernel belongs to the cache. A failed build leaves the build log in the message. */
 stratus_status stratus_device_kernel(
   stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result);
+/* The same from a text of the caller's; `source` is the name that it is cached and reported by. */
+stratus_status stratus_device_kernel_from(
+  stratus_context* context, const char* source, const char* text, const char* defines, const char* kernel, cl_kernel* result);
 
 /* A buffer of `bytes` (at least 1). `host` NULL: not initialised. Else copied from, or, where device and host share memory (`borrow`), used in
  * place: then `host` must outlive the buffer. */

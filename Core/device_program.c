@@ -28,12 +28,8 @@ static stratus_status build_failed(stratus_context* context, stratus_device* dev
 }
 
 static stratus_status build_program(
-  stratus_context* context, stratus_device* device, const char* source, const char* defines, cached_program* program)
+  stratus_context* context, stratus_device* device, const char* source, const char* text, const char* defines, cached_program* program)
 {
-  const char* text = stratus_kernel_source(source);
-  if (!text) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "no kernel source is named \"%s\"", source);
-  }
   void* options = NULL;
   const size_t options_size = strlen(defines) + 32;
   TRY(stratus_allocate(context, options_size, 1, &options));
@@ -68,7 +64,7 @@ cleanup:
 }
 
 static stratus_status find_program(
-  stratus_context* context, stratus_device* device, const char* source, const char* defines, cached_program** result)
+  stratus_context* context, stratus_device* device, const char* source, const char* text, const char* defines, cached_program** result)
 {
   for (cached_program* p = device->programs; p; p = p->next) {
     if (strcmp(p->name, source) == 0 && strcmp(p->defines, defines) == 0) {
@@ -84,7 +80,7 @@ static stratus_status find_program(
   memcpy(program->name, source, name_size);
   memcpy(program->name + name_size, defines, defines_size);
   program->defines = program->name + name_size;
-  const stratus_status status = build_program(context, device, source, defines, program);
+  const stratus_status status = build_program(context, device, source, text, defines, program);
   if (status != STRATUS_OK) {
     stratus_release(context, program);
     return status;
@@ -95,12 +91,12 @@ static stratus_status find_program(
   return STRATUS_OK;
 }
 
-stratus_status stratus_device_kernel(
-  stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result)
+stratus_status stratus_device_kernel_from(
+  stratus_context* context, const char* source, const char* text, const char* defines, const char* kernel, cl_kernel* result)
 {
   stratus_device* device = context->device;
   cached_program* program = NULL;
-  TRY(find_program(context, device, source, defines ? defines : "", &program));
+  TRY(find_program(context, device, source, text, defines ? defines : "", &program));
   for (const cached_kernel* k = device->kernels; k; k = k->next) {
     if (k->program == program && strcmp(k->name, kernel) == 0) {
       *result = k->kernel;
@@ -125,6 +121,16 @@ stratus_status stratus_device_kernel(
   device->kernels = entry;
   *result = entry->kernel;
   return STRATUS_OK;
+}
+
+stratus_status stratus_device_kernel(
+  stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result)
+{
+  const char* text = stratus_kernel_source(source);
+  if (!text) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "no kernel source is named \"%s\"", source);
+  }
+  return stratus_device_kernel_from(context, source, text, defines, kernel, result);
 }
 
 void stratus_device_programs_release(stratus_device* device)
