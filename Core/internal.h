@@ -95,7 +95,7 @@ typedef struct stratus_table {
   int size;            /* entries */
   float scale, offset; /* entry = (int) clamp(fma(s, scale, offset), 0, size-1) */
   int* next_shown;     /* size+1: smallest entry >= i with any opacity, `size` if none */
-  float* rgba;         /* NULL if pre-integrated */
+  float* rgba;         /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
   int32_t* sums;       /* NULL if midpoint: (size+1)*4 running sums of r tau, g tau, b tau, tau in units of .. */
   float sum_scale;     /* .. optical depth per entry and per sample distance */
   int shown;           /* entries with opacity */

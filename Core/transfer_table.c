@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The transfer function as traversal samples it: a table over the data's values, each entry the function at the entry's middle (midpoint
+ * sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
+#include "internal.h"
+
+#include <string.h>
+
+/* Entries, and how many the narrowest feature of the function shall have. */
+#define MIDPOINT_ENTRIES 4096
+#define PREINTEGRATED_ENTRIES 16384
+#define MOST_ENTRIES 65536
+#define ENTRIES_A_FEATURE 32
+/* Opacity 1 is an infinite optical depth: this much lets 1e-7 of the light through. */
+#define OPAQUE_TAU 16.0
+/* Largest running sum: differences of sums stay positive ints. */
+#define SUM_MOST 2147483000.0
+
+stratus_transfer stratus_transfer_default(void)
+{
+  return (stratus_transfer){ .unit_distance = 1.0, .clamp = 1 };
+}
+
+static stratus_status check_points(stratus_context* context, const char* what, const double* points, size_t count, size_t width)
+{
+  if (!points || count == 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s function has %zu points, needs at least 1", what, points ? count : 0);
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const double* point = points + i * width;
+    if (!isfinite(point[0])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s point %zu has value %g, must be finite", what, i, point[0]);
+    }
+    if (i > 0 && point[0] < point[-(ptrdiff_t)width]) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s point %zu has value %g, must be at least its predecessor's %g", what, i,
+        point[0], point[-(ptrdiff_t)width]);
+    }
+    for (size_t c = 1; c < width; ++c) {
+      if (!(point[c] >= 0.0 && point[c] <= 1.0)) {
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s point %zu at value %g has component %g outside 0..1", what, i, point[0], point[c]);
+      }
+    }
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_transfer_check(stratus_context* context, const stratus_transfer* transfer)
+{
+  if (!transfer) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "transfer function is NULL");
+  }
+  TRY(check_points(context, "opacity", transfer->opacity, transfer->opacity_count, 2));
+  TRY(check_points(context, "colour", transfer->color, transfer->color_count, 4));
+  if (!(transfer->unit_distance > 0.0 && isfinite(transfer->unit_distance))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unit distance %g, must be positive and finite", transfer->unit_distance);
+  }
+  return STRATUS_OK;
+}
+
+/* Piecewise linear at ascending x: *at is the walk's place, the last point with value <= x, or -1. */
+static double walk(const double* points, size_t count, size_t width, size_t component, double x, ptrdiff_t* at)
+{
+  while (*at + 1 < (ptrdiff_t)count && points[(size_t)(*at + 1) * width] <= x) {
+    ++*at;
+  }
+  if (*at < 0) {
+    return points[component];
+  }
+  const double* left = points + (size_t)*at * width;
+  if (*at + 1 == (ptrdiff_t)count) {
+    return left[component];
+  }
+  const double* right = left + width;
+  const double t = (x - left[0]) / (right[0] - left[0]);
+  return left[component] + t * (right[component] - left[component]);
+}
+
+static bool outside(const stratus_transfer* transfer, double x)
+{
+  return !transfer->clamp && (x < transfer->opacity[0] || x > transfer->opacity[2 * (transfer->opacity_count - 1)]);
+}
+
+/* Optical depth per world unit. */
+static double tau_of(const stratus_transfer* transfer, double opacity)
+{
+  const double tau = opacity > 0.0 ? -log1p(-opacity) : 0.0;
+  return (tau < OPAQUE_TAU ? tau : OPAQUE_TAU) / transfer->unit_distance;
+}
+
+/* Smallest distance between points of different value, where the function does anything. */
+static double narrowest_feature(const stratus_transfer* transfer, double range)
+{
+  double narrowest = range;
+  for (size_t i = 0; i + 1 < transfer->opacity_count; ++i) {
+    const double* p = transfer->opacity + 2 * i;
+    if (p[2] > p[0] && p[3] != p[1] && p[2] - p[0] < narrowest) {
+      narrowest = p[2] - p[0];
+    }
+  }
+  return narrowest;
+}
+
+/* The values that the table spans: the data's, but not far beyond the function's points, where nothing changes. */
+static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
+{
+  const double* first = transfer->opacity;
+  const double* last = transfer->opacity + 2 * (transfer->opacity_count - 1);
+  const double* first_color = transfer->color;
+  const double* last_color = transfer->color + 4 * (transfer->color_count - 1);
+  const double from = fmin(first[0], first_color[0]), to = fmax(last[0], last_color[0]), margin = (to - from) / 64.0;
+  if (to > from && from - margin > *lo && from - margin < *hi) {
+    *lo = from - margin;
+  }
+  if (to > from && to + margin < *hi && to + margin > *lo) {
+    *hi = to + margin;
+  }
+}
+
+static int table_size(const stratus_transfer* transfer, double range, stratus_sampling sampling)
+{
+  int size = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
+  const double wanted = range > 0.0 ? ENTRIES_A_FEATURE * range / narrowest_feature(transfer, range) : 0.0;
+  while (size < MOST_ENTRIES && size < wanted) {
+    size *= 2;
+  }
+  return size;
+}
+
+static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer, double lo, double width, double sample_distance)
+{
+  ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
+  for (int e = 0; e < table->size; ++e) {
+    const double x = lo + e * width;
+    double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+    opacity = outside(transfer, x) ? 0.0 : opacity;
+    const double alpha = opacity > 0.0 ? -expm1(log1p(-opacity) * sample_distance / transfer->unit_distance) : 0.0;
+    float* entry = table->rgba + 4 * (size_t)e;
+    for (size_t c = 0; c < 3; ++c) {
+      entry[c] = (float)(alpha * walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]));
+    }
+    entry[3] = (float)alpha;
+    float* depth = table->rgba + 4 * ((size_t)table->size + (size_t)e);
+    depth[0] = (float)(tau_of(transfer, opacity) * sample_distance);
+    depth[1] = depth[2] = depth[3] = 0.0f;
+  }
+}
+
+/* Two places of an entry stand for its width. Writes the four running sums in doubles. */
+static void fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
+{
+  ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
+  memset(sums, 0, 4 * sizeof *sums);
+  for (int e = 0; e < size; ++e) {
+    double* sum = sums + 4 * (size_t)e;
+    memcpy(sum + 4, sum, 4 * sizeof *sum);
+    for (int place = 0; place < 2; ++place) {
+      const double x = lo + (e + (place ? 0.25 : -0.25)) * width;
+      const double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+      const double tau = outside(transfer, x) ? 0.0 : 0.5 * tau_of(transfer, opacity);
+      for (size_t c = 0; c < 3; ++c) {
+        sum[4 + c] += tau * walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
+      }
+      sum[7] += tau;
+    }
+  }
+}
+
+static stratus_status fill_preintegrated(
+  stratus_table* table, const stratus_transfer* transfer, double lo, double width, double sample_distance)
+{
+  const size_t words = 4 * ((size_t)table->size + 1);
+  void* memory = NULL;
+  TRY(stratus_allocate(table->context, words, sizeof(double), &memory));
+  double* sums = memory;
+  fill_sums(transfer, lo, width, table->size, sums);
+  const double total = sums[words - 1], scale = total > 0.0 ? SUM_MOST / total : 0.0;
+  for (size_t i = 0; i < words; ++i) {
+    table->sums[i] = (int32_t)llrint(sums[i] * scale);
+  }
+  table->sum_scale = total > 0.0 ? (float)(sample_distance / scale) : 0.0f;
+  stratus_release(table->context, sums);
+  return STRATUS_OK;
+}
+
+static bool entry_shows(const stratus_table* table, int e)
+{
+  return table->rgba ? table->rgba[4 * (size_t)e + 3] > 0.0f : table->sums[4 * ((size_t)e + 1) + 3] > table->sums[4 * (size_t)e + 3];
+}
+
+static void fill_next_shown(stratus_table* table)
+{
+  table->shown = 0;
+  table->next_shown[table->size] = table->size;
+  for (int e = table->size - 1; e >= 0; --e) {
+    const bool shows = entry_shows(table, e);
+    table->shown += shows;
+    table->next_shown[e] = shows ? e : table->next_shown[e + 1];
+  }
+}
+
+stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+  stratus_sampling sampling, double sample_distance, stratus_table** out)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_table* table = NULL;
+  void* memory = NULL;
+  double from = (double)lo + bias, to = (double)hi + bias;
+  table_span(transfer, &from, &to);
+  const int size = table_size(transfer, to - from, sampling);
+  const double width = (to - from) / (size - 1);
+
+  TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *table, &memory));
+  table = memory;
+  table->context = context;
+  table->size = size;
+  table->scale = width > 0.0 ? (float)(1.0 / width) : 0.0f;
+  table->offset = (float)(0.5 - (from - bias) * (double)table->scale);
+  TRY_CLEANUP(stratus_allocate(context, (size_t)size + 1, sizeof *table->next_shown, &memory));
+  table->next_shown = memory;
+  if (sampling == STRATUS_SAMPLING_PREINTEGRATED) {
+    TRY_CLEANUP(stratus_allocate(context, 4 * ((size_t)size + 1), sizeof *table->sums, &memory));
+    table->sums = memory;
+    TRY_CLEANUP(fill_preintegrated(table, transfer, from, width, sample_distance));
+  } else {
+    TRY_CLEANUP(stratus_allocate(context, 8 * (size_t)size, sizeof *table->rgba, &memory));
+    table->rgba = memory;
+    fill_midpoint(table, transfer, from, width, sample_distance);
+  }
+  fill_next_shown(table);
+  *out = table;
+  return STRATUS_OK;
+
+cleanup:
+  stratus_table_destroy(table);
+  return status;
+}
+
+void stratus_table_destroy(stratus_table* table)
+{
+  if (table) {
+    stratus_context* context = table->context;
+    stratus_release(context, table->next_shown);
+    stratus_release(context, table->rgba);
+    stratus_release(context, table->sums);
+    stratus_release(context, table);
+  }
+}

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Values of the volume for a packet, as floats. Included once for each STRATUS_TYPE (stratus_type's number) with 32-bit indices, and with
+ * STRATUS_TYPE -1 for the generic fetch: any type, stride and size, axes of one value; slow and always right.
+ *
+ *   fetch_pair(a, index, mask, tail, &v0, &v1)   values[index], values[index+1]
+ *   fetch_cell(a, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
+ *   fetch_nearest(a, i, j, k, mask)              one value */
+#ifndef STRATUS_TYPE
+#error "STRATUS_TYPE is not set"
+#endif
+
+#if STRATUS_TYPE == 0
+#ifdef STRATUS_DEVICE
+#define VALUE char
+#else
+#define VALUE signed char
+#endif
+#elif STRATUS_TYPE == 1
+#define VALUE uchar
+#elif STRATUS_TYPE == 2
+#define VALUE short
+#elif STRATUS_TYPE == 3
+#define VALUE ushort
+#elif STRATUS_TYPE == 4
+#define VALUE int
+#elif STRATUS_TYPE == 5
+#define VALUE uint
+#elif STRATUS_TYPE == 8
+#define VALUE float
+#elif STRATUS_TYPE == 9
+#define VALUE double
+#endif
+#define VALUE_WIDE (STRATUS_TYPE == 4 || STRATUS_TYPE == 5 || STRATUS_TYPE == 9)
+
+/* ------------------------------------------------------------------------------------------------ generic */
+#if STRATUS_TYPE == -1
+
+INLINE float load_any(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
+{
+  switch (a->type) {
+#ifdef STRATUS_DEVICE
+    case 0:
+      return (float)((GLOBAL const char*)values)[index];
+#else
+    case 0:
+      return (float)((const signed char*)values)[index];
+#endif
+    case 1:
+      return (float)((GLOBAL const uchar*)values)[index];
+    case 2:
+      return (float)((GLOBAL const short*)values)[index];
+    case 3:
+      return (float)((GLOBAL const ushort*)values)[index];
+    case 8:
+      return ((GLOBAL const float*)values)[index];
+#ifndef STRATUS_REAL_PAIR
+    case 4:
+      return (float)((double)((GLOBAL const int*)values)[index] - BIAS_OF(a));
+    case 5:
+      return (float)((double)((GLOBAL const uint*)values)[index] - BIAS_OF(a));
+#ifdef STRATUS_DEVICE
+    case 6:
+      return (float)((double)((GLOBAL const long*)values)[index] - BIAS_OF(a));
+    case 7:
+      return (float)((double)((GLOBAL const ulong*)values)[index] - BIAS_OF(a));
+#else
+    case 6:
+      return (float)((double)((const int64_t*)values)[index] - BIAS_OF(a));
+    case 7:
+      return (float)((double)((const uint64_t*)values)[index] - BIAS_OF(a));
+#endif
+    case 9:
+      return (float)(((GLOBAL const double*)values)[index] - BIAS_OF(a));
+#endif
+    default:
+      return 0.0f;
+  }
+}
+
+INLINE stratus_index generic_index(CONSTANT stratus_ray_cast_arguments* a, int i, int j, int k)
+{
+  const stratus_index row = ((stratus_index)(uint)a->row_high << 32) | (stratus_index)(uint)a->row;
+  const stratus_index slice = ((stratus_index)(uint)a->slice_high << 32) | (stratus_index)(uint)a->slice;
+  return (stratus_index)i * (stratus_index)a->stride + (stratus_index)j * row + (stratus_index)k * slice;
+}
+
+INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+{
+  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
+  float lv[8][STRATUS_WIDTH];
+  vi_store(li, i);
+  vi_store(lj, j);
+  vi_store(lk, k);
+  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    for (int corner = 0; corner < 8; ++corner) {
+      lv[corner][lane] = 0.0f;
+      if (lm[lane]) {
+        const int x = li[lane] + (corner & 1), y = lj[lane] + (corner >> 1 & 1), z = lk[lane] + (corner >> 2);
+        lv[corner][lane] = load_any(a, values,
+          generic_index(a, x < a->dimensions[0] ? x : x - 1, y < a->dimensions[1] ? y : y - 1, z < a->dimensions[2] ? z : z - 1));
+      }
+    }
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    v[corner] = v_load(lv[corner]);
+  }
+}
+
+INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
+{
+  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
+  float lv[STRATUS_WIDTH];
+  vi_store(li, i);
+  vi_store(lj, j);
+  vi_store(lk, k);
+  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    lv[lane] = lm[lane] ? load_any(a, values, generic_index(a, li[lane], lj[lane], lk[lane])) : 0.0f;
+  }
+  return v_load(lv);
+}
+
+#else /* -------------------------------------------------------------------------------------------- a fixed type */
+
+#define VALUES ((GLOBAL const VALUE*)values)
+
+#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE) ? defined(__AVX512F__) : STRATUS_ISA == 2)
+#define FETCH_DWORD 1 /* small types: one gather of four bytes holds a pair */
+#endif
+
+#if defined(STRATUS_DEVICE) && defined(__AVX512F__) && STRATUS_WIDTH == 16
+typedef float stratus_f16 __attribute__((__vector_size__(64)));
+INLINE int16 gather_int(GLOBAL const void* base, vint index, vmask mask, int scale_log2)
+{
+  /* the builtin wants its scale as a literal */
+#define STRATUS_GATHER(scale)                                                                                                              \
+  __builtin_astype(                                                                                                                        \
+    __builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)base, STRATUS_V16(index), STRATUS_MASK16(mask), scale), int16)
+  return scale_log2 == 0 ? STRATUS_GATHER(1) : scale_log2 == 1 ? STRATUS_GATHER(2) : STRATUS_GATHER(4);
+}
+#define GATHER_DWORD(base, index, mask, scale_log2) gather_int((base), (index), (mask), (scale_log2))
+#define GATHER_FLOAT(base, index, mask) as_float16(gather_int((base), (index), (mask), 2))
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+#define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
+  ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
+#define GATHER_FLOAT(base, index, mask) _mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (__m512i)(index), (base), 4)
+#endif
+
+#ifndef FETCH_DWORD
+INLINE float load_one(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, int index)
+{
+#if VALUE_WIDE
+  return (float)((double)VALUES[index] - BIAS_OF(a));
+#else
+  (void)a;
+  return (float)VALUES[index];
+#endif
+}
+
+INLINE vfloat fetch_lanes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask)
+{
+#if STRATUS_WIDTH == 1
+  return mask ? load_one(a, values, index) : 0.0f;
+#else
+  int li[STRATUS_WIDTH];
+  float lv[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, index, vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    lv[lane] = load_one(a, values, li[lane]);
+  }
+  return v_load(lv);
+#endif
+}
+#endif
+
+#ifdef FETCH_DWORD
+#if STRATUS_TYPE <= 1
+#define DWORD_LOG2 0
+#define DWORD_SHIFT 8
+#else
+#define DWORD_LOG2 1
+#define DWORD_SHIFT 16
+#endif
+#ifdef STRATUS_DEVICE
+#define LOGICAL_RIGHT(a, n) as_int16(as_uint16(a) >> as_uint16(n))
+#else
+#define LOGICAL_RIGHT(a, n) ((vint)_mm512_srlv_epi32((__m512i)(a), (__m512i)(n)))
+#endif
+/* Element `which` of the dword, signed or not. */
+INLINE vint dword_part(vint dword, int which)
+{
+#if STRATUS_TYPE == 0 || STRATUS_TYPE == 2
+  return (dword << vi_set(32 - DWORD_SHIFT * (which + 1))) >> vi_set(32 - DWORD_SHIFT);
+#else
+  return LOGICAL_RIGHT(dword, vi_set(DWORD_SHIFT * which)) & vi_set((1 << DWORD_SHIFT) - 1);
+#endif
+}
+INLINE vint gather_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end)
+{
+#if STRATUS_TYPE <= 1
+  if (end) { /* the last four bytes are read from further left and shifted, so that nothing beyond them is */
+    const vint from = vi_min(index, vi_set(a->tail));
+    return LOGICAL_RIGHT(GATHER_DWORD(values, from, mask, DWORD_LOG2), (index - from) << vi_set(3));
+  }
+#else
+  (void)a;
+  (void)end;
+#endif
+  return GATHER_DWORD(values, index, mask, DWORD_LOG2);
+}
+#endif
+
+/* values[index] and values[index+1]; end: the pair may be the volume's last. */
+INLINE void fetch_pair(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end, vfloat* v0, vfloat* v1)
+{
+#ifdef FETCH_DWORD
+  const vint dword = gather_bytes(a, values, index, mask, end);
+  *v0 = v_from_int(dword_part(dword, 0));
+  *v1 = v_from_int(dword_part(dword, 1));
+#elif STRATUS_TYPE == 8 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+  const __m512i zero = _mm512_setzero_si512();
+  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256((__m512i)index), VALUES, 4);
+  const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64((__m512i)index, 1), VALUES, 4);
+  *v0 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
+  *v1 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
+  (void)a;
+  (void)end;
+#elif STRATUS_TYPE == 8 && defined(GATHER_FLOAT)
+  *v0 = GATHER_FLOAT(VALUES, index, mask);
+  *v1 = GATHER_FLOAT(VALUES + 1, index, mask);
+  (void)a;
+  (void)end;
+#elif STRATUS_TYPE == 9 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+  const __m512d bias = _mm512_set1_pd(BIAS_OF(a)), zero = _mm512_setzero_pd();
+  const __m256i low = _mm512_castsi512_si256((__m512i)index), high = _mm512_extracti64x4_epi64((__m512i)index, 1);
+  for (int x = 0; x < 2; ++x) {
+    const __m512d v_low = _mm512_mask_i32gather_pd(zero, (__mmask8)mask, low, VALUES + x, 8);
+    const __m512d v_high = _mm512_mask_i32gather_pd(zero, (__mmask8)(mask >> 8), high, VALUES + x, 8);
+    const __m256 f_low = _mm512_cvtpd_ps(_mm512_sub_pd(v_low, bias)), f_high = _mm512_cvtpd_ps(_mm512_sub_pd(v_high, bias));
+    *(x ? v1 : v0) = _mm512_insertf32x8(_mm512_castps256_ps512(f_low), f_high, 1);
+  }
+  (void)end;
+#elif STRATUS_TYPE == 8 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 1 && STRATUS_WIDTH == 8
+  const __m256 zero = _mm256_setzero_ps();
+  *v0 = (vfloat)_mm256_mask_i32gather_ps(zero, VALUES, (__m256i)index, (__m256)mask, 4);
+  *v1 = (vfloat)_mm256_mask_i32gather_ps(zero, VALUES + 1, (__m256i)index, (__m256)mask, 4);
+  (void)a;
+  (void)end;
+#else
+  *v0 = fetch_lanes(a, values, index, mask);
+  *v1 = fetch_lanes(a, values, index + vi_set(1), mask);
+  (void)end;
+#endif
+}
+
+INLINE vint fixed_index(CONSTANT stratus_ray_cast_arguments* a, vint i, vint j, vint k)
+{
+  return i + j * vi_set(a->row) + k * vi_set(a->slice);
+}
+
+INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+{
+  const vint index = fixed_index(a, i, j, k);
+  fetch_pair(a, values, index, mask, 0, &v[0], &v[1]);
+  fetch_pair(a, values, index + vi_set(a->row), mask, 0, &v[2], &v[3]);
+  fetch_pair(a, values, index + vi_set(a->slice), mask, 0, &v[4], &v[5]);
+  fetch_pair(a, values, index + vi_set(a->row + a->slice), mask, 1, &v[6], &v[7]);
+}
+
+INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
+{
+  const vint index = fixed_index(a, i, j, k);
+#ifdef FETCH_DWORD
+#if STRATUS_TYPE <= 1
+  return v_from_int(dword_part(gather_bytes(a, values, index, mask, 1), 0));
+#else
+  /* the pair that ends with the last value, never one beyond it */
+  const vint from = vi_max(index - vi_set(1), vi_set(0));
+  const vint dword = GATHER_DWORD(values, from, mask, DWORD_LOG2);
+  return v_from_int(vi_select(vi_lt(from, index), dword_part(dword, 1), dword_part(dword, 0)));
+#endif
+#elif STRATUS_TYPE == 8 && defined(GATHER_FLOAT)
+  return GATHER_FLOAT(VALUES, index, mask);
+#else
+  return fetch_lanes(a, values, index, mask);
+#endif
+}
+#endif
+
+#undef VALUE
+#undef VALUES
+#undef VALUE_WIDE
+#undef FETCH_DWORD
+#undef DWORD_LOG2
+#undef DWORD_SHIFT
+#undef LOGICAL_RIGHT
+#undef GATHER_DWORD
+#undef GATHER_FLOAT

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The march of one packet of rays through a volume, front to back, leaping over what a distance map tells to be transparent.
+ * Included once for each STRATUS_TYPE and STRATUS_PREINTEGRATED (0 or 1); RAY_NAME(x) gives each inclusion its own names.
+ *
+ * Every structure meets the same samples: the structure only tells which segments need none, and a segment left out would have added exactly
+ * zero, so the bits of the picture do not depend on it. */
+#ifndef RAY_NAME
+#error "RAY_NAME is not set"
+#endif
+
+#include "ray_segment.h"
+
+#define fetch_pair RAY_NAME(fetch_pair)
+#define fetch_cell RAY_NAME(fetch_cell)
+#define fetch_nearest RAY_NAME(fetch_nearest)
+#define fetch_lanes RAY_NAME(fetch_lanes)
+#define fixed_index RAY_NAME(fixed_index)
+#define load_one RAY_NAME(load_one)
+#define load_any RAY_NAME(load_any)
+#define generic_index RAY_NAME(generic_index)
+#define dword_part RAY_NAME(dword_part)
+#define gather_bytes RAY_NAME(gather_bytes)
+#define ray_value RAY_NAME(ray_value)
+#define ray_skip RAY_NAME(ray_skip)
+#define ray_step RAY_NAME(ray_step)
+#define ray_march RAY_NAME(ray_march)
+#define ray_load RAY_NAME(ray_load)
+
+#include "fetch.h"
+
+/* The field at index coordinates x: not finite where a corner is not, or the cell is hidden. */
+INLINE vfloat ray_value(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
+{
+  vfloat x[3] = { position[0], position[1], position[2] };
+  if (a->clamp) {
+    for (int axis = 0; axis < 3; ++axis) {
+      x[axis] = v_clamp(x[axis], 0.0f, a->last[axis]);
+    }
+  }
+  vfloat value;
+  if (a->nearest) {
+    const vfloat half_one = v_set(0.5f);
+    value = fetch_nearest(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
+  } else {
+    const vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
+    const vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
+    vfloat v[8];
+    fetch_cell(a, values, i, j, k, mask, v);
+    value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
+  }
+  if (a->has_hidden) {
+    value = ray_hide(a, hidden, x, mask, value);
+  }
+  return value;
+}
+
+/* Moves rays that need it over transparent segments, and tells those in occupied blocks how far they may go unasked. */
+INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need)
+{
+  do {
+    const vfloat fi = v_from_int(k->i);
+#if STRATUS_PREINTEGRATED
+    const vfloat s = v_max(fi, k->begin);
+#else
+    const vfloat s = segment_middle(k, fi);
+#endif
+    vint block[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      vfloat x = v_fma(s, k->d[axis], k->p[axis]);
+      if (a->clamp) {
+        x = v_clamp(x, 0.0f, a->last[axis]);
+      }
+      block[axis] = v_to_int(x) >> vi_set(a->block_log2);
+    }
+    const vint index = block[0] + (block[1] + block[2] * vi_set(a->blocks_rows)) * vi_set(a->blocks_pitch) + k->octant;
+    const vint byte = gather_map(map, index, need);
+    const vmask occupied = need & vi_ge(byte, vi_set(128));
+    const vfloat leave = cube_exit(a, k, block, byte & vi_set(127));
+    k->lookups -= mask_int(need);
+#if STRATUS_PREINTEGRATED
+    vint next = v_to_int(leave); /* the first segment that ends outside the cube */
+    const vmask stay = occupied | (need & vi_ge(k->i, next));
+    const vint run = vi_max(next, k->i) + vi_set(1);
+#else
+    const vint next = vi_max(v_to_int(leave + v_set(0.5f)), k->i + vi_set(1)); /* the first whose middle may be outside */
+    const vmask stay = occupied;
+    const vint run = next;
+#endif
+    const vmask leap = m_andnot(need, stay);
+    const vmask done = leap & (vi_ge(next, k->last) | v_le(k->end, leave));
+    k->run = vi_select(stay, run, k->run);
+    k->skipped = vi_select(leap, k->skipped + (vi_min(next, k->last) - k->i), k->skipped);
+    k->i = vi_select(leap, next, k->i);
+#if STRATUS_PREINTEGRATED
+    k->fresh = k->fresh | leap;
+#endif
+    need = m_andnot(leap, done);
+    k->live = m_andnot(k->live, done);
+  } while (m_any(need));
+}
+
+/* One sample for every live ray. */
+INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, GLOBAL const void* table,
+  stratus_packet* k)
+{
+  const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
+  const vfloat lo = v_max(fi, k->begin), hi = v_min(fi + one, k->end), weight = hi - lo;
+#if STRATUS_PREINTEGRATED
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
+  const vfloat s = v_select(k->fresh, lo, hi);
+#else
+  const vmask whole = k->live;
+  const vfloat s = v_set(0.5f) * (lo + hi);
+#endif
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  const vfloat value = ray_value(a, values, hidden, x, k->live);
+  k->samples -= mask_int(k->live);
+#if STRATUS_PREINTEGRATED
+  const vmask valid = whole & v_finite(value) & v_finite(k->front);
+  if (m_any(valid)) {
+    integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
+  }
+  k->front = value;
+  k->fresh = m_none();
+#else
+  shade_sample(a, (GLOBAL const float*)table, k, whole & v_finite(value), value, weight, lo);
+#endif
+  k->i = vi_select(whole, k->i + vi_set(1), k->i);
+  k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
+}
+
+INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, GLOBAL const uchar* map,
+  GLOBAL const void* table, stratus_packet* k)
+{
+  while (m_any(k->live)) {
+    if (a->structure) {
+      const vmask need = lanes_to_skip(k);
+      if (m_any(need)) {
+        ray_skip(a, map, k, need);
+        if (!m_any(k->live)) {
+          break;
+        }
+      }
+    }
+    ray_step(a, values, hidden, table, k);
+  }
+}
+
+/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look. */
+INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k)
+{
+  const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
+  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH];
+  stratus_rays rays;
+  v_store(fx, v_from_int(px));
+  v_store(fy, v_from_int(py));
+  if (a->has_depth) {
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      const int lx = x + (lane & (PACKET_X - 1)), ly = y + (lane >> PACKET_X_LOG2);
+      fz[lane] = lx < a->width && ly < a->height ? opaque_depth[(size_t)ly * (size_t)a->width + (size_t)lx] : 1.0f;
+    }
+  }
+  for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
+    ray_setup_part(a, fx + part, fy + part, fz + part, part, &rays);
+  }
+  packet_begin(a, &rays, vi_lt(px, vi_set(a->width)) & vi_lt(py, vi_set(a->height)), k);
+#if STRATUS_PREINTEGRATED
+  k->fresh = k->live;
+#endif
+}
+
+#undef fetch_pair
+#undef fetch_cell
+#undef fetch_nearest
+#undef fetch_lanes
+#undef fixed_index
+#undef load_one
+#undef load_any
+#undef generic_index
+#undef dword_part
+#undef gather_bytes
+#undef ray_value
+#undef ray_skip
+#undef ray_step
+#undef ray_march
+#undef ray_load

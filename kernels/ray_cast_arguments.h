@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What one frame tells every ray, the same bytes on host and device: scalars of four bytes only. Positions are index coordinates,
+ * lengths along a ray are in samples (sample distances) unless they say otherwise. */
+#ifndef STRATUS_RAY_CAST_ARGUMENTS_H
+#define STRATUS_RAY_CAST_ARGUMENTS_H
+
+#include "real.h"
+
+#define STRATUS_CLIP_MAX 6
+
+typedef struct stratus_ray_cast_arguments {
+  /* ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward */
+  stratus_pair eye[3], forward[3], right[3], up[3];
+  /* squared world length of forward + u right + v up: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5] */
+  stratus_pair metric[6];
+  stratus_pair near_k, far_k;
+  stratus_pair step;             /* sample distance, world */
+  stratus_pair pixel[2];         /* 1/width, 1/height */
+  stratus_pair box[2][3];        /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
+  stratus_pair piece[2][3];      /* owned part: a segment belongs to it if its middle does */
+  stratus_pair clip[STRATUS_CLIP_MAX][4];
+  float occupied[2][3];          /* box of occupied blocks, unbounded where it ends with the volume */
+  float last[3];                 /* largest position along each axis (cell_centered clamps to it) */
+  float table_scale, table_offset, table_last;
+  float tau_scale;               /* pre-integrated: optical depth of one unit of the sums */
+  float termination;             /* of transparency: 1 - alpha */
+  float world_step;              /* the sample distance as a float, for depth */
+  int width, height;
+  int parallel;
+  int clip_count;
+  int has_piece, has_depth;      /* has_depth: opaque depth is given */
+  int want_depth;
+  int clamp;                     /* cell_centered: positions are clamped to 0..last */
+  int nearest;
+  int dimensions[3];
+  int row, slice;                /* values from one row to the next, one slice to the next (when they fit) */
+  int tail;                      /* largest index from which 4 bytes may be read (8-bit types) */
+  int structure;                 /* 0: march without */
+  int blocks_pitch, blocks_rows; /* of the map: a row, rows in a slice */
+  int block_log2;
+  int octant_stride;             /* bytes between the eight maps, 0 if there is one */
+  int has_hidden;
+  int type, stride;              /* of the generic fetch */
+  int row_high, slice_high;      /* upper 32 bits of row and slice for the generic fetch */
+  int bias_low, bias_high;       /* bits of the double that wide types are relative to */
+} stratus_ray_cast_arguments;
+
+/* 4-byte scalars throughout: no padding in either language. */
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 6 + 27 + 2)
+
+#endif

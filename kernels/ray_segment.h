@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The state of a packet on its march, and what does not depend on the type of the volume's values: which lanes ask the structure, the exit
+ * of an empty cube, transfer function and compositing. */
+#ifndef STRATUS_RAY_SEGMENT_H
+#define STRATUS_RAY_SEGMENT_H
+
+#include "ray_setup.h"
+
+/* When the structure is asked: as soon as so many lanes need it, all that are left do, or one has waited so many samples. A lane that waits
+ * takes samples which add nothing. */
+#define SKIP_LANES ((3 * STRATUS_WIDTH) / 8)
+#define SKIP_PATIENCE 4
+
+/* Optical depth of a piece of a segment within which its colour may be averaged, and the most pieces to a segment. */
+#define PIECE_DEPTH 0.1f
+#define PIECES_MAX 16
+
+/* What wide types are relative to, and an index into any volume. */
+#ifdef STRATUS_DEVICE
+#define BIAS_OF(a) as_double(((ulong)(uint)(a)->bias_high << 32) | (ulong)(uint)(a)->bias_low)
+typedef ulong stratus_index;
+#else
+INLINE double stratus_bias(const stratus_ray_cast_arguments* a)
+{
+  const uint64_t bits = ((uint64_t)(uint32_t)a->bias_high << 32) | (uint64_t)(uint32_t)a->bias_low;
+  double bias;
+  memcpy(&bias, &bits, sizeof bias);
+  return bias;
+}
+#define BIAS_OF(a) stratus_bias(a)
+typedef uint64_t stratus_index;
+#endif
+
+typedef struct stratus_packet {
+  vfloat p[3], d[3], inverse[3], begin, end, first;
+  vfloat transparency, red, green, blue, depth;
+  vfloat front;         /* pre-integrated: value at the segment's front */
+  vint i, last;         /* segment, and the end of the ray in whole segments */
+  vint run;             /* segments below it need not ask the structure */
+  vint octant;          /* offset of the ray's map */
+  vint samples, skipped, lookups;
+  vmask live, hits;     /* hits: rays that met the bounds */
+  vmask fresh;          /* the front value is still to be sampled */
+} stratus_packet;
+
+#if defined(STRATUS_DEVICE) || STRATUS_WIDTH == 1 || STRATUS_ISA != 2
+INLINE vint mask_int(vmask m) { return m; }
+#else
+INLINE vint mask_int(vmask m) { return (vint)_mm512_movm_epi32(m); }
+#endif
+
+INLINE vfloat segment_middle(const stratus_packet* k, vfloat fi)
+{
+  return v_set(0.5f) * (v_max(fi, k->begin) + v_min(fi + v_set(1.0f), k->end));
+}
+
+INLINE vmask lanes_to_skip(const stratus_packet* k)
+{
+  const vmask need = k->live & vi_ge(k->i, k->run);
+#if STRATUS_WIDTH > 1
+  const int count = m_count(need);
+  if (count && count < SKIP_LANES && count < m_count(k->live) && !m_any(k->live & vi_ge(k->i, k->run + vi_set(SKIP_PATIENCE)))) {
+    return m_none();
+  }
+#endif
+  return need;
+}
+
+INLINE vint gather_map(GLOBAL const uchar* map, vint index, vmask mask)
+{
+#if STRATUS_WIDTH == 1
+  return mask ? (int)map[index] : 0;
+#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
+  return __builtin_astype(__builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)map, STRATUS_V16(index),
+                            STRATUS_MASK16(mask), 1),
+           int16) &
+    (int16)(255);
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  return (vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)index, map, 1) & vi_set(255);
+#else
+  int li[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, index, vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    li[lane] = map[li[lane]];
+  }
+  return vi_load(li);
+#endif
+}
+
+/* In samples, where the rays leave the cube of blocks nearer than `distance`, told a little early: by more than the roundings of the division
+ * and the product can amount to. */
+INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const vint block[3], vint distance)
+{
+  vfloat leave = v_set(1e7f);
+  for (int axis = 0; axis < 3; ++axis) {
+    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
+    const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
+    const vfloat plane = v_from_int(face << vi_set(a->block_log2));
+    leave = v_min((plane - k->p[axis]) * k->inverse[axis], leave);
+  }
+  return v_max(v_fma(leave, v_set(-0x1p-21f), leave - v_set(0x1p-10f)), v_set(0.0f));
+}
+
+/* Rays to packet: whole segments, the owned part, and the box of what can be seen. */
+INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, vmask inside, stratus_packet* k)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), most = v_set(8e6f);
+  k->begin = v_load(rays->begin);
+  k->end = v_load(rays->end);
+  k->first = v_load(rays->first);
+  k->octant = vi_set(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    k->p[axis] = v_load(rays->p[axis]);
+    k->d[axis] = v_load(rays->d[axis]);
+    k->inverse[axis] = v_load(rays->inverse[axis]);
+    const vmask forward = v_lt(zero, k->inverse[axis]);
+    k->octant = k->octant + vi_select(forward, vi_set(a->octant_stride << axis), vi_set(0));
+  }
+  k->live = inside & v_lt(k->begin, k->end);
+  k->hits = k->live;
+  /* lanes that are not live stay at a harmless place */
+  const vint whole = v_to_int(v_select(k->live, v_min(k->end, most), zero));
+  k->last = vi_select(k->live & v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole);
+  k->i = vi_set(0);
+  if (a->has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
+    const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f), to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
+    const vint i0 = v_to_int(from), i1 = v_to_int(to);
+    k->i = vi_select(v_lt(v_from_int(i0), from), i0, i0 - vi_set(1));
+    k->i = vi_max(k->i, vi_set(0));
+    k->last = vi_min(k->last, vi_select(v_lt(v_from_int(i1), to), i1, i1 - vi_set(1)));
+  }
+  k->skipped = vi_set(0);
+  k->samples = vi_set(0);
+  k->lookups = vi_set(0);
+  k->run = vi_set(0x7fffffff);
+  if (a->structure) {
+    vfloat enter = zero, leave = most;
+    for (int axis = 0; axis < 3; ++axis) {
+      const vfloat lo = (v_set(a->occupied[0][axis]) - k->p[axis]) * k->inverse[axis];
+      const vfloat hi = (v_set(a->occupied[1][axis]) - k->p[axis]) * k->inverse[axis];
+      enter = v_max(enter, v_min(lo, hi));
+      leave = v_min(v_max(lo, hi), leave);
+    }
+    /* one segment of slack each way, and a miss ends here */
+    const vint i0 = vi_max(v_to_int(v_min(enter, most)) - vi_set(1), k->i);
+    const vint i1 = vi_min(vi_select(v_lt(leave, v_fma(enter, v_set(0.999999f), v_set(-1.0f))), vi_set(0), v_to_int(v_max(leave, zero)) + vi_set(2)), k->last);
+    const vint segments = vi_max(k->last - k->i, vi_set(0)), left = vi_max(i1 - i0, vi_set(0));
+    k->skipped = vi_select(k->live, segments - left, vi_set(0));
+    k->i = i0;
+    k->last = i1;
+    k->run = vi_set(0);
+  }
+  k->live = k->live & vi_lt(k->i, k->last);
+  k->transparency = one;
+  k->red = k->green = k->blue = k->front = zero;
+  k->depth = v_set(LARGEST_FLOAT);
+  k->fresh = m_none();
+}
+
+/* value, or a NaN where the cell (nearest: the voxel) is hidden. */
+INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask, vfloat value)
+{
+  float lx[3][STRATUS_WIDTH], lv[STRATUS_WIDTH];
+  int lm[STRATUS_WIDTH];
+  v_store(lv, value);
+  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    v_store(lx[axis], x[axis]);
+  }
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    if (lm[lane]) {
+      /* a byte a cell between values; a byte a value where those of cells are taken as they are */
+      const int by_value = a->clamp && a->nearest;
+      size_t cell = 0;
+      for (int axis = 2; axis >= 0; --axis) {
+        const int between = a->dimensions[axis] > 1 ? a->dimensions[axis] - 1 : 1, cells = by_value ? a->dimensions[axis] : between;
+        const int at = (int)(by_value ? lx[axis][lane] + 0.5f : lx[axis][lane]);
+        cell = cell * (size_t)cells + (size_t)(at < cells ? at : cells - 1);
+      }
+      lv[lane] = hidden[cell] ? NAN : lv[lane];
+    }
+  }
+  return v_load(lv);
+}
+
+/* 1/a to a rounding or two, by Newton's iteration from the bits: the same on every device, as a division is not. a > 0. */
+INLINE vfloat v_reciprocal(vfloat a)
+{
+  vfloat r = v_from_bits(vi_set(0x7ef311c7) - v_to_bits(a));
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    r = v_fma(r, v_fma(v_set(0.0f) - a, r, v_set(1.0f)), r);
+  }
+  return r;
+}
+
+/* 1 - exp(-x), x >= 0, to some 3e-7 of its value: x = n ln 2 + t, a series in t, 2^-n by its bits. */
+INLINE vfloat v_absorbed(vfloat x)
+{
+  const vint n = v_to_int(v_min(x, v_set(80.0f)) * v_set(1.44269504f));
+  const vfloat t = v_max(v_fma(v_from_int(n), v_set(-0.69314718f), x), v_set(0.0f)), minus = v_set(0.0f) - t;
+  vfloat series = v_set(1.0f / 40320.0f);
+  series = v_fma(series, minus, v_set(1.0f / 5040.0f));
+  series = v_fma(series, minus, v_set(1.0f / 720.0f));
+  series = v_fma(series, minus, v_set(1.0f / 120.0f));
+  series = v_fma(series, minus, v_set(1.0f / 24.0f));
+  series = v_fma(series, minus, v_set(1.0f / 6.0f));
+  series = v_fma(series, minus, v_set(0.5f));
+  series = v_fma(series, minus, v_set(1.0f)) * t;
+  const vfloat scale = v_from_bits((vi_set(127) - n) << vi_set(23));
+  return v_min(v_fma(scale, series, v_set(1.0f) - scale), v_set(1.0f));
+}
+
+INLINE vint table_entry(CONSTANT stratus_ray_cast_arguments* a, vfloat value)
+{
+  return v_to_int(v_clamp(v_fma(value, v_set(a->table_scale), v_set(a->table_offset)), 0.0f, a->table_last));
+}
+
+/* Four consecutive floats (as bits) from table + 4 entry; 0 in other lanes. */
+INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
+{
+#if STRATUS_WIDTH == 1
+  for (int c = 0; c < 4; ++c) {
+    out[c] = mask ? table[4 * entry + c] : 0.0f;
+  }
+#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
+  for (int c = 0; c < 4; ++c) {
+    out[c] = as_float16(__builtin_astype(__builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)(table + c),
+                                           STRATUS_V16(entry * vi_set(4)), STRATUS_MASK16(mask), 4),
+      int16));
+  }
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  const __m512i zero = _mm512_setzero_si512(), twice = (__m512i)(entry + entry);
+  for (int c = 0; c < 4; c += 2) {
+    const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256(twice), table + c, 8);
+    const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64(twice, 1), table + c, 8);
+    out[c] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
+    out[c + 1] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
+  }
+#else
+  int li[STRATUS_WIDTH];
+  float lv[4][STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, entry, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    for (int c = 0; c < 4; ++c) {
+      lv[c][lane] = li[lane] >= 0 ? table[4 * li[lane] + c] : 0.0f;
+    }
+  }
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_load(lv[c]);
+  }
+#endif
+}
+
+/* Puts a layer of colour (times alpha) and alpha behind what the rays have gathered. lo: where its segment begins. */
+INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, const vfloat layer[4], vfloat lo)
+{
+  if (a->want_depth) {
+    const vmask hit = mask & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
+    k->depth = v_select(hit, (lo + k->first) * v_set(a->world_step), k->depth);
+  }
+  k->red = v_fma(k->transparency, layer[0], k->red);
+  k->green = v_fma(k->transparency, layer[1], k->green);
+  k->blue = v_fma(k->transparency, layer[2], k->blue);
+  k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
+}
+
+/* Midpoint rule. table: colour times alpha and alpha of a whole segment, an entry each; then the entries' optical depths. */
+INLINE void shade_sample(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  const vint entry = table_entry(a, value);
+  vfloat layer[4];
+  gather_four(table, entry, mask, layer);
+  const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
+  if (m_any(part)) { /* the ends of a ray */
+    vfloat last[4];
+    gather_four(table + 4 * ((int)a->table_last + 1), entry, part, last);
+    const vfloat alpha = v_absorbed(last[0] * weight), ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
+    for (int c = 0; c < 4; ++c) {
+      layer[c] = layer[c] * ratio;
+    }
+  }
+  composite(a, k, mask, layer, lo);
+}
+
+/* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
+ * green, blue times tau, and tau; their differences are exact, so a transparent stretch gives exactly zero. */
+INLINE void integrate_segment(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), rise = value - k->front, depth_scale = weight * v_set(a->tau_scale);
+  vfloat from = k->front, to = value, pieces = one, share = one, piece = zero;
+  for (int first = 1;; first = 0) {
+    const vint entry0 = table_entry(a, from), entry1 = table_entry(a, to);
+    const vint low = vi_min(entry0, entry1), beyond = vi_max(entry0, entry1) + vi_set(1);
+    vfloat s0[4], s1[4], layer[4];
+    gather_four((GLOBAL const float*)sums, low, mask, s0);
+    gather_four((GLOBAL const float*)sums, beyond, mask, s1);
+    const vfloat tau = v_from_int(v_to_bits(s1[3]) - v_to_bits(s0[3]));
+    const vmask lit = mask & v_lt(zero, tau);
+    if (m_any(lit)) {
+      const vfloat depth = tau * (depth_scale * share) * v_reciprocal(v_from_int(vi_select(mask, beyond - low, vi_set(1))));
+      if (first) {
+        const vmask deep = lit & v_lt(v_set(PIECE_DEPTH), depth);
+        if (m_any(deep)) { /* begin again, with pieces */
+          pieces = v_select(deep, v_from_int(v_to_int(v_min(depth * v_set(1.0f / PIECE_DEPTH), v_set(PIECES_MAX - 1.0f))) + vi_set(1)), one);
+          share = v_select(deep, v_reciprocal(pieces), one);
+          to = v_select(deep, v_fma(rise, share, k->front), value);
+          continue;
+        }
+      }
+      layer[3] = v_select(lit, v_absorbed(v_select(lit, depth, zero)), zero);
+      const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(tau, one)), zero);
+      for (int c = 0; c < 3; ++c) {
+        layer[c] = v_from_int(v_to_bits(s1[c]) - v_to_bits(s0[c])) * per_tau;
+      }
+      composite(a, k, lit, layer, lo);
+    }
+    piece = piece + one;
+    mask = mask & v_lt(piece, pieces);
+    if (!m_any(mask)) {
+      break;
+    }
+    from = to;
+    to = v_select(v_lt(piece + one, pieces), v_fma(rise, (piece + one) * share, k->front), value);
+  }
+}
+
+#endif

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * From pixels to rays, in double: where a packet's rays meet the bounds, on the one lattice of samples that is anchored at the eye, rebased to
+ * floats at the first sample inside. */
+#ifndef STRATUS_RAY_SETUP_H
+#define STRATUS_RAY_SETUP_H
+
+#include "ray_cast_arguments.h"
+
+/* Rays of one packet. Sample position s (in samples from segment 0's start) is at index coordinates p + s d. Segment i spans
+ * [max(i, begin), min(i+1, end)]. */
+typedef struct stratus_rays {
+  float p[3][STRATUS_WIDTH], d[3][STRATUS_WIDTH], inverse[3][STRATUS_WIDTH];
+  float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
+  float first[STRATUS_WIDTH];                            /* lattice index of segment 0, for depth */
+  float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* owned part, in samples */
+} stratus_rays;
+
+/* Smallest displacement a sample along an axis, voxels: keeps reciprocals finite and moves no ray by a thousandth of a voxel. */
+#define SMALLEST_STEP 1e-9f
+
+INLINE real ray_away_from_zero(real d)
+{
+  stratus_pair smallest;
+  smallest.hi = SMALLEST_STEP;
+  smallest.lo = 0.0f;
+  const real plus = r_of(smallest), minus = r_neg(plus);
+  stratus_pair nothing;
+  nothing.hi = nothing.lo = 0.0f;
+  const real zero = r_of(nothing);
+  return r_select(r_lt(d, zero), r_min(d, minus), r_max(d, plus));
+}
+
+INLINE void ray_clip_slab(real origin, real inverse, stratus_pair lo, stratus_pair hi, real* begin, real* end)
+{
+  const real a = r_mul(r_sub(r_of(lo), origin), inverse), b = r_mul(r_sub(r_of(hi), origin), inverse);
+  *begin = r_max(*begin, r_min(a, b));
+  *end = r_min(*end, r_max(a, b));
+}
+
+/* The half space n x + d >= 0 along origin + s direction. */
+INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, const real* direction, real* begin, real* end)
+{
+  stratus_pair nothing;
+  nothing.hi = nothing.lo = 0.0f;
+  const real zero = r_of(nothing);
+  real height = r_of(plane[3]), slope = zero;
+  for (int axis = 0; axis < 3; ++axis) {
+    height = r_add(height, r_mul(r_of(plane[axis]), origin[axis]));
+    slope = r_add(slope, r_mul(r_of(plane[axis]), direction[axis]));
+  }
+  const rmask rising = r_lt(zero, slope), falling = r_lt(slope, zero);
+  /* where the slope is zero the division's result is not used */
+  const real crossing = r_neg(r_div(height, slope));
+  *begin = r_select(rising, r_max(*begin, crossing), *begin);
+  *end = r_select(falling, r_min(*end, crossing), *end);
+  const rmask outside = r_lt(height, zero);
+  stratus_pair far_away;
+  far_away.hi = -1e30f;
+  far_away.lo = 0.0f;
+  *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_of(far_away), *end)));
+}
+
+/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; `part` is where they stand in the packet. */
+INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, int part, stratus_rays* rays)
+{
+  stratus_pair number;
+  number.lo = 0.0f;
+  number.hi = 0.0f;
+  const real zero = r_of(number);
+  number.hi = 1.0f;
+  const real one = r_of(number);
+  number.hi = 2.0f;
+  const real two = r_of(number);
+  number.hi = 0.5f;
+  const real half_one = r_of(number);
+  const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->pixel[0])), one);
+  const real v = r_sub(r_mul(r_mul(r_add(r_load(y), half_one), two), r_of(a->pixel[1])), one);
+  real origin[3], direction[3];
+  real length = r_of(a->metric[0]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const real offset = r_add(r_mul(u, r_of(a->right[axis])), r_mul(v, r_of(a->up[axis])));
+    origin[axis] = a->parallel ? r_add(r_of(a->eye[axis]), offset) : r_of(a->eye[axis]);
+    direction[axis] = a->parallel ? r_of(a->forward[axis]) : r_add(r_of(a->forward[axis]), offset);
+  }
+  if (!a->parallel) {
+    length = r_add(length, r_mul(u, r_add(r_of(a->metric[1]), r_add(r_mul(u, r_of(a->metric[3])), r_mul(v, r_of(a->metric[4]))))));
+    length = r_add(length, r_mul(v, r_add(r_of(a->metric[2]), r_mul(v, r_of(a->metric[5])))));
+  }
+  length = r_sqrt(length);
+  const real samples_per_k = r_div(length, r_of(a->step)), k_per_sample = r_div(r_of(a->step), length);
+
+  real begin = r_mul(r_of(a->near_k), samples_per_k), end = r_mul(r_of(a->far_k), samples_per_k);
+  if (a->has_depth) {
+    const real depth = r_load(z), near_k = r_of(a->near_k), far_k = r_of(a->far_k), extent = r_mul(depth, r_sub(far_k, near_k));
+    const real k = a->parallel ? r_add(near_k, extent) : r_div(r_mul(near_k, far_k), r_sub(far_k, extent));
+    end = r_min(end, r_mul(k, samples_per_k));
+  }
+  for (int plane = 0; plane < a->clip_count; ++plane) {
+    real step[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      step[axis] = r_mul(direction[axis], k_per_sample);
+    }
+    ray_clip_plane(a->clip[plane], origin, step, &begin, &end);
+  }
+  real inverse[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    direction[axis] = ray_away_from_zero(r_mul(direction[axis], k_per_sample));
+    inverse[axis] = r_div(one, direction[axis]);
+    ray_clip_slab(origin[axis], inverse[axis], a->box[0][axis], a->box[1][axis], &begin, &end);
+  }
+  /* rays that miss may have any numbers, but small ones */
+  const rmask miss = r_lt(end, begin);
+  begin = r_select(miss, zero, begin);
+  end = r_select(miss, r_neg(one), end);
+  const real first = r_floor(begin);
+  r_store(rays->begin + part, r_sub(begin, first));
+  r_store(rays->end + part, r_sub(end, first));
+  r_store(rays->first + part, first);
+  if (a->has_piece) {
+    real piece_begin = r_neg(one), piece_end = r_add(r_sub(end, first), one);
+    piece_begin = r_add(piece_begin, first);
+    piece_end = r_add(piece_end, first);
+    for (int axis = 0; axis < 3; ++axis) {
+      ray_clip_slab(origin[axis], inverse[axis], a->piece[0][axis], a->piece[1][axis], &piece_begin, &piece_end);
+    }
+    r_store(rays->piece_begin + part, r_sub(piece_begin, first));
+    r_store(rays->piece_end + part, r_sub(piece_end, first));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    r_store(rays->p[axis] + part, r_select(miss, zero, r_add(origin[axis], r_mul(first, direction[axis]))));
+    r_store(rays->d[axis] + part, direction[axis]);
+    r_store(rays->inverse[axis] + part, inverse[axis]);
+  }
+}
+
+#endif
