@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusInput.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+
+namespace
+{
+bool CoreType(int type, stratus_type& result)
+{
+  switch (type) {
+    case VTK_CHAR:
+      result = static_cast<char>(-1) < 0 ? STRATUS_INT8 : STRATUS_UINT8;
+      return true;
+    case VTK_SIGNED_CHAR:
+      result = STRATUS_INT8;
+      return true;
+    case VTK_UNSIGNED_CHAR:
+      result = STRATUS_UINT8;
+      return true;
+    case VTK_SHORT:
+      result = STRATUS_INT16;
+      return true;
+    case VTK_UNSIGNED_SHORT:
+      result = STRATUS_UINT16;
+      return true;
+    case VTK_INT:
+      result = STRATUS_INT32;
+      return true;
+    case VTK_UNSIGNED_INT:
+      result = STRATUS_UINT32;
+      return true;
+    case VTK_LONG:
+      result = sizeof(long) == 8 ? STRATUS_INT64 : STRATUS_INT32;
+      return true;
+    case VTK_UNSIGNED_LONG:
+      result = sizeof(long) == 8 ? STRATUS_UINT64 : STRATUS_UINT32;
+      return true;
+    case VTK_LONG_LONG:
+      result = STRATUS_INT64;
+      return true;
+    case VTK_UNSIGNED_LONG_LONG:
+      result = STRATUS_UINT64;
+      return true;
+    case VTK_ID_TYPE:
+      result = sizeof(vtkIdType) == 8 ? STRATUS_INT64 : STRATUS_INT32;
+      return true;
+    case VTK_FLOAT:
+      result = STRATUS_FLOAT32;
+      return true;
+    case VTK_DOUBLE:
+      result = STRATUS_FLOAT64;
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string ArrayName(vtkDataArray* array)
+{
+  return array->GetName() ? std::string("'") + array->GetName() + "'" : std::string("without a name");
+}
+
+// Mixes one more modification time into a revision, so that any change of any of them changes it.
+uint64_t Mix(uint64_t revision, uint64_t time)
+{
+  return (revision ^ time) * UINT64_C(0x9E3779B97F4A7C15) + (revision >> 29);
+}
+
+void AddNames(vtkDataSetAttributes* data, const char* where, std::string& text)
+{
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && array->GetName()) {
+      text += std::string(text.empty() ? "" : ", ") + "'" + array->GetName() + "' (" + where + ")";
+    }
+  }
+}
+}
+
+std::string vtkStratusArrayNames(vtkImageData* image)
+{
+  std::string names;
+  AddNames(image->GetPointData(), "points", names);
+  AddNames(image->GetCellData(), "cells", names);
+  return names.empty() ? "the input has no array with a name" : "the input has " + names;
+}
+
+void vtkStratusImageView::Release()
+{
+  this->Source = nullptr;
+  this->Plain = nullptr;
+}
+
+bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+{
+  this->Volume = stratus_volume_default();
+  this->Volume.cell_centered = cells ? 1 : 0;
+  int points[3];
+  image->GetDimensions(points);
+  for (int a = 0; a < 3; ++a) {
+    // VTK counts one layer of cells along an axis of one point.
+    this->Volume.dimensions[a] = cells ? std::max(points[a] - 1, 1) : points[a];
+  }
+  if (!this->SetValues(image, array, cells, error) || !this->SetGhosts(image, cells, error)) {
+    return false;
+  }
+  this->SetGeometry(image, matrix);
+  return true;
+}
+
+bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bool cells, std::string& error)
+{
+  stratus_volume& volume = this->Volume;
+  if (!CoreType(array->GetDataType(), volume.type)) {
+    error = "array " + ArrayName(array) + " is of type " + array->GetDataTypeAsString() +
+      ", which is not supported: use char to unsigned long long, float or double";
+    return false;
+  }
+  if (array->GetNumberOfComponents() != 1) {
+    error = "array " + ArrayName(array) + " has " + std::to_string(array->GetNumberOfComponents()) +
+      " components, only arrays of 1 component are supported";
+    return false;
+  }
+  const vtkIdType expected = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
+  if (array->GetNumberOfTuples() < expected) {
+    error = "array " + ArrayName(array) + " has " + std::to_string(array->GetNumberOfTuples()) + " values, the image has " +
+      std::to_string(expected) + (cells ? " cells" : " points");
+    return false;
+  }
+  vtkDataArray* plain = array;
+  if (!array->HasStandardMemoryLayout()) {
+    if (this->Source != array || !this->Plain || this->PlainTime != array->GetMTime()) {
+      this->Plain = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+      this->Plain->DeepCopy(array);
+      this->PlainTime = array->GetMTime();
+    }
+    plain = this->Plain;
+  } else {
+    this->Plain = nullptr;
+  }
+  this->Source = array;
+  volume.values = plain->GetVoidPointer(0);
+  // The image's own time counts too: programs that write through a pointer often tell only the image.
+  volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
+  return true;
+}
+
+void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
+{
+  stratus_volume& volume = this->Volume;
+  int extent[6];
+  double origin[3];
+  image->GetExtent(extent);
+  image->GetOrigin(origin);
+  image->GetSpacing(volume.spacing);
+  const double* direction = image->GetDirectionMatrix()->GetData();
+  std::copy(direction, direction + 9, volume.direction);
+  for (int a = 0; a < 3; ++a) {
+    volume.origin[a] = origin[a];
+    for (int b = 0; b < 3; ++b) {
+      volume.origin[a] += direction[3 * a + b] * volume.spacing[b] * extent[2 * b];
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    this->CropOffset[a] = volume.origin[a] - (origin[a] + volume.spacing[a] * extent[2 * a]);
+  }
+  if (matrix) {
+    std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, volume.matrix);
+  }
+}
+
+bool vtkStratusImageView::SetGhosts(vtkImageData* image, bool cells, std::string& error)
+{
+  vtkUnsignedCharArray* pointGhosts = image->GetPointGhostArray();
+  vtkUnsignedCharArray* cellGhosts = image->GetCellGhostArray();
+  if ((pointGhosts && pointGhosts->GetNumberOfTuples() < image->GetNumberOfPoints()) ||
+    (cellGhosts && cellGhosts->GetNumberOfTuples() < image->GetNumberOfCells())) {
+    error = "the array vtkGhostType is shorter than the image";
+    return false;
+  }
+  stratus_volume& volume = this->Volume;
+  int points[3];
+  image->GetDimensions(points);
+  // An image of one layer of points has VTK cells along that axis, the core's view of points has none.
+  const bool flat = !cells && (points[0] < 2 || points[1] < 2 || points[2] < 2);
+  if (pointGhosts && !cells) {
+    volume.point_ghosts = pointGhosts->GetPointer(0);
+    volume.revision = Mix(volume.revision, pointGhosts->GetMTime());
+  }
+  if (cellGhosts && !flat) {
+    volume.cell_ghosts = cellGhosts->GetPointer(0);
+    volume.revision = Mix(volume.revision, cellGhosts->GetMTime());
+  }
+  return true;
+}

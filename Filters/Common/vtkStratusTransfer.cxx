@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkVolumeProperty's functions as the core's piecewise linear ones: exactly where they are that, densely sampled elsewhere.
+#include "vtkStratusInput.h"
+
+#include "vtkColorTransferFunction.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+constexpr int SamplesOfAFunction = 4096;
+
+// Positions to sample a function that bends between its nodes: every node, and each interval cut evenly (in the logarithm where that is
+// the function's axis), and once more close to both sides of its midpoint, where a sharp node steps.
+std::vector<double> DensePositions(const std::vector<double>& nodes, const std::vector<double>& midpoints, bool logarithmic)
+{
+  std::vector<double> positions;
+  const int pieces = std::max(16, SamplesOfAFunction / static_cast<int>(std::max<size_t>(nodes.size(), 2) - 1));
+  for (size_t n = 0; n + 1 < nodes.size(); ++n) {
+    const double a = nodes[n], b = nodes[n + 1];
+    const bool logs = logarithmic && a > 0.0 && b > 0.0;
+    const auto at = [&](double t) { return logs ? a * std::pow(b / a, t) : a + t * (b - a); };
+    for (int p = 0; p < pieces; ++p) {
+      positions.push_back(at(static_cast<double>(p) / pieces));
+    }
+    positions.push_back(at(std::max(0.0, midpoints[n] - 1e-7)));
+    positions.push_back(at(std::min(1.0, midpoints[n] + 1e-7)));
+    positions.push_back(std::nextafter(b, a)); // the left value of a step at the next node
+  }
+  positions.push_back(nodes.back());
+  std::sort(positions.begin(), positions.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  return positions;
+}
+
+bool IsStraight(double midpoint, double sharpness)
+{
+  return midpoint == 0.5 && sharpness == 0.0;
+}
+
+// `stride` numbers a node: the position and stride-1 equal values.
+bool AppendPiecewise(vtkPiecewiseFunction* function, size_t values, std::vector<double>& result)
+{
+  std::vector<double> nodes, midpoints;
+  bool exact = !function->GetUseLogScale();
+  for (int n = 0; n < function->GetSize(); ++n) {
+    double node[4];
+    function->GetNodeValue(n, node);
+    nodes.push_back(node[0]);
+    midpoints.push_back(node[2]);
+    exact = exact && IsStraight(node[2], node[3]);
+    result.push_back(node[0]);
+    result.insert(result.end(), values, node[1]);
+  }
+  if (!exact && nodes.size() > 1) {
+    result.clear();
+    for (double x : DensePositions(nodes, midpoints, function->GetUseLogScale())) {
+      result.push_back(x);
+      result.insert(result.end(), values, function->GetValue(x));
+    }
+  }
+  return !nodes.empty();
+}
+
+void AppendColor(std::vector<double>& result, double x, const double rgb[3])
+{
+  const double node[4] = { x, rgb[0], rgb[1], rgb[2] };
+  result.insert(result.end(), node, node + 4);
+}
+
+bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& result)
+{
+  std::vector<double> nodes, midpoints;
+  // A derived class may colour as it likes (discretised, indexed): only VTK's own class is known to go straight.
+  bool exact = std::string(function->GetClassName()) == "vtkColorTransferFunction" && function->GetColorSpace() == VTK_CTF_RGB &&
+    function->GetScale() == VTK_CTF_LINEAR;
+  for (int n = 0; n < function->GetSize(); ++n) {
+    double node[6];
+    function->GetNodeValue(n, node);
+    nodes.push_back(node[0]);
+    midpoints.push_back(node[4]);
+    exact = exact && IsStraight(node[4], node[5]);
+    AppendColor(result, node[0], node + 1);
+  }
+  if (nodes.empty()) {
+    return false;
+  }
+  if (!exact && nodes.size() > 1) {
+    result.clear();
+    for (double x : DensePositions(nodes, midpoints, function->GetScale() == VTK_CTF_LOG10)) {
+      double rgb[3];
+      function->GetColor(x, rgb);
+      for (double& channel : rgb) { // some colour spaces overshoot
+        channel = std::min(1.0, std::max(0.0, channel));
+      }
+      AppendColor(result, x, rgb);
+    }
+  }
+  if (!function->GetClamping()) { // black beyond the ends, by a step there
+    const double black[3] = { 0, 0, 0 };
+    const double first[4] = { nodes.front(), 0, 0, 0 };
+    result.insert(result.begin(), first, first + 4);
+    AppendColor(result, nodes.back(), black);
+  }
+  return true;
+}
+}
+
+bool vtkStratusTransferView::Set(vtkVolumeProperty* property, std::string& error)
+{
+  this->Opacity.clear();
+  this->Color.clear();
+  vtkPiecewiseFunction* opacity = property->GetScalarOpacity();
+  if (!AppendPiecewise(opacity, 1, this->Opacity)) {
+    error = "the scalar opacity function has no points, it needs at least 1";
+    return false;
+  }
+  const bool colored = property->GetColorChannels() == 3 ? AppendColors(property->GetRGBTransferFunction(), this->Color)
+                                                         : AppendPiecewise(property->GetGrayTransferFunction(), 3, this->Color);
+  if (!colored) {
+    error = "the colour transfer function has no points, it needs at least 1";
+    return false;
+  }
+  this->Transfer = stratus_transfer_default();
+  this->Transfer.opacity = this->Opacity.data();
+  this->Transfer.opacity_count = this->Opacity.size() / 2;
+  this->Transfer.color = this->Color.data();
+  this->Transfer.color_count = this->Color.size() / 4;
+  this->Transfer.unit_distance = property->GetScalarOpacityUnitDistance();
+  this->Transfer.clamp = opacity->GetClamping() ? 1 : 0;
+  return true;
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusDisplay.h"
+
+#include "vtkOpenGLQuadHelper.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
+#include "vtkOpenGLState.h"
+#include "vtkRenderer.h"
+#include "vtkShaderProgram.h"
+#include "vtkTextureObject.h"
+
+#include "vtk_glew.h"
+
+namespace
+{
+const char* const FragmentShader = R"(//VTK::System::Dec
+//VTK::Output::Dec
+uniform sampler2D source;
+uniform vec2 corner;     // of the rectangle in the window
+uniform vec2 texels;     // texels a pixel
+uniform vec2 scaleBias;  // final colour window and level
+void main()
+{
+  vec2 pixel = gl_FragCoord.xy - corner;
+  vec4 color = texels == vec2(1.0) ? texelFetch(source, ivec2(pixel), 0)
+                                   : texture(source, pixel * texels / vec2(textureSize(source, 0)));
+  gl_FragData[0] = vec4(clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0), color.a);
+}
+)";
+}
+
+vtkStratusDisplay::vtkStratusDisplay() = default;
+vtkStratusDisplay::~vtkStratusDisplay() = default;
+
+void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Texture->ReleaseGraphicsResources(window);
+  this->Quad.reset();
+  this->Window = nullptr;
+}
+
+bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias)
+{
+  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window) {
+    return false;
+  }
+  if (this->Window && this->Window != window) {
+    this->ReleaseGraphicsResources(this->Window);
+  }
+  this->Window = window;
+  const unsigned int width = static_cast<unsigned int>(picture.Size[0]), height = static_cast<unsigned int>(picture.Size[1]);
+  this->Texture->SetContext(window);
+  this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
+  this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
+  this->Texture->SetMinificationFilter(vtkTextureObject::Linear);
+  this->Texture->SetMagnificationFilter(vtkTextureObject::Linear);
+  if (!this->Texture->Create2DFromRaw(width, height, 4, VTK_FLOAT, const_cast<float*>(rgba))) {
+    return false;
+  }
+  vtkOpenGLState* state = window->GetState();
+  if (!this->Quad) {
+    this->Quad.reset(new vtkOpenGLQuadHelper(window, nullptr, FragmentShader, ""));
+  } else {
+    window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+  }
+  if (!this->Quad->Program || !this->Quad->Program->GetCompiled()) {
+    return false;
+  }
+  const int x = picture.Viewport[0] + picture.Rectangle[0], y = picture.Viewport[1] + picture.Rectangle[1];
+  vtkOpenGLState::ScopedglViewport viewport(state);
+  vtkOpenGLState::ScopedglScissor scissor(state);
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  state->vtkglViewport(x, y, picture.Rectangle[2], picture.Rectangle[3]);
+  state->vtkglScissor(x, y, picture.Rectangle[2], picture.Rectangle[3]);
+  state->vtkglDisable(GL_DEPTH_TEST); // the rays have ended at the opaque depth already
+  state->vtkglDepthMask(GL_FALSE);
+  state->vtkglEnable(GL_BLEND);
+  state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+
+  this->Texture->Activate();
+  const float corner[2] = { static_cast<float>(x), static_cast<float>(y) };
+  const float texels[2] = { static_cast<float>(width) / static_cast<float>(picture.Rectangle[2]),
+    static_cast<float>(height) / static_cast<float>(picture.Rectangle[3]) };
+  const float scaleBias[2] = { scale, bias };
+  this->Quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
+  this->Quad->Program->SetUniform2f("corner", corner);
+  this->Quad->Program->SetUniform2f("texels", texels);
+  this->Quad->Program->SetUniform2f("scaleBias", scaleBias);
+  this->Quad->Render();
+  this->Texture->Deactivate();
+  return true;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lays a float picture over what the window shows, texel on pixel. Private to the module.
+//
+// VTK's vtkRayCastImageDisplayHelper does the same for bytes, through texture coordinates that shrink the picture by a pixel, and rounds before
+// it blends. Here the window rounds once, after the blend.
+#ifndef vtkStratusDisplay_h
+#define vtkStratusDisplay_h
+
+#include "vtkStratusPicture.h"
+
+#include "vtkNew.h"
+
+#include <memory>
+
+class vtkOpenGLQuadHelper;
+class vtkOpenGLRenderWindow;
+class vtkTextureObject;
+class vtkWindow;
+
+class VTK_STRATUS_PRIVATE vtkStratusDisplay
+{
+public:
+  vtkStratusDisplay();
+  ~vtkStratusDisplay();
+  vtkStratusDisplay(const vtkStratusDisplay&) = delete;
+  void operator=(const vtkStratusDisplay&) = delete;
+
+  // rgba: premultiplied, picture.Size pixels. Shown is rgb * scale + alpha * bias. False if the window is not an OpenGL one.
+  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias);
+  void ReleaseGraphicsResources(vtkWindow* window);
+
+private:
+  vtkNew<vtkTextureObject> Texture;
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+  vtkOpenGLRenderWindow* Window = nullptr; // only compared
+};
+
+#endif

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusPicture.h"
+
+#include "vtkCamera.h"
+#include "vtkMatrix4x4.h"
+#include "vtkRenderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+// A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then go to
+// the world: inverting the composite matrix would cost digits far from the origin.
+struct ViewRays
+{
+  double Eye[3], Forward[3], Right[3], Up[3], Near, Far;
+};
+
+bool Unproject(const double inverse[16], double u, double v, double z, double point[3])
+{
+  const double window[4] = { u, v, z, 1.0 };
+  double result[4];
+  vtkMatrix4x4::MultiplyPoint(inverse, window, result);
+  for (int a = 0; a < 3; ++a) {
+    point[a] = result[a] / result[3];
+  }
+  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+}
+
+// The planes of constant depth are perpendicular to the view's z axis in all of VTK's projections, sheared ones too, so that the distance k
+// to the eye's plane runs along -z.
+bool UnprojectRays(vtkMatrix4x4* projection, bool parallel, ViewRays& rays)
+{
+  double inverse[16];
+  vtkMatrix4x4::Invert(&projection->Element[0][0], inverse);
+  double nearCenter[3], farCenter[3], nearRight[3], nearUp[3];
+  if (!Unproject(inverse, 0, 0, -1, nearCenter) || !Unproject(inverse, 0, 0, 1, farCenter) || !Unproject(inverse, 1, 0, -1, nearRight) ||
+    !Unproject(inverse, 0, 1, -1, nearUp)) {
+    return false;
+  }
+  const double depth = nearCenter[2] - farCenter[2];
+  double eyeZ = 0.0;
+  double scale = 1.0;
+  if (!parallel) { // all rays meet where x, y and w vanish: the inverse's third column
+    eyeZ = inverse[10] / inverse[14];
+    scale = 1.0 / (eyeZ - nearCenter[2]);
+  }
+  rays.Near = eyeZ - nearCenter[2];
+  rays.Far = eyeZ - farCenter[2];
+  for (int a = 0; a < 3; ++a) {
+    rays.Forward[a] = (farCenter[a] - nearCenter[a]) / depth;
+    rays.Right[a] = (nearRight[a] - nearCenter[a]) * scale;
+    rays.Up[a] = (nearUp[a] - nearCenter[a]) * scale;
+    rays.Eye[a] = nearCenter[a] - rays.Near * rays.Forward[a];
+  }
+  return depth > 0.0 && (parallel || rays.Near > 0.0) && std::isfinite(scale);
+}
+
+// The rays of a part of the window: u' = center[0] + half[0] u there.
+void PlaceRays(vtkMatrix4x4* view, const ViewRays& rays, const double center[2], const double half[2], stratus_camera& camera)
+{
+  double inverse[16];
+  vtkMatrix4x4::Invert(&view->Element[0][0], inverse);
+  for (int a = 0; a < 3; ++a) {
+    const double* row = inverse + 4 * a;
+    const auto turn = [row](const double vector[3]) { return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2]; };
+    const double right = turn(rays.Right), up = turn(rays.Up);
+    const double sideways = center[0] * right + center[1] * up;
+    camera.eye[a] = row[3] + turn(rays.Eye) + (camera.parallel ? sideways : 0.0);
+    camera.forward[a] = turn(rays.Forward) + (camera.parallel ? 0.0 : sideways);
+    camera.right[a] = half[0] * right;
+    camera.up[a] = half[1] * up;
+  }
+  camera.near_k = camera.parallel ? rays.Near : std::max(0.0, rays.Near);
+  camera.far_k = rays.Far;
+}
+
+// The corners of the drawn box along the grid's axes, as origin + spacing * index.
+void LocalBox(const stratus_volume& volume, const double* crop, double box[6])
+{
+  for (int a = 0; a < 3; ++a) {
+    const double cells = static_cast<double>(volume.dimensions[a] - (volume.cell_centered ? 0 : 1));
+    box[2 * a] = volume.origin[a];
+    box[2 * a + 1] = volume.origin[a] + volume.spacing[a] * cells;
+    if (crop) {
+      box[2 * a] = std::max(box[2 * a], crop[2 * a]);
+      box[2 * a + 1] = std::min(box[2 * a + 1], crop[2 * a + 1]);
+    }
+  }
+}
+
+void CornerToWorld(const stratus_volume& volume, const double box[6], int corner, double world[4])
+{
+  double offset[3];
+  double local[4] = { 0, 0, 0, 1 };
+  for (int a = 0; a < 3; ++a) {
+    offset[a] = box[2 * a + ((corner >> a) & 1)] - volume.origin[a];
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double* row = volume.direction + 3 * a;
+    local[a] = volume.origin[a] + row[0] * offset[0] + row[1] * offset[1] + row[2] * offset[2];
+  }
+  vtkMatrix4x4::MultiplyPoint(volume.matrix, local, world);
+}
+}
+
+void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop)
+{
+  double box[6];
+  LocalBox(volume, crop, box);
+  double low[2] = { 1, 1 }, high[2] = { -1, -1 };
+  for (int corner = 0; corner < 8; ++corner) {
+    double world[4], clip[4];
+    CornerToWorld(volume, box, corner, world);
+    vtkMatrix4x4::MultiplyPoint(worldToClip, world, clip);
+    if (!(clip[3] > 0.0) || clip[2] < -clip[3]) { // reaches to the near plane or behind it: anywhere
+      low[0] = low[1] = -1;
+      high[0] = high[1] = 1;
+      break;
+    }
+    for (int a = 0; a < 2; ++a) {
+      low[a] = std::min(low[a], clip[a] / clip[3]);
+      high[a] = std::max(high[a], clip[a] / clip[3]);
+    }
+  }
+  for (int a = 0; a < 2; ++a) {
+    const int pixels = this->Viewport[2 + a];
+    const double first = std::floor((low[a] + 1) * 0.5 * pixels) - 1; // a pixel more, for rounding
+    const double last = std::ceil((high[a] + 1) * 0.5 * pixels) + 1;
+    const int begin = static_cast<int>(std::min<double>(std::max(first, 0.0), pixels));
+    const int end = static_cast<int>(std::min<double>(std::max(last, 0.0), pixels));
+    this->Rectangle[a] = begin;
+    this->Rectangle[2 + a] = std::max(0, end - begin);
+  }
+}
+
+bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness)
+{
+  renderer->GetTiledSizeAndOrigin(&this->Viewport[2], &this->Viewport[3], &this->Viewport[0], &this->Viewport[1]);
+  vtkCamera* camera = renderer->GetActiveCamera();
+  vtkMatrix4x4* view = camera->GetModelViewTransformMatrix();
+  vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
+  double worldToClip[16];
+  vtkMatrix4x4::Multiply4x4(&projection->Element[0][0], &view->Element[0][0], worldToClip);
+  this->SetRectangle(worldToClip, volume, crop);
+  double center[2], half[2];
+  for (int a = 0; a < 2; ++a) {
+    const double pixels = this->Viewport[2 + a];
+    this->Size[a] = static_cast<int>(std::ceil(this->Rectangle[2 + a] / std::max(1.0, coarseness)));
+    center[a] = (2.0 * this->Rectangle[a] + this->Rectangle[2 + a]) / pixels - 1.0;
+    half[a] = this->Rectangle[2 + a] / pixels;
+  }
+  this->Camera = stratus_camera();
+  // An off-axis projection is a perspective one whatever the flag says.
+  this->Camera.parallel = projection->GetElement(3, 2) == 0.0 ? 1 : 0;
+  ViewRays rays;
+  if (!UnprojectRays(projection, this->Camera.parallel != 0, rays)) {
+    return false;
+  }
+  PlaceRays(view, rays, center, half, this->Camera);
+  return true;
+}

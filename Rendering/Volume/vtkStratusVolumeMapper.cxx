@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusVolumeMapper.h"
+
+#include "vtkStratusVolumeMapperInternals.h"
+
+#include "vtkCommand.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkObjectFactory.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkTimerLog.h"
+#include "vtkVolume.h"
+
+vtkStandardNewMacro(vtkStratusVolumeMapper);
+
+vtkStratusVolumeMapper::vtkStratusVolumeMapper()
+  : Internal(new Internals(this))
+{
+}
+
+vtkStratusVolumeMapper::~vtkStratusVolumeMapper() = default;
+
+int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
+{
+  const double start = vtkTimerLog::GetUniversalTime();
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
+  std::string error;
+  if (this->Internal->Render(ren, vol, error)) {
+    this->Internal->LastError.clear();
+  } else if (!error.empty() && error != this->Internal->LastError) {
+    this->Internal->LastError = error; // once, not with every picture
+    vtkErrorMacro(<< error << "; nothing is drawn");
+  }
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
+  this->TimeToDraw = vtkTimerLog::GetUniversalTime() - start;
+}
+
+void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Internal->Display.ReleaseGraphicsResources(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkStratusVolumeMapper::SetDevice(const char* device)
+{
+  const std::string name = device && *device ? device : "auto";
+  if (name == this->Internal->Device) {
+    return;
+  }
+  std::string error;
+  if (this->Internal->SetDevice(name, error)) {
+    this->Modified();
+  } else {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusVolumeMapper::GetDevice()
+{
+  return this->Internal->Device.c_str();
+}
+
+const char* vtkStratusVolumeMapper::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context) : "";
+}
+
+const char* vtkStratusVolumeMapper::GetStructureAsString()
+{
+  return stratus_structure_name(static_cast<stratus_structure>(this->Structure));
+}
+
+const char* vtkStratusVolumeMapper::GetSamplingAsString()
+{
+  return stratus_sampling_name(static_cast<stratus_sampling>(this->Sampling));
+}
+
+const char* vtkStratusVolumeMapper::GetStructureUsedAsString()
+{
+  return stratus_structure_name(this->Internal->Report.structure);
+}
+
+const char* vtkStratusVolumeMapper::GetSamplingUsedAsString()
+{
+  return stratus_sampling_name(this->Internal->Report.sampling);
+}
+
+const char* vtkStratusVolumeMapper::GetReason()
+{
+  return this->Internal->Report.why;
+}
+
+double vtkStratusVolumeMapper::GetUsedImageSampleDistance()
+{
+  return this->Internal->UsedCoarseness;
+}
+
+double vtkStratusVolumeMapper::GetDrawTime()
+{
+  return this->Internal->DrawMilliseconds;
+}
+
+vtkImageData* vtkStratusVolumeMapper::GetLastImage()
+{
+  return this->Internal->GetLastImage();
+}
+
+#define REPORT(type, getter, field)                                                                                                        \
+  type vtkStratusVolumeMapper::getter()                                                                                                    \
+  {                                                                                                                                        \
+    return this->Internal->Report.field;                                                                                                   \
+  }
+REPORT(vtkTypeUInt64, GetSamplesTaken, samples)
+REPORT(vtkTypeUInt64, GetSamplesSkipped, skipped)
+REPORT(vtkTypeUInt64, GetStructureLookups, lookups)
+REPORT(vtkTypeUInt64, GetDifferingPixels, differing_pixels)
+REPORT(vtkTypeUInt64, GetBlocks, blocks)
+REPORT(vtkTypeUInt64, GetOccupiedBlocks, occupied_blocks)
+REPORT(vtkTypeUInt64, GetStructureBytes, structure_bytes)
+REPORT(vtkTypeUInt64, GetRangeBuilds, range_builds)
+REPORT(vtkTypeUInt64, GetTableBuilds, table_builds)
+REPORT(vtkTypeUInt64, GetOccupancyBuilds, occupancy_builds)
+REPORT(vtkTypeUInt64, GetStructureBuilds, structure_builds)
+REPORT(vtkTypeUInt64, GetUploads, uploads)
+REPORT(double, GetRangeTime, range_ms)
+REPORT(double, GetTableTime, table_ms)
+REPORT(double, GetOccupancyTime, occupancy_ms)
+REPORT(double, GetStructureTime, structure_ms)
+REPORT(double, GetUploadTime, upload_ms)
+REPORT(double, GetCastTime, cast_ms)
+REPORT(double, GetUsedSampleDistance, sample_distance)
+
+void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "SampleDistance: " << this->SampleDistance << "\n";
+  os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off") << "\n";
+  os << indent << "InteractiveUpdateRate: " << this->InteractiveUpdateRate << "\n";
+  os << indent << "ImageSampleDistance: " << this->ImageSampleDistance << "\n";
+  os << indent << "MaximumImageSampleDistance: " << this->MaximumImageSampleDistance << "\n";
+  os << indent << "MaximumSampleDistanceFactor: " << this->MaximumSampleDistanceFactor << "\n";
+  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
+  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
+  os << indent << "Structure: " << this->GetStructureAsString() << "\n";
+  os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
+  os << indent << "Termination: " << this->Termination << "\n";
+  os << indent << "BlockSize: " << this->BlockSize << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Audit: " << (this->Audit ? "On" : "Off") << "\n";
+  os << indent << "Last picture: structure " << this->GetStructureUsedAsString() << ", sampling " << this->GetSamplingUsedAsString()
+     << ", sample distance " << this->GetUsedSampleDistance() << ", " << this->GetUsedImageSampleDistance() << " pixels a ray, "
+     << this->GetSamplesTaken() << " samples, " << this->GetSamplesSkipped() << " skipped, " << this->GetCastTime() << " ms\n";
+}

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusVolumeMapper
+ * @brief   draws a vtkImageData by ray casting that skips what is transparent, without changing the picture
+ *
+ * Takes the place of vtkSmartVolumeMapper: a vtkImageData and the vtkVolume's vtkVolumeProperty go in, the picture is composited with
+ * the opaque geometry of the scene. Setters that mean the same have vtkSmartVolumeMapper's names.
+ *
+ * Supported: point and cell scalars of one component and any numeric type but bits, linear and nearest interpolation, scalar opacity,
+ * colour or grey, ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's
+ * matrix, cropping to the subvolume, up to six clipping planes. All else (other blend modes, shading, gradient opacity, more components,
+ * two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
+ *
+ * What is built is kept: a new picture of the same data rebuilds nothing, a new transfer function rebuilds tables and structure only.
+ *
+ * @sa vtkStratusDistanceMapFilter vtkSmartVolumeMapper
+ */
+#ifndef vtkStratusVolumeMapper_h
+#define vtkStratusVolumeMapper_h
+
+#include "StratusRenderingVolumeModule.h" // For export macro
+#include "vtkVolumeMapper.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkImageData;
+
+class STRATUSRENDERINGVOLUME_EXPORT vtkStratusVolumeMapper : public vtkVolumeMapper
+{
+public:
+  static vtkStratusVolumeMapper* New();
+  vtkTypeMacro(vtkStratusVolumeMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * World length between two samples of a ray; 0 or less takes it from the data's spacing and the transfer function. Default -1.
+   */
+  vtkSetMacro(SampleDistance, double);
+  vtkGetMacro(SampleDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * While the window's desired update rate is at least InteractiveUpdateRate, draw as coarsely as the time allotted to this volume
+   * asks for: first longer steps, then fewer rays. Below that rate the picture is exact. Default on.
+   */
+  vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
+  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Frames a second from which AutoAdjustSampleDistances is at work, 1e-10..1e10. Default 1: a still picture of VTK's interactor (rate 0.0001)
+   * is exact, one that moves (rate 15) is adjusted.
+   */
+  vtkSetClampMacro(InteractiveUpdateRate, double, 1.0e-10, 1.0e10);
+  vtkGetMacro(InteractiveUpdateRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Pixels between two rays along each axis of the window, 1..100, and the most that AutoAdjustSampleDistances may take. Default 1 and 8.
+   */
+  vtkSetClampMacro(ImageSampleDistance, double, 1.0, 100.0);
+  vtkGetMacro(ImageSampleDistance, double);
+  vtkSetClampMacro(MaximumImageSampleDistance, double, 1.0, 100.0);
+  vtkGetMacro(MaximumImageSampleDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * How many times the sample distance AutoAdjustSampleDistances may make it, 1..100. Default 2.
+   */
+  vtkSetClampMacro(MaximumSampleDistanceFactor, double, 1.0, 100.0);
+  vtkGetMacro(MaximumSampleDistanceFactor, double);
+  ///@}
+
+  ///@{
+  /**
+   * Window and level of the final colours: a colour c is shown as (c - level) / window + 0.5. The window is not 0, a negative one
+   * inverts. Default 1 and 0.5: as they are. GetLastImage() is not affected.
+   */
+  vtkSetMacro(FinalColorWindow, float);
+  vtkGetMacro(FinalColorWindow, float);
+  vtkSetMacro(FinalColorLevel, float);
+  vtkGetMacro(FinalColorLevel, float);
+  ///@}
+
+  enum StructureType
+  {
+    AUTO_STRUCTURE,
+    NO_STRUCTURE,
+    BLOCK_STRUCTURE,
+    DISTANCE_STRUCTURE,
+    OCTANT_STRUCTURE
+  };
+  ///@{
+  /**
+   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, or eight of them by the ray's octant. No
+   * choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
+   */
+  vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, OCTANT_STRUCTURE);
+  vtkGetMacro(Structure, int);
+  void SetStructureToAuto() { this->SetStructure(AUTO_STRUCTURE); }
+  void SetStructureToNone() { this->SetStructure(NO_STRUCTURE); }
+  void SetStructureToBlock() { this->SetStructure(BLOCK_STRUCTURE); }
+  void SetStructureToDistance() { this->SetStructure(DISTANCE_STRUCTURE); }
+  void SetStructureToOctant() { this->SetStructure(OCTANT_STRUCTURE); }
+  const char* GetStructureAsString();
+  ///@}
+
+  enum SamplingType
+  {
+    AUTO_SAMPLING,
+    MIDPOINT_SAMPLING,
+    PREINTEGRATED_SAMPLING
+  };
+  ///@{
+  /**
+   * One value in the middle of each segment, or the transfer function integrated between the values at its ends. Nearest interpolation is
+   * never pre-integrated. Default AUTO_SAMPLING: by the transfer function's bend against the data.
+   */
+  vtkSetClampMacro(Sampling, int, AUTO_SAMPLING, PREINTEGRATED_SAMPLING);
+  vtkGetMacro(Sampling, int);
+  void SetSamplingToAuto() { this->SetSampling(AUTO_SAMPLING); }
+  void SetSamplingToMidpoint() { this->SetSampling(MIDPOINT_SAMPLING); }
+  void SetSamplingToPreintegrated() { this->SetSampling(PREINTEGRATED_SAMPLING); }
+  const char* GetSamplingAsString();
+  ///@}
+
+  ///@{
+  /**
+   * A ray ends when its opacity passes this, 0..1. Default 0.999.
+   */
+  vtkSetClampMacro(Termination, double, 0.0, 1.0);
+  vtkGetMacro(Termination, double);
+  ///@}
+
+  ///@{
+  /**
+   * Cells along a block of the structure: 2, 4, 8, 16, 32, or 0 for the core's default. Others are an error when drawing. Default 0.
+   */
+  vtkSetMacro(BlockSize, int);
+  vtkGetMacro(BlockSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * Where rays are cast: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name.
+   * One that does not exist is an error with the list of those that do, and the device stays what it was. Default "auto".
+   */
+  virtual void SetDevice(const char* device);
+  virtual const char* GetDevice();
+  ///@}
+
+  ///@{
+  /**
+   * Threads of the host, 1..1024, or 0 for as many as OpenMP would take. The picture does not depend on it. Default 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Also march without structure and count the pixels that differ, see GetDifferingPixels(). Slow. Default off.
+   */
+  vtkSetClampMacro(Audit, vtkTypeBool, 0, 1);
+  vtkGetMacro(Audit, vtkTypeBool);
+  vtkBooleanMacro(Audit, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Of the last picture drawn: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
+   * blocks and how many of them are occupied, and bytes of the structure.
+   */
+  vtkTypeUInt64 GetSamplesTaken();
+  vtkTypeUInt64 GetSamplesSkipped();
+  vtkTypeUInt64 GetStructureLookups();
+  vtkTypeUInt64 GetDifferingPixels();
+  vtkTypeUInt64 GetBlocks();
+  vtkTypeUInt64 GetOccupiedBlocks();
+  vtkTypeUInt64 GetStructureBytes();
+  ///@}
+
+  ///@{
+  /**
+   * How often each was built since this mapper (or its device or threads) was set up.
+   */
+  vtkTypeUInt64 GetRangeBuilds();
+  vtkTypeUInt64 GetTableBuilds();
+  vtkTypeUInt64 GetOccupancyBuilds();
+  vtkTypeUInt64 GetStructureBuilds();
+  vtkTypeUInt64 GetUploads();
+  ///@}
+
+  ///@{
+  /**
+   * Milliseconds of the last picture by stage; 0 for what was not done. Draw is the read-back of depth and the display of the picture.
+   */
+  double GetRangeTime();
+  double GetTableTime();
+  double GetOccupancyTime();
+  double GetStructureTime();
+  double GetUploadTime();
+  double GetCastTime();
+  double GetDrawTime();
+  ///@}
+
+  ///@{
+  /**
+   * What the last picture used, and why: structure, sampling, world length between samples, pixels between rays, device.
+   */
+  const char* GetStructureUsedAsString();
+  const char* GetSamplingUsedAsString();
+  double GetUsedSampleDistance();
+  double GetUsedImageSampleDistance();
+  const char* GetReason();
+  const char* GetDeviceName();
+  ///@}
+
+  /**
+   * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4 components,
+   * premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
+   * view from its plane, to the first contribution; infinite where there is none). A coarse picture is repeated pixel by pixel. nullptr
+   * before the first picture. Copied on each call; it is the mapper's, and the next call overwrites it.
+   */
+  vtkImageData* GetLastImage();
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  void Render(vtkRenderer* ren, vtkVolume* vol) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkStratusVolumeMapper();
+  ~vtkStratusVolumeMapper() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+  double SampleDistance = -1.0;
+  vtkTypeBool AutoAdjustSampleDistances = 1;
+  double InteractiveUpdateRate = 1.0;
+  double ImageSampleDistance = 1.0;
+  double MaximumImageSampleDistance = 8.0;
+  double MaximumSampleDistanceFactor = 2.0;
+  float FinalColorWindow = 1.0f;
+  float FinalColorLevel = 0.5f;
+  int Structure = AUTO_STRUCTURE;
+  int Sampling = AUTO_SAMPLING;
+  double Termination = 0.999;
+  int BlockSize = 0;
+  int NumberOfThreads = 0;
+  vtkTypeBool Audit = 0;
+
+private:
+  vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;
+  void operator=(const vtkStratusVolumeMapper&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkStratusVolumeMapper holds between pictures. Private to the module.
+#ifndef vtkStratusVolumeMapperInternals_h
+#define vtkStratusVolumeMapperInternals_h
+
+#include "vtkStratusDisplay.h"
+#include "vtkStratusInput.h"
+#include "vtkStratusPicture.h"
+#include "vtkStratusVolumeMapper.h"
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class VTK_STRATUS_PRIVATE vtkStratusVolumeMapper::Internals
+{
+public:
+  explicit Internals(vtkStratusVolumeMapper* mapper);
+  ~Internals();
+
+  // Makes the context where there is none, or where the number of threads has changed.
+  bool PrepareContext(std::string& error);
+  // Replaces device and context, or leaves them as they are.
+  bool SetDevice(const std::string& device, std::string& error);
+
+  // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
+  bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
+  vtkImageData* GetLastImage();
+
+  std::string Device = "auto";
+  stratus_context* Context = nullptr;
+  stratus_ray_caster* Caster = nullptr;
+  stratus_ray_cast_report Report = stratus_ray_cast_report();
+  vtkStratusImageView Image;
+  vtkStratusTransferView Transfer;
+  vtkStratusDisplay Display;
+  std::string LastError; // told already
+  double DrawMilliseconds = 0.0;
+  double UsedCoarseness = 1.0;
+
+private:
+  // How much coarser than asked for the picture is drawn: times the sample distance, pixels between rays.
+  struct Coarseness
+  {
+    double Step = 1.0;
+    double Pixels = 1.0;
+  };
+
+  static int OnProgress(void* self, const char* stage, double fraction);
+  stratus_status CreateContext(const std::string& device, stratus_context** context, std::string& error) const;
+  void Replace(stratus_context* context);
+  bool CheckMapper(std::string& error) const;
+  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  bool PrepareInput(vtkVolume* prop, std::string& error);
+  bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
+  Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop) const;
+  void LearnTime(const Coarseness& coarseness);
+  bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error);
+  const float* ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop);
+
+  vtkStratusVolumeMapper* Mapper;
+  vtkRenderer* Renderer = nullptr; // while rendering
+  int ContextThreads = 0;
+  vtkStratusPicture Picture;
+  bool HasPicture = false;
+  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth;
+  double FullMilliseconds = 0.0; // estimate of an exact picture's cast; 0: unknown
+  double FullSampleDistance = 0.0;
+  vtkSmartPointer<vtkImageData> LastImage;
+};
+
+#endif

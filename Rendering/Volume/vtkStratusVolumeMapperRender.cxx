@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One picture of vtkStratusVolumeMapper: how coarse, what bounds the rays, cast, show.
+#include "vtkStratusVolumeMapperInternals.h"
+
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkTimerLog.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// ---------------------------------------------------------------- how coarse
+
+vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop) const
+{
+  const vtkStratusVolumeMapper* mapper = this->Mapper;
+  Coarseness coarseness;
+  coarseness.Pixels = mapper->ImageSampleDistance;
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  const bool interactive = mapper->AutoAdjustSampleDistances && window && window->GetDesiredUpdateRate() >= mapper->InteractiveUpdateRate;
+  if (!interactive || this->FullMilliseconds <= 0.0) {
+    return coarseness;
+  }
+  // What showing the picture takes is not ours to save.
+  const double allotted = 1000.0 * prop->GetAllocatedRenderTime();
+  const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
+  const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
+  if (excess > 1.0) {
+    coarseness.Step = std::min(excess, mapper->MaximumSampleDistanceFactor);
+    coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
+    coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));
+  }
+  return coarseness;
+}
+
+void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
+{
+  if (coarseness.Step == 1.0) {
+    this->FullSampleDistance = this->Report.sample_distance;
+  }
+  const double rays = static_cast<double>(this->Picture.Size[0]) * this->Picture.Size[1];
+  const double base = this->Mapper->ImageSampleDistance;
+  const double all = static_cast<double>(this->Picture.Rectangle[2]) * this->Picture.Rectangle[3] / (base * base);
+  this->FullMilliseconds = this->Report.cast_ms * coarseness.Step * std::max(1.0, all / rays);
+}
+
+// ---------------------------------------------------------------- a picture
+
+// The opaque depth at each ray, or nullptr where nothing can have been drawn before: a read-back costs as much as a simple scene.
+const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop)
+{
+  bool needed = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator iterator;
+  props->InitTraversal(iterator);
+  while (vtkProp* other = props->GetNextProp(iterator)) {
+    vtkVolume* volume = vtkVolume::SafeDownCast(other);
+    const bool ours = other == prop || (volume && vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()));
+    needed = needed || (!ours && other->GetVisibility() && !other->IsA("vtkActor2D"));
+  }
+  if (!needed) {
+    return nullptr;
+  }
+  const vtkStratusPicture& picture = this->Picture;
+  const int* rectangle = picture.Rectangle;
+  const int x = picture.Viewport[0] + rectangle[0], y = picture.Viewport[1] + rectangle[1];
+  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
+  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
+  if (picture.Size[0] == rectangle[2] && picture.Size[1] == rectangle[3]) {
+    return this->WindowDepth.data();
+  }
+  this->OpaqueDepth.resize(static_cast<size_t>(picture.Size[0]) * picture.Size[1]);
+  for (int j = 0; j < picture.Size[1]; ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * rectangle[3] / picture.Size[1]) * rectangle[2];
+    for (int i = 0; i < picture.Size[0]; ++i) {
+      const size_t column = static_cast<size_t>((i + 0.5) * rectangle[2] / picture.Size[0]);
+      this->OpaqueDepth[static_cast<size_t>(j) * picture.Size[0] + i] = this->WindowDepth[row + column];
+    }
+  }
+  return this->OpaqueDepth.data();
+}
+
+bool vtkStratusVolumeMapper::Internals::Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error)
+{
+  const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
+  this->Rgba.resize(4 * pixels);
+  this->Depth.resize(pixels);
+  stratus_image image = stratus_image();
+  image.width = this->Picture.Size[0];
+  image.height = this->Picture.Size[1];
+  image.rgba = this->Rgba.data();
+  image.depth = this->Depth.data();
+  image.opaque_depth = opaqueDepth;
+  this->Renderer = renderer;
+  const stratus_status status = stratus_ray_caster_render(
+    this->Caster, &this->Image.GetVolume(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+  this->Renderer = nullptr;
+  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
+    error = stratus_context_message(this->Context);
+  }
+  return status == STRATUS_OK;
+}
+
+bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
+{
+  stratus_ray_cast_options options;
+  if (!this->CheckMapper(error) || !this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, error) ||
+    !this->SetOptions(prop->GetProperty(), options, error) || !this->PrepareContext(error)) {
+    return false;
+  }
+  // Checked here too, because the picture's rectangle already relies on it.
+  if (stratus_volume_check(this->Context, &this->Image.GetVolume()) != STRATUS_OK) {
+    error = stratus_context_message(this->Context);
+    return false;
+  }
+  const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
+  if (coarseness.Step > 1.0) {
+    options.sample_distance = coarseness.Step * this->FullSampleDistance;
+  }
+  this->HasPicture = false;
+  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop ? options.crop_bounds : nullptr, coarseness.Pixels)) {
+    error = "the camera's projection has no inverse";
+    return false;
+  }
+  this->UsedCoarseness = coarseness.Pixels;
+  this->HasPicture = this->Picture.IsEmpty();
+  if (this->HasPicture) {
+    return true;
+  }
+  const double start = vtkTimerLog::GetUniversalTime();
+  const float* opaqueDepth = this->ReadOpaqueDepth(renderer, prop);
+  const double read = vtkTimerLog::GetUniversalTime();
+  if (!this->Cast(renderer, options, opaqueDepth, error)) {
+    return false;
+  }
+  this->HasPicture = true;
+  this->LearnTime(coarseness);
+  const double cast = vtkTimerLog::GetUniversalTime();
+  const float scale = 1.0f / this->Mapper->FinalColorWindow;
+  if (!this->Display.Draw(renderer, this->Picture, this->Rgba.data(), scale, 0.5f - this->Mapper->FinalColorLevel * scale)) {
+    error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+    return false;
+  }
+  this->DrawMilliseconds = 1000.0 * (vtkTimerLog::GetUniversalTime() - cast + read - start);
+  return true;
+}
+
+vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
+{
+  if (!this->HasPicture) {
+    return nullptr;
+  }
+  const int width = this->Picture.Viewport[2], height = this->Picture.Viewport[3];
+  const int* rectangle = this->Picture.Rectangle;
+  this->LastImage = vtkSmartPointer<vtkImageData>::New();
+  this->LastImage->SetDimensions(width, height, 1);
+  vtkNew<vtkFloatArray> rgba, depth;
+  rgba->SetName("RGBA");
+  rgba->SetNumberOfComponents(4);
+  depth->SetName("Depth");
+  for (vtkFloatArray* array : { rgba.Get(), depth.Get() }) {
+    array->SetNumberOfTuples(static_cast<vtkIdType>(width) * height);
+  }
+  rgba->Fill(0.0);
+  depth->Fill(std::numeric_limits<double>::infinity());
+  for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * this->Picture.Size[1] / rectangle[3]) * this->Picture.Size[0];
+    for (int i = 0; i < rectangle[2]; ++i) {
+      const size_t from = row + static_cast<size_t>((i + 0.5) * this->Picture.Size[0] / rectangle[2]);
+      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
+      std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
+      depth->SetValue(to, this->Depth[from]);
+    }
+  }
+  this->LastImage->GetPointData()->SetScalars(rgba);
+  this->LastImage->GetPointData()->AddArray(depth);
+  return this->LastImage;
+}
