@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+// World bounds of the blocks that show anything; of everything where none does.
+void shown_bounds(const cli::context& core, const stratus_volume& volume, const stratus_transfer& transfer, double bounds[6])
+{
+  stratus_value_range* ranges = nullptr;
+  stratus_occupancy* occupancy = nullptr;
+  stratus_volume part = volume;
+  stratus_status status = stratus_value_range_create(core, &volume, 8, &ranges);
+  if (status == STRATUS_OK) {
+    status = stratus_occupancy_create(core, ranges, &transfer, STRATUS_SAMPLING_MIDPOINT, &occupancy);
+  }
+  if (status == STRATUS_OK && stratus_occupancy_count(occupancy) > 0) {
+    int64_t lo[3];
+    int64_t hi[3];
+    int size = 0;
+    stratus_occupancy_bounds(occupancy, lo, hi);
+    stratus_occupancy_blocks(occupancy, nullptr, &size);
+    for (int a = 0; a < 3; ++a) {
+      part.dimensions[a] = std::min(hi[a] * size + 1, volume.dimensions[a]) - lo[a] * size;
+      for (int r = 0; r < 3; ++r) {
+        part.origin[r] += volume.direction[3 * r + a] * volume.spacing[a] * static_cast<double>(lo[a] * size);
+      }
+    }
+  }
+  stratus_occupancy_destroy(occupancy);
+  stratus_value_range_destroy(ranges);
+  core.check(status, "what is shown");
+  core.check(stratus_volume_bounds(core, &part, bounds), "bounds");
+}
+
+// Tangents of the widest and highest view of the bounds at this elevation, whatever the azimuth: a turn about the upward axis neither
+// cuts anything off nor breathes. Parallel: half sizes instead of tangents.
+void fit(double around, double upward, double elevation, double away, bool parallel, double& wide, double& high)
+{
+  wide = high = 0.0;
+  for (int i = 0; i < 256; ++i) {
+    const double angle = i * std::acos(-1.0) / 64.0;
+    const double toward = around * std::cos(angle);
+    const double height = i < 128 ? upward : -upward;
+    const double depth = parallel ? 1.0 : away - toward * std::cos(elevation) - height * std::sin(elevation);
+    wide = std::max(wide, std::fabs(around * std::sin(angle)) / depth);
+    high = std::max(high, std::fabs(height * std::cos(elevation) - toward * std::sin(elevation)) / depth);
+  }
+}
+
+}
+
+namespace cli {
+
+stratus_camera place_camera(
+  const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up)
+{
+  const double degree = std::acos(-1.0) / 180.0;
+  double bounds[6];
+  double focal[3];
+  double half[3];
+  double eye[3];
+  shown_bounds(core, volume, transfer, bounds);
+  for (int a = 0; a < 3; ++a) {
+    focal[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
+    half[a] = 0.5 * (bounds[2 * a + 1] - bounds[2 * a]);
+  }
+  // Straight up and down the view has no way to tell what is up; a thousandth of a degree off it has.
+  const double elevation = std::min(std::max(o.elevation, -89.999), 89.999) * degree;
+  const double around = std::hypot(half[(up + 1) % 3], half[(up + 2) % 3]);
+  const double away = std::hypot(around, half[up]) / std::sin(15.0 * degree); // as the cameras of record
+  double direction[3];
+  direction[up] = std::sin(elevation);
+  direction[(up + 1) % 3] = std::cos(elevation) * std::cos(o.azimuth * degree);
+  direction[(up + 2) % 3] = std::cos(elevation) * std::sin(o.azimuth * degree);
+  for (int a = 0; a < 3; ++a) {
+    eye[a] = focal[a] + away * direction[a];
+  }
+  const double view_up[3] = { up == 0 ? 1.0 : 0.0, up == 1 ? 1.0 : 0.0, up == 2 ? 1.0 : 0.0 };
+  const double aspect = static_cast<double>(o.width) / o.height;
+  double wide;
+  double high;
+  fit(around, half[up], elevation, away, o.parallel, wide, high);
+  const double scale = 1.02 * std::max(high, wide / aspect) / o.zoom;
+  stratus_camera camera;
+  if (o.parallel) {
+    core.check(stratus_camera_parallel(core, eye, focal, view_up, scale, aspect, &camera), "camera");
+  } else {
+    core.check(stratus_camera_perspective(core, eye, focal, view_up, 2.0 * std::atan(scale) / degree, aspect, &camera), "camera");
+  }
+  return camera;
+}
+}

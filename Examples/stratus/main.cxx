@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line: a volume goes in, a picture comes out. `stratus --help` tells the rest.
+#include "camera.h"
+#include "input.h"
+#include "options.h"
+#include "picture.h"
+#include "transfer.h"
+
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace {
+
+void row(const char* name, const std::string& value)
+{
+  std::printf("  %-11s %s\n", name, value.c_str());
+}
+
+std::string describe(const stratus_volume& v)
+{
+  return cli::format("%lld x %lld x %lld %s on %s, spacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
+    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), cli::name_of(v.type), v.cell_centered ? "cells" : "points",
+    v.spacing[0], v.spacing[1], v.spacing[2]);
+}
+
+void print_report(const cli::context& core, const cli::options& o, const stratus_ray_cast_report& r, const std::string& opacity)
+{
+  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.upload_ms;
+  const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
+  row("opacity", opacity);
+  row("device", stratus_context_device(core));
+  row("structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
+  row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
+  row("why", r.why);
+  row("build", cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
+                 r.occupancy_ms, r.structure_ms, r.upload_ms));
+  row("frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
+  row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
+  row("samples", cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
+      (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
+  if (o.audit) {
+    row("audit", cli::grouped(r.differing_pixels) + " pixels differ from the march without skipping");
+  }
+}
+
+void render(const cli::options& o)
+{
+  cli::context core(o.device, o.threads);
+  cli::input in(core, o.source, o.array);
+  const cli::background behind = cli::parse_background(o.background);
+  const cli::transfer transfer = cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance);
+  const stratus_transfer view = transfer.view();
+  core.check(stratus_transfer_check(core, &view), "transfer function");
+  const stratus_camera camera = cli::place_camera(core, o, in.volume, view, o.up.empty() ? in.up_axis : o.up[0] - 'x');
+  cli::output_file out(o.output); // before the work: a path that cannot be written is told at once
+
+  std::vector<float> rgba(4 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
+  stratus_image image = {};
+  image.width = o.width;
+  image.height = o.height;
+  image.rgba = rgba.data();
+  stratus_ray_cast_options cast = stratus_ray_cast_options_default();
+  cast.structure = o.structure;
+  cast.sampling = o.sampling;
+  cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  cast.sample_distance = o.sample_distance;
+  cast.audit = o.audit;
+  stratus_ray_cast_report report = {};
+  stratus_ray_caster* caster = nullptr;
+  core.check(stratus_ray_caster_create(core, &caster), "ray caster");
+  const stratus_status status = stratus_ray_caster_render(caster, &in.volume, &view, &camera, &cast, &image, &report);
+  stratus_ray_caster_destroy(caster);
+  core.check(status, "render");
+
+  std::printf("%s\n", o.source.c_str());
+  row("volume", describe(in.volume) + ", array '" + in.array_name + "'");
+  print_report(core, o, report, transfer.origin);
+  out.write(cli::encode_png(cli::to_bytes(rgba, o.width, o.height, behind), o.width, o.height));
+  out.commit();
+  row("picture", o.output);
+  if (o.audit && report.differing_pixels > 0) {
+    throw cli::failure("audit: skipping changed " + cli::grouped(report.differing_pixels) + " pixels");
+  }
+}
+
+void list_arrays(vtkImageData* image)
+{
+  for (bool cells : { false, true }) {
+    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+      vtkAbstractArray* array = data->GetAbstractArray(i);
+      row(cells ? "cell array" : "point array", cli::format("'%s', %s, %d component%s", array->GetName() ? array->GetName() : "",
+                                                  array->GetDataTypeAsString(), array->GetNumberOfComponents(),
+                                                  array->GetNumberOfComponents() == 1 ? "" : "s"));
+    }
+  }
+}
+
+void info(const cli::options& o)
+{
+  cli::context core("host", o.threads);
+  cli::input in(core, o.source, o.array);
+  const cli::histogram h = cli::histogram_of(in.volume);
+  double bounds[6];
+  core.check(stratus_volume_bounds(core, &in.volume, bounds), "bounds");
+  std::printf("%s\n", o.source.c_str());
+  row("volume", describe(in.volume));
+  row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
+  row("bounds", cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
+  row("memory", cli::format("%.1f MiB of values", h.finite * static_cast<double>(stratus_type_size(in.volume.type)) / 1048576.0));
+  if (in.image) {
+    list_arrays(in.image);
+  }
+  row("drawn", "'" + in.array_name + "'");
+  if (h.finite > 0.0) {
+    const double half = h.count.size() > 1 && stratus_type_size(in.volume.type) < 4 && h.width() == 1.0 ? 0.5 : 0.0;
+    row("range", cli::format("%.9g .. %.9g", h.low + half, h.high - half));
+  }
+  row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
+  row("opacity", cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance).origin);
+}
+
+void devices()
+{
+  const int count = stratus_device_count();
+  for (int i = 0; i < count; ++i) {
+    char name[256];
+    stratus_device_name(i, name, sizeof name);
+    std::printf("%d  %s\n", i, name);
+  }
+  if (count == 0) {
+    std::printf("no OpenCL device; the host draws\n");
+  }
+}
+
+void run(const cli::options& o)
+{
+  if (o.command == "render") {
+    render(o);
+  } else if (o.command == "info") {
+    info(o);
+  } else if (o.command == "devices") {
+    devices();
+  } else {
+    std::fputs(cli::help().c_str(), stdout);
+  }
+  if (std::fflush(stdout) != 0) {
+    throw cli::failure("cannot write to the standard output");
+  }
+}
+}
+
+int main(int argc, char* argv[])
+{
+  try {
+    run(cli::parse(argc, argv));
+    return 0;
+  } catch (const cli::usage& error) {
+    std::fprintf(stderr, "stratus: %s\nstratus: --help tells how\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "stratus: out of memory\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stratus: %s\n", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options.h"
+#include "support.h"
+#include "transfer.h"
+
+#include <functional>
+#include <map>
+
+namespace cli {
+
+std::string help()
+{
+  return R"(stratus - draws volumes
+
+  stratus render INPUT -o OUT.png [options]   draw a picture
+  stratus info INPUT [--array NAME]           tell what is in a file or scene
+  stratus devices                             list the OpenCL devices
+  stratus --help
+
+INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png and what else VTK reads as an image)
+or a scene's name: cloud, plume, fog, haze, peak, voxel.
+
+What is drawn
+  --array NAME            point or cell array of one component (default: the active scalars, else the first that fits)
+  --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, else guessed from
+                          the histogram: transparent over the background's value, a ramp beyond it)
+  --color NAME|LIST       a colour map, )" +
+    color_names() + R"(, stretched over what is shown,
+                          or "value:r:g:b,..." with r, g, b in 0..1
+  --unit-distance D       world length that alpha is per (default: a voxel's edge)
+  --nearest               nearest instead of linear interpolation
+  --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
+
+From where
+  --size WxH              pixels (default 512x512)
+  --azimuth DEG           about the upward axis (default 30)
+  --elevation DEG         above the ground, -90..90 (default 30)
+  --zoom F                2 shows everything twice as large (default 1: all of it fits)
+  --parallel              parallel instead of perspective projection
+  --up x|y|z              which axis points upward (default z; a scene has its own)
+
+How
+  --sample-distance D     world length between samples (default: from the data and the opacity)
+  --sampling S            auto, midpoint, preintegrated (default auto)
+  --structure S           auto, none, block, distance, octant: how empty space is skipped; never changes the picture
+  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
+  --threads N             threads of the host (default: all)
+  --audit                 draw again without skipping and count the pixels that differ; any is a failure
+
+The exit status is 0 only if the picture was written whole; 1 if something failed, 2 if the command was not understood.
+
+  stratus render cloud -o cloud.png
+  stratus render head.mha -o head.png --opacity "0:0,300:0,1500:.3" --color gray --azimuth 120 --size 1024x768
+)";
+}
+
+namespace {
+
+void set_size(options& o, const std::string& text)
+{
+  const std::vector<std::string> sides = split(text, 'x');
+  if (sides.size() != 2) {
+    throw usage("--size: '" + text + "' is not WIDTHxHEIGHT");
+  }
+  o.width = whole_number(sides[0], "--size", 1, 16384);
+  o.height = whole_number(sides[1], "--size", 1, 16384);
+}
+
+double within(const std::string& text, const std::string& what, double low, double high)
+{
+  const double value = number(text, what);
+  if (value < low || value > high) {
+    throw usage(what + ": " + text + " is outside " + format("%g..%g", low, high));
+  }
+  return value;
+}
+
+double positive(const std::string& text, const std::string& what)
+{
+  const double value = number(text, what);
+  if (value <= 0.0) {
+    throw usage(what + ": " + text + " is not above 0");
+  }
+  return value;
+}
+
+stratus_structure structure_named(const std::string& text)
+{
+  for (int i = STRATUS_STRUCTURE_AUTO; i <= STRATUS_STRUCTURE_OCTANT; ++i) {
+    if (text == stratus_structure_name(static_cast<stratus_structure>(i))) {
+      return static_cast<stratus_structure>(i);
+    }
+  }
+  throw usage("--structure: '" + text + "' is none of auto, none, block, distance, octant");
+}
+
+stratus_sampling sampling_named(const std::string& text)
+{
+  if (text == "auto") {
+    return STRATUS_SAMPLING_AUTO;
+  }
+  if (text == "midpoint") {
+    return STRATUS_SAMPLING_MIDPOINT;
+  }
+  if (text == "preintegrated" || text == "pre-integrated") {
+    return STRATUS_SAMPLING_PREINTEGRATED;
+  }
+  throw usage("--sampling: '" + text + "' is none of auto, midpoint, preintegrated");
+}
+
+void check_complete(const options& o)
+{
+  if (o.command == "render" || o.command == "info") {
+    if (o.source.empty()) {
+      throw usage(o.command + ": which INPUT?");
+    }
+    if (o.command == "render" && o.output.empty()) {
+      throw usage("render: where to? Give -o OUT.png");
+    }
+  } else if (o.command != "devices" && o.command != "help") {
+    throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'");
+  }
+}
+}
+
+options parse(int argc, char* argv[])
+{
+  options o;
+  const std::map<std::string, std::function<void(const std::string&)>> with_value = {
+    { "-o", [&](const std::string& v) { o.output = v; } },
+    { "--output", [&](const std::string& v) { o.output = v; } },
+    { "--array", [&](const std::string& v) { o.array = v; } },
+    { "--opacity", [&](const std::string& v) { o.opacity = v; } },
+    { "--color", [&](const std::string& v) { o.color = v; } },
+    { "--background", [&](const std::string& v) { o.background = v; } },
+    { "--device", [&](const std::string& v) { o.device = v; } },
+    { "--unit-distance", [&](const std::string& v) { o.unit_distance = positive(v, "--unit-distance"); } },
+    { "--size", [&](const std::string& v) { set_size(o, v); } },
+    { "--azimuth", [&](const std::string& v) { o.azimuth = number(v, "--azimuth"); } },
+    { "--elevation", [&](const std::string& v) { o.elevation = within(v, "--elevation", -90.0, 90.0); } },
+    { "--zoom", [&](const std::string& v) { o.zoom = within(v, "--zoom", 0.15, 1e6); } },
+    { "--sample-distance", [&](const std::string& v) { o.sample_distance = positive(v, "--sample-distance"); } },
+    { "--sampling", [&](const std::string& v) { o.sampling = sampling_named(v); } },
+    { "--structure", [&](const std::string& v) { o.structure = structure_named(v); } },
+    { "--threads", [&](const std::string& v) { o.threads = whole_number(v, "--threads", 1, 1024); } },
+    { "--up",
+      [&](const std::string& v) {
+        if (v != "x" && v != "y" && v != "z") {
+          throw usage("--up: '" + v + "' is none of x, y, z");
+        }
+        o.up = v;
+      } },
+  };
+  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--audit", &o.audit } };
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = with_value.find(word);
+    const auto flag = flags.find(word);
+    if (word == "--help" || word == "-h") {
+      o.command = "help";
+      return o;
+    }
+    if (value != with_value.end()) {
+      if (i + 1 == argc) {
+        throw usage(word + " needs a value");
+      }
+      value->second(argv[++i]);
+    } else if (flag != flags.end()) {
+      *flag->second = true;
+    } else if (word.size() > 1 && word[0] == '-') {
+      throw usage("unknown option '" + word + "'");
+    } else if (o.command.empty()) {
+      o.command = word;
+    } else if (o.source.empty()) {
+      o.source = word;
+    } else {
+      throw usage("one INPUT at a time: '" + word + "' is too many");
+    }
+  }
+  check_complete(o);
+  return o;
+}
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "stratus.h"
+
+#include <string>
+
+namespace cli {
+
+struct options
+{
+  std::string command; // render, info, devices, help
+  std::string source;
+  std::string output;
+  std::string array;
+  std::string opacity;
+  std::string color;
+  std::string background;
+  std::string device = "auto";
+  std::string up; // x, y, z; empty: the scene's, else z
+  double unit_distance = 0.0;
+  double azimuth = 30.0;
+  double elevation = 30.0;
+  double zoom = 1.0;
+  double sample_distance = 0.0;
+  int width = 512;
+  int height = 512;
+  int threads = 0;
+  bool parallel = false;
+  bool nearest = false;
+  bool audit = false;
+  stratus_structure structure = STRATUS_STRUCTURE_AUTO;
+  stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
+};
+
+// Throws usage where the command line makes no sense.
+options parse(int argc, char* argv[]);
+std::string help();
+}

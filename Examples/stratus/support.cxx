@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support.h"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <unistd.h>
+
+namespace cli {
+
+context::context(const std::string& device, int threads)
+  : Terminal(isatty(STDERR_FILENO) != 0)
+{
+  stratus_context_options options = stratus_context_options_default();
+  options.device = device.c_str();
+  options.threads = threads;
+  options.progress = &context::progress;
+  options.progress_user = this;
+  char message[1024];
+  const stratus_status status = stratus_context_create(&options, &this->Context, message, sizeof message);
+  if (status != STRATUS_OK) {
+    throw failure("device '" + device + "': " + (message[0] ? message : stratus_status_name(status)));
+  }
+}
+
+context::~context()
+{
+  this->clear_bar();
+  stratus_context_destroy(this->Context);
+}
+
+void context::check(stratus_status status, const std::string& what) const
+{
+  if (status != STRATUS_OK) {
+    const std::string message = stratus_context_message(this->Context);
+    throw failure(what + ": " + (message.empty() ? stratus_status_name(status) : message));
+  }
+}
+
+int context::progress(void* user, const char* stage, double fraction)
+{
+  context* self = static_cast<context*>(user);
+  const int width = 40;
+  const int filled = static_cast<int>(fraction * width + 0.5);
+  if (self->Terminal && filled != self->Shown) {
+    const std::string bar = std::string(static_cast<size_t>(filled), '#') + std::string(static_cast<size_t>(width - filled), '.');
+    std::fprintf(stderr, "\r\033[K[%s] %s", bar.c_str(), stage);
+    self->Shown = filled;
+    if (filled == width) {
+      self->clear_bar();
+    }
+  }
+  return 0;
+}
+
+void context::clear_bar()
+{
+  if (this->Terminal && this->Shown >= 0) {
+    std::fprintf(stderr, "\r\033[K");
+    this->Shown = -1;
+  }
+}
+
+std::vector<std::string> split(const std::string& text, char separator)
+{
+  std::vector<std::string> parts;
+  std::string part;
+  std::istringstream stream(text);
+  while (std::getline(stream, part, separator)) {
+    parts.push_back(part);
+  }
+  if (!text.empty() && text.back() == separator) {
+    parts.emplace_back();
+  }
+  return parts;
+}
+
+double number(const std::string& text, const std::string& what)
+{
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end || !std::isfinite(value)) {
+    throw usage(what + ": '" + text + "' is not a finite number");
+  }
+  return value;
+}
+
+int whole_number(const std::string& text, const std::string& what, int low, int high)
+{
+  const double value = number(text, what);
+  if (value != std::floor(value) || value < low || value > high) {
+    throw usage(what + ": '" + text + "' is not a whole number within " + std::to_string(low) + ".." + std::to_string(high));
+  }
+  return static_cast<int>(value);
+}
+
+std::string grouped(unsigned long long value)
+{
+  std::string text = std::to_string(value);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<size_t>(at), ",");
+  }
+  return text;
+}
+
+std::string format(const char* pattern, ...)
+{
+  char text[1024];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+}
