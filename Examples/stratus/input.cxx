@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iostream>
+#include <sstream>
 #include <sys/stat.h>
 
 namespace {
@@ -40,23 +42,30 @@ protected:
 };
 vtkStandardNewMacro(listener);
 
-// Listens as long as it lives.
+// Listens as long as it lives, to std::cerr too: there VTK's MetaIO tells, and nowhere else, that a file was cut short.
 class listening
 {
 public:
   listening()
     : Before(vtkOutputWindow::GetInstance())
+    , Stream(std::cerr.rdbuf(this->Text.rdbuf()))
   {
     vtkOutputWindow::SetInstance(this->Now);
   }
-  ~listening() { vtkOutputWindow::SetInstance(this->Before); }
+  ~listening()
+  {
+    vtkOutputWindow::SetInstance(this->Before);
+    std::cerr.rdbuf(this->Stream);
+  }
   listening(const listening&) = delete;
   listening& operator=(const listening&) = delete;
-  const std::string& heard() const { return this->Now->Heard; }
+  std::string heard() const { return this->Now->Heard + this->Text.str(); }
 
 private:
   vtkSmartPointer<vtkOutputWindow> Before;
   vtkNew<listener> Now;
+  std::ostringstream Text;
+  std::streambuf* Stream;
 };
 
 // The message alone: VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before it.
@@ -192,8 +201,9 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path)
   reader->Update();
   vtkDataObject* output = reader->GetOutputDataObject(0);
   vtkImageData* image = vtkImageData::SafeDownCast(output);
-  if (!listener.heard().empty()) {
-    throw failure("cannot read '" + path + "': " + first_message(listener.heard()));
+  const std::string heard = listener.heard();
+  if (!heard.empty()) {
+    throw failure("cannot read '" + path + "': " + first_message(heard));
   }
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");

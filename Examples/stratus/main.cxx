@@ -120,8 +120,7 @@ void info(const cli::options& o)
   }
   row("drawn", "'" + in.array_name + "'");
   if (h.finite > 0.0) {
-    const double half = h.count.size() > 1 && stratus_type_size(in.volume.type) < 4 && h.width() == 1.0 ? 0.5 : 0.0;
-    row("range", cli::format("%.9g .. %.9g", h.low + half, h.high - half));
+    row("range", cli::format("%.9g .. %.9g", h.low, h.high));
   }
   row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
   row("opacity", cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance).origin);

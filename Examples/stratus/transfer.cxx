@@ -56,11 +56,9 @@ void count_values(const stratus_volume& volume, cli::histogram& h)
   // Integers get a bin each as long as there are few, so that no bin mixes the background with what is drawn.
   const bool integers = std::numeric_limits<T>::is_integer && high - low < 1024.0;
   const size_t bins = low == high ? 1 : integers ? static_cast<size_t>(high - low) + 1 : 1024;
-  if (integers) {
-    h.low = low - 0.5;
-    h.high = high + 0.5;
-  }
-  const double scale = h.low == h.high ? 0.0 : static_cast<double>(bins) / (h.high - h.low);
+  h.first = integers ? low - 0.5 : low;
+  h.last = integers ? high + 0.5 : high;
+  const double scale = low == high ? 0.0 : static_cast<double>(bins) / (h.last - h.first);
   std::vector<int64_t> total(bins + 1, 0);
 #pragma omp parallel
   {
@@ -68,7 +66,7 @@ void count_values(const stratus_volume& volume, cli::histogram& h)
 #pragma omp for nowait
     for (int64_t i = 0; i < n; ++i) {
       const double value = static_cast<double>(values[i * stride]);
-      ++mine[std::isfinite(value) ? std::min(static_cast<size_t>((value - h.low) * scale), bins - 1) : bins];
+      ++mine[std::isfinite(value) ? std::min(static_cast<size_t>((value - h.first) * scale), bins - 1) : bins];
     }
 #pragma omp critical
     std::transform(total.begin(), total.end(), mine.begin(), total.begin(), [](int64_t a, int64_t b) { return a + b; });
@@ -126,7 +124,7 @@ double top_opacity(const stratus_volume& volume, const cli::histogram& h, double
   double weight = 0.0;
   double shown = 0.0;
   for (size_t i = 0; i < h.count.size(); ++i) {
-    const double center = h.low + (static_cast<double>(i) + 0.5) * h.width();
+    const double center = h.first + (static_cast<double>(i) + 0.5) * h.width();
     const double height = (center - from) / (to - from);
     if (height > 0.0) {
       weight += ramp(std::min(height, 1.0)) * h.count[i];
@@ -227,7 +225,8 @@ void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& r
   const double lone = *std::max_element(h.count.begin(), h.count.end());
   double bins = lone > 0.5 * h.finite ? static_cast<double>(peak) + 0.5 : static_cast<double>(end_of_background(count, peak));
   bins = std::min(bins, static_cast<double>(count.size()) - 1.0);
-  const double from = bright ? h.high - bins * h.width() : h.low + bins * h.width();
+  double from = bright ? h.last - bins * h.width() : h.first + bins * h.width();
+  from = std::min(std::max(from, h.low), h.high);
   const double to = bright ? h.low : h.high;
   const double top = top_opacity(volume, h, from, to);
   const double knee = from + knee_at * (to - from);
@@ -238,8 +237,7 @@ void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& r
   }
   const double middle = (static_cast<double>(peak) + 0.5) * h.width();
   result.origin = format("histogram: background around %g, opacity 0 at %.4g, %.3g at %.4g, %.3g at %.4g",
-    bright ? h.high - middle : h.low + middle,
-    from, knee_height * top, knee, top, to);
+    bright ? h.last - middle : h.first + middle, from, knee_height * top, knee, top, to);
 }
 
 std::vector<double> parse_opacity(const std::string& text)

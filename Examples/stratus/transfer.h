@@ -12,12 +12,13 @@ namespace cli {
 // How often the values of a volume come.
 struct histogram
 {
-  double low = 0.0, high = 0.0; // of the finite values; low > high: there is none
-  std::vector<double> count;    // of equally wide bins over low..high
+  double low = 0.0, high = 0.0;   // of the finite values; low > high: there is none
+  double first = 0.0, last = 0.0; // edges of the first and last bin; few integers lie in the middle of a bin each
+  std::vector<double> count;      // of equally wide bins
   double finite = 0.0;
   double not_finite = 0.0;
 
-  double width() const { return (this->high - this->low) / static_cast<double>(this->count.size()); }
+  double width() const { return (this->last - this->first) / static_cast<double>(this->count.size()); }
 };
 histogram histogram_of(const stratus_volume& volume);
 
