@@ -23,14 +23,14 @@ static ALWAYS_INLINE void test_run(const stratus_table* table, const float* rest
 {
   int first[RUN], last[RUN];
   for (int64_t b = 0; b < count; b++) {
-    const int none = !(lo[b] <= hi[b]);
-    const float from = none ? 0.0f : lo[b], to = none ? 0.0f : hi[b];
-    const float slack = SLACK * fmaxf(fabsf(from), fabsf(to));
-    first[b] = none ? table->size : stratus_table_entry(table, from - slack);
+    const float from = lo[b] <= hi[b] ? lo[b] : 0.0f, to = lo[b] <= hi[b] ? hi[b] : 0.0f;
+    /* Not fmaxf(): what it promises of NaN keeps it a call. */
+    const float slack = SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
+    first[b] = stratus_table_entry(table, from - slack);
     last[b] = stratus_table_entry(table, to + slack);
   }
   for (int64_t b = 0; b < count; b++) {
-    occupied[b] = table->next_shown[first[b]] <= last[b];
+    occupied[b] = (lo[b] <= hi[b]) & (table->next_shown[first[b]] <= last[b]);
   }
 }
 
