@@ -15,15 +15,12 @@ namespace
 {
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
+in vec2 texCoord;
 uniform sampler2D source;
-uniform vec2 corner;     // of the rectangle in the window
-uniform vec2 texels;     // texels a pixel
-uniform vec2 scaleBias;  // final colour window and level
+uniform vec2 scaleBias; // final colour window and level
 void main()
 {
-  vec2 pixel = gl_FragCoord.xy - corner;
-  vec4 color = texels == vec2(1.0) ? texelFetch(source, ivec2(pixel), 0)
-                                   : texture(source, pixel * texels / vec2(textureSize(source, 0)));
+  vec4 color = texture(source, texCoord);
   gl_FragData[0] = vec4(clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0), color.a);
 }
 )";
@@ -53,8 +50,9 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
   this->Texture->SetContext(window);
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
-  this->Texture->SetMinificationFilter(vtkTextureObject::Linear);
-  this->Texture->SetMagnificationFilter(vtkTextureObject::Linear);
+  const bool coarse = picture.Size[0] != picture.Rectangle[2] || picture.Size[1] != picture.Rectangle[3];
+  this->Texture->SetMinificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
+  this->Texture->SetMagnificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
   if (!this->Texture->Create2DFromRaw(width, height, 4, VTK_FLOAT, const_cast<float*>(rgba))) {
     return false;
   }
@@ -82,13 +80,8 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 
   this->Texture->Activate();
-  const float corner[2] = { static_cast<float>(x), static_cast<float>(y) };
-  const float texels[2] = { static_cast<float>(width) / static_cast<float>(picture.Rectangle[2]),
-    static_cast<float>(height) / static_cast<float>(picture.Rectangle[3]) };
   const float scaleBias[2] = { scale, bias };
   this->Quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
-  this->Quad->Program->SetUniform2f("corner", corner);
-  this->Quad->Program->SetUniform2f("texels", texels);
   this->Quad->Program->SetUniform2f("scaleBias", scaleBias);
   this->Quad->Render();
   this->Texture->Deactivate();

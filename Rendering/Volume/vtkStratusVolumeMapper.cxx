@@ -9,8 +9,9 @@
 #include "vtkObjectFactory.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkTimerLog.h"
 #include "vtkVolume.h"
+
+#include <chrono>
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
 
@@ -29,7 +30,7 @@ int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
-  const double start = vtkTimerLog::GetUniversalTime();
+  const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;
   if (this->Internal->Render(ren, vol, error)) {
@@ -39,7 +40,7 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
-  this->TimeToDraw = vtkTimerLog::GetUniversalTime() - start;
+  this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)

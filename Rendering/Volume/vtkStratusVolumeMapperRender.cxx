@@ -8,12 +8,20 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkTimerLog.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+
+namespace
+{
+double Now() // milliseconds
+{
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+}
 
 // ---------------------------------------------------------------- how coarse
 
@@ -133,21 +141,21 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   if (this->HasPicture) {
     return true;
   }
-  const double start = vtkTimerLog::GetUniversalTime();
+  const double start = Now();
   const float* opaqueDepth = this->ReadOpaqueDepth(renderer, prop);
-  const double read = vtkTimerLog::GetUniversalTime();
+  const double read = Now();
   if (!this->Cast(renderer, options, opaqueDepth, error)) {
     return false;
   }
   this->HasPicture = true;
   this->LearnTime(coarseness);
-  const double cast = vtkTimerLog::GetUniversalTime();
+  const double cast = Now();
   const float scale = 1.0f / this->Mapper->FinalColorWindow;
   if (!this->Display.Draw(renderer, this->Picture, this->Rgba.data(), scale, 0.5f - this->Mapper->FinalColorLevel * scale)) {
     error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
     return false;
   }
-  this->DrawMilliseconds = 1000.0 * (vtkTimerLog::GetUniversalTime() - cast + read - start);
+  this->DrawMilliseconds = Now() - cast + read - start;
   return true;
 }
 
