@@ -22,6 +22,7 @@ typedef struct device_list {
 
 const char* stratus_device_error_name(int error)
 {
+  /* clang-format off */
   static const struct {
     int code;
     const char* name;
@@ -45,6 +46,7 @@ const char* stratus_device_error_name(int error)
     NAME(CL_INVALID_DEVICE_PARTITION_COUNT), { -1001, "CL_PLATFORM_NOT_FOUND_KHR" },
 #undef NAME
   };
+  /* clang-format on */
   for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
     if (names[i].code == error) {
       return names[i].name;
@@ -348,9 +350,9 @@ stratus_status stratus_device_write(stratus_context* context, cl_mem buffer, siz
 stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, void* host)
 {
   stratus_device* device = context->device;
-  return bytes == 0 ? STRATUS_OK
-                    : CALL(context, device, "clEnqueueReadBuffer",
-                        clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
+  return bytes == 0
+    ? STRATUS_OK
+    : CALL(context, device, "clEnqueueReadBuffer", clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
 }
 
 stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value)

@@ -219,8 +219,7 @@ static stratus_status find_recipe(stratus_context* context, const char* name, co
     const size_t used = strlen(names);
     snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", recipes[i].name);
   }
-  return stratus_fail(
-    context, STRATUS_INVALID_ARGUMENT, "unknown scene \"%.100s\"; there are: %s", name ? name : "(null)", names);
+  return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unknown scene \"%.100s\"; there are: %s", name ? name : "(null)", names);
 }
 
 stratus_status stratus_scene_create(stratus_context* context, const char* name, stratus_scene** scene)

@@ -15,7 +15,7 @@ typedef struct field_tables {
   struct {
     float y, z, r;
     float dx2[256];
-  } blobs[BLOBS];                               /* cloud */
+  } blobs[BLOBS];                             /* cloud */
   float cy[ROW_MAX], cz[ROW_MAX], r[ROW_MAX]; /* plume: its axis and radius at each x */
 } field_tables;
 

@@ -42,7 +42,7 @@ static inline float noise_fade(float t)
 /* One octave along a row of x: the lattice cell last used is kept, since neighbouring voxels mostly share it. */
 typedef struct noise_octave {
   uint32_t seed, cell, j, k;
-  float v, w; /* fade along y, z */
+  float v, w;            /* fade along y, z */
   float near[4], far[4]; /* corners (j,k) (j+1,k) (j,k+1) (j+1,k+1) at `cell` and `cell`+1 */
 } noise_octave;
 

@@ -45,7 +45,8 @@ static uint64_t hash(const stratus_scene* scene)
 }
 
 /* The figures of record: size, type, occupied voxels, and the mean to as many digits as are printed there. */
-static void assert_figures(const char* name, int64_t nx, int64_t ny, int64_t nz, stratus_type type, int64_t occupied, double mean, double unit)
+static void assert_figures(
+  const char* name, int64_t nx, int64_t ny, int64_t nz, stratus_type type, int64_t occupied, double mean, double unit)
 {
   stratus_context* context = open_context(2);
   stratus_scene* scene = make(context, name);

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A volume of a few hundred values, and everything the core does with one, for tests that repeat it once for each call that can fail. */
+#ifndef STRATUS_SMALL_SCENE_H
+#define STRATUS_SMALL_SCENE_H
+
+#include "stratus.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SMALL_X 9
+#define SMALL_Y 7
+#define SMALL_Z 8
+#define SMALL_VALUES (SMALL_X * SMALL_Y * SMALL_Z)
+#define SMALL_WIDTH 12
+#define SMALL_HEIGHT 10
+#define SMALL_PIXELS (SMALL_WIDTH * SMALL_HEIGHT)
+#define SMALL_SETTINGS 8
+
+typedef struct small_scene {
+  double values[SMALL_VALUES]; /* a wide type: converted on the way */
+  uint8_t cell_ghosts[(SMALL_X - 1) * (SMALL_Y - 1) * (SMALL_Z - 1)];
+  stratus_volume volume;
+  stratus_transfer transfer, edited;
+  stratus_camera camera;
+} small_scene;
+
+typedef struct small_picture {
+  float rgba[4 * SMALL_PIXELS];
+  float depth[SMALL_PIXELS];
+  uint32_t samples[SMALL_PIXELS];
+} small_picture;
+
+static const double small_opacity[] = { 1e6, 0.0, 1e6 + 0.2, 0.0, 1e6 + 1.0, 0.6 };
+static const double small_edited[] = { 1e6, 0.0, 1e6 + 0.4, 0.0, 1e6 + 0.6, 0.8, 1e6 + 0.8, 0.0 };
+static const double small_color[] = { 1e6, 0.1, 0.2, 0.9, 1e6 + 1.0, 1.0, 0.8, 0.3 };
+
+/* A ball in one corner of an empty box, on an offset that single precision would swallow; one value is no number, one cell hidden. */
+static inline void small_scene_fill(small_scene* scene)
+{
+  memset(scene, 0, sizeof *scene);
+  for (int q = 0; q < SMALL_VALUES; ++q) {
+    const int x = q % SMALL_X - 2, y = q / SMALL_X % SMALL_Y - 2, z = q / (SMALL_X * SMALL_Y) - 3;
+    const double inside = 1.0 - (double)(x * x + y * y + z * z) / 9.0;
+    scene->values[q] = 1e6 + (inside > 0.0 ? inside : 0.0);
+  }
+  scene->values[SMALL_VALUES - 1] = NAN;
+  scene->cell_ghosts[0] = STRATUS_GHOST_HIDDEN_CELL;
+  scene->volume = stratus_volume_default();
+  scene->volume.values = scene->values;
+  scene->volume.type = STRATUS_FLOAT64;
+  scene->volume.dimensions[0] = SMALL_X;
+  scene->volume.dimensions[1] = SMALL_Y;
+  scene->volume.dimensions[2] = SMALL_Z;
+  scene->volume.spacing[0] = scene->volume.spacing[1] = scene->volume.spacing[2] = 1.0;
+  scene->volume.cell_ghosts = scene->cell_ghosts;
+  scene->transfer = stratus_transfer_default();
+  scene->transfer.opacity = small_opacity;
+  scene->transfer.opacity_count = 3;
+  scene->transfer.color = small_color;
+  scene->transfer.color_count = 2;
+  scene->edited = scene->transfer;
+  scene->edited.opacity = small_edited;
+  scene->edited.opacity_count = 4;
+}
+
+/* The seen side of the ball. Needs no memory, so it is called once and before anything fails. */
+static inline stratus_status small_scene_look(stratus_context* context, small_scene* scene)
+{
+  double bounds[6];
+  const stratus_status status = stratus_volume_bounds(context, &scene->volume, bounds);
+  return status == STRATUS_OK ? stratus_scene_camera(context, bounds, 1, 2, 0, (double)SMALL_WIDTH / SMALL_HEIGHT, &scene->camera) : status;
+}
+
+/* Setting 0..SMALL_SETTINGS-1: all structures, both samplings, both interpolations, an audit. */
+static inline stratus_ray_cast_options small_setting(int index)
+{
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  options.structure = (stratus_structure)(index % 5);
+  options.sampling = index == 5 ? STRATUS_SAMPLING_AUTO : index % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  options.block_size = index == 3 ? 2 : 0;
+  options.interpolation = index == 7 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  options.audit = index == 6;
+  return options;
+}
+
+static inline stratus_status small_render(stratus_ray_caster* caster, const small_scene* scene, const stratus_transfer* transfer,
+  int setting, small_picture* picture, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_options options = small_setting(setting);
+  const stratus_image image = {
+    .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = picture->rgba, .depth = picture->depth, .samples = picture->samples
+  };
+  memset(picture, 0xff, sizeof *picture);
+  return stratus_ray_caster_render(caster, &scene->volume, transfer, &scene->camera, &options, &image, report);
+}
+
+static inline uint64_t small_mix(uint64_t sum, uint64_t value)
+{
+  return (sum ^ value) * 0x100000001b3u;
+}
+
+/* Builds every structure by itself, and sums up what they say. Releases all, also where something fails. */
+static inline stratus_status small_structures(stratus_context* context, const small_scene* scene, uint64_t* sum)
+{
+  stratus_value_range* ranges = NULL;
+  stratus_occupancy* occupancy = NULL;
+  stratus_distance_map* map = NULL;
+  int64_t n[3];
+  *sum = 0;
+  stratus_status status = stratus_value_range_create(context, &scene->volume, 2, &ranges);
+  for (int sampling = STRATUS_SAMPLING_MIDPOINT; status == STRATUS_OK && sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
+    status = stratus_occupancy_create(context, ranges, &scene->transfer, (stratus_sampling)sampling, &occupancy);
+    if (status != STRATUS_OK) {
+      break;
+    }
+    stratus_occupancy_blocks(occupancy, n, NULL);
+    for (int kind = STRATUS_DISTANCE_BLOCK; kind <= STRATUS_DISTANCE_OCTANT && status == STRATUS_OK; ++kind) {
+      status = stratus_distance_map_create(context, occupancy, (stratus_distance_kind)kind, &map);
+      for (int64_t b = 0; status == STRATUS_OK && b < 8 * n[0] * n[1] * n[2]; ++b) {
+        const int64_t q = b / 8;
+        *sum = small_mix(*sum, (uint64_t)stratus_distance_map_get(map, (int)(b % 8), q % n[0], q / n[0] % n[1], q / (n[0] * n[1])));
+      }
+      stratus_distance_map_destroy(map);
+      map = NULL;
+    }
+    *sum = small_mix(*sum, (uint64_t)stratus_occupancy_count(occupancy));
+    stratus_occupancy_destroy(occupancy);
+    occupancy = NULL;
+  }
+  stratus_value_range_destroy(ranges);
+  return status;
+}
+
+#endif

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Memory refused at the n-th request, for every n until all is granted: each time an error that says so, no leak, and the same objects
+ * give the right result at the next attempt. */
+#include "faulty_allocator.h"
+#include "small_scene.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#define REQUESTS_MAX 500 /* of one call: far beyond what any needs, so that a loop which never succeeds ends */
+
+static stratus_context* open_context(faulty_allocator* allocator, const char* device)
+{
+  stratus_context* context = NULL;
+  stratus_context_options options = faulty_options(allocator, device);
+  options.threads = 2;
+  if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
+    return NULL;
+  }
+  return context;
+}
+
+static void assert_out_of_memory(const stratus_context* context, stratus_status status)
+{
+  assert_int_equal(status, STRATUS_OUT_OF_MEMORY);
+  assert_non_null(strstr(stratus_context_message(context), "bytes"));
+}
+
+/* The n-th request from now on is refused. */
+static void refuse(faulty_allocator* allocator, int64_t n)
+{
+  allocator->fail_at = n ? allocator->calls + n : 0;
+}
+
+static void a_context_is_made_whole_or_not_at_all(void** state)
+{
+  const char* device = *state;
+  for (int64_t n = 1; n < REQUESTS_MAX; ++n) {
+    faulty_allocator allocator = { .fail_at = n };
+    stratus_context_options options = faulty_options(&allocator, device);
+    stratus_context* context = NULL;
+    char message[256];
+    const stratus_status status = stratus_context_create(&options, &context, message, sizeof message);
+    if (status == STRATUS_OK) {
+      stratus_context_destroy(context);
+      assert_int_equal(allocator.live, 0);
+      assert_true(n > 1);
+      return;
+    }
+    assert_int_equal(status, STRATUS_OUT_OF_MEMORY);
+    assert_null(context);
+    assert_non_null(strstr(message, "bytes"));
+    assert_int_equal(allocator.live, 0);
+  }
+  fail_msg("a context was never made");
+}
+
+static void structures_are_made_whole_or_not_at_all(void** state)
+{
+  static small_scene scene;
+  faulty_allocator allocator = { 0 };
+  stratus_context* context = open_context(&allocator, *state);
+  assert_non_null(context);
+  small_scene_fill(&scene);
+  uint64_t right = 0, sum = 0;
+  assert_int_equal(small_structures(context, &scene, &right), STRATUS_OK);
+  const int64_t live = allocator.live;
+  int64_t n = 1;
+  for (; n < REQUESTS_MAX; ++n) {
+    refuse(&allocator, n);
+    const stratus_status status = small_structures(context, &scene, &sum);
+    assert_int_equal(allocator.live, live);
+    if (status == STRATUS_OK) {
+      break;
+    }
+    assert_out_of_memory(context, status);
+    refuse(&allocator, 0);
+    assert_int_equal(small_structures(context, &scene, &sum), STRATUS_OK);
+    assert_true(sum == right);
+  }
+  assert_in_range(n, 1 + 2 * 5, REQUESTS_MAX - 1); /* a request for each object at least */
+  assert_true(sum == right);
+  stratus_context_destroy(context);
+  assert_int_equal(allocator.live, 0);
+}
+
+/* A new ray caster whose first picture fails draws it right at the next attempt. */
+static void a_first_picture_fails_cleanly_and_comes_at_the_next_attempt(void** state)
+{
+  static small_scene scene;
+  static small_picture right, picture;
+  faulty_allocator allocator = { 0 };
+  stratus_context* context = open_context(&allocator, *state);
+  assert_non_null(context);
+  small_scene_fill(&scene);
+  assert_int_equal(small_scene_look(context, &scene), STRATUS_OK);
+  for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
+    stratus_ray_caster* caster = NULL;
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    assert_int_equal(small_render(caster, &scene, &scene.transfer, setting, &right, NULL), STRATUS_OK);
+    stratus_ray_caster_destroy(caster);
+    const int64_t live = allocator.live;
+    int64_t n = 1;
+    for (; n < REQUESTS_MAX; ++n) {
+      caster = NULL;
+      refuse(&allocator, n);
+      stratus_status status = stratus_ray_caster_create(context, &caster);
+      if (status == STRATUS_OK) {
+        status = small_render(caster, &scene, &scene.transfer, setting, &picture, NULL);
+      } else {
+        assert_null(caster);
+      }
+      const int done = status == STRATUS_OK;
+      if (!done) {
+        assert_out_of_memory(context, status);
+        refuse(&allocator, 0);
+        if (caster) {
+          assert_int_equal(small_render(caster, &scene, &scene.transfer, setting, &picture, NULL), STRATUS_OK);
+        }
+      }
+      if (caster) {
+        assert_memory_equal(&picture, &right, sizeof right);
+      }
+      stratus_ray_caster_destroy(caster);
+      refuse(&allocator, 0);
+      assert_int_equal(allocator.live, live);
+      if (done) {
+        break;
+      }
+    }
+    assert_in_range(n, 3, REQUESTS_MAX - 1);
+  }
+  stratus_context_destroy(context);
+  assert_int_equal(allocator.live, 0);
+}
+
+/* A ray caster that has drawn one transfer function and fails at the next still draws the first, and then the next. */
+static void an_edit_that_fails_leaves_the_earlier_result_intact(void** state)
+{
+  static small_scene scene;
+  static small_picture before, after, picture;
+  faulty_allocator allocator = { 0 };
+  stratus_context* context = open_context(&allocator, *state);
+  stratus_ray_caster* caster = NULL;
+  assert_non_null(context);
+  small_scene_fill(&scene);
+  assert_int_equal(small_scene_look(context, &scene), STRATUS_OK);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
+    assert_int_equal(small_render(caster, &scene, &scene.edited, setting, &after, NULL), STRATUS_OK);
+    assert_int_equal(small_render(caster, &scene, &scene.transfer, setting, &before, NULL), STRATUS_OK);
+    assert_memory_not_equal(&before, &after, sizeof before);
+    int64_t n = 1;
+    for (; n < REQUESTS_MAX; ++n) {
+      refuse(&allocator, n);
+      const stratus_status status = small_render(caster, &scene, &scene.edited, setting, &picture, NULL);
+      refuse(&allocator, 0);
+      if (status == STRATUS_OK) {
+        break;
+      }
+      assert_out_of_memory(context, status);
+      assert_int_equal(small_render(caster, &scene, &scene.transfer, setting, &picture, NULL), STRATUS_OK);
+      assert_memory_equal(&picture, &before, sizeof before);
+    }
+    assert_in_range(n, 2, REQUESTS_MAX - 1);
+    assert_memory_equal(&picture, &after, sizeof after);
+  }
+  stratus_ray_caster_destroy(caster);
+  stratus_context_destroy(context);
+  assert_int_equal(allocator.live, 0);
+}
+
+static void a_scene_is_made_whole_or_not_at_all(void** state)
+{
+  static const char* names[] = { "voxel", "cloud" };
+  faulty_allocator allocator = { 0 };
+  stratus_context* context = open_context(&allocator, *state);
+  assert_non_null(context);
+  const int64_t live = allocator.live;
+  for (int s = 0; s < 2; ++s) {
+    stratus_status status = STRATUS_OUT_OF_MEMORY;
+    for (int64_t n = 1; n < REQUESTS_MAX && status != STRATUS_OK; ++n) {
+      stratus_scene* scene = NULL;
+      refuse(&allocator, n);
+      status = stratus_scene_create(context, names[s], &scene);
+      if (status != STRATUS_OK) {
+        assert_out_of_memory(context, status);
+        assert_null(scene);
+      }
+      stratus_scene_destroy(context, scene);
+      assert_int_equal(allocator.live, live);
+    }
+    assert_int_equal(status, STRATUS_OK);
+  }
+  stratus_context_destroy(context);
+}
+
+#define ON(device, test) cmocka_unit_test_prestate(test, device)
+
+int main(void)
+{
+  static char host[] = "host", pocl[] = "pthread";
+  const struct CMUnitTest on_host[] = {
+    ON(host, a_context_is_made_whole_or_not_at_all),
+    ON(host, structures_are_made_whole_or_not_at_all),
+    ON(host, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
+    ON(host, an_edit_that_fails_leaves_the_earlier_result_intact),
+    ON(host, a_scene_is_made_whole_or_not_at_all),
+  };
+  const struct CMUnitTest on_device[] = {
+    ON(pocl, a_context_is_made_whole_or_not_at_all),
+    ON(pocl, structures_are_made_whole_or_not_at_all),
+    ON(pocl, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
+    ON(pocl, an_edit_that_fails_leaves_the_earlier_result_intact),
+  };
+  int failures = cmocka_run_group_tests(on_host, NULL, NULL);
+  faulty_allocator allocator = { 0 };
+  stratus_context* context = open_context(&allocator, pocl);
+  if (context) {
+    stratus_context_destroy(context);
+    failures += cmocka_run_group_tests(on_device, NULL, NULL);
+  } else {
+    printf("SKIPPED: no PoCL device, only the host was tested\n");
+  }
+  return failures;
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * An OpenCL device that disappears at the n-th call, for every n: each time an error with the call's name, no leak, and where the device
+ * comes back the same ray caster draws the right picture. */
+#include "device.h"
+#include "faulty_allocator.h"
+#include "small_scene.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#define CALLS_MAX 2000
+
+typedef struct fixture {
+  faulty_allocator allocator;
+  stratus_context* context;
+  small_scene scene;
+} fixture;
+
+static stratus_status open_fixture(fixture* f, char* message, size_t capacity)
+{
+  f->allocator = (faulty_allocator){ 0 };
+  f->context = NULL;
+  const stratus_context_options options = faulty_options(&f->allocator, "pthread");
+  const stratus_status status = stratus_context_create(&options, &f->context, message, capacity);
+  if (status == STRATUS_OK) {
+    small_scene_fill(&f->scene);
+    return small_scene_look(f->context, &f->scene);
+  }
+  return status;
+}
+
+static void assert_lost(const stratus_context* context, stratus_status status)
+{
+  assert_int_equal(status, STRATUS_DEVICE_ERROR);
+  assert_non_null(strstr(stratus_context_message(context), "cl"));
+  assert_non_null(strstr(stratus_context_message(context), "CL_DEVICE_NOT_AVAILABLE"));
+}
+
+static void lose_after(stratus_context* context, int64_t calls)
+{
+  stratus_device_fail_after(context->device, calls, CL_DEVICE_NOT_AVAILABLE);
+}
+
+/* Draws with a new ray caster, the device lost after n calls; if that fails, again with the device back. Returns whether it failed. */
+static int draw_twice(fixture* f, int setting, int64_t n, small_picture* picture)
+{
+  stratus_ray_caster* caster = NULL;
+  lose_after(f->context, n);
+  stratus_status status = stratus_ray_caster_create(f->context, &caster);
+  if (status == STRATUS_OK) {
+    status = small_render(caster, &f->scene, &f->scene.transfer, setting, picture, NULL);
+  }
+  lose_after(f->context, -1);
+  if (status != STRATUS_OK) {
+    assert_lost(f->context, status);
+    if (!caster) {
+      assert_int_equal(stratus_ray_caster_create(f->context, &caster), STRATUS_OK);
+    }
+    assert_int_equal(small_render(caster, &f->scene, &f->scene.transfer, setting, picture, NULL), STRATUS_OK);
+  }
+  stratus_ray_caster_destroy(caster);
+  return status != STRATUS_OK;
+}
+
+static void a_picture_survives_the_loss_at_any_call(void** state)
+{
+  (void)state;
+  static fixture f;
+  static small_picture right, picture;
+  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
+    assert_int_equal(draw_twice(&f, setting, -1, &right), 0);
+    const int64_t live = f.allocator.live;
+    int64_t n = 0;
+    for (int failed = 1; failed; ++n) {
+      assert_true(n < CALLS_MAX);
+      failed = draw_twice(&f, setting, n, &picture);
+      assert_memory_equal(&picture, &right, sizeof right);
+      assert_int_equal(f.allocator.live, live);
+    }
+    assert_true(n > 4); /* a buffer, an argument, a launch and a read at least */
+  }
+  stratus_context_destroy(f.context);
+  assert_int_equal(f.allocator.live, 0);
+}
+
+/* With nothing built yet: the loss falls on the building of programs, too. */
+static void programs_are_built_at_the_next_attempt(void** state)
+{
+  (void)state;
+  static fixture f;
+  static small_picture right, picture;
+  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  assert_int_equal(draw_twice(&f, 3, -1, &right), 0);
+  stratus_context_destroy(f.context);
+  for (int64_t n = 0; n < 12; ++n) {
+    assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+    assert_int_equal(draw_twice(&f, 3, n, &picture), 1);
+    assert_memory_equal(&picture, &right, sizeof right);
+    stratus_context_destroy(f.context);
+    assert_int_equal(f.allocator.live, 0);
+  }
+}
+
+static void an_edit_during_the_loss_leaves_the_earlier_result_intact(void** state)
+{
+  (void)state;
+  static fixture f;
+  static small_picture before, after, picture;
+  stratus_ray_caster* caster = NULL;
+  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  assert_int_equal(stratus_ray_caster_create(f.context, &caster), STRATUS_OK);
+  for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
+    assert_int_equal(small_render(caster, &f.scene, &f.scene.edited, setting, &after, NULL), STRATUS_OK);
+    assert_int_equal(small_render(caster, &f.scene, &f.scene.transfer, setting, &before, NULL), STRATUS_OK);
+    int64_t n = 0;
+    for (stratus_status status = STRATUS_DEVICE_ERROR; status != STRATUS_OK; ++n) {
+      assert_true(n < CALLS_MAX);
+      lose_after(f.context, n);
+      status = small_render(caster, &f.scene, &f.scene.edited, setting, &picture, NULL);
+      lose_after(f.context, -1);
+      if (status != STRATUS_OK) {
+        assert_lost(f.context, status);
+        assert_int_equal(small_render(caster, &f.scene, &f.scene.transfer, setting, &picture, NULL), STRATUS_OK);
+        assert_memory_equal(&picture, &before, sizeof before);
+      }
+    }
+    assert_memory_equal(&picture, &after, sizeof after);
+  }
+  stratus_ray_caster_destroy(caster);
+  stratus_context_destroy(f.context);
+  assert_int_equal(f.allocator.live, 0);
+}
+
+int main(void)
+{
+  static fixture f;
+  char message[1024];
+  if (open_fixture(&f, message, sizeof message) == STRATUS_NO_DEVICE) {
+    printf("SKIPPED: no PoCL device: %s\n", message);
+    return 77;
+  }
+  stratus_context_destroy(f.context);
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_picture_survives_the_loss_at_any_call),
+    cmocka_unit_test(programs_are_built_at_the_next_attempt),
+    cmocka_unit_test(an_edit_during_the_loss_leaves_the_earlier_result_intact),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
