@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The host's way through the traversal: which instruction set, which tiles, which threads. */
+#include "ray_cast.h"
+
+#include "ray_caster.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+
+/* Pixels a tile: small enough to share out evenly, large enough that its rays meet the same voxels. */
+#define TILE 32
+
+int stratus_ray_cast_best_isa(void)
+{
+#if STRATUS_HAVE_X86_ISAS
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+    __builtin_cpu_supports("avx512vl")) {
+    return 2;
+  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    return 1;
+  }
+#endif
+  return 0;
+}
+
+const char* stratus_ray_cast_isa(void)
+{
+  static const char* const names[3] = { "baseline", "AVX2", "AVX-512" };
+  return names[stratus_ray_cast_best_isa()];
+}
+
+int stratus_ray_cast_type_is_fast(int type)
+{
+  return type == STRATUS_INT8 || type == STRATUS_UINT8 || type == STRATUS_INT16 || type == STRATUS_UINT16 || type == STRATUS_FLOAT32 ||
+    type == STRATUS_FLOAT64;
+}
+
+stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preintegrated)
+{
+  const int best = stratus_ray_cast_best_isa();
+  isa = isa < best ? isa : best;
+#if STRATUS_HAVE_X86_ISAS
+  if (isa == 2) {
+    return stratus_ray_cast_tile_isa2(type, preintegrated);
+  }
+  if (isa == 1) {
+    return stratus_ray_cast_tile_isa1(type, preintegrated);
+  }
+#endif
+  return stratus_ray_cast_tile_isa0(type, preintegrated);
+}
+
+stratus_status stratus_ray_cast_host(stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
+{
+  const int width = frame->arguments->width, height = frame->arguments->height;
+  const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);
+  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(2, type, preintegrated);
+  stratus_ray_counts sum = { 0 };
+  atomic_int next = 0, cancelled = 0;
+  stratus_status status = STRATUS_OK;
+
+#pragma omp parallel num_threads(context->threads)
+  {
+    stratus_ray_counts mine = { 0 };
+    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
+      const int x0 = tile % columns * TILE, y0 = tile / columns * TILE;
+      draw(frame, x0, y0, x0 + TILE < width ? x0 + TILE : width, y0 + TILE < height ? y0 + TILE : height, &mine);
+      if (omp_get_thread_num() == 0 && context->options.progress) {
+        status = stratus_progress(context, "ray cast", (double)(tile + 1) / tiles);
+        if (status != STRATUS_OK) {
+          atomic_store(&cancelled, 1);
+        }
+      }
+    }
+#pragma omp critical(stratus_ray_counts)
+    {
+      sum.rays += mine.rays;
+      sum.samples += mine.samples;
+      sum.skipped += mine.skipped;
+      sum.lookups += mine.lookups;
+    }
+  }
+  *counts = sum;
+  return status;
+}

@@ -1,0 +1,514 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The ray caster: checks, rebuilds what changed and nothing else, draws, reports. */
+#include "ray_caster.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define SIDE_MOST 65536
+#define BLOCK_SIZE_DEFAULT 4
+/* Traversal addresses the eight maps with one int. */
+#define MAP_BYTES_MOST 2000000000.0
+/* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
+#define OCCUPIED_LARGEST 0.97
+/* Eight maps cost about this many look-ups a block to build, and save every other look-up. */
+#define OCTANT_LOOKUPS_A_BLOCK 6
+
+const char* stratus_structure_name(stratus_structure structure)
+{
+  static const char* const names[] = { "auto", "none", "block", "distance", "octant" };
+  return (unsigned)structure < sizeof names / sizeof *names ? names[structure] : "unknown";
+}
+
+const char* stratus_sampling_name(stratus_sampling sampling)
+{
+  static const char* const names[] = { "auto", "midpoint", "pre-integrated" };
+  return (unsigned)sampling < sizeof names / sizeof *names ? names[sampling] : "unknown";
+}
+
+stratus_ray_cast_options stratus_ray_cast_options_default(void)
+{
+  return (stratus_ray_cast_options){ .termination = 0.999 };
+}
+
+stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** out)
+{
+  void* memory = NULL;
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "no place for the ray caster: out is NULL");
+  }
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_ray_caster), &memory));
+  *out = memory;
+  (*out)->context = context;
+  return STRATUS_OK;
+}
+
+static void drop_map(stratus_ray_caster* caster)
+{
+  stratus_distance_map_destroy(caster->map);
+  caster->map = NULL;
+}
+
+static void drop_occupancy(stratus_ray_caster* caster)
+{
+  drop_map(caster);
+  stratus_occupancy_destroy(caster->occupancy);
+  caster->occupancy = NULL;
+}
+
+static void drop_transfer(stratus_ray_caster* caster)
+{
+  drop_occupancy(caster);
+  stratus_table_destroy(caster->table);
+  stratus_release(caster->context, caster->points);
+  caster->table = NULL;
+  caster->points = NULL;
+}
+
+void stratus_ray_caster_release(stratus_ray_caster* caster)
+{
+  if (caster) {
+    drop_transfer(caster);
+    stratus_value_range_destroy(caster->ranges);
+    stratus_release(caster->context, caster->hidden);
+    caster->ranges = NULL;
+    caster->hidden = NULL;
+    stratus_ray_device_destroy(caster);
+  }
+}
+
+void stratus_ray_caster_destroy(stratus_ray_caster* caster)
+{
+  if (caster) {
+    stratus_ray_caster_release(caster);
+    stratus_release(caster->context, caster);
+  }
+}
+
+/* ---- checks */
+
+static stratus_status check_image(stratus_context* context, const stratus_image* image)
+{
+  if (!image || !image->rgba) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image%s is NULL", image ? "'s rgba buffer" : "");
+  }
+  if (image->width < 1 || image->width > SIDE_MOST || image->height < 1 || image->height > SIDE_MOST) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_crop(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  for (int axis = 0; options->crop && axis < 3; ++axis) {
+    const double lo = options->crop_bounds[2 * axis], hi = options->crop_bounds[2 * axis + 1];
+    if (!(lo <= hi) || !isfinite(lo) || !isfinite(hi)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop bounds %g..%g along axis %d are reversed or not finite", lo, hi, axis);
+    }
+  }
+  if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_CLIP_PLANES_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clip_plane_count, STRATUS_CLIP_PLANES_MAX);
+  }
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    for (int i = 0; i < 4; ++i) {
+      if (!isfinite(options->clip_planes[p][i])) {
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clip_planes[p][i]);
+      }
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  if ((unsigned)options->structure > STRATUS_STRUCTURE_OCTANT || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
+    (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range",
+      (int)options->structure, STRATUS_STRUCTURE_OCTANT, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
+      STRATUS_INTERPOLATION_NEAREST);
+  }
+  if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
+  }
+  if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
+  }
+  const int size = options->block_size;
+  if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
+  }
+  return check_crop(context, options);
+}
+
+/* ---- rebuilding */
+
+static bool same_data(const stratus_ray_caster* caster, const stratus_volume* volume, int block_size)
+{
+  const stratus_volume* old = &caster->volume;
+  return caster->ranges && caster->ranges->block_size == block_size && old->values == volume->values && old->type == volume->type &&
+    memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
+    old->cell_centered == volume->cell_centered && old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts &&
+    old->revision == volume->revision;
+}
+
+/* Cell values interpolated between cells: a cell of eight values is hidden with any of them. */
+static stratus_status spread_hidden(stratus_context* context, const stratus_volume* volume, uint8_t** hidden)
+{
+  size_t cells[3], total;
+  void* memory = NULL;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells[axis] = volume->dimensions[axis] > 1 ? (size_t)volume->dimensions[axis] - 1 : 1;
+  }
+  TRY(stratus_product(context, "cells", cells[0], cells[1], cells[2], &total));
+  TRY(stratus_allocate(context, total, 1, &memory));
+  uint8_t* spread = memory;
+  const size_t nx = (size_t)volume->dimensions[0], ny = (size_t)volume->dimensions[1], nz = (size_t)volume->dimensions[2];
+  for (size_t cell = 0; cell < total; ++cell) {
+    const size_t i = cell % cells[0], j = cell / cells[0] % cells[1], k = cell / cells[0] / cells[1];
+    uint8_t any = 0;
+    for (size_t corner = 0; corner < 8; ++corner) {
+      const size_t x = i + (corner & 1), y = j + (corner >> 1 & 1), z = k + (corner >> 2);
+      any |= x < nx && y < ny && z < nz ? (*hidden)[(z * ny + y) * nx + x] : 0;
+    }
+    spread[cell] = any;
+  }
+  stratus_release(context, *hidden);
+  *hidden = spread;
+  return STRATUS_OK;
+}
+
+static stratus_status update_hidden(stratus_ray_caster* caster, const stratus_volume* volume, bool by_value)
+{
+  uint8_t* hidden = NULL;
+  TRY(stratus_volume_hidden_cells(caster->context, volume, &hidden));
+  if (hidden && volume->cell_centered && !by_value) {
+    const stratus_status status = spread_hidden(caster->context, volume, &hidden);
+    if (status != STRATUS_OK) {
+      stratus_release(caster->context, hidden);
+      return status;
+    }
+  }
+  stratus_release(caster->context, caster->hidden);
+  caster->hidden = hidden;
+  caster->hidden_by_value = by_value;
+  return STRATUS_OK;
+}
+
+static int chosen_block_size(const stratus_volume* volume, int wanted)
+{
+  int size = wanted ? wanted : BLOCK_SIZE_DEFAULT;
+  while (size < 32) {
+    double bytes = 8.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      bytes *= ceil((double)volume->dimensions[axis] / size + (axis == 0 ? 64.0 : 0.0));
+    }
+    if (bytes < MAP_BYTES_MOST) {
+      break;
+    }
+    size *= 2;
+  }
+  return size;
+}
+
+static stratus_status update_ranges(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
+{
+  const int block_size = chosen_block_size(volume, options->block_size);
+  const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
+  const bool same = same_data(caster, volume, block_size);
+  if (!same || caster->hidden_by_value != by_value) {
+    TRY(update_hidden(caster, volume, by_value));
+    ++caster->data_serial;
+  }
+  if (!same) {
+    const double start = stratus_now_ms();
+    stratus_value_range* ranges = NULL;
+    TRY(stratus_value_range_create(caster->context, volume, block_size, &ranges));
+    drop_transfer(caster);
+    stratus_value_range_destroy(caster->ranges);
+    caster->ranges = ranges;
+    ++caster->range_builds;
+    *ms = stratus_now_ms() - start;
+  }
+  caster->volume = *volume;
+  return STRATUS_OK;
+}
+
+static bool same_transfer(const stratus_ray_caster* caster, const stratus_transfer* transfer)
+{
+  const stratus_transfer* old = &caster->transfer;
+  return caster->points && old->opacity_count == transfer->opacity_count && old->color_count == transfer->color_count &&
+    old->clamp == transfer->clamp && old->unit_distance == transfer->unit_distance &&
+    memcmp(old->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0 &&
+    memcmp(old->color, transfer->color, 4 * sizeof(double) * transfer->color_count) == 0;
+}
+
+static stratus_status keep_transfer(stratus_ray_caster* caster, const stratus_transfer* transfer)
+{
+  const size_t opacity = 2 * transfer->opacity_count, color = 4 * transfer->color_count;
+  void* memory = NULL;
+  TRY(stratus_allocate(caster->context, opacity + color, sizeof(double), &memory));
+  double* points = memory;
+  memcpy(points, transfer->opacity, opacity * sizeof *points);
+  memcpy(points + opacity, transfer->color, color * sizeof *points);
+  drop_transfer(caster);
+  caster->points = points;
+  caster->transfer = *transfer;
+  caster->transfer.opacity = points;
+  caster->transfer.color = points + opacity;
+  caster->lookups_since_edit = 0;
+  return STRATUS_OK;
+}
+
+/* Transfer function, the choices that follow from it, and the table. */
+static stratus_status update_table(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, double* ms)
+{
+  const double start = stratus_now_ms();
+  const stratus_sampling before = caster->choice.sampling;
+  const bool same = same_transfer(caster, transfer);
+  if (!same) {
+    TRY(keep_transfer(caster, transfer));
+  }
+  const double voxel = stratus_ray_voxel_length(volume);
+  if (!same || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
+    caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
+    stratus_ray_choose(caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
+    caster->voxel_length = voxel;
+    caster->interpolation = options->interpolation;
+    caster->wanted_sampling = options->sampling;
+    caster->wanted_distance = options->sample_distance;
+  }
+  if (caster->table && caster->choice.sampling == before && caster->table_distance == caster->choice.sample_distance) {
+    return STRATUS_OK;
+  }
+  const stratus_value_range* ranges = caster->ranges;
+  const bool any = ranges->whole_lo <= ranges->whole_hi;
+  stratus_table* table = NULL;
+  TRY(stratus_table_create(caster->context, &caster->transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
+    caster->choice.sampling, caster->choice.sample_distance, &table));
+  if (caster->choice.sampling != before) {
+    drop_occupancy(caster);
+  }
+  stratus_table_destroy(caster->table);
+  caster->table = table;
+  caster->table_distance = caster->choice.sample_distance;
+  ++caster->table_builds;
+  ++caster->table_serial;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+/* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit. */
+static stratus_structure choose_structure(const stratus_ray_caster* caster, stratus_structure wanted, char* why, size_t capacity)
+{
+  const int64_t* n = caster->occupancy->blocks;
+  const double blocks = (double)n[0] * (double)n[1] * (double)n[2], share = (double)caster->occupancy->count / blocks;
+  if (wanted != STRATUS_STRUCTURE_AUTO) {
+    snprintf(why, capacity, "%s as asked", stratus_structure_name(wanted));
+    return wanted;
+  }
+  if (share > OCCUPIED_LARGEST) {
+    snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
+    return STRATUS_STRUCTURE_NONE;
+  }
+  if ((double)caster->lookups_since_edit > OCTANT_LOOKUPS_A_BLOCK * blocks) {
+    snprintf(why, capacity, "octant: %.3g %% occupied, and rays have paid for eight maps since the last edit", 100.0 * share);
+    return STRATUS_STRUCTURE_OCTANT;
+  }
+  snprintf(why, capacity, "distance: %.3g %% occupied; eight maps are not paid for yet", 100.0 * share);
+  return STRATUS_STRUCTURE_DISTANCE;
+}
+
+static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, double* ms)
+{
+  static const stratus_distance_kind kinds[] = { [STRATUS_STRUCTURE_BLOCK] = STRATUS_DISTANCE_BLOCK,
+    [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL, [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT };
+  if (structure == STRATUS_STRUCTURE_NONE || (caster->map && caster->map->kind == kinds[structure])) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  stratus_distance_map* map = NULL;
+  TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+  drop_map(caster);
+  caster->map = map;
+  ++caster->structure_builds;
+  ++caster->map_serial;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+static stratus_status update_structures(
+  stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why, size_t capacity, stratus_ray_cast_report* report)
+{
+  if (wanted == STRATUS_STRUCTURE_NONE) {
+    *used = wanted;
+    snprintf(why, capacity, "none as asked");
+    return STRATUS_OK;
+  }
+  if (!caster->occupancy) {
+    const double start = stratus_now_ms();
+    TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
+    ++caster->occupancy_builds;
+    report->occupancy_ms = stratus_now_ms() - start;
+  }
+  *used = choose_structure(caster, wanted, why, capacity);
+  return update_map(caster, *used, &report->structure_ms);
+}
+
+/* ---- drawing */
+
+static void clear_image(const stratus_image* image)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
+  for (size_t i = 0; image->depth && i < pixels; ++i) {
+    image->depth[i] = INFINITY;
+  }
+  if (image->samples) {
+    memset(image->samples, 0, pixels * sizeof *image->samples);
+  }
+}
+
+/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
+static int fetch_type(const stratus_volume* volume)
+{
+  const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
+  bool fast = stratus_ray_cast_type_is_fast((int)volume->type) && values < (double)INT32_MAX && volume->value_stride == 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    fast = fast && volume->dimensions[axis] > 1;
+  }
+  return fast ? (int)volume->type : -1;
+}
+
+static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map,
+  stratus_ray_counts* counts, double* upload_ms)
+{
+  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  const stratus_ray_cast_frame frame = { .arguments = arguments,
+    .values = caster->volume.values,
+    .hidden = caster->hidden,
+    .map = with_map ? caster->map->bytes : NULL,
+    .table = preintegrated ? (const void*)caster->table->sums : (const void*)caster->table->rgba,
+    .opaque_depth = image->opaque_depth,
+    .rgba = image->rgba,
+    .depth = image->depth,
+    .samples = image->samples };
+  const int type = fetch_type(&caster->volume);
+  if (caster->context->device) {
+    bool drawn = false;
+    TRY(stratus_ray_cast_device(caster, &frame, type, preintegrated, counts, upload_ms, &drawn));
+    if (drawn) {
+      return STRATUS_OK;
+    }
+  }
+  return stratus_ray_cast_host(caster->context, &frame, type, preintegrated, counts);
+}
+
+/* Draws again without structure and counts the pixels whose bits differ. */
+static stratus_status audit(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  stratus_ray_cast_arguments plain = *arguments;
+  stratus_ray_counts counts;
+  stratus_image march = *image;
+  void *rgba = NULL, *depth = NULL;
+  double upload_ms = 0.0;
+  stratus_status status;
+
+  stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
+  march.samples = NULL;
+  TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
+  march.rgba = rgba;
+  if (image->depth) {
+    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(float), &depth));
+    march.depth = depth;
+  }
+  TRY_CLEANUP(draw(caster, &plain, &march, false, &counts, &upload_ms));
+  *differing = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    *differing += memcmp(image->rgba + 4 * i, march.rgba + 4 * i, 4 * sizeof(float)) != 0 ||
+      (image->depth && memcmp(image->depth + i, march.depth + i, sizeof(float)) != 0);
+  }
+cleanup:
+  stratus_release(caster->context, rgba);
+  stratus_release(caster->context, depth);
+  return status;
+}
+
+static void fill_report(const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report)
+{
+  report->rays = counts->rays;
+  report->samples = counts->samples;
+  report->skipped = counts->skipped;
+  report->lookups = counts->lookups;
+  if (caster->occupancy) {
+    const int64_t* n = caster->occupancy->blocks;
+    report->blocks = (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
+    report->occupied_blocks = (uint64_t)caster->occupancy->count;
+  }
+  report->range_builds = caster->range_builds;
+  report->table_builds = caster->table_builds;
+  report->occupancy_builds = caster->occupancy_builds;
+  report->structure_builds = caster->structure_builds;
+  report->uploads = caster->uploads;
+  report->structure_bytes = used != STRATUS_STRUCTURE_NONE && caster->map ? stratus_distance_map_bytes(caster->map) : 0;
+  report->structure = used;
+  report->sampling = caster->choice.sampling;
+  report->sample_distance = caster->choice.sample_distance;
+}
+
+static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  stratus_ray_cast_arguments arguments;
+  stratus_structure used = STRATUS_STRUCTURE_NONE;
+  stratus_ray_counts counts = { 0 };
+  char why[128] = "";
+  bool empty = false;
+
+  TRY(update_ranges(caster, volume, options, &report->range_ms));
+  TRY(update_table(caster, volume, transfer, options, &report->table_ms));
+  TRY(stratus_ray_frame_arguments(caster->context, volume, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(update_structures(caster, options->structure, &used, why, sizeof why, report));
+  const bool with_map = used != STRATUS_STRUCTURE_NONE;
+  const double start = stratus_now_ms();
+  if (empty || caster->table->shown == 0 || (with_map && caster->occupancy->count == 0)) {
+    clear_image(image);
+  } else {
+    arguments.has_hidden = caster->hidden != NULL;
+    stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
+    TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+    if (options->audit) {
+      TRY(audit(caster, &arguments, image, &report->differing_pixels));
+    }
+  }
+  report->cast_ms = stratus_now_ms() - start - report->upload_ms;
+  caster->lookups_since_edit += counts.lookups;
+  fill_report(caster, &counts, used, report);
+  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why, stratus_sampling_name(caster->choice.sampling),
+    caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  stratus_ray_cast_report mine = { 0 };
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  options = options ? options : &defaults;
+  TRY(stratus_volume_check(caster->context, volume));
+  TRY(stratus_transfer_check(caster->context, transfer));
+  TRY(check_options(caster->context, options));
+  TRY(check_image(caster->context, image));
+  TRY(render(caster, volume, transfer, camera, options, image, &mine));
+  if (report) {
+    *report = mine;
+  }
+  return STRATUS_OK;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * How a scene is sampled when the user leaves it open: how far the transfer function bends over one step of the field, and how
+ * much of the opacity changes from voxel to voxel. */
+#include "ray_caster.h"
+
+#include <string.h>
+
+/* Blocks looked at, spread evenly over those that may show something. */
+#define BLOCKS_ASKED 4096
+/* Points of the opacity function between which it is averaged. */
+#define PLACES 8
+/* Pre-integration pays where the opacity is this far from linear within a step, relative to itself. */
+#define BEND_LARGEST 0.25
+/* Mean change of opacity a voxel from which the step is halved. */
+#define SHARPNESS_LARGEST 0.12
+
+double stratus_ray_voxel_length(const stratus_volume* volume)
+{
+  double m[16], shortest = INFINITY;
+  stratus_volume_index_to_world(volume, m);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (volume->dimensions[axis] > 1 || volume->cell_centered) {
+      const double length = sqrt(m[axis] * m[axis] + m[4 + axis] * m[4 + axis] + m[8 + axis] * m[8 + axis]);
+      shortest = length < shortest ? length : shortest;
+    }
+  }
+  return shortest < INFINITY ? shortest : 1.0;
+}
+
+static double opacity_at(const stratus_transfer* transfer, double x)
+{
+  const double* points = transfer->opacity;
+  const size_t count = transfer->opacity_count;
+  if (x < points[0]) {
+    return transfer->clamp ? points[1] : 0.0;
+  }
+  if (x > points[2 * (count - 1)]) {
+    return transfer->clamp ? points[2 * count - 1] : 0.0;
+  }
+  size_t lo = 0, hi = count; /* the last point with value <= x */
+  while (hi - lo > 1) {
+    const size_t middle = (lo + hi) / 2;
+    if (points[2 * middle] <= x) {
+      lo = middle;
+    } else {
+      hi = middle;
+    }
+  }
+  if (lo + 1 == count) {
+    return points[2 * lo + 1];
+  }
+  const double* left = points + 2 * lo;
+  return left[1] + (x - left[0]) / (left[2] - left[0]) * (left[3] - left[1]);
+}
+
+/* The values outside which the function is surely transparent, so that most empty blocks cost one comparison. */
+static void opaque_span(const stratus_transfer* transfer, double* lo, double* hi)
+{
+  const double* points = transfer->opacity;
+  size_t first = 0, last = transfer->opacity_count - 1;
+  while (first < last && points[2 * first + 1] == 0.0 && points[2 * first + 3] == 0.0) {
+    ++first;
+  }
+  while (last > first && points[2 * last + 1] == 0.0 && points[2 * last - 1] == 0.0) {
+    --last;
+  }
+  *lo = first == 0 && points[1] > 0.0 ? -INFINITY : points[2 * first];
+  *hi = last == transfer->opacity_count - 1 && points[2 * last + 1] > 0.0 ? INFINITY : points[2 * last];
+}
+
+/* Adds what one block shows: opacity, its distance from linear over one voxel's change of value, its change over a voxel. */
+static void survey_block(const stratus_transfer* transfer, double lo, double hi, int block_size, double sums[3], int64_t* shown)
+{
+  const double half_step = 0.5 * (hi - lo) / block_size;
+  double opacity = 0.0, bend = 0.0, change = 0.0;
+  for (int place = 0; place < PLACES; ++place) {
+    const double x = lo + (hi - lo) * (place + 0.5) / PLACES;
+    const double left = opacity_at(transfer, x - half_step), middle = opacity_at(transfer, x), right = opacity_at(transfer, x + half_step);
+    opacity += (left + 2.0 * middle + right) / 4.0;
+    bend += fabs(left - 2.0 * middle + right) / 2.0;
+    change += fabs(right - left);
+  }
+  if (opacity > 0.0) {
+    sums[0] += opacity / PLACES;
+    sums[1] += bend / PLACES;
+    sums[2] += change / PLACES;
+    ++*shown;
+  }
+}
+
+static void survey(const stratus_value_range* ranges, const stratus_transfer* transfer, double sums[3], int64_t* shown)
+{
+  const int64_t blocks = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+  double lo, hi;
+  opaque_span(transfer, &lo, &hi);
+  const float from = (float)(lo - ranges->bias), to = (float)(hi - ranges->bias);
+  int64_t candidates = 0;
+  for (int64_t block = 0; block < blocks; ++block) {
+    candidates += ranges->hi[block] >= from && ranges->lo[block] <= to;
+  }
+  const int64_t stride = candidates / BLOCKS_ASKED + 1;
+  memset(sums, 0, 3 * sizeof *sums);
+  *shown = 0;
+  int64_t candidate = 0;
+  for (int64_t block = 0; block < blocks; ++block) {
+    if (ranges->hi[block] >= from && ranges->lo[block] <= to && candidate++ % stride == 0) {
+      survey_block(transfer, (double)ranges->lo[block] + ranges->bias, (double)ranges->hi[block] + ranges->bias, ranges->block_size, sums, shown);
+    }
+  }
+}
+
+void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer, stratus_interpolation interpolation,
+  stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice)
+{
+  double sums[3];
+  int64_t shown;
+  survey(ranges, transfer, sums, &shown);
+  choice->bend = sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
+  choice->sharpness = shown > 0 ? sums[2] / (double)shown : 0.0;
+  choice->sampling = sampling;
+  if (interpolation == STRATUS_INTERPOLATION_NEAREST) {
+    choice->sampling = STRATUS_SAMPLING_MIDPOINT;
+  } else if (sampling == STRATUS_SAMPLING_AUTO) {
+    choice->sampling = choice->bend > BEND_LARGEST ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  }
+  choice->sample_distance = sample_distance;
+  if (sample_distance <= 0.0) {
+    const bool fine = choice->sharpness * voxel / transfer->unit_distance > SHARPNESS_LARGEST || choice->sampling == STRATUS_SAMPLING_PREINTEGRATED;
+    choice->sample_distance = (fine ? 0.5 : 1.0) * voxel;
+  }
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * From camera, volume and options to the numbers that every ray of a frame shares. */
+#include "ray_caster.h"
+
+#include <string.h>
+
+/* More samples than this on one ray, and floats no longer tell them apart. */
+#define SAMPLES_MOST 4e6
+/* Bounds are drawn in by this part of a voxel (and more where floats are coarser), so that no rounding takes a sample outside. */
+#define BOUNDS_MARGIN 0x1p-10
+#define FLOAT_COARSENESS 0x1p-21
+#define UNBOUNDED 1e30f
+
+static bool finite3(const double v[3])
+{
+  return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+static double dot3(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static stratus_status check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
+{
+  if (!camera) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
+  }
+  if (!finite3(camera->eye) || !finite3(camera->forward) || !finite3(camera->right) || !finite3(camera->up)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye (%g, %g, %g), forward (%g, %g, %g), right and up must be finite",
+      camera->eye[0], camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2]);
+  }
+  if (!(dot3(camera->forward, camera->forward) > 0.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera forward (0, 0, 0) has no direction");
+  }
+  if (!(camera->near_k < camera->far_k) || !isfinite(camera->near_k) || (!camera->parallel && camera->near_k < 0.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera near %g and far %g: near must be %sfinite and below far", camera->near_k,
+      camera->far_k, camera->parallel ? "" : "at least 0, ");
+  }
+  if (image->opaque_depth && (!isfinite(camera->far_k) || (!camera->parallel && camera->near_k <= 0.0))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "opaque depth needs a finite far and a positive near, not %g and %g", camera->far_k, camera->near_k);
+  }
+  return STRATUS_OK;
+}
+
+static void set_camera(const stratus_camera* camera, const double world_to_index[16], stratus_ray_cast_arguments* a)
+{
+  const double* vectors[3] = { camera->forward, camera->right, camera->up };
+  stratus_pair* targets[3] = { a->forward, a->right, a->up };
+  double point[3];
+  stratus_matrix_point(world_to_index, camera->eye, point);
+  for (int axis = 0; axis < 3; ++axis) {
+    a->eye[axis] = stratus_pair_of(point[axis]);
+  }
+  for (int v = 0; v < 3; ++v) {
+    double vector[3];
+    stratus_matrix_vector(world_to_index, vectors[v], vector);
+    for (int axis = 0; axis < 3; ++axis) {
+      targets[v][axis] = stratus_pair_of(vector[axis]);
+    }
+  }
+  a->metric[0] = stratus_pair_of(dot3(camera->forward, camera->forward));
+  a->metric[1] = stratus_pair_of(2.0 * dot3(camera->forward, camera->right));
+  a->metric[2] = stratus_pair_of(2.0 * dot3(camera->forward, camera->up));
+  a->metric[3] = stratus_pair_of(dot3(camera->right, camera->right));
+  a->metric[4] = stratus_pair_of(2.0 * dot3(camera->right, camera->up));
+  a->metric[5] = stratus_pair_of(dot3(camera->up, camera->up));
+  a->near_k = stratus_pair_of(camera->near_k);
+  a->far_k = stratus_pair_of(camera->far_k);
+  a->parallel = camera->parallel != 0;
+}
+
+/* Bounds in index coordinates, crop included; false if nothing is left. */
+static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
+{
+  const double half = volume->cell_centered ? 0.5 : 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double last = (double)(volume->dimensions[axis] - 1), margin = fmax(BOUNDS_MARGIN, last * FLOAT_COARSENESS);
+    double lo = volume->cell_centered ? -0.5 : margin, hi = volume->cell_centered ? last + 0.5 : last - margin;
+    if (options->crop) {
+      const double* bounds = options->crop_bounds + 2 * axis;
+      lo = fmax(lo, (bounds[0] - volume->origin[axis]) / volume->spacing[axis] - half);
+      hi = fmin(hi, (bounds[1] - volume->origin[axis]) / volume->spacing[axis] - half);
+    }
+    if (!(lo < hi)) {
+      return false;
+    }
+    a->box[0][axis] = stratus_pair_of(lo);
+    a->box[1][axis] = stratus_pair_of(hi);
+    const bool linear = options->interpolation == STRATUS_INTERPOLATION_LINEAR;
+    a->last[axis] = (float)(linear && last > 0.0 ? last - margin : last);
+  }
+  return true;
+}
+
+static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* a)
+{
+  int64_t lo[3], hi[3];
+  const double half = volume->cell_centered ? 0.5 : 0.0;
+  stratus_volume_owned(volume, lo, hi);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int64_t cells = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
+    a->piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? (double)lo[axis] - half : -(double)UNBOUNDED);
+    a->piece[1][axis] = stratus_pair_of(hi[axis] < cells ? (double)hi[axis] - half : (double)UNBOUNDED);
+    a->has_piece |= lo[axis] > 0 || hi[axis] < cells;
+    if (lo[axis] >= hi[axis]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* World planes to index coordinates: n . (M x + t) + d. */
+static void set_clip_planes(const stratus_ray_cast_options* options, const double m[16], stratus_ray_cast_arguments* a)
+{
+  a->clip_count = options->clip_plane_count;
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    const double* plane = options->clip_planes[p];
+    double result[4] = { 0.0, 0.0, 0.0, plane[3] };
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        result[column] += plane[row] * m[4 * row + column];
+      }
+    }
+    /* brought to length 1: only its sign counts, and small or large spacings shall not leave the floats' range */
+    const double length = sqrt(dot3(result, result));
+    for (int i = 0; i < 4; ++i) {
+      a->clip[p][i] = stratus_pair_of(length > 0.0 ? result[i] / length : result[i]);
+    }
+  }
+}
+
+static void set_addressing(const stratus_volume* volume, stratus_ray_cast_arguments* a)
+{
+  const uint64_t stride = (uint64_t)volume->value_stride, row = (uint64_t)volume->dimensions[0] * stride;
+  const uint64_t slice = row * (uint64_t)volume->dimensions[1], values = slice * (uint64_t)volume->dimensions[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    a->dimensions[axis] = (int)volume->dimensions[axis];
+  }
+  a->row = (int)(uint32_t)row;
+  a->row_high = (int)(uint32_t)(row >> 32);
+  a->slice = (int)(uint32_t)slice;
+  a->slice_high = (int)(uint32_t)(slice >> 32);
+  a->tail = values > 4 && values < INT32_MAX ? (int)(values - 4) : 0;
+  a->type = (int)volume->type;
+  a->stride = (int)stride;
+}
+
+static stratus_status check_samples(stratus_context* context, const double m[16], const stratus_volume* volume, double sample_distance)
+{
+  double diagonal = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double edge = 0.0;
+    for (int row = 0; row < 3; ++row) {
+      edge += m[4 * row + axis] * m[4 * row + axis];
+    }
+    diagonal += sqrt(edge) * (double)volume->dimensions[axis];
+  }
+  if (diagonal / sample_distance > SAMPLES_MOST) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g",
+      sample_distance, diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* a, bool* empty)
+{
+  double index_to_world[16], world_to_index[16];
+  memset(a, 0, sizeof *a);
+  TRY(check_camera(context, camera, image));
+  stratus_volume_index_to_world(volume, index_to_world);
+  if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
+  }
+  TRY(check_samples(context, index_to_world, volume, sample_distance));
+  set_camera(camera, world_to_index, a);
+  a->step = stratus_pair_of(sample_distance);
+  a->world_step = (float)sample_distance;
+  a->pixel[0] = stratus_pair_of(1.0 / image->width);
+  a->pixel[1] = stratus_pair_of(1.0 / image->height);
+  a->width = image->width;
+  a->height = image->height;
+  a->has_depth = image->opaque_depth != NULL;
+  a->want_depth = image->depth != NULL;
+  a->want_samples = image->samples != NULL;
+  a->nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+  a->clamp = volume->cell_centered != 0;
+  a->termination = (float)(1.0 - options->termination);
+  set_clip_planes(options, index_to_world, a);
+  set_addressing(volume, a);
+  const double bias = stratus_volume_bias(volume);
+  uint64_t bits;
+  memcpy(&bits, &bias, sizeof bits);
+  a->bias_low = (int)(uint32_t)bits;
+  a->bias_high = (int)(uint32_t)(bits >> 32);
+  *empty = !set_box(volume, options, a) || !set_piece(volume, a);
+  return STRATUS_OK;
+}
+
+void stratus_ray_frame_structures(
+  const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+{
+  if (table) {
+    a->table_scale = table->scale;
+    a->table_offset = table->offset;
+    a->table_last = (float)(table->size - 1);
+    a->tau_scale = table->sum_scale;
+  }
+  a->structure = map != NULL;
+  if (!map) {
+    return;
+  }
+  a->blocks_pitch = (int)map->pitch;
+  a->blocks_rows = (int)map->blocks[1];
+  a->octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
+  a->block_log2 = 0;
+  while (1 << a->block_log2 < map->block_size) {
+    ++a->block_log2;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    a->occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * map->block_size) : -UNBOUNDED;
+    a->occupied[1][axis] = occupancy->hi[axis] < map->blocks[axis] ? (float)(occupancy->hi[axis] * map->block_size) : UNBOUNDED;
+  }
+}
