@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusDisplay.h"
 
+#include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
@@ -17,11 +18,14 @@ const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
 uniform sampler2D source;
+uniform sampler2D behind;
+uniform int blends; // 1: the frame buffer does it
 uniform vec2 scaleBias; // final colour window and level
 void main()
 {
   vec4 color = texture(source, texCoord);
-  gl_FragData[0] = vec4(clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0), color.a);
+  color.rgb = clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0);
+  gl_FragData[0] = blends == 1 ? color : color + (1.0 - color.a) * texture(behind, texCoord);
 }
 )";
 }
@@ -32,16 +36,32 @@ vtkStratusDisplay::~vtkStratusDisplay() = default;
 void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Texture->ReleaseGraphicsResources(window);
+  this->Behind->ReleaseGraphicsResources(window);
   this->Quad.reset();
   this->Window = nullptr;
 }
 
-bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias)
+// Software OpenGL rounds three times when it blends, which costs up to 1.3 of 255; a copy of what is behind lets the shader round once. Where
+// several samples a pixel or a render pass lie between us and the frame buffer, its own blending has to do.
+bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, int x, int y, const vtkStratusPicture& picture)
 {
-  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  if (!window) {
+  if (renderer->GetPass() || window->GetRenderFramebuffer()->GetMultiSamples() > 0) {
     return false;
   }
+  const unsigned int width = static_cast<unsigned int>(picture.Rectangle[2]), height = static_cast<unsigned int>(picture.Rectangle[3]);
+  this->Behind->SetContext(window);
+  if (this->Behind->GetWidth() != width || this->Behind->GetHeight() != height) {
+    if (!this->Behind->Create2D(width, height, 4, VTK_UNSIGNED_CHAR, false)) {
+      return false;
+    }
+  }
+  this->Behind->Activate();
+  this->Behind->CopyFromFrameBuffer(x, y, 0, 0, picture.Rectangle[2], picture.Rectangle[3]);
+  return true;
+}
+
+bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba)
+{
   if (this->Window && this->Window != window) {
     this->ReleaseGraphicsResources(this->Window);
   }
@@ -56,15 +76,22 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
   if (!this->Texture->Create2DFromRaw(width, height, 4, VTK_FLOAT, const_cast<float*>(rgba))) {
     return false;
   }
-  vtkOpenGLState* state = window->GetState();
   if (!this->Quad) {
     this->Quad.reset(new vtkOpenGLQuadHelper(window, nullptr, FragmentShader, ""));
   } else {
     window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
   }
-  if (!this->Quad->Program || !this->Quad->Program->GetCompiled()) {
+  return this->Quad->Program && this->Quad->Program->GetCompiled();
+}
+
+bool vtkStratusDisplay::Draw(
+  vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias, bool onBlack)
+{
+  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window || !this->Upload(window, picture, rgba)) {
     return false;
   }
+  vtkOpenGLState* state = window->GetState();
   const int x = picture.Viewport[0] + picture.Rectangle[0], y = picture.Viewport[1] + picture.Rectangle[1];
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglScissor scissor(state);
@@ -76,14 +103,23 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
   state->vtkglScissor(x, y, picture.Rectangle[2], picture.Rectangle[3]);
   state->vtkglDisable(GL_DEPTH_TEST); // the rays have ended at the opaque depth already
   state->vtkglDepthMask(GL_FALSE);
-  state->vtkglEnable(GL_BLEND);
-  state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-
   this->Texture->Activate();
+  const bool blends = onBlack || !this->CopyBehind(renderer, window, x, y, picture);
+  if (blends) {
+    state->vtkglEnable(GL_BLEND);
+    state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  } else {
+    state->vtkglDisable(GL_BLEND);
+  }
+  this->Quad->Program->SetUniformi("blends", blends ? 1 : 0);
+  this->Quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
   const float scaleBias[2] = { scale, bias };
   this->Quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
   this->Quad->Program->SetUniform2f("scaleBias", scaleBias);
   this->Quad->Render();
   this->Texture->Deactivate();
+  if (!blends) {
+    this->Behind->Deactivate();
+  }
   return true;
 }

@@ -25,12 +25,17 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // rgba: premultiplied, picture.Size pixels. Shown is rgb * scale + alpha * bias. False if the window is not an OpenGL one.
-  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias);
+  // rgba: premultiplied, picture.Size pixels. Shown is rgb * scale + alpha * bias. onBlack: nothing is behind. False if the window is not
+  // an OpenGL one.
+  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias, bool onBlack);
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba);
+  bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, int x, int y, const vtkStratusPicture& picture);
+
   vtkNew<vtkTextureObject> Texture;
+  vtkNew<vtkTextureObject> Behind;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
   vtkOpenGLRenderWindow* Window = nullptr; // only compared
 };

@@ -150,8 +150,12 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->HasPicture = true;
   this->LearnTime(coarseness);
   const double cast = Now();
+  const double* background = renderer->GetBackground();
+  const bool onBlack = !opaqueDepth && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() && background[0] == 0.0 &&
+    background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
   const float scale = 1.0f / this->Mapper->FinalColorWindow;
-  if (!this->Display.Draw(renderer, this->Picture, this->Rgba.data(), scale, 0.5f - this->Mapper->FinalColorLevel * scale)) {
+  const float bias = 0.5f - this->Mapper->FinalColorLevel * scale;
+  if (!this->Display.Draw(renderer, this->Picture, this->Rgba.data(), scale, bias, onBlack)) {
     error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
     return false;
   }
