@@ -14,7 +14,8 @@
 
 typedef struct device_list {
   int count;
-  cl_int error; /* of clGetPlatformIDs */
+  const char* call; /* the last that found nothing, and why */
+  cl_int error;
   cl_device_id ids[DEVICES_MAX];
 } device_list;
 
@@ -91,7 +92,7 @@ void stratus_device_fail_after(stratus_device* device, int64_t calls, int error)
 
 static device_list list_devices(void)
 {
-  device_list list = { 0 };
+  device_list list = { .call = "clGetPlatformIDs" };
   cl_platform_id platforms[PLATFORMS_MAX];
   cl_uint platform_count = 0;
   list.error = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
@@ -102,8 +103,12 @@ static device_list list_devices(void)
     const cl_uint space = (cl_uint)(DEVICES_MAX - list.count);
     cl_uint found = 0;
     /* A platform without devices is no error of ours: others may have some. */
-    if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, space, list.ids + list.count, &found) == CL_SUCCESS) {
+    const cl_int error = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, space, list.ids + list.count, &found);
+    if (error == CL_SUCCESS) {
       list.count += (int)(found < space ? found : space);
+    } else {
+      list.call = "clGetDeviceIDs";
+      list.error = error;
     }
   }
   return list;
@@ -158,6 +163,14 @@ static bool contains(const char* text, const char* part)
   return false;
 }
 
+/* A simulator may call itself everything at once; a GPU is no CPU. */
+static bool is_gpu(cl_device_id id)
+{
+  cl_device_type type = 0;
+  return clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL) == CL_SUCCESS && (type & CL_DEVICE_TYPE_GPU) &&
+    !(type & CL_DEVICE_TYPE_CPU);
+}
+
 /* Index of the device that the selector means, -1 if none. */
 static int select_device(const device_list* list, const char* selector)
 {
@@ -167,11 +180,9 @@ static int select_device(const device_list* list, const char* selector)
     return index < (unsigned long)list->count ? (int)index : -1;
   }
   for (int i = 0; i < list->count; ++i) {
-    cl_device_type type = 0;
     char name[192];
     device_name(list->ids[i], name, sizeof name);
-    if (automatic ? clGetDeviceInfo(list->ids[i], CL_DEVICE_TYPE, sizeof type, &type, NULL) == CL_SUCCESS && (type & CL_DEVICE_TYPE_GPU)
-                  : contains(name, selector)) {
+    if (automatic ? is_gpu(list->ids[i]) : contains(name, selector)) {
       return i;
     }
   }
@@ -189,7 +200,7 @@ static stratus_status no_such_device(stratus_context* context, const device_list
     used += written > 0 ? (size_t)written : 0;
   }
   if (!list->count) {
-    snprintf(text, sizeof text, "none (clGetPlatformIDs: %s)", stratus_device_error_name(list->error));
+    snprintf(text, sizeof text, "none (%s: %s)", list->call, stratus_device_error_name(list->error));
   }
   return stratus_fail(context, STRATUS_NO_DEVICE, "no OpenCL device \"%.100s\"; there are: %s", selector, text);
 }
