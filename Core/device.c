@@ -61,6 +61,9 @@ stratus_status stratus_device_check(stratus_context* context, const stratus_devi
   if (error == CL_SUCCESS) {
     return STRATUS_OK;
   }
+  if (device->queue) {
+    clFinish(device->queue); /* the caller will release memory that launched kernels may still borrow */
+  }
   const bool memory = error == CL_OUT_OF_RESOURCES || error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_HOST_MEMORY;
   return stratus_fail(context, memory ? STRATUS_OUT_OF_MEMORY : STRATUS_DEVICE_ERROR, "%s failed on %s: %s (%d)", call, device->label,
     stratus_device_error_name(error), error);
@@ -375,8 +378,12 @@ stratus_status stratus_device_run(
   stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local)
 {
   stratus_device* device = context->device;
+  size_t rounded[3] = { 1, 1, 1 };
+  for (unsigned d = 0; d < dimensions && d < 3; ++d) {
+    rounded[d] = (global[d] + local[d] - 1) / local[d] * local[d];
+  }
   return CALL(context, device, "clEnqueueNDRangeKernel",
-    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global, local, 0, NULL, NULL));
+    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL));
 }
 
 stratus_status stratus_device_finish(stratus_context* context)

@@ -40,7 +40,8 @@ stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size
 
 /* Sets argument `index`. */
 stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value);
-/* Enqueues over `global` items in groups of `local` (both `dimensions` long, local fixed by the caller, global rounded up by it). In order. */
+/* Enqueues over `global` items, rounded up to whole groups of `local` (both `dimensions` long, 1..3; local > 0): the kernel ignores items
+ * beyond the end. In order. */
 stratus_status stratus_device_run(
   stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local);
 stratus_status stratus_device_finish(stratus_context* context);

@@ -27,8 +27,10 @@ static stratus_status check_camera(stratus_context* context, const stratus_camer
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
   }
   if (!finite3(camera->eye) || !finite3(camera->forward) || !finite3(camera->right) || !finite3(camera->up)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye (%g, %g, %g), forward (%g, %g, %g), right and up must be finite",
-      camera->eye[0], camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2]);
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera eye (%g, %g, %g), forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) must be finite", camera->eye[0],
+      camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2], camera->right[0], camera->right[1],
+      camera->right[2], camera->up[0], camera->up[1], camera->up[2]);
   }
   if (!(dot3(camera->forward, camera->forward) > 0.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera forward (0, 0, 0) has no direction");

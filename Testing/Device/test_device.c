@@ -50,7 +50,7 @@ static stratus_status use_device(stratus_context* context, float* values, bool b
   stratus_status status;
   const float factor = 2.0f;
   const cl_uint count = COUNT;
-  const size_t global = (COUNT + GROUP - 1) / GROUP * GROUP, local = GROUP, half = COUNT / 2 * sizeof(float);
+  const size_t global = COUNT, local = GROUP, half = COUNT / 2 * sizeof(float);
   TRY_CLEANUP(stratus_device_kernel_from(context, "test", scale_source, "-DADDED=1.0f", "scale", &kernel));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_WRITE, COUNT * sizeof(float), borrow ? values : NULL, borrow, &buffer));
   if (!borrow) {
@@ -178,7 +178,7 @@ static void a_launch_that_opencl_refuses_is_named(void** state)
   stratus_context* context = open_pocl(&allocator, NULL);
   cl_kernel kernel = NULL;
   cl_mem buffer = NULL;
-  const size_t global = 10, local = 3;
+  const size_t global = 10, local = (size_t)1 << 40; /* no device has such groups */
   float value = 1.0f;
   assert_int_equal(stratus_device_kernel_from(context, "test", scale_source, "-DADDED=1.0f", "clear", &kernel), STRATUS_OK);
   assert_int_equal(stratus_device_argument(context, kernel, 7, sizeof value, &value), STRATUS_DEVICE_ERROR);
