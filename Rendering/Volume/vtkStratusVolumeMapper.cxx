@@ -52,7 +52,7 @@ void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkStratusVolumeMapper::SetDevice(const char* device)
 {
   const std::string name = device && *device ? device : "auto";
-  if (name == this->Internal->Device) {
+  if (name == this->Internal->Context.GetDevice()) {
     return;
   }
   std::string error;
@@ -65,13 +65,13 @@ void vtkStratusVolumeMapper::SetDevice(const char* device)
 
 const char* vtkStratusVolumeMapper::GetDevice()
 {
-  return this->Internal->Device.c_str();
+  return this->Internal->Context.GetDevice().c_str();
 }
 
 const char* vtkStratusVolumeMapper::GetDeviceName()
 {
   std::string error;
-  return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context) : "";
+  return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context.Get()) : "";
 }
 
 const char* vtkStratusVolumeMapper::GetStructureAsString()

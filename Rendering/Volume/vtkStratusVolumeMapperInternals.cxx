@@ -17,79 +17,42 @@
 
 vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
   : Mapper(mapper)
+  , Context([this](double fraction) { return this->OnProgress(fraction); })
 {
+  this->Context.OnRelease = [this] {
+    stratus_ray_caster_destroy(this->Caster);
+    this->Caster = nullptr;
+    this->FullMilliseconds = 0.0;
+  };
 }
 
 vtkStratusVolumeMapper::Internals::~Internals()
 {
-  this->Replace(nullptr);
+  this->Context.OnRelease();
+  this->Context.OnRelease = nullptr; // members that it touches go before the context does
 }
 
-// ---------------------------------------------------------------- context
-
-int vtkStratusVolumeMapper::Internals::OnProgress(void* self, const char*, double fraction)
+bool vtkStratusVolumeMapper::Internals::OnProgress(double fraction)
 {
-  Internals* internals = static_cast<Internals*>(self);
-  internals->Mapper->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &fraction);
-  vtkRenderWindow* window = internals->Renderer ? internals->Renderer->GetRenderWindow() : nullptr;
-  return window && window->CheckAbortStatus() ? 1 : 0;
-}
-
-stratus_status vtkStratusVolumeMapper::Internals::CreateContext(const std::string& device, stratus_context** context, std::string& error) const
-{
-  stratus_context_options options = stratus_context_options_default();
-  options.device = device.c_str();
-  options.threads = this->Mapper->NumberOfThreads;
-  options.progress = &Internals::OnProgress;
-  options.progress_user = const_cast<Internals*>(this);
-  char message[1024] = "";
-  const stratus_status status = stratus_context_create(&options, context, message, sizeof message);
-  if (status != STRATUS_OK) {
-    error = message;
-    std::string list = "auto, host";
-    for (int i = 0; i < stratus_device_count(); ++i) {
-      char name[256];
-      if (stratus_device_name(i, name, sizeof name) == STRATUS_OK) {
-        list += ", " + std::to_string(i) + " (" + name + ")";
-      }
-    }
-    error += "; devices are " + list;
-  }
-  return status;
-}
-
-void vtkStratusVolumeMapper::Internals::Replace(stratus_context* context)
-{
-  stratus_ray_caster_destroy(this->Caster);
-  stratus_context_destroy(this->Context);
-  this->Caster = nullptr;
-  this->Context = context;
-  this->ContextThreads = this->Mapper->NumberOfThreads;
-  this->FullMilliseconds = 0.0;
+  this->Mapper->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &fraction);
+  vtkRenderWindow* window = this->Renderer ? this->Renderer->GetRenderWindow() : nullptr;
+  return window && window->CheckAbortStatus();
 }
 
 bool vtkStratusVolumeMapper::Internals::SetDevice(const std::string& device, std::string& error)
 {
-  stratus_context* context = nullptr;
-  if (this->CreateContext(device, &context, error) != STRATUS_OK) {
-    return false;
-  }
-  this->Replace(context);
-  this->Device = device;
-  return true;
+  return this->Context.Create(device, this->Mapper->NumberOfThreads, error);
 }
 
 bool vtkStratusVolumeMapper::Internals::PrepareContext(std::string& error)
 {
-  if (!this->Context || this->ContextThreads != this->Mapper->NumberOfThreads) {
-    stratus_context* context = nullptr;
-    if (this->CreateContext(this->Device, &context, error) != STRATUS_OK) {
-      return false;
-    }
-    this->Replace(context);
+  const int threads = this->Mapper->NumberOfThreads;
+  if ((!this->Context.Get() || this->Context.GetThreads() != threads) &&
+    !this->Context.Create(this->Context.GetDevice(), threads, error)) {
+    return false;
   }
-  if (!this->Caster && stratus_ray_caster_create(this->Context, &this->Caster) != STRATUS_OK) {
-    error = stratus_context_message(this->Context);
+  if (!this->Caster && stratus_ray_caster_create(this->Context.Get(), &this->Caster) != STRATUS_OK) {
+    error = stratus_context_message(this->Context.Get());
     return false;
   }
   return true;

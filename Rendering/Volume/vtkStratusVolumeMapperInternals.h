@@ -3,6 +3,7 @@
 #ifndef vtkStratusVolumeMapperInternals_h
 #define vtkStratusVolumeMapperInternals_h
 
+#include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
 #include "vtkStratusPicture.h"
@@ -28,9 +29,9 @@ public:
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   vtkImageData* GetLastImage();
 
-  std::string Device = "auto";
-  stratus_context* Context = nullptr;
+  vtkStratusVolumeMapper* Mapper;
   stratus_ray_caster* Caster = nullptr;
+  vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkStratusImageView Image;
   vtkStratusTransferView Transfer;
@@ -47,9 +48,7 @@ private:
     double Pixels = 1.0;
   };
 
-  static int OnProgress(void* self, const char* stage, double fraction);
-  stratus_status CreateContext(const std::string& device, stratus_context** context, std::string& error) const;
-  void Replace(stratus_context* context);
+  bool OnProgress(double fraction);
   bool CheckMapper(std::string& error) const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
@@ -60,9 +59,7 @@ private:
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error);
   const float* ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop);
 
-  vtkStratusVolumeMapper* Mapper;
   vtkRenderer* Renderer = nullptr; // while rendering
-  int ContextThreads = 0;
   vtkStratusPicture Picture;
   bool HasPicture = false;
   std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth;

@@ -110,7 +110,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(vtkRenderer* renderer, const stratu
     this->Caster, &this->Image.GetVolume(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
   this->Renderer = nullptr;
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
-    error = stratus_context_message(this->Context);
+    error = stratus_context_message(this->Context.Get());
   }
   return status == STRATUS_OK;
 }
@@ -123,8 +123,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return false;
   }
   // Checked here too, because the picture's rectangle already relies on it.
-  if (stratus_volume_check(this->Context, &this->Image.GetVolume()) != STRATUS_OK) {
-    error = stratus_context_message(this->Context);
+  if (stratus_volume_check(this->Context.Get(), &this->Image.GetVolume()) != STRATUS_OK) {
+    error = stratus_context_message(this->Context.Get());
     return false;
   }
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);

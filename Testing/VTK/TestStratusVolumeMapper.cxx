@@ -5,10 +5,12 @@
 
 namespace
 {
-// The steps of half a voxel taken here reach 60 dB on this field (README, figures); what is wrong by a pixel or a voxel falls below 40.
-constexpr double WantedDb = 55.0;
+// A quarter of a voxel a step reaches 82 dB and more on this field; a picture that is off by a pixel or half a voxel falls below 50.
+constexpr double SmoothDb = 78.0;
+// Nearest interpolation jumps at voxel walls, where a midpoint rule meets the reference only to within its step.
+constexpr double NearestDb = 58.0;
 
-void Compare(const char* what, const std::function<void(Scene&)>& change, vtkFloatArray* cells = nullptr)
+void Compare(const char* what, const std::function<void(Scene&)>& change, vtkFloatArray* cells = nullptr, double wanted = SmoothDb)
 {
   Scene scene;
   scene.Mapper->SetSampleDistance(0.25);
@@ -17,10 +19,9 @@ void Compare(const char* what, const std::function<void(Scene&)>& change, vtkFlo
   CHECK(scene.Errors->Count == 0, "%s: %s", what, scene.Errors->Text.c_str());
   const double psnr = ReferencePsnr(scene, nullptr, cells);
   std::printf("%-28s %6.1f dB\n", what, psnr);
-  CHECK(psnr >= WantedDb, "%s: %.1f dB against the reference", what, psnr);
-  const double* background = scene.Renderer->GetBackground();
-  // Half a step of rounding, and as much again for a GPU that blends in bytes.
-  const double shown = scene.ShownError(background);
+  CHECK(psnr >= wanted, "%s: %.1f dB against the reference", what, psnr);
+  // Half a step of rounding, and as much again for a window that blends in bytes.
+  const double shown = scene.ShownError(scene.Renderer->GetBackground());
   CHECK(shown <= 1.0, "%s: what is shown differs by %.2f of 255 from what was cast", what, shown);
 }
 
@@ -82,8 +83,8 @@ void Volumes()
   });
   Compare("nearest", [](Scene& s) {
     s.Volume->GetProperty()->SetInterpolationTypeToNearest();
-    s.Mapper->SetSampleDistance(0.03); // a step function needs a step to match
-  });
+    s.Mapper->SetSampleDistance(0.03);
+  }, nullptr, NearestDb);
   vtkNew<vtkFloatArray> cells;
   Compare("cell data", [&](Scene& s) {
     FillField(s.Image, true, "cells");

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusDistanceMapFilter.h"
+
+#include "vtkStratusContext.h"
+#include "vtkStratusInput.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+vtkStandardNewMacro(vtkStratusDistanceMapFilter);
+
+class vtkStratusDistanceMapFilter::Internals
+{
+public:
+  explicit Internals(vtkStratusDistanceMapFilter* filter)
+    : Filter(filter)
+    , Context([filter](double fraction) {
+      filter->UpdateProgress(fraction);
+      return filter->GetAbortExecute() != 0;
+    })
+  {
+  }
+  ~Internals() { this->Clear(); }
+
+  bool Build(vtkImageData* input, std::string& error);
+  void Fill(vtkImageData* input, vtkImageData* output);
+  void Clear();
+
+  vtkStratusDistanceMapFilter* Filter;
+  vtkStratusContext Context;
+  vtkSmartPointer<vtkVolumeProperty> Property;
+  vtkNew<vtkImageData> Last; // the last good output
+  bool HasLast = false;
+  stratus_occupancy* Occupancy = nullptr;
+
+private:
+  bool SetTransfer(std::string& error);
+
+  vtkStratusImageView Image;
+  vtkStratusTransferView PropertyView;
+  stratus_transfer Transfer;
+  std::vector<double> Opacity;
+  stratus_value_range* Ranges = nullptr;
+  stratus_distance_map* Map = nullptr;
+};
+
+void vtkStratusDistanceMapFilter::Internals::Clear()
+{
+  stratus_distance_map_destroy(this->Map);
+  stratus_occupancy_destroy(this->Occupancy);
+  stratus_value_range_destroy(this->Ranges);
+  this->Map = nullptr;
+  this->Occupancy = nullptr;
+  this->Ranges = nullptr;
+  this->Image.Release();
+}
+
+bool vtkStratusDistanceMapFilter::Internals::SetTransfer(std::string& error)
+{
+  if (this->Property) {
+    if (!this->PropertyView.Set(this->Property, error)) {
+      return false;
+    }
+    this->Transfer = this->PropertyView.GetTransfer();
+    return true;
+  }
+  const double lower = this->Filter->LowerThreshold, upper = this->Filter->UpperThreshold;
+  if (!(lower <= upper)) {
+    error = "LowerThreshold is " + std::to_string(lower) + " and UpperThreshold " + std::to_string(upper) + ", lower must be <= upper";
+    return false;
+  }
+  // One where the range is, steps at its finite ends.
+  const double infinity = std::numeric_limits<double>::infinity();
+  this->Opacity.clear();
+  if (std::isfinite(lower)) {
+    this->Opacity = { std::nextafter(lower, -infinity), 0.0, lower, 1.0 };
+  }
+  if (std::isfinite(upper)) {
+    this->Opacity.insert(this->Opacity.end(), { upper, 1.0, std::nextafter(upper, infinity), 0.0 });
+  }
+  if (this->Opacity.empty()) {
+    this->Opacity = { 0.0, 1.0 };
+  }
+  static const double white[4] = { 0, 1, 1, 1 };
+  this->Transfer = stratus_transfer_default();
+  this->Transfer.opacity = this->Opacity.data();
+  this->Transfer.opacity_count = this->Opacity.size() / 2;
+  this->Transfer.color = white;
+  this->Transfer.color_count = 1;
+  return true;
+}
+
+bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::string& error)
+{
+  if (!input || input->GetNumberOfPoints() < 1) {
+    error = "the input image is empty, it needs at least one point";
+    return false;
+  }
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* array = this->Filter->GetInputArrayToProcess(0, input, association);
+  if (!array) {
+    error = "there is no such scalar array: " + vtkStratusArrayNames(input);
+    return false;
+  }
+  if (!this->Image.Set(input, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error) || !this->SetTransfer(error) ||
+    (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
+    return false;
+  }
+  stratus_context* context = this->Context.Get();
+  const stratus_distance_kind kinds[] = { STRATUS_DISTANCE_BLOCK, STRATUS_DISTANCE_FULL, STRATUS_DISTANCE_PAPER, STRATUS_DISTANCE_OCTANT };
+  if (stratus_value_range_create(context, &this->Image.GetVolume(), this->Filter->BlockSize, &this->Ranges) != STRATUS_OK ||
+    stratus_occupancy_create(context, this->Ranges, &this->Transfer, STRATUS_SAMPLING_MIDPOINT, &this->Occupancy) != STRATUS_OK ||
+    stratus_distance_map_create(context, this->Occupancy, kinds[this->Filter->Kind], &this->Map) != STRATUS_OK) {
+    error = stratus_context_message(context);
+    return false;
+  }
+  return true;
+}
+
+void vtkStratusDistanceMapFilter::Internals::Fill(vtkImageData* input, vtkImageData* output)
+{
+  int64_t blocks[3];
+  int size;
+  stratus_occupancy_blocks(this->Occupancy, blocks, &size);
+  const stratus_volume& volume = this->Image.GetVolume();
+  double origin[3];
+  double spacing[3];
+  for (int a = 0; a < 3; ++a) {
+    spacing[a] = size * volume.spacing[a];
+    origin[a] = volume.origin[a];
+    for (int b = 0; b < 3; ++b) {
+      origin[a] += volume.cell_centered ? 0.5 * volume.direction[3 * a + b] * volume.spacing[b] : 0.0;
+    }
+  }
+  output->Initialize();
+  output->SetDimensions(static_cast<int>(blocks[0] + 1), static_cast<int>(blocks[1] + 1), static_cast<int>(blocks[2] + 1));
+  output->SetOrigin(origin);
+  output->SetSpacing(spacing);
+  output->SetDirectionMatrix(input->GetDirectionMatrix());
+  vtkNew<vtkUnsignedCharArray> distances;
+  distances->SetName("Distance");
+  distances->SetNumberOfTuples(static_cast<vtkIdType>(blocks[0] * blocks[1] * blocks[2]));
+  unsigned char* distance = distances->GetPointer(0);
+  for (int64_t k = 0; k < blocks[2]; ++k) {
+    for (int64_t j = 0; j < blocks[1]; ++j) {
+      for (int64_t i = 0; i < blocks[0]; ++i) {
+        *distance++ = static_cast<unsigned char>(stratus_distance_map_get(this->Map, this->Filter->Octant, i, j, k));
+      }
+    }
+  }
+  output->GetCellData()->SetScalars(distances);
+}
+
+vtkStratusDistanceMapFilter::vtkStratusDistanceMapFilter()
+  : LowerThreshold(-std::numeric_limits<double>::infinity())
+  , UpperThreshold(std::numeric_limits<double>::infinity())
+  , Internal(new Internals(this))
+{
+}
+
+vtkStratusDistanceMapFilter::~vtkStratusDistanceMapFilter() = default;
+
+void vtkStratusDistanceMapFilter::ThresholdBetween(double lower, double upper)
+{
+  this->SetLowerThreshold(lower);
+  this->SetUpperThreshold(upper);
+}
+
+void vtkStratusDistanceMapFilter::SetVolumeProperty(vtkVolumeProperty* property)
+{
+  if (this->Internal->Property != property) {
+    this->Internal->Property = property;
+    this->Modified();
+  }
+}
+
+vtkVolumeProperty* vtkStratusDistanceMapFilter::GetVolumeProperty()
+{
+  return this->Internal->Property;
+}
+
+vtkMTimeType vtkStratusDistanceMapFilter::GetMTime()
+{
+  const vtkMTimeType time = this->Superclass::GetMTime();
+  return this->Internal->Property ? std::max(time, this->Internal->Property->GetMTime()) : time;
+}
+
+const char* vtkStratusDistanceMapFilter::GetKindAsString()
+{
+  const char* const names[] = { "block", "full", "paper", "octant" };
+  return names[this->Kind];
+}
+
+int vtkStratusDistanceMapFilter::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  vtkInformation* output = outputs->GetInformationObject(0);
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  const vtkInformation* array = this->GetInputArrayInformation(0);
+  const bool cells = const_cast<vtkInformation*>(array)->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const int size = this->BlockSize > 0 ? this->BlockSize : 4; // others are refused when there are data
+  int blocks[6];
+  for (int a = 0; a < 3; ++a) {
+    const int length = extent[2 * a + 1] - extent[2 * a] - (cells ? 1 : 0);
+    blocks[2 * a] = 0;
+    blocks[2 * a + 1] = std::max(1, (length + size - 1) / size);
+  }
+  output->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), blocks, 6);
+  return 1;
+}
+
+int vtkStratusDistanceMapFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  int extent[6];
+  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent, 6);
+  return 1;
+}
+
+int vtkStratusDistanceMapFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* input = vtkImageData::GetData(inputs[0]);
+  vtkImageData* output = vtkImageData::GetData(outputs);
+  std::string error;
+  const bool built = this->Internal->Build(input, error);
+  if (built) {
+    this->Internal->Fill(input, output);
+    this->OccupiedBlocks = static_cast<vtkIdType>(stratus_occupancy_count(this->Internal->Occupancy));
+    this->Internal->Last->ShallowCopy(output);
+    this->Internal->HasLast = true;
+  } else {
+    vtkErrorMacro(<< error);
+    if (this->Internal->HasLast) { // the pipeline has emptied it
+      output->ShallowCopy(this->Internal->Last);
+    }
+  }
+  this->Internal->Clear();
+  return built ? 1 : 0;
+}
+
+void vtkStratusDistanceMapFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "LowerThreshold: " << this->LowerThreshold << "\n";
+  os << indent << "UpperThreshold: " << this->UpperThreshold << "\n";
+  os << indent << "VolumeProperty: " << this->Internal->Property.Get() << "\n";
+  os << indent << "BlockSize: " << this->BlockSize << "\n";
+  os << indent << "Kind: " << this->GetKindAsString() << "\n";
+  os << indent << "Octant: " << this->Octant << "\n";
+  os << indent << "OccupiedBlocks: " << this->OccupiedBlocks << "\n";
+}
