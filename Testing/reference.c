@@ -20,7 +20,6 @@ typedef struct grid {
   int64_t blocks[3];
   uint8_t* shown;   /* per block */
   bool linear;
-  bool restricted; /* some piece of the grid belongs to others */
 } grid;
 
 typedef struct cell {
@@ -209,14 +208,14 @@ static bool cell_hidden(const grid* g, const int64_t at[3])
   for (int c = 0; c < 8; ++c) {
     const int64_t i = clamp_index(at[0] + (c & 1), n[0]), j = clamp_index(at[1] + (c >> 1 & 1), n[1]), k = clamp_index(at[2] + (c >> 2), n[2]);
     const int64_t p = (k * n[1] + j) * n[0] + i;
-    if (v->cell_ghosts && v->cell_centered && (v->cell_ghosts[p] & STRATUS_GHOST_HIDDEN_CELL)) {
+    if (v->cell_ghosts && v->cell_centered && g->linear && (v->cell_ghosts[p] & STRATUS_GHOST_HIDDEN_CELL)) {
       return true;
     }
     if (v->point_ghosts && !v->cell_centered) {
       if (v->point_ghosts[p] & STRATUS_GHOST_HIDDEN_POINT) {
         return true;
       }
-      duplicates += (v->point_ghosts[p] & STRATUS_GHOST_DUPLICATE) != 0;
+      duplicates += !v->cell_ghosts && (v->point_ghosts[p] & STRATUS_GHOST_DUPLICATE);
     }
   }
   return duplicates == 8;
@@ -232,6 +231,17 @@ static void load_cell(const grid* g, const int64_t at[3], cell* c)
       clamp_index(at[2] + (k >> 2), n[2]));
     c->shown = c->shown && (!g->linear || isfinite(c->corner[k]));
   }
+}
+
+/* Values in cells: is the cell around p another piece's or, where its value alone counts, hidden? */
+static bool own_cell_hidden(const grid* g, const double p[3])
+{
+  const int64_t* n = g->volume->dimensions;
+  const int64_t i = clamp_index((int64_t)floor(p[0] + 0.5), n[0]);
+  const int64_t j = clamp_index((int64_t)floor(p[1] + 0.5), n[1]);
+  const int64_t k = clamp_index((int64_t)floor(p[2] + 0.5), n[2]);
+  const unsigned flags = STRATUS_GHOST_DUPLICATE | (g->linear ? 0u : STRATUS_GHOST_HIDDEN_CELL);
+  return g->volume->cell_ghosts[(k * n[1] + j) * n[0] + i] & flags;
 }
 
 static double lerp(double a, double b, double t)
@@ -255,7 +265,7 @@ static double sample(const grid* g, const double p[3], cell* c)
   if (at[0] != c->at[0] || at[1] != c->at[1] || at[2] != c->at[2]) {
     load_cell(g, at, c);
   }
-  if (!c->shown) {
+  if (!c->shown || (g->volume->cell_ghosts && g->volume->cell_centered && own_cell_hidden(g, p))) {
     return (double)NAN;
   }
   if (!g->linear) {

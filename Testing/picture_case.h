@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Small smooth volumes at random, views of them, and their pictures by the ray caster and by the reference: what the picture tests share. */
+#ifndef STRATUS_TESTING_PICTURE_CASE_H
+#define STRATUS_TESTING_PICTURE_CASE_H
+
+#include "reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define CASE_WIDTH 52
+#define CASE_HEIGHT 44
+#define CASE_PIXELS (CASE_WIDTH * CASE_HEIGHT)
+
+typedef struct picture {
+  float rgba[4 * CASE_PIXELS];
+  float depth[CASE_PIXELS];
+  uint32_t samples[CASE_PIXELS];
+  stratus_ray_cast_report report;
+} picture;
+
+typedef struct picture_case {
+  stratus_volume volume;
+  stratus_transfer transfer;
+  stratus_camera camera;
+  stratus_ray_cast_options options;
+  const float* opaque_depth;
+  double opacity[8];
+  double color[12];
+  void* values;
+  uint8_t* point_ghosts;
+  uint8_t* cell_ghosts;
+} picture_case;
+
+static const char* const case_type_names[] = { "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64" };
+
+/* Values are base + scale*f, f within -1..1: what each type is filled with. */
+static const struct {
+  double base, scale;
+} case_type_values[] = { { 3, 120 }, { 127, 120 }, { -200, 30000 }, { 32000, 31000 }, { 1e9, 1e6 }, { 3e9, 1e6 }, { -4e15, 1e7 }, { 9e15, 1e7 },
+  { -20, 3 }, { 1e6, 0.001 } };
+
+static inline uint32_t case_random(uint32_t* state)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return *state >> 8;
+}
+
+static inline double case_uniform(uint32_t* state, double lo, double hi)
+{
+  return lo + (hi - lo) * (double)case_random(state) / 16777216.0;
+}
+
+static inline void case_store(void* values, stratus_type type, size_t at, double value)
+{
+  switch (type) {
+    case STRATUS_INT8: ((int8_t*)values)[at] = (int8_t)lround(value); break;
+    case STRATUS_UINT8: ((uint8_t*)values)[at] = (uint8_t)lround(value); break;
+    case STRATUS_INT16: ((int16_t*)values)[at] = (int16_t)lround(value); break;
+    case STRATUS_UINT16: ((uint16_t*)values)[at] = (uint16_t)lround(value); break;
+    case STRATUS_INT32: ((int32_t*)values)[at] = (int32_t)lround(value); break;
+    case STRATUS_UINT32: ((uint32_t*)values)[at] = (uint32_t)lround(value); break;
+    case STRATUS_INT64: ((int64_t*)values)[at] = (int64_t)llround(value); break;
+    case STRATUS_UINT64: ((uint64_t*)values)[at] = (uint64_t)llround(value); break;
+    case STRATUS_FLOAT32: ((float*)values)[at] = (float)value; break;
+    case STRATUS_FLOAT64: ((double*)values)[at] = value; break;
+  }
+}
+
+/* The smooth field at random: a few waves longer than 12 voxels. */
+static inline void case_fill(picture_case* c, uint32_t seed)
+{
+  enum { WAVES = 5 };
+  const int64_t* n = c->volume.dimensions;
+  double wave[WAVES][4];
+  for (int w = 0; w < WAVES; ++w) {
+    for (int a = 0; a < 3; ++a) {
+      wave[w][a] = case_uniform(&seed, -0.3, 0.3);
+    }
+    wave[w][3] = case_uniform(&seed, 0.0, 6.28);
+  }
+  const double base = case_type_values[c->volume.type].base;
+  const double scale = case_type_values[c->volume.type].scale;
+  for (int64_t at = 0; at < n[0] * n[1] * n[2]; ++at) {
+    const double x = (double)(at % n[0]), y = (double)(at / n[0] % n[1]), z = (double)(at / n[0] / n[1]);
+    double f = 0.0;
+    for (int w = 0; w < WAVES; ++w) {
+      f += sin(wave[w][0] * x + wave[w][1] * y + wave[w][2] * z + wave[w][3]) / WAVES;
+    }
+    case_store(c->values, c->volume.type, (size_t)(at * c->volume.value_stride), base + scale * f);
+  }
+}
+
+/* World bounds, seen from camera of record `view`. */
+static inline void case_look(stratus_context* context, picture_case* c, int view, int parallel)
+{
+  double bounds[6];
+  assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
+  assert_int_equal(
+    stratus_scene_camera(context, bounds, 2, view, parallel, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
+}
+
+/* Unit spacing, about half of the volume transparent, samples a quarter of a voxel apart: so near that what is left against the reference is
+ * rounding and the sampling's own second-order error, and any misplaced half voxel or step stands out. */
+static inline void case_create(stratus_context* context, picture_case* c, stratus_type type, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
+{
+  memset(c, 0, sizeof *c);
+  c->volume = stratus_volume_default();
+  c->volume.type = type;
+  const int64_t n[3] = { nx, ny, nz };
+  for (int a = 0; a < 3; ++a) {
+    c->volume.dimensions[a] = n[a];
+    c->volume.spacing[a] = 1.0;
+  }
+  c->volume.value_stride = 1;
+  c->values = calloc((size_t)(nx * ny * nz), stratus_type_size(type));
+  assert_non_null(c->values);
+  c->volume.values = c->values;
+  case_fill(c, seed);
+  const double base = case_type_values[type].base;
+  const double scale = case_type_values[type].scale;
+  const double opacity[8] = { base - scale, 0, base + 0.02 * scale, 0, base + 0.3 * scale, 0.12, base + scale, 0.4 };
+  const double color[12] = { base, 0.2, 0.3, 0.9, base + 0.3 * scale, 0.9, 0.8, 0.2, base + scale, 1, 0.1, 0.1 };
+  memcpy(c->opacity, opacity, sizeof opacity);
+  memcpy(c->color, color, sizeof color);
+  c->transfer = stratus_transfer_default();
+  c->transfer.opacity = c->opacity;
+  c->transfer.opacity_count = 4;
+  c->transfer.color = c->color;
+  c->transfer.color_count = 3;
+  c->options = stratus_ray_cast_options_default();
+  c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c->options.sample_distance = 0.25;
+  c->options.termination = 1.0;
+  case_look(context, c, 0, 0);
+}
+
+/* One random case of everything at once: type, size, sampling, interpolation, holes, crop, planes, camera. */
+static inline void case_create_random(stratus_context* context, uint32_t seed, picture_case* c)
+{
+  uint32_t s = seed * 7919u + 13u;
+  const stratus_type type = (stratus_type)(case_random(&s) % 10);
+  const int64_t nx = 1 + case_random(&s) % 40, ny = 1 + case_random(&s) % 40, nz = 2 + case_random(&s) % 40;
+  case_create(context, c, type, nx, ny, nz, seed);
+  c->options.sampling = case_random(&s) % 2 ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED;
+  c->options.interpolation = case_random(&s) % 3 ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
+  c->options.sample_distance = case_uniform(&s, 0.2, 1.9);
+  c->options.termination = case_random(&s) % 2 ? 0.999 : 0.9;
+  c->volume.cell_centered = nx == 1 || ny == 1 || case_random(&s) % 3 == 0;
+  if (case_random(&s) % 2) { /* a narrow peak: mostly empty */
+    const double base = case_type_values[type].base, scale = case_type_values[type].scale;
+    const double peak[8] = { base + 0.1 * scale, 0, base + 0.13 * scale, 0.8, base + 0.16 * scale, 0, base + scale, 0 };
+    memcpy(c->opacity, peak, sizeof peak);
+  }
+  if (type >= STRATUS_FLOAT32 && case_random(&s) % 2) {
+    for (int i = 0; i < 20; ++i) {
+      case_store(c->values, type, case_random(&s) % (uint32_t)(nx * ny * nz), (double)(i % 2 ? NAN : INFINITY));
+    }
+  }
+  if (case_random(&s) % 4 == 0) {
+    c->cell_ghosts = calloc((size_t)(nx * ny * nz), 1);
+    for (int i = 0; i < 10; ++i) {
+      c->cell_ghosts[case_random(&s) % (uint32_t)(nx * ny * nz)] = STRATUS_GHOST_HIDDEN_CELL;
+    }
+    c->volume.cell_ghosts = c->cell_ghosts;
+  }
+  if (case_random(&s) % 4 == 0) {
+    c->options.crop = 1;
+    for (int a = 0; a < 3; ++a) {
+      c->options.crop_bounds[2 * a] = case_uniform(&s, -2, 10);
+      c->options.crop_bounds[2 * a + 1] = c->options.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
+    }
+  }
+  if (case_random(&s) % 4 == 0) {
+    c->options.clip_plane_count = 1;
+    for (int a = 0; a < 3; ++a) {
+      c->options.clip_planes[0][a] = case_uniform(&s, -1, 1);
+    }
+    c->options.clip_planes[0][3] = case_uniform(&s, -5, 15);
+  }
+  case_look(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
+  if (case_random(&s) % 4 == 0) { /* from inside */
+    for (int a = 0; a < 3; ++a) {
+      c->camera.eye[a] = case_uniform(&s, 0, (double)c->volume.dimensions[a]);
+    }
+  }
+}
+
+static inline void case_destroy(picture_case* c)
+{
+  free(c->values);
+  free(c->point_ghosts);
+  free(c->cell_ghosts);
+}
+
+static inline void case_render_with(stratus_context* context, stratus_ray_caster* caster, const picture_case* c, picture* p)
+{
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples,
+    .opaque_depth = c->opaque_depth };
+  memset(&p->report, 0, sizeof p->report);
+  const stratus_status status = stratus_ray_caster_render(caster, &c->volume, &c->transfer, &c->camera, &c->options, &image, &p->report);
+  if (status != STRATUS_OK) {
+    print_error("render: %s: %s\n", stratus_status_name(status), stratus_context_message(context));
+  }
+  assert_int_equal(status, STRATUS_OK);
+}
+
+static inline void case_render(stratus_context* context, const picture_case* c, picture* p)
+{
+  stratus_ray_caster* caster = NULL;
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  case_render_with(context, caster, c, p);
+  stratus_ray_caster_destroy(caster);
+}
+
+static inline reference_scene case_scene(const picture_case* c)
+{
+  reference_scene scene = { .volume = &c->volume, .transfer = &c->transfer, .camera = &c->camera, .interpolation = c->options.interpolation,
+    .opaque_depth = c->opaque_depth, .crop = c->options.crop, .clip_plane_count = c->options.clip_plane_count };
+  memcpy(scene.crop_bounds, c->options.crop_bounds, sizeof scene.crop_bounds);
+  memcpy(scene.clip_planes, c->options.clip_planes, sizeof scene.clip_planes);
+  return scene;
+}
+
+/* Pixels with any alpha, so that no test passes on an empty picture. */
+static inline int case_lit(const picture* p)
+{
+  int lit = 0;
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    lit += p->rgba[4 * i + 3] > 0.0f;
+  }
+  return lit;
+}
+
+/* PSNR of the ray caster's picture against the reference. */
+static inline double case_psnr(const char* what, stratus_context* context, const picture_case* c, picture* p)
+{
+  static float reference[4 * CASE_PIXELS];
+  const reference_scene scene = case_scene(c);
+  double reference_db = 0.0;
+  case_render(context, c, p);
+  assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 70.0, reference, NULL, &reference_db), 0);
+  const double db = reference_psnr(p->rgba, reference, CASE_PIXELS);
+  print_message("             %s: %.1f dB, reference %.0f dB, %d pixels\n", what, db, reference_db, case_lit(p));
+  return db;
+}
+
+static inline stratus_context* case_context(const char* device, int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  char message[512];
+  options.device = device;
+  options.threads = threads;
+  const stratus_status status = stratus_context_create(&options, &context, message, sizeof message);
+  if (status != STRATUS_OK) {
+    print_error("context on %s: %s\n", device, message);
+  }
+  assert_int_equal(status, STRATUS_OK);
+  return context;
+}
+
+#endif
