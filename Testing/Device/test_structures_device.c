@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Structures built by an OpenCL device against the host's, to the bit. A context chooses by its device, so the
+ * builders of the device are called themselves, and the host's by a context of its own. */
+#include "structures.h"
+
+#include "device.h"
+#include "structures_device.h"
+
+#include <stdio.h>
+
+static stratus_context *device, *host_context;
+
+/* The same object with its own arrays, full of something else, for the device to fill. */
+static stratus_value_range blank_ranges(const stratus_value_range* host)
+{
+  const size_t count = (size_t)(host->blocks[0] * host->blocks[1] * host->blocks[2]);
+  stratus_value_range r = *host;
+  r.lo = malloc(count * sizeof(float));
+  r.hi = malloc(count * sizeof(float));
+  r.gaps = malloc(count);
+  assert_non_null(r.lo);
+  assert_non_null(r.hi);
+  assert_non_null(r.gaps);
+  memset(r.lo, 0x55, count * sizeof(float));
+  memset(r.hi, 0x55, count * sizeof(float));
+  memset(r.gaps, 0x55, count);
+  return r;
+}
+
+static void compare_ranges(const test_volume* v, int size)
+{
+  stratus_value_range* host = NULL;
+  assert_int_equal(stratus_value_range_create(host_context, &v->view, size, &host), STRATUS_OK);
+  if (!stratus_device_takes_volume(device, &v->view)) {
+    assert_true(stratus_type_is_wide(v->view.type)); /* small as it is, only the want of doubles may forbid it */
+    stratus_value_range_destroy(host);
+    return;
+  }
+  stratus_value_range r = blank_ranges(host);
+  const size_t count = (size_t)(host->blocks[0] * host->blocks[1] * host->blocks[2]);
+  if (stratus_device_value_range(device, &v->view, &r) != STRATUS_OK) {
+    fail_msg("%s", stratus_context_message(device));
+  }
+  assert_memory_equal(r.lo, host->lo, count * sizeof(float));
+  assert_memory_equal(r.hi, host->hi, count * sizeof(float));
+  assert_memory_equal(r.gaps, host->gaps, count);
+  free(r.lo);
+  free(r.hi);
+  free(r.gaps);
+  stratus_value_range_destroy(host);
+}
+
+static void value_ranges_of_every_type_equal_the_hosts(void** state)
+{
+  uint32_t random = 1;
+  (void)state;
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
+    for (int repeat = 0; repeat < 6; repeat++) {
+      test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+        1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
+      compare_ranges(&v, 2 << random_below(&random, 3));
+      spoil(&v, 5, &random);
+      compare_ranges(&v, 2);
+      free_volume(&v);
+    }
+    test_volume v = make_volume((stratus_type)type, 131, 17, 9, 1, &random);
+    spoil(&v, 200, &random);
+    compare_ranges(&v, 4);
+    compare_ranges(&v, 32);
+    free_volume(&v);
+  }
+}
+
+static void compare_occupancy(const stratus_value_range* ranges, const stratus_transfer* transfer, stratus_sampling sampling)
+{
+  stratus_table* table = NULL;
+  stratus_occupancy *host = NULL, filled;
+  const size_t count = (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]);
+  assert_int_equal(
+    stratus_table_create(host_context, transfer, 0.0, ranges->whole_lo, ranges->whole_hi, sampling, 1.0, &table), STRATUS_OK);
+  assert_int_equal(stratus_occupancy_build(host_context, ranges, table, &host), STRATUS_OK);
+  filled = *host;
+  filled.occupied = malloc(count);
+  assert_non_null(filled.occupied);
+  memset(filled.occupied, 0x55, count);
+  if (stratus_device_occupancy(device, ranges, table, &filled) != STRATUS_OK) {
+    fail_msg("%s", stratus_context_message(device));
+  }
+  assert_memory_equal(filled.occupied, host->occupied, count);
+  free(filled.occupied);
+  stratus_occupancy_destroy(host);
+  stratus_table_destroy(table);
+}
+
+static void occupancy_equals_the_hosts(void** state)
+{
+  static const double white[4] = { 0, 1, 1, 1 };
+  static const double opacity[][8] = { { -1, 0, 0.5, 0, 0.8, 0.4, 1, 1 }, { -1, 0, 0.41, 0, 0.411, 0.9, 0.412, 0 }, { -1, 0, 0, 0, 0.5, 0, 1, 0 } };
+  uint32_t random = 2;
+  (void)state;
+  for (int repeat = 0; repeat < 12; repeat++) {
+    test_volume v = make_volume(STRATUS_FLOAT32, 1 + random_below(&random, 200), 1 + random_below(&random, 12),
+      1 + random_below(&random, 12), 1, &random);
+    float* values = v.values;
+    for (int64_t i = 0; i < v.view.dimensions[0] * v.view.dimensions[1] * v.view.dimensions[2]; i++) {
+      values[i] = values[i] > 0.9f ? values[i] : 0.01f * values[i]; /* mostly quiet: some blocks stay empty */
+    }
+    spoil(&v, 300, &random);
+    stratus_value_range* ranges = NULL;
+    assert_int_equal(stratus_value_range_create(host_context, &v.view, 2, &ranges), STRATUS_OK);
+    for (size_t f = 0; f < sizeof opacity / sizeof *opacity && ranges->whole_lo <= ranges->whole_hi; f++) {
+      stratus_transfer transfer = stratus_transfer_default();
+      transfer.opacity = opacity[f];
+      transfer.opacity_count = 4;
+      transfer.color = white;
+      transfer.color_count = 1;
+      compare_occupancy(ranges, &transfer, STRATUS_SAMPLING_MIDPOINT);
+      compare_occupancy(ranges, &transfer, STRATUS_SAMPLING_PREINTEGRATED);
+    }
+    stratus_value_range_destroy(ranges);
+    free_volume(&v);
+  }
+}
+
+static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
+{
+  stratus_occupancy* o = make_occupancy(host_context, nx, ny, nz, fill, random);
+  assert_true(stratus_device_takes_blocks(device, o->blocks));
+  for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+    stratus_distance_map *host = NULL, filled;
+    assert_int_equal(stratus_distance_map_create(host_context, o, (stratus_distance_kind)kind, &host), STRATUS_OK);
+    filled = *host;
+    filled.bytes = malloc(host->bytes_size);
+    assert_non_null(filled.bytes);
+    memset(filled.bytes, 0x55, host->bytes_size);
+    if (stratus_device_distance_map(device, o, &filled) != STRATUS_OK) {
+      fail_msg("%s", stratus_context_message(device));
+    }
+    for (size_t row = 0; row < (host->bytes_size - 64) / host->pitch; row++) {
+      assert_memory_equal(filled.bytes + row * host->pitch, host->bytes + row * host->pitch, (size_t)nx);
+    }
+    free(filled.bytes);
+    stratus_distance_map_destroy(host);
+  }
+  stratus_occupancy_destroy(o);
+}
+
+static void distance_maps_equal_the_hosts(void** state)
+{
+  uint32_t random = 3;
+  (void)state;
+  for (int grid = 0; grid < 40; grid++) {
+    compare_maps(1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+      grid < 6 ? grid % 3 : random_below(&random, 60), &random);
+  }
+  compare_maps(70, 5, 3, 60, &random);
+  compare_maps(3, 70, 5, 60, &random);
+  compare_maps(300, 2, 1, 2, &random);
+  compare_maps(40, 33, 29, 3000, &random);
+}
+
+static void only_a_gpu_is_asked_to_build(void** state)
+{
+  (void)state;
+  assert_false(stratus_structures_on_device(host_context));
+  assert_int_equal(stratus_structures_on_device(device), !stratus_device_is_cpu(device->device));
+}
+
+static int open_device(void** state)
+{
+  (void)state;
+  stratus_context_options options = stratus_context_options_default();
+  char message[1024];
+  options.device = "0";
+  if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {
+    fprintf(stderr, "%s\n", message);
+    return -1;
+  }
+  host_context = make_context("host", 2);
+  return 0;
+}
+
+static int close_device(void** state)
+{
+  (void)state;
+  stratus_context_destroy(device);
+  stratus_context_destroy(host_context);
+  return 0;
+}
+
+int main(void)
+{
+  if (stratus_device_count() == 0) {
+    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+    return 77;
+  }
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(value_ranges_of_every_type_equal_the_hosts),
+    cmocka_unit_test(occupancy_equals_the_hosts),
+    cmocka_unit_test(distance_maps_equal_the_hosts),
+    cmocka_unit_test(only_a_gpu_is_asked_to_build),
+  };
+  return cmocka_run_group_tests(tests, open_device, close_device);
+}
