@@ -31,16 +31,6 @@ set_property(GLOBAL PROPERTY _vtk_module_autoinit_include "${VTK_AUTOINIT_INCLUD
 vtk_module_find_modules(stratus_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Filters")
 vtk_module_find_modules(stratus_module_files_rendering "${CMAKE_CURRENT_SOURCE_DIR}/Rendering")
 list(APPEND stratus_module_files ${stratus_module_files_rendering})
-foreach (file IN LISTS stratus_module_files)
-  get_filename_component(folder "${file}" DIRECTORY)
-  if (NOT EXISTS "${folder}/CMakeLists.txt")
-    list(REMOVE_ITEM stratus_module_files "${file}")
-  endif ()
-endforeach ()
-if (NOT stratus_module_files)
-  message(WARNING "not there yet: no vtk.module below Filters or Rendering")
-  return ()
-endif ()
 set(stratus_vtk ON)
 vtk_module_scan(
   MODULE_FILES ${stratus_module_files}

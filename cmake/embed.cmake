@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake -DFOLDER=kernels -DNAMES=a,b -DOUT=kernels_embedded.c -P embed.cmake
 # Writes the entry points a.cl, b.cl as byte arrays, each #include "x.h" replaced, once a kernel, by the file itself: an OpenCL device sees no
-# file system. #line keeps build logs readable. Files that are not there are left out, and stratus_kernel_source() returns NULL for them.
+# file system. #line keeps build logs readable.
 cmake_minimum_required(VERSION 3.20)
 
 set(quote_include "(^|\n)[ \t]*#[ \t]*include[ \t]+\"([^\"\n]+)\"[^\n]*")
@@ -44,9 +44,6 @@ set(arrays "")
 set(cases "")
 string(REPLACE "," ";" names "${NAMES}")
 foreach (name IN LISTS names)
-  if (NOT EXISTS "${FOLDER}/${name}.cl")
-    continue ()
-  endif ()
   set_property(GLOBAL PROPERTY seen "")
   expand("${name}.cl" text)
   string(HEX "${text}" hex)
