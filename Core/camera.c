@@ -44,8 +44,8 @@ static stratus_status check_vector(stratus_context* context, const char* what, c
 }
 
 /* The camera whose window is half_height*aspect by half_height. */
-static stratus_status aim(stratus_context* context, const double eye[3], const double focal[3], const double view_up[3],
-  double half_height, double aspect, int parallel, stratus_camera* camera)
+static stratus_status aim(stratus_context* context, const double eye[3], const double focal[3], const double view_up[3], double half_height,
+  double aspect, int parallel, stratus_camera* camera)
 {
   TRY(check_vector(context, "eye", eye));
   TRY(check_vector(context, "focal", focal));

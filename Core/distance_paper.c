@@ -51,8 +51,8 @@ static void search_axis(const stratus_context* context, const int64_t n[3], int 
 }
 
 /* Distance to the nearest block whose occupancy is `target`. swap: as large as distance; lines: the larger of the y and z planes. */
-static void transform(const stratus_context* context, const stratus_occupancy* occupancy, int target, uint8_t* distance, uint8_t* swap,
-  uint8_t* lines)
+static void transform(
+  const stratus_context* context, const stratus_occupancy* occupancy, int target, uint8_t* distance, uint8_t* swap, uint8_t* lines)
 {
   const int64_t* n = occupancy->blocks;
 #pragma omp parallel for schedule(static) num_threads(context->threads)

@@ -14,10 +14,10 @@ typedef struct field {
   const uint8_t* occupied; /* of the box's first block */
   int64_t row, plane;      /* strides of occupied */
   int64_t n[3];
-  uint8_t target;          /* 1: distance to occupied blocks, 0: to empty ones */
-  size_t pitch;            /* of out and back */
-  uint8_t* out;            /* distances; the sweep towards +z leaves its result here */
-  uint8_t* back;           /* what the sweep towards -z starts from and leaves */
+  uint8_t target; /* 1: distance to occupied blocks, 0: to empty ones */
+  size_t pitch;   /* of out and back */
+  uint8_t* out;   /* distances; the sweep towards +z leaves its result here */
+  uint8_t* back;  /* what the sweep towards -z starts from and leaves */
 } field;
 
 /* A thread's rows: two to spread in, three of near distances, and two planes of those for the sweep along z. */
@@ -112,7 +112,8 @@ static void full_sweep(const field* f, const room* r, int up)
 }
 
 /* The row of inner distances of block row (j, k), if any, merged into the map's. */
-static void merge_inner(const stratus_distance_map* map, const distance_inner* inner, const uint8_t* occupied, int64_t j, int64_t k, uint8_t* row)
+static void merge_inner(
+  const stratus_distance_map* map, const distance_inner* inner, const uint8_t* occupied, int64_t j, int64_t k, uint8_t* row)
 {
   if (!inner->bytes) {
     for (int64_t x = 0; x < map->blocks[0]; x++) {
@@ -159,7 +160,7 @@ typedef struct sweep {
   const stratus_occupancy* occupancy;
   stratus_distance_map* map;
   field outer;
-  field within;     /* n[2] is 0 where there is nothing to find */
+  field within; /* n[2] is 0 where there is nothing to find */
   distance_inner inner;
   uint8_t* along[2]; /* OCTANT: distances along x towards - and + */
   uint8_t* rooms;
@@ -263,8 +264,13 @@ stratus_status stratus_distance_sweep(stratus_context* context, const stratus_oc
   sweep s = { .occupancy = occupancy, .map = map, .room_size = (room_bytes(n, map->pitch) + 63) / 64 * 64 };
   void* memory[5] = { NULL };
 
-  s.outer = (field){ .occupied = occupancy->occupied, .row = n[0], .plane = n[0] * n[1], .n = { n[0], n[1], n[2] }, .target = 1,
-    .pitch = map->pitch, .out = map->bytes };
+  s.outer = (field){ .occupied = occupancy->occupied,
+    .row = n[0],
+    .plane = n[0] * n[1],
+    .n = { n[0], n[1], n[2] },
+    .target = 1,
+    .pitch = map->pitch,
+    .out = map->bytes };
   choose_inner_box(&s, total);
   const size_t inner_bytes = s.within.pitch * (size_t)s.within.n[1] * (size_t)s.within.n[2];
   TRY_CLEANUP(stratus_allocate(context, (size_t)context->threads, s.room_size, &memory[0]));

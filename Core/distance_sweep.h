@@ -5,7 +5,7 @@
 
 #include "internal.h"
 
-#define DISTANCE_MAX 127     /* longer ones are told as this */
+#define DISTANCE_MAX 127      /* longer ones are told as this */
 #define DISTANCE_OCCUPIED 128 /* added to the inner distance of an occupied block */
 
 /* Distance of occupied blocks to the nearest empty one, known in the box [lo, lo+n), which holds all occupied blocks. */

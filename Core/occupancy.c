@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define SLACK 1e-6f /* as in stratus_table_shows() */
-#define RUN 256 /* blocks tested at once: their entries stay in the first cache */
+#define RUN 256     /* blocks tested at once: their entries stay in the first cache */
 
 #if defined(__x86_64__) && defined(__GNUC__)
 /* The entry of a value is a fused operation; without an instruction for it each one is a call. */
@@ -18,8 +18,8 @@
 #endif
 
 /* stratus_table_shows() of a run of blocks, cut in two so that the half with the arithmetic vectorises. */
-static ALWAYS_INLINE void test_run(const stratus_table* table, const float* restrict lo, const float* restrict hi, int64_t count,
-  uint8_t* restrict occupied)
+static ALWAYS_INLINE void test_run(
+  const stratus_table* table, const float* restrict lo, const float* restrict hi, int64_t count, uint8_t* restrict occupied)
 {
   int first[RUN], last[RUN];
   for (int64_t b = 0; b < count; b++) {
@@ -174,8 +174,8 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   const stratus_sampling used = sampling == STRATUS_SAMPLING_AUTO ? STRATUS_SAMPLING_PREINTEGRATED : sampling;
   const int any = ranges->whole_lo <= ranges->whole_hi;
   stratus_table* table = NULL;
-  TRY(stratus_table_create(
-    context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f, used, 1.0, &table));
+  TRY(
+    stratus_table_create(context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f, used, 1.0, &table));
   const stratus_status status = stratus_occupancy_build(context, ranges, table, out);
   stratus_table_destroy(table);
   return status;

@@ -13,7 +13,10 @@ typedef struct argument {
   const void* value;
 } argument;
 
-#define ARGUMENT(x) { sizeof(x), &(x) }
+#define ARGUMENT(x)                                                                                                                        \
+  {                                                                                                                                        \
+    sizeof(x), &(x)                                                                                                                        \
+  }
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 /* Runs `kernel` over at least nx*ny*nz items. */
@@ -143,8 +146,7 @@ stratus_status stratus_device_occupancy(
   TRY_CLEANUP(make_buffer(context, count, &occupied));
   const argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size), ARGUMENT(table->scale),
     ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
-  TRY_CLEANUP(run_kernel(
-    context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  TRY_CLEANUP(run_kernel(context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:

@@ -190,8 +190,9 @@ static stratus_status reduce_on_host(stratus_context* context, const stratus_vol
 #pragma omp parallel num_threads(threads)
   {
     const int thread = omp_get_thread_num();
-    span s = { .volume = volume, .bias = ranges->bias, .nx = volume->dimensions[0], .blocks = ranges->blocks[0],
-      .size = ranges->block_size };
+    span s = {
+      .volume = volume, .bias = ranges->bias, .nx = volume->dimensions[0], .blocks = ranges->blocks[0], .size = ranges->block_size
+    };
     give_room(&s, (uint8_t*)memory + (size_t)thread * room);
 #pragma omp for schedule(static)
     for (int64_t row = 0; row < rows; row++) {
@@ -320,8 +321,7 @@ static stratus_status allocate_blocks(stratus_context* context, const stratus_vo
   return STRATUS_OK;
 }
 
-stratus_status stratus_value_range_create(
-  stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+stratus_status stratus_value_range_create(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
 {
   stratus_status status = STRATUS_OK;
   stratus_value_range* ranges = NULL;
@@ -400,8 +400,7 @@ stratus_status stratus_value_range_whole(const stratus_value_range* ranges, doub
   return STRATUS_OK;
 }
 
-void stratus_value_range_block(
-  const stratus_value_range* ranges, int64_t i, int64_t j, int64_t k, double* low, double* high, int* gaps)
+void stratus_value_range_block(const stratus_value_range* ranges, int64_t i, int64_t j, int64_t k, double* low, double* high, int* gaps)
 {
   const int64_t block = (k * ranges->blocks[1] + j) * ranges->blocks[0] + i;
   if (low) {

@@ -27,7 +27,7 @@ static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
  * comparison. Returns non-zero if a value is not finite: an infinity that got in must be taken out again by NAME(careful). */
 static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* restrict lo, ACC* restrict hi)
 {
-  const TYPE *restrict a = rows[0], *restrict b = rows[1], *restrict c = rows[2], *restrict d = rows[3];
+  const TYPE* restrict a = rows[0], * restrict b = rows[1], * restrict c = rows[2], * restrict d = rows[3];
   int bad = 0;
   (void)bias;
   for (int64_t x = 0; x < nx; x++) {

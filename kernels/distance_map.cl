@@ -58,8 +58,8 @@ static int found(__global const uint* sums, const long n[3], const long at[3], c
 }
 
 /* One map: side_x, side_y, side_z are the octant's, or 0. */
-__kernel void search(__global const uchar* occupied, __global const uint* sums, long nx, long ny, long nz, int side_x, int side_y, int side_z,
-  long pitch, __global uchar* bytes)
+__kernel void search(__global const uchar* occupied, __global const uint* sums, long nx, long ny, long nz, int side_x, int side_y,
+  int side_z, long pitch, __global uchar* bytes)
 {
   const long n[3] = { nx, ny, nz };
   const long at[3] = { (long)get_global_id(0), (long)get_global_id(1), (long)get_global_id(2) };

@@ -53,8 +53,8 @@ static void right_is_right(void** state)
   (void)state;
   stratus_context* context = make_context("host", 1);
   stratus_camera camera;
-  assert_int_equal(stratus_camera_perspective(context, (const double[]){ 0, 0, 5 }, (const double[]){ 0, 0, 0 },
-                     (const double[]){ 0, 1, 0 }, 90.0, 2.0, &camera),
+  assert_int_equal(stratus_camera_perspective(
+                     context, (const double[]){ 0, 0, 5 }, (const double[]){ 0, 0, 0 }, (const double[]){ 0, 1, 0 }, 90.0, 2.0, &camera),
     STRATUS_OK);
   assert_near(camera.right[0], 2.0);
   assert_near(camera.up[1], 1.0);

@@ -82,8 +82,7 @@ static void blocks_are_occupied_exactly_where_the_table_shows(void** state)
       const stratus_transfer transfer = transfer_of(opacities[f], 4);
       for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; sampling++) {
         stratus_table* table = NULL;
-        assert_int_equal(
-          stratus_table_create(context, &transfer, 0.0, 0.0f, 1.0f, (stratus_sampling)sampling, 1.0, &table), STRATUS_OK);
+        assert_int_equal(stratus_table_create(context, &transfer, 0.0, 0.0f, 1.0f, (stratus_sampling)sampling, 1.0, &table), STRATUS_OK);
         for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
           stratus_value_range r;
           random_ranges(context, sizes[s], &r, &random);

@@ -58,8 +58,8 @@ static void check_block(const stratus_volume* v, const stratus_value_range* rang
   stratus_value_range_block(ranges, block[0], block[1], block[2], &low, &high, &gaps);
   if (ranges->lo[b] != e.lo || ranges->hi[b] != e.hi || gaps != e.gaps || ranges->gaps[b] != e.gaps) {
     fail_msg("type %d size %d block %d,%d,%d of a volume of %dx%dx%d stride %d: [%.9g, %.9g] gaps %d, not [%.9g, %.9g] %d", (int)v->type,
-      ranges->block_size, (int)block[0], (int)block[1], (int)block[2], (int)v->dimensions[0], (int)v->dimensions[1],
-      (int)v->dimensions[2], (int)v->value_stride, (double)ranges->lo[b], (double)ranges->hi[b], gaps, (double)e.lo, (double)e.hi, e.gaps);
+      ranges->block_size, (int)block[0], (int)block[1], (int)block[2], (int)v->dimensions[0], (int)v->dimensions[1], (int)v->dimensions[2],
+      (int)v->value_stride, (double)ranges->lo[b], (double)ranges->hi[b], gaps, (double)e.lo, (double)e.hi, e.gaps);
   }
   assert_true(low == (double)e.lo + ranges->bias && high == (double)e.hi + ranges->bias);
   assert_false(signbit(ranges->lo[b]) && ranges->lo[b] == 0.0f);
@@ -120,8 +120,8 @@ static void values_that_are_not_finite_are_skipped_and_flagged(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 200; repeat++) {
-    test_volume v = make_volume(repeat & 1 ? STRATUS_FLOAT32 : STRATUS_FLOAT64, 1 + random_below(&random, 20),
-      1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 2), &random);
+    test_volume v = make_volume(repeat & 1 ? STRATUS_FLOAT32 : STRATUS_FLOAT64, 1 + random_below(&random, 20), 1 + random_below(&random, 9),
+      1 + random_below(&random, 9), 1 + random_below(&random, 2), &random);
     spoil(&v, 1 + random_below(&random, 40), &random);
     check_volume(context, &v.view, 2 << random_below(&random, 3));
     free_volume(&v);
@@ -150,8 +150,8 @@ static void hidden_points_and_cells_are_flagged(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 200; repeat++) {
-    test_volume v = make_volume(STRATUS_UINT8, 1 + random_below(&random, 12), 1 + random_below(&random, 9),
-      1 + random_below(&random, 9), 1, &random);
+    test_volume v =
+      make_volume(STRATUS_UINT8, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1, &random);
     add_ghosts(&v, repeat & 1, 1 + random_below(&random, 60), &random);
     check_volume(context, &v.view, 2 << random_below(&random, 3));
     free_volume(&v);

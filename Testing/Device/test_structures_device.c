@@ -95,12 +95,13 @@ static void compare_occupancy(const stratus_value_range* ranges, const stratus_t
 static void occupancy_equals_the_hosts(void** state)
 {
   static const double white[4] = { 0, 1, 1, 1 };
-  static const double opacity[][8] = { { -1, 0, 0.5, 0, 0.8, 0.4, 1, 1 }, { -1, 0, 0.41, 0, 0.411, 0.9, 0.412, 0 }, { -1, 0, 0, 0, 0.5, 0, 1, 0 } };
+  static const double opacity[][8] = { { -1, 0, 0.5, 0, 0.8, 0.4, 1, 1 }, { -1, 0, 0.41, 0, 0.411, 0.9, 0.412, 0 },
+    { -1, 0, 0, 0, 0.5, 0, 1, 0 } };
   uint32_t random = 2;
   (void)state;
   for (int repeat = 0; repeat < 12; repeat++) {
-    test_volume v = make_volume(STRATUS_FLOAT32, 1 + random_below(&random, 200), 1 + random_below(&random, 12),
-      1 + random_below(&random, 12), 1, &random);
+    test_volume v = make_volume(
+      STRATUS_FLOAT32, 1 + random_below(&random, 200), 1 + random_below(&random, 12), 1 + random_below(&random, 12), 1, &random);
     float* values = v.values;
     for (int64_t i = 0; i < v.view.dimensions[0] * v.view.dimensions[1] * v.view.dimensions[2]; i++) {
       values[i] = values[i] > 0.9f ? values[i] : 0.01f * values[i]; /* mostly quiet: some blocks stay empty */
