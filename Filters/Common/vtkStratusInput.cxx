@@ -167,7 +167,8 @@ void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
   for (int a = 0; a < 3; ++a) {
     volume.origin[a] = origin[a];
     for (int b = 0; b < 3; ++b) {
-      volume.origin[a] += direction[3 * a + b] * volume.spacing[b] * extent[2 * b];
+      // A bad spacing is told as such, not as the origin that it makes.
+      volume.origin[a] += extent[2 * b] == 0 ? 0.0 : direction[3 * a + b] * volume.spacing[b] * extent[2 * b];
     }
   }
   for (int a = 0; a < 3; ++a) {

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All that an image can hold: types, memory layouts, arrays by name and number, ghosts and blanking, single layers; and cropping, clipping.
+#include "mapper_testing.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkImageShiftScale.h"
+#include "vtkPlane.h"
+#include "vtkSOADataArrayTemplate.h"
+
+namespace
+{
+// The field in 0..100, rounded, is exact in every type: all pictures must be the same to the bit.
+void Types()
+{
+  std::vector<float> first;
+  const int types[] = { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT, VTK_INT, VTK_UNSIGNED_INT, VTK_LONG,
+    VTK_UNSIGNED_LONG, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_FLOAT, VTK_DOUBLE };
+  for (int type : types) {
+    Scene scene(64, 48);
+    scene.Opacity->RemoveAllPoints();
+    scene.Opacity->AddPoint(10, 0);
+    scene.Opacity->AddPoint(100, 0.6);
+    vtkDataArray* field = scene.Image->GetPointData()->GetScalars();
+    auto typed = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+    typed->SetName("typed");
+    typed->SetNumberOfTuples(field->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < field->GetNumberOfTuples(); ++i) {
+      typed->SetTuple1(i, std::round(100.0 * field->GetTuple1(i)));
+    }
+    scene.Image->GetPointData()->SetScalars(typed);
+    const std::vector<float> picture = scene.Picture();
+    CHECK(scene.Errors->Count == 0, "%s: %s", typed->GetDataTypeAsString(), scene.Errors->Text.c_str());
+    CHECK(scene.Light() > 10.0, "%s: nothing to see", typed->GetDataTypeAsString());
+    if (first.empty()) {
+      first = picture;
+    }
+    double worst = 0.0;
+    for (size_t i = 0; i < picture.size(); ++i) {
+      worst = std::max(worst, std::fabs(static_cast<double>(picture[i]) - first[i]));
+    }
+    // Types of more than 24 bits are kept relative to their first value, 0 here, so nothing may differ.
+    CHECK(worst == 0.0, "%s differs from char by %g", typed->GetDataTypeAsString(), worst);
+  }
+}
+
+void Layouts()
+{
+  Scene scene(64, 48);
+  const std::vector<float> plain = scene.Picture();
+  vtkDataArray* field = scene.Image->GetPointData()->GetScalars();
+  vtkNew<vtkSOADataArrayTemplate<float>> arrays;
+  arrays->SetName("soa");
+  arrays->SetNumberOfComponents(1);
+  arrays->SetNumberOfTuples(field->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < field->GetNumberOfTuples(); ++i) {
+    arrays->SetValue(i, static_cast<float>(field->GetTuple1(i)));
+  }
+  vtkNew<vtkFloatArray> other;
+  other->DeepCopy(field);
+  other->Fill(0.0);
+  other->SetName("zero");
+  scene.Image->GetPointData()->AddArray(arrays);
+  scene.Image->GetPointData()->AddArray(other);
+  scene.Mapper->SetScalarModeToUsePointFieldData();
+  scene.Mapper->SelectScalarArray("soa");
+  CHECK(scene.Picture() == plain, "a structure of arrays gives another picture");
+  const vtkTypeUInt64 builds = scene.Mapper->GetRangeBuilds();
+  CHECK(scene.Picture() == plain && scene.Mapper->GetRangeBuilds() == builds, "a structure of arrays is read again for each picture");
+  scene.Mapper->SelectScalarArray("zero");
+  CHECK(scene.Light() == 0.0, "the array 'zero' shows");
+  scene.Mapper->SelectScalarArray(0);
+  CHECK(scene.Picture() == plain, "array number 0 gives another picture");
+  scene.Mapper->SelectScalarArray(2);
+  CHECK(scene.Light() == 0.0, "array number 2, 'zero', shows");
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
+// Blanked points and cells are transparent. What is left of a constant volume tells how many cells are.
+void Blanking()
+{
+  Scene scene(64, 48);
+  const double whole = scene.Light();
+  vtkNew<vtkUnsignedCharArray> cells;
+  cells->SetName(vtkDataSetAttributes::GhostArrayName());
+  cells->SetNumberOfTuples(scene.Image->GetNumberOfCells());
+  cells->Fill(0);
+  scene.Image->GetCellData()->AddArray(cells);
+  CHECK(scene.Light() == whole, "a ghost array of zeros changes the picture");
+  for (vtkIdType c = 0; c < cells->GetNumberOfTuples() / 2; ++c) {
+    cells->SetValue(c, vtkDataSetAttributes::HIDDENCELL);
+  }
+  cells->Modified();
+  const double half = scene.Light();
+  CHECK(half > 0.05 * whole && half < 0.95 * whole, "half of the cells hidden: light %g of %g", half, whole);
+  cells->Fill(vtkDataSetAttributes::HIDDENCELL);
+  cells->Modified();
+  CHECK(scene.Light() == 0.0, "hidden cells show");
+  scene.Image->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  CHECK(scene.Light() == whole, "cells stay hidden");
+
+  vtkNew<vtkUnsignedCharArray> points;
+  points->SetName(vtkDataSetAttributes::GhostArrayName());
+  points->SetNumberOfTuples(scene.Image->GetNumberOfPoints());
+  points->Fill(vtkDataSetAttributes::HIDDENPOINT);
+  scene.Image->GetPointData()->AddArray(points);
+  CHECK(scene.Light() == 0.0, "hidden points show");
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
+void Cropping()
+{
+  Scene scene;
+  scene.Mapper->SetSampleDistance(0.25);
+  scene.Image->SetExtent(5, 37, -4, 24, 0, 24);
+  scene.Image->SetOrigin(-2, 3, 1);
+  scene.Look(35, 20);
+  const double whole = scene.Light();
+  // VTK's planes are in the image's own coordinates: here voxels 12..25, 0..18, 3..20.
+  const double planes[6] = { -2 + 0.9 * 12, -2 + 0.9 * 25, 3, 3 + 18, 1 + 1.1 * 3, 1 + 1.1 * 20 };
+  scene.Mapper->CroppingOn();
+  scene.Mapper->SetCroppingRegionPlanes(planes);
+  const double part = scene.Light();
+  CHECK(part > 0.1 * whole && part < 0.9 * whole, "cropped light %g of %g", part, whole);
+  const double psnr = ReferencePsnr(scene, [&](reference_scene& reference) {
+    reference.crop = 1;
+    std::copy_n(planes, 6, reference.crop_bounds);
+  });
+  CHECK(psnr >= 76.0, "cropped: %.1f dB against the reference", psnr);
+  scene.Mapper->CroppingOff();
+  CHECK(scene.Light() == whole, "cropping that is off crops");
+}
+
+void Clipping()
+{
+  Scene scene;
+  scene.Mapper->SetSampleDistance(0.25);
+  scene.Volume->RotateX(30); // VTK's planes are in the world, not in the volume
+  scene.Look(35, 20);
+  const double whole = scene.Light();
+  vtkNew<vtkPlane> planes[2];
+  planes[0]->SetOrigin(12, 5, 12);
+  planes[0]->SetNormal(0.6, 0, 0.8);
+  planes[1]->SetOrigin(14, 8, 14);
+  planes[1]->SetNormal(-1, 0.2, 0);
+  for (auto& plane : planes) {
+    scene.Mapper->AddClippingPlane(plane);
+  }
+  const double part = scene.Light();
+  CHECK(part > 0.05 * whole && part < 0.95 * whole, "clipped light %g of %g", part, whole);
+  const double psnr = ReferencePsnr(scene, [&](reference_scene& reference) {
+    reference.clip_plane_count = 2;
+    for (int p = 0; p < 2; ++p) {
+      double normal[3], origin[3];
+      planes[p]->GetNormal(normal);
+      planes[p]->GetOrigin(origin);
+      std::copy_n(normal, 3, reference.clip_planes[p]);
+      reference.clip_planes[p][3] = -(normal[0] * origin[0] + normal[1] * origin[1] + normal[2] * origin[2]);
+    }
+  });
+  CHECK(psnr >= 76.0, "clipped: %.1f dB against the reference", psnr);
+}
+
+// Points in a single layer enclose no volume, cells in one do.
+void SingleLayers()
+{
+  Scene points(64, 48);
+  vtkNew<vtkImageData> flat;
+  flat->SetDimensions(20, 20, 1);
+  FillField(flat, false, "flat");
+  flat->GetPointData()->GetScalars()->Fill(1.0);
+  points.Mapper->SetInputData(flat);
+  points.Look(20, 30);
+  CHECK(points.Light() == 0.0, "a layer of points has a thickness");
+  Scene cells(64, 48);
+  vtkNew<vtkImageData> layer;
+  layer->SetDimensions(20, 20, 2);
+  FillField(layer, true, "layer");
+  layer->GetCellData()->GetScalars()->Fill(1.0);
+  cells.Mapper->SetInputData(layer);
+  cells.Look(20, 30);
+  CHECK(cells.Light() > 10.0, "a layer of cells does not show");
+  CHECK(points.Errors->Count + cells.Errors->Count == 0, "%s %s", points.Errors->Text.c_str(), cells.Errors->Text.c_str());
+}
+
+void Pipeline()
+{
+  Scene scene(64, 48);
+  const std::vector<float> before = scene.Picture();
+  vtkNew<vtkImageShiftScale> shift;
+  shift->SetInputData(scene.Image);
+  shift->SetOutputScalarTypeToFloat();
+  scene.Mapper->SetInputConnection(shift->GetOutputPort());
+  CHECK(scene.Picture() == before, "the same data by a pipeline give another picture");
+  shift->SetScale(0.5);
+  CHECK(scene.Picture() != before, "the mapper does not update its pipeline");
+}
+}
+
+int main()
+{
+  Types();
+  Layouts();
+  Blanking();
+  Cropping();
+  Clipping();
+  SingleLayers();
+  Pipeline();
+  return Failures == 0 ? 0 : 1;
+}
