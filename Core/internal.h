@@ -98,6 +98,7 @@ typedef struct stratus_table {
   float* rgba;         /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
   int32_t* sums;       /* NULL if midpoint: (size+1)*4 running sums of r tau, g tau, b tau, tau in units of .. */
   float sum_scale;     /* .. optical depth per entry and per sample distance */
+  float color_slope;   /* pre-integrated: most that a colour changes between neighbouring entries with opacity, times 256 */
   int shown;           /* entries with opacity */
 } stratus_table;
 

@@ -208,6 +208,7 @@ void stratus_ray_frame_structures(
     a->table_offset = table->offset;
     a->table_last = (float)(table->size - 1);
     a->tau_scale = table->sum_scale;
+    a->color_slope = table->color_slope;
   }
   a->structure = map != NULL;
   if (!map) {

@@ -12,6 +12,8 @@
 #define ENTRIES_A_FEATURE 32
 /* Opacity 1 is an infinite optical depth: this much lets 1e-7 of the light through. */
 #define OPAQUE_TAU 16.0
+/* Segments are cut into pieces until what averaging their colours gets wrong falls to about a sixth of one over this. */
+#define COLOR_ERROR_INVERSE 256.0
 /* Largest running sum: differences of sums stay positive ints. */
 #define SUM_MOST 2147483000.0
 
@@ -144,24 +146,35 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
   }
 }
 
-/* Two places of an entry stand for its width. Writes the four running sums in doubles. */
-static void fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
+/* Two places of an entry stand for its width. Writes the four running sums in doubles; returns the most that a colour changes from
+ * one entry to the next where either shows. */
+static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
+  double before[3] = { 0 }, steepest = 0.0, tau_before = 0.0;
   memset(sums, 0, 4 * sizeof *sums);
   for (int e = 0; e < size; ++e) {
     double* sum = sums + 4 * (size_t)e;
+    double color[3] = { 0 }, tau_here = 0.0;
     memcpy(sum + 4, sum, 4 * sizeof *sum);
     for (int place = 0; place < 2; ++place) {
       const double x = lo + (e + (place ? 0.25 : -0.25)) * width;
       const double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
       const double tau = outside(transfer, x) ? 0.0 : 0.5 * tau_of(transfer, opacity);
       for (size_t c = 0; c < 3; ++c) {
-        sum[4 + c] += tau * walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
+        color[c] = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
+        sum[4 + c] += tau * color[c];
       }
-      sum[7] += tau;
+      tau_here += tau;
     }
+    sum[7] += tau_here;
+    for (size_t c = 0; c < 3; ++c) {
+      steepest = e > 0 && tau_here + tau_before > 0.0 ? fmax(steepest, fabs(color[c] - before[c])) : steepest;
+      before[c] = color[c];
+    }
+    tau_before = tau_here;
   }
+  return steepest;
 }
 
 static stratus_status fill_preintegrated(
@@ -171,7 +184,7 @@ static stratus_status fill_preintegrated(
   void* memory = NULL;
   TRY(stratus_allocate(table->context, words, sizeof(double), &memory));
   double* sums = memory;
-  fill_sums(transfer, lo, width, table->size, sums);
+  table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, lo, width, table->size, sums));
   const double total = sums[words - 1], scale = total > 0.0 ? SUM_MOST / total : 0.0;
   for (size_t i = 0; i < words; ++i) {
     table->sums[i] = (int32_t)llrint(sums[i] * scale);

@@ -100,12 +100,14 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
   } while (m_any(need));
 }
 
-/* One sample for every live ray. */
+/* One sample for every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended hangs on the
+ * last sample's colour, and the next fetch need not wait for that. */
 INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, GLOBAL const void* table,
   stratus_packet* k)
 {
   const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
-  const vfloat lo = v_max(fi, k->begin), hi = v_min(fi + one, k->end), weight = hi - lo;
+  const vmask inside = vi_lt(k->i, k->last);
+  const vfloat lo = v_min(v_max(fi, k->begin), k->end), hi = v_min(fi + one, k->end), weight = hi - lo;
 #if STRATUS_PREINTEGRATED
   const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
   const vfloat s = v_select(k->fresh, lo, hi);
@@ -114,19 +116,18 @@ INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* 
   const vfloat s = v_set(0.5f) * (lo + hi);
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  const vfloat value = ray_value(a, values, hidden, x, k->live);
+  const vfloat value = ray_value(a, values, hidden, x, inside);
   k->samples -= mask_int(k->live);
 #if STRATUS_PREINTEGRATED
   const vmask valid = whole & v_finite(value) & v_finite(k->front);
-  if (m_any(valid)) {
-    integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
-  }
+  integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
   k->front = value;
+  k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
   k->fresh = m_none();
 #else
   shade_sample(a, (GLOBAL const float*)table, k, whole & v_finite(value), value, weight, lo);
+  k->i = k->i + vi_set(1);
 #endif
-  k->i = vi_select(whole, k->i + vi_set(1), k->i);
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
 

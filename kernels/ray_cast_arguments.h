@@ -23,6 +23,7 @@ typedef struct stratus_ray_cast_arguments {
   float last[3];                 /* largest position along each axis (cell_centered clamps to it) */
   float table_scale, table_offset, table_last;
   float tau_scale;               /* pre-integrated: optical depth of one unit of the sums */
+  float color_slope;             /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
   float termination;             /* of transparency: 1 - alpha */
   float world_step;              /* the sample distance as a float, for depth */
   int width, height;
@@ -46,6 +47,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 6 + 28)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 28)
 
 #endif

@@ -8,12 +8,8 @@
 
 /* When the structure is asked: as soon as so many lanes need it, all that are left do, or one has waited so many samples. A lane that waits
  * takes samples which add nothing. */
-#define SKIP_LANES ((3 * STRATUS_WIDTH) / 8)
-#define SKIP_PATIENCE 4
-
-/* Optical depth of a piece of a segment within which its colour may be averaged, and the most pieces to a segment. */
-#define PIECE_DEPTH 0.1f
-#define PIECES_MAX 16
+#define SKIP_LANES ((3 * STRATUS_WIDTH) / 4)
+#define SKIP_PATIENCE 16
 
 /* What wide types are relative to, and an index into any volume. */
 #ifdef STRATUS_DEVICE
@@ -107,6 +103,10 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   const vfloat zero = v_set(0.0f), one = v_set(1.0f), most = v_set(8e6f);
   k->begin = v_load(rays->begin);
   k->end = v_load(rays->end);
+  k->live = inside & v_lt(k->begin, k->end);
+  k->hits = k->live;
+  k->begin = v_select(k->live, k->begin, zero);
+  k->end = v_select(k->live, k->end, zero); /* lanes that are not live stay at a harmless place */
   k->first = v_load(rays->first);
   k->octant = vi_set(0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -116,10 +116,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     const vmask forward = v_lt(zero, k->inverse[axis]);
     k->octant = k->octant + vi_select(forward, vi_set(a->octant_stride << axis), vi_set(0));
   }
-  k->live = inside & v_lt(k->begin, k->end);
-  k->hits = k->live;
-  /* lanes that are not live stay at a harmless place */
-  const vint whole = v_to_int(v_select(k->live, v_min(k->end, most), zero));
+  const vint whole = v_to_int(v_min(k->end, most));
   k->last = vi_select(k->live & v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole);
   k->i = vi_set(0);
   if (a->has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
@@ -150,6 +147,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     k->last = i1;
     k->run = vi_set(0);
   }
+  k->last = vi_select(k->live, k->last, vi_set(0));
   k->live = k->live & vi_lt(k->i, k->last);
   k->transparency = one;
   k->red = k->green = k->blue = k->front = zero;
@@ -285,47 +283,89 @@ INLINE void shade_sample(
   composite(a, k, mask, layer, lo);
 }
 
+/* One int of each lane from table[index], 0 in other lanes. */
+INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
+{
+#if STRATUS_WIDTH == 1
+  return mask ? table[index] : 0;
+#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
+  return __builtin_astype(
+    __builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)table, STRATUS_V16(index), STRATUS_MASK16(mask), 4), int16);
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  return (vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)index, table, 4);
+#else
+  int li[STRATUS_WIDTH], lv[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, index, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    lv[lane] = li[lane] >= 0 ? table[li[lane]] : 0;
+  }
+  return vi_load(lv);
+#endif
+}
+
+/* Sum number `which` (0..2 red, green, blue times tau, 3 tau) over entries low..beyond-1. Differences of ints are exact, so a transparent
+ * stretch gives exactly zero. */
+INLINE vfloat sum_between(GLOBAL const int* sums, int which, vint low, vint beyond, vmask mask)
+{
+  return v_from_int(gather_int32(sums + which, beyond * vi_set(4), mask) - gather_int32(sums + which, low * vi_set(4), mask));
+}
+
+/* Into how many pieces a segment goes, so that averaging the colour of each is wrong by little: from optical depth and the most that the
+ * colour can change over its entries. The error falls with the square of the number. */
+INLINE vfloat segment_pieces(CONSTANT stratus_ray_cast_arguments* a, vfloat depth, vfloat entries)
+{
+  const vfloat q = depth * entries * v_set(a->color_slope), zero = v_set(0.0f), one = v_set(1.0f);
+  vfloat pieces = one + v_select(v_lt(one, q), one, zero) + v_select(v_lt(v_set(4.0f), q), one, zero);
+  pieces = pieces + v_select(v_lt(v_set(9.0f), q), v_set(2.0f), zero) + v_select(v_lt(v_set(25.0f), q), v_set(3.0f), zero);
+  return pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero);
+}
+
 /* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
- * green, blue times tau, and tau; their differences are exact, so a transparent stretch gives exactly zero. */
+ * green, blue times tau, and tau. */
 INLINE void integrate_segment(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), rise = value - k->front, depth_scale = weight * v_set(a->tau_scale);
-  vfloat from = k->front, to = value, pieces = one, share = one, piece = zero;
-  for (int first = 1;; first = 0) {
-    const vint entry0 = table_entry(a, from), entry1 = table_entry(a, to);
-    const vint low = vi_min(entry0, entry1), beyond = vi_max(entry0, entry1) + vi_set(1);
-    vfloat s0[4], s1[4], layer[4];
-    gather_four((GLOBAL const float*)sums, low, mask, s0);
-    gather_four((GLOBAL const float*)sums, beyond, mask, s1);
-    const vfloat tau = v_from_int(v_to_bits(s1[3]) - v_to_bits(s0[3]));
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  const vint entry = table_entry(a, value), front = table_entry(a, k->front);
+  vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
+  vfloat tau = sum_between(sums, 3, low, beyond, mask);
+  mask = mask & v_lt(zero, tau);
+  if (!m_any(mask)) {
+    return;
+  }
+  const vfloat depth_scale = weight * v_set(a->tau_scale), rise = value - k->front;
+  vfloat entries = v_from_int(beyond - low);
+  const vfloat pieces = segment_pieces(a, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
+  const vmask several = mask & v_lt(one, pieces);
+  vfloat share = one, piece = zero;
+  vint from = front;
+  if (m_any(several)) {
+    share = v_select(several, v_reciprocal(pieces), one);
+  }
+  do {
+    vint to = entry;
+    if (m_any(several)) { /* of several pieces, this one; the last ends where the segment does */
+      piece = piece + one;
+      to = vi_select(v_lt(piece, pieces), table_entry(a, v_fma(rise, piece * share, k->front)), entry);
+      low = vi_min(from, to);
+      beyond = vi_max(from, to) + vi_set(1);
+      entries = v_from_int(beyond - low);
+      tau = sum_between(sums, 3, low, beyond, mask);
+      from = to;
+    }
     const vmask lit = mask & v_lt(zero, tau);
     if (m_any(lit)) {
-      const vfloat depth = tau * (depth_scale * share) * v_reciprocal(v_from_int(vi_select(mask, beyond - low, vi_set(1))));
-      if (first) {
-        const vmask deep = lit & v_lt(v_set(PIECE_DEPTH), depth);
-        if (m_any(deep)) { /* begin again, with pieces */
-          pieces = v_select(deep, v_from_int(v_to_int(v_min(depth * v_set(1.0f / PIECE_DEPTH), v_set(PIECES_MAX - 1.0f))) + vi_set(1)), one);
-          share = v_select(deep, v_reciprocal(pieces), one);
-          to = v_select(deep, v_fma(rise, share, k->front), value);
-          continue;
-        }
-      }
+      vfloat layer[4];
+      const vfloat depth = tau * (depth_scale * share) * v_reciprocal(v_max(entries, one));
       layer[3] = v_select(lit, v_absorbed(v_select(lit, depth, zero)), zero);
       const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(tau, one)), zero);
       for (int c = 0; c < 3; ++c) {
-        layer[c] = v_from_int(v_to_bits(s1[c]) - v_to_bits(s0[c])) * per_tau;
+        layer[c] = sum_between(sums, c, low, beyond, lit) * per_tau;
       }
       composite(a, k, lit, layer, lo);
     }
-    piece = piece + one;
-    mask = mask & v_lt(piece, pieces);
-    if (!m_any(mask)) {
-      break;
-    }
-    from = to;
-    to = v_select(v_lt(piece + one, pieces), v_fma(rise, (piece + one) * share, k->front), value);
-  }
+    mask = mask & several & v_lt(piece, pieces);
+  } while (m_any(mask));
 }
 
 #endif
