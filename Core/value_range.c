@@ -273,6 +273,8 @@ static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
 #pragma omp parallel num_threads(context->threads) reduction(min : lo) reduction(max : hi)
   {
     float least[LANES], most[LANES];
+    lo = INFINITY; /* the reduction's own start may be FLT_MAX, which is a value */
+    hi = -INFINITY;
     for (int lane = 0; lane < LANES; lane++) {
       least[lane] = INFINITY;
       most[lane] = -INFINITY;
