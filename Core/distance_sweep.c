@@ -38,6 +38,7 @@ static size_t room_bytes(const int64_t blocks[3], size_t pitch)
 static room make_room(uint8_t* memory, const int64_t blocks[3], size_t pitch)
 {
   room r = { .apart = pitch + 2 * ROW_MARGIN, .pitch = pitch };
+  /* The margins beyond a row's end stay so, for rows only grow longer: run_sweeps() spreads the inner box's first. */
   memset(memory, DISTANCE_MAX, 2 * r.apart);
   r.spread = memory + ROW_MARGIN;
   memory += 2 * r.apart;
@@ -58,9 +59,6 @@ static void spread_row(const room* r, const uint8_t* occupied, uint8_t target, i
   const int64_t found = row_seed(occupied, target, n, r->spread);
   const uint8_t* result = r->spread;
   if (found != 0 && found != n) {
-    /* A shorter row before this one may have left its values behind this one's end. */
-    memset(r->spread + n, DISTANCE_MAX, ROW_MARGIN);
-    memset(r->spread + r->apart + n, DISTANCE_MAX, ROW_MARGIN);
     result = row_spread(r->spread, r->apart, n, side);
   }
   memcpy(out, result, (size_t)n);

@@ -137,6 +137,33 @@ static void a_deep_block_of_occupied_ones_knows_its_depth(void** state)
   stratus_context_destroy(context);
 }
 
+/* A solid box, at every place that leaves 0..2 empty layers on either side: its depth is counted from all six. */
+static void a_solid_box_knows_its_depth_from_every_side(void** state)
+{
+  uint32_t random = 8;
+  (void)state;
+  stratus_context* context = make_context("host", 2);
+  for (int64_t place = 0; place < 729; place += 7) {
+    const int64_t lo[3] = { place % 3, place / 3 % 3, place / 9 % 3 }, hi[3] = { 8 - place / 27 % 3, 8 - place / 81 % 3, 8 - place / 243 };
+    stratus_occupancy* o = make_occupancy(context, 8, 8, 8, 0, &random);
+    for (int64_t b = 0; b < 512; b++) {
+      const int64_t at[3] = { b % 8, b / 8 % 8, b / 64 };
+      o->occupied[b] = at[0] >= lo[0] && at[0] < hi[0] && at[1] >= lo[1] && at[1] < hi[1] && at[2] >= lo[2] && at[2] < hi[2];
+      o->count += o->occupied[b];
+    }
+    memcpy(o->lo, lo, sizeof lo);
+    memcpy(o->hi, hi, sizeof hi);
+    stratus_distance_map* map = NULL;
+    for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+      assert_int_equal(stratus_distance_map_create(context, o, (stratus_distance_kind)kind, &map), STRATUS_OK);
+      check_map(o, map);
+      stratus_distance_map_destroy(map);
+    }
+    stratus_occupancy_destroy(o);
+  }
+  stratus_context_destroy(context);
+}
+
 static void the_sweeps_and_the_papers_transform_agree_on_larger_grids(void** state)
 {
   uint32_t random = 5;
@@ -200,6 +227,7 @@ int main(void)
     cmocka_unit_test(rows_longer_than_the_pitch_keep_their_ends),
     cmocka_unit_test(distances_beyond_127_are_told_as_127),
     cmocka_unit_test(a_deep_block_of_occupied_ones_knows_its_depth),
+    cmocka_unit_test(a_solid_box_knows_its_depth_from_every_side),
     cmocka_unit_test(the_sweeps_and_the_papers_transform_agree_on_larger_grids),
     cmocka_unit_test(threads_do_not_show_in_the_bytes),
     cmocka_unit_test(wrong_arguments_are_refused_with_a_reason),
