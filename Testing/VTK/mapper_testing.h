@@ -155,8 +155,11 @@ struct Scene
   std::vector<float> Picture()
   {
     this->Render();
-    const float* rgba = this->Rgba();
-    return rgba ? std::vector<float>(rgba, rgba + 4 * this->Pixels()) : std::vector<float>();
+    std::vector<float> picture;
+    if (const float* rgba = this->Rgba()) {
+      picture.assign(rgba, rgba + 4 * this->Pixels());
+    }
+    return picture;
   }
   size_t Pixels() { return static_cast<size_t>(this->Renderer->GetSize()[0]) * static_cast<size_t>(this->Renderer->GetSize()[1]); }
   double Light()
