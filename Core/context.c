@@ -178,7 +178,7 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
     options = &defaults;
   }
 
-  stratus_context draft = { .options = *options };
+  stratus_context draft = { .options = *options, .isa = stratus_ray_cast_best_isa() };
   if (!options->allocate && !options->release) {
     draft.options.allocate = defaults.allocate;
     draft.options.release = defaults.release;

@@ -15,6 +15,7 @@ struct stratus_context {
   stratus_context_options options; /* device is not kept: see device_name */
   int threads;
   stratus_device* device; /* NULL: the host draws */
+  int isa; /* of the host's traversal at most: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
   char device_name[256];
   char message[1024];
 };

@@ -56,7 +56,7 @@ stratus_status stratus_ray_cast_host(stratus_context* context, const stratus_ray
 {
   const int width = frame->arguments->width, height = frame->arguments->height;
   const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);
-  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(2, type, preintegrated);
+  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(context->isa, type, preintegrated);
   stratus_ray_counts sum = { 0 };
   atomic_int next = 0, cancelled = 0;
   stratus_status status = STRATUS_OK;

@@ -11,8 +11,11 @@
 #define PLACES 8
 /* Pre-integration pays where the opacity is this far from linear within a step, relative to itself. */
 #define BEND_LARGEST 0.25
-/* Mean change of opacity a voxel from which the step is halved. */
-#define SHARPNESS_LARGEST 0.12
+/* Mean change of alpha over a step that midpoint sampling bears; where it is more, the step shrinks, to no less than a quarter voxel. */
+#define SHARPNESS_LARGEST 0.08
+#define MIDPOINT_SHORTEST 0.25
+/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear. */
+#define PREINTEGRATED_STEP 0.5
 
 double stratus_ray_voxel_length(const stratus_volume* volume)
 {
@@ -125,7 +128,8 @@ void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const s
   }
   choice->sample_distance = sample_distance;
   if (sample_distance <= 0.0) {
-    const bool fine = choice->sharpness * voxel / transfer->unit_distance > SHARPNESS_LARGEST || choice->sampling == STRATUS_SAMPLING_PREINTEGRATED;
-    choice->sample_distance = (fine ? 0.5 : 1.0) * voxel;
+    const double sharpness = choice->sharpness * voxel / transfer->unit_distance;
+    const double midpoint = sharpness > SHARPNESS_LARGEST ? fmax(SHARPNESS_LARGEST / sharpness, MIDPOINT_SHORTEST) : 1.0;
+    choice->sample_distance = voxel * (choice->sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_STEP : midpoint);
   }
 }

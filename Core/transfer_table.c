@@ -146,8 +146,8 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
   }
 }
 
-/* Two places of an entry stand for its width. Writes the four running sums in doubles; returns the most that a colour changes from
- * one entry to the next where either shows. */
+/* Writes the four running sums in doubles; returns the most that a colour changes from one entry to the next where either shows. The function is
+ * taken at the entry's middle, not over its width: a value that is transparent must stay so beside one that is not. */
 static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
@@ -155,24 +155,16 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   memset(sums, 0, 4 * sizeof *sums);
   for (int e = 0; e < size; ++e) {
     double* sum = sums + 4 * (size_t)e;
-    double color[3] = { 0 }, tau_here = 0.0;
-    memcpy(sum + 4, sum, 4 * sizeof *sum);
-    for (int place = 0; place < 2; ++place) {
-      const double x = lo + (e + (place ? 0.25 : -0.25)) * width;
-      const double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-      const double tau = outside(transfer, x) ? 0.0 : 0.5 * tau_of(transfer, opacity);
-      for (size_t c = 0; c < 3; ++c) {
-        color[c] = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
-        sum[4 + c] += tau * color[c];
-      }
-      tau_here += tau;
-    }
-    sum[7] += tau_here;
+    const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+    const double tau = outside(transfer, x) ? 0.0 : tau_of(transfer, opacity);
     for (size_t c = 0; c < 3; ++c) {
-      steepest = e > 0 && tau_here + tau_before > 0.0 ? fmax(steepest, fabs(color[c] - before[c])) : steepest;
-      before[c] = color[c];
+      const double color = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
+      steepest = e > 0 && tau + tau_before > 0.0 ? fmax(steepest, fabs(color - before[c])) : steepest;
+      before[c] = color;
+      sum[4 + c] = sum[c] + tau * color;
     }
-    tau_before = tau_here;
+    sum[7] = sum[3] + tau;
+    tau_before = tau;
   }
   return steepest;
 }
