@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Structures built by an OpenCL device against the host's, to the bit. A context chooses by its device, so the
- * builders of the device are called themselves, and the host's by a context of its own. */
+ * builders of the device are called themselves, and the host's by a context of its own.
+ * Run with the argument `tiny` it takes few and small grids: enough for a simulator to see every kernel. */
 #include "structures.h"
 
 #include "device.h"
@@ -9,6 +10,7 @@
 #include <stdio.h>
 
 static stratus_context *device, *host_context;
+static bool tiny;
 
 /* The same object with its own arrays, full of something else, for the device to fill. */
 static stratus_value_range blank_ranges(const stratus_value_range* host)
@@ -55,7 +57,7 @@ static void value_ranges_of_every_type_equal_the_hosts(void** state)
   uint32_t random = 1;
   (void)state;
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
-    for (int repeat = 0; repeat < 6; repeat++) {
+    for (int repeat = 0; repeat < (tiny ? 1 : 6); repeat++) {
       test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
         1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
       compare_ranges(&v, 2 << random_below(&random, 3));
@@ -63,7 +65,7 @@ static void value_ranges_of_every_type_equal_the_hosts(void** state)
       compare_ranges(&v, 2);
       free_volume(&v);
     }
-    test_volume v = make_volume((stratus_type)type, 131, 17, 9, 1, &random);
+    test_volume v = make_volume((stratus_type)type, tiny ? 5 : 131, tiny ? 3 : 17, tiny ? 6 : 9, 1, &random);
     spoil(&v, 200, &random);
     compare_ranges(&v, 4);
     compare_ranges(&v, 32);
@@ -150,9 +152,13 @@ static void distance_maps_equal_the_hosts(void** state)
 {
   uint32_t random = 3;
   (void)state;
-  for (int grid = 0; grid < 40; grid++) {
+  for (int grid = 0; grid < (tiny ? 3 : 40); grid++) {
     compare_maps(1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       grid < 6 ? grid % 3 : random_below(&random, 60), &random);
+  }
+  if (tiny) {
+    compare_maps(6, 5, 4, 20, &random);
+    return;
   }
   compare_maps(70, 5, 3, 60, &random);
   compare_maps(3, 70, 5, 60, &random);
@@ -177,6 +183,7 @@ static int open_device(void** state)
     fprintf(stderr, "%s\n", message);
     return -1;
   }
+  printf("device: %s\n", stratus_context_device(device));
   host_context = make_context("host", 2);
   return 0;
 }
@@ -189,8 +196,9 @@ static int close_device(void** state)
   return 0;
 }
 
-int main(void)
+int main(int argc, char** argv)
 {
+  tiny = argc > 1 && strcmp(argv[1], "tiny") == 0;
   if (stratus_device_count() == 0) {
     fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
     return 77;
