@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Memory refused at the n-th request, for every n until all is granted: each time an error that says so, no leak, and the same objects
  * give the right result at the next attempt. */
+#include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
 
@@ -12,13 +13,18 @@
 
 #define REQUESTS_MAX 500 /* of one call: far beyond what any needs, so that a loop which never succeeds ends */
 
+/* Device "gpu": PoCL taken for one, so that the structures are built on the device, too. */
 static stratus_context* open_context(faulty_allocator* allocator, const char* device)
 {
+  const bool as_gpu = strcmp(device, "gpu") == 0;
   stratus_context* context = NULL;
-  stratus_context_options options = faulty_options(allocator, device);
+  stratus_context_options options = faulty_options(allocator, as_gpu ? "pthread" : device);
   options.threads = 1; /* hundreds of tiny calls: threads would spend them waiting for each other */
   if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
     return NULL;
+  }
+  if (as_gpu) {
+    context->device->is_cpu = false;
   }
   return context;
 }
@@ -202,7 +208,7 @@ static void a_scene_is_made_whole_or_not_at_all(void** state)
 
 int main(void)
 {
-  static char host[] = "host", pocl[] = "pthread";
+  static char host[] = "host", pocl[] = "pthread", gpu[] = "gpu";
   const struct CMUnitTest on_host[] = {
     ON(host, a_context_is_made_whole_or_not_at_all),
     ON(host, structures_are_made_whole_or_not_at_all),
@@ -215,6 +221,9 @@ int main(void)
     ON(pocl, structures_are_made_whole_or_not_at_all),
     ON(pocl, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
     ON(pocl, an_edit_that_fails_leaves_the_earlier_result_intact),
+    ON(gpu, structures_are_made_whole_or_not_at_all),
+    ON(gpu, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
+    ON(gpu, an_edit_that_fails_leaves_the_earlier_result_intact),
   };
   int failures = cmocka_run_group_tests(on_host, NULL, NULL);
   faulty_allocator allocator = { 0 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * An OpenCL device that disappears at the n-th call, for every n: each time an error with the call's name, no leak, and where the device
  * comes back the same ray caster draws the right picture. */
-#include "device.h"
+#include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
 
@@ -18,13 +18,15 @@ typedef struct fixture {
   small_scene scene;
 } fixture;
 
-static stratus_status open_fixture(fixture* f, char* message, size_t capacity)
+/* As a GPU: the structures are built on the device too, and a work item draws one ray. */
+static stratus_status open_fixture(fixture* f, const int* as_gpu, char* message, size_t capacity)
 {
   f->allocator = (faulty_allocator){ 0 };
   f->context = NULL;
   const stratus_context_options options = faulty_options(&f->allocator, "pthread");
   const stratus_status status = stratus_context_create(&options, &f->context, message, capacity);
   if (status == STRATUS_OK) {
+    f->context->device->is_cpu = !*as_gpu;
     small_scene_fill(&f->scene);
     return small_scene_look(f->context, &f->scene);
   }
@@ -66,10 +68,9 @@ static int draw_twice(fixture* f, int setting, int64_t n, small_picture* picture
 
 static void a_picture_survives_the_loss_at_any_call(void** state)
 {
-  (void)state;
   static fixture f;
   static small_picture right, picture;
-  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  assert_int_equal(open_fixture(&f, *state, NULL, 0), STRATUS_OK);
   for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
     assert_int_equal(draw_twice(&f, setting, -1, &right), 0);
     const int64_t live = f.allocator.live;
@@ -89,14 +90,13 @@ static void a_picture_survives_the_loss_at_any_call(void** state)
 /* With nothing built yet: the loss falls on the building of programs, too. */
 static void programs_are_built_at_the_next_attempt(void** state)
 {
-  (void)state;
   static fixture f;
   static small_picture right, picture;
-  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  assert_int_equal(open_fixture(&f, *state, NULL, 0), STRATUS_OK);
   assert_int_equal(draw_twice(&f, 3, -1, &right), 0);
   stratus_context_destroy(f.context);
   for (int64_t n = 0; n < 12; ++n) {
-    assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+    assert_int_equal(open_fixture(&f, *state, NULL, 0), STRATUS_OK);
     assert_int_equal(draw_twice(&f, 3, n, &picture), 1);
     assert_memory_equal(&picture, &right, sizeof right);
     stratus_context_destroy(f.context);
@@ -106,11 +106,10 @@ static void programs_are_built_at_the_next_attempt(void** state)
 
 static void an_edit_during_the_loss_leaves_the_earlier_result_intact(void** state)
 {
-  (void)state;
   static fixture f;
   static small_picture before, after, picture;
   stratus_ray_caster* caster = NULL;
-  assert_int_equal(open_fixture(&f, NULL, 0), STRATUS_OK);
+  assert_int_equal(open_fixture(&f, *state, NULL, 0), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(f.context, &caster), STRATUS_OK);
   for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
     assert_int_equal(small_render(caster, &f.scene, &f.scene.edited, setting, &after, NULL), STRATUS_OK);
@@ -134,19 +133,47 @@ static void an_edit_during_the_loss_leaves_the_earlier_result_intact(void** stat
   assert_int_equal(f.allocator.live, 0);
 }
 
+static void structures_by_themselves_survive_the_loss_at_any_call(void** state)
+{
+  static fixture f;
+  uint64_t right = 0, sum = 0;
+  assert_int_equal(open_fixture(&f, *state, NULL, 0), STRATUS_OK);
+  assert_int_equal(small_structures(f.context, &f.scene, &right), STRATUS_OK);
+  const int64_t live = f.allocator.live;
+  int64_t n = 0;
+  for (stratus_status status = STRATUS_DEVICE_ERROR; status != STRATUS_OK; ++n) {
+    assert_true(n < CALLS_MAX);
+    lose_after(f.context, n);
+    status = small_structures(f.context, &f.scene, &sum);
+    lose_after(f.context, -1);
+    assert_int_equal(f.allocator.live, live);
+    if (status != STRATUS_OK) {
+      assert_lost(f.context, status);
+    }
+  }
+  assert_true(sum == right && n > 30); /* three stages, several kernels each */
+  stratus_context_destroy(f.context);
+  assert_int_equal(f.allocator.live, 0);
+}
+
 int main(void)
 {
   static fixture f;
+  static int no = 0, yes = 1;
   char message[1024];
-  if (open_fixture(&f, message, sizeof message) == STRATUS_NO_DEVICE) {
+  if (open_fixture(&f, &no, message, sizeof message) == STRATUS_NO_DEVICE) {
     printf("SKIPPED: no PoCL device: %s\n", message);
     return 77;
   }
   stratus_context_destroy(f.context);
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_picture_survives_the_loss_at_any_call),
-    cmocka_unit_test(programs_are_built_at_the_next_attempt),
-    cmocka_unit_test(an_edit_during_the_loss_leaves_the_earlier_result_intact),
+    cmocka_unit_test_prestate(a_picture_survives_the_loss_at_any_call, &no),
+    cmocka_unit_test_prestate(programs_are_built_at_the_next_attempt, &no),
+    cmocka_unit_test_prestate(an_edit_during_the_loss_leaves_the_earlier_result_intact, &no),
+    cmocka_unit_test_prestate(a_picture_survives_the_loss_at_any_call, &yes),
+    cmocka_unit_test_prestate(programs_are_built_at_the_next_attempt, &yes),
+    cmocka_unit_test_prestate(an_edit_during_the_loss_leaves_the_earlier_result_intact, &yes),
+    cmocka_unit_test_prestate(structures_by_themselves_survive_the_loss_at_any_call, &yes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
