@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the parts of stratus-bench share.
+#pragma once
+
+#include "stratus.h"
+
+#include <vtkImageData.h>
+#include <vtkSmartPointer.h>
+
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+constexpr int views = 8; // of record
+
+struct failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// ---- scenes.cxx
+
+struct transfer
+{
+  std::vector<double> opacity; // pairs
+  std::vector<double> color;   // quadruples
+  double unit_distance = 1.0;
+  stratus_transfer view() const;
+};
+
+struct scene
+{
+  std::string name;
+  vtkSmartPointer<vtkImageData> image;
+  stratus_volume volume; // borrows the image's values
+  transfer first, edited;
+  int up_axis = 2;
+  double bounds[6];
+  double voxel = 1.0; // shortest edge, world
+  std::shared_ptr<void> memory;
+};
+
+// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem.
+scene make_scene(stratus_context* context, const std::string& source);
+stratus_camera camera_of(stratus_context* context, const scene& s, int view);
+
+// ---- a method draws a scene's views
+
+struct picture
+{
+  std::vector<float> rgba;    // premultiplied; empty where a method has no float picture
+  std::vector<uint8_t> bytes; // RGBA of the window
+};
+
+struct timing
+{
+  double first_ms = 0.0;
+  double frame_ms = 0.0;
+  double update_ms = 0.0;
+  double samples = -1.0; // a frame, -1: not told
+  std::string device;
+};
+
+struct result
+{
+  std::string scene, method;
+  timing time;
+  std::vector<picture> pictures; // a view each
+  double psnr_db = 0.0, psnr8_db = 0.0, max_error = 0.0, reference_db = 0.0;
+  double differing_pixels = -1.0; // -1: not compared
+};
+
+struct floor_result
+{
+  double ms = 0.0, samples = 0.0, rate = 0.0;
+};
+
+inline double now_ms()
+{
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+double median(std::vector<double> values);
+
+// ---- methods.cxx, floor.cxx
+
+std::vector<std::string> all_methods();
+void check_method(const std::string& name); // throws failure
+result run_method(stratus_context* context, const scene& s, const std::string& method, int size);
+floor_result run_floor(stratus_context* context, const scene& s, int size);
+
+// ---- judge.cxx: fills the errors of all results of one scene
+void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results);
+
+// ---- report.cxx, chart.cxx
+
+struct row
+{
+  std::string scene, method, metric, unit;
+  double value;
+};
+void add_rows(const result& r, std::vector<row>& rows);
+void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
+void write_csv(const std::string& path, const std::vector<row>& rows); // "-": the standard output
+void print_table(const std::vector<row>& rows);
+// Frame time against error, both logarithmic, one mark a method, one chart a scene.
+void write_chart(const std::string& path, const std::vector<row>& rows);
+}

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Errors of all pictures of a scene against the double reference, whose step is halved until it agrees with itself 10 dB beyond the best figure
+// printed; and the pixels that a structure changed.
+#include "bench.h"
+#include "reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <unistd.h>
+
+namespace bench {
+
+namespace {
+
+constexpr double finest = 1.0 / 256.0;
+
+uint64_t mix(uint64_t hash, const void* data, size_t bytes)
+{
+  const unsigned char* p = static_cast<const unsigned char*>(data);
+  uint64_t word;
+  for (; bytes >= sizeof word; bytes -= sizeof word, p += sizeof word) {
+    std::memcpy(&word, p, sizeof word);
+    hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 29;
+  }
+  for (; bytes > 0; --bytes, ++p) {
+    hash = (hash ^ *p) * 0x9E3779B97F4A7C15u;
+  }
+  return hash;
+}
+
+// Of everything that the reference's picture depends on but view, size and step.
+uint64_t hash_of(const scene& s)
+{
+  const stratus_volume& v = s.volume;
+  uint64_t hash = mix(1, v.values, static_cast<size_t>(v.dimensions[0] * v.dimensions[1] * v.dimensions[2]) * stratus_type_size(v.type));
+  hash = mix(hash, v.dimensions, sizeof v.dimensions);
+  hash = mix(hash, v.spacing, sizeof v.spacing);
+  hash = mix(hash, v.origin, sizeof v.origin);
+  hash = mix(hash, s.first.opacity.data(), s.first.opacity.size() * sizeof(double));
+  hash = mix(hash, s.first.color.data(), s.first.color.size() * sizeof(double));
+  return mix(hash, &s.first.unit_distance, sizeof(double));
+}
+
+// On a terminal: what takes so long.
+void progress(const scene& s, double step, int view)
+{
+  if (isatty(STDERR_FILENO)) {
+    std::fprintf(stderr, "\r\033[K");
+    if (view < views) {
+      std::fprintf(stderr, "  reference of %s, steps of 1/%d voxel, view %d of %d", s.name.c_str(), static_cast<int>(std::lround(1.0 / step)), view + 1, views);
+    }
+  }
+}
+
+class references
+{
+public:
+  references(stratus_context* context, const scene& s, int size, const std::string& cache)
+    : Context(context)
+    , Scene(s)
+    , Size(size)
+    , Cache(cache)
+    , Hash(cache.empty() ? 0 : hash_of(s))
+  {
+  }
+
+  std::vector<float> make(int view, double step) const
+  {
+    std::vector<float> rgba(4 * static_cast<size_t>(this->Size) * static_cast<size_t>(this->Size));
+    const std::string path = this->Cache.empty() ? "" : this->path(view, step);
+    if (!path.empty() && load(path, rgba)) {
+      return rgba;
+    }
+    const stratus_transfer transfer = this->Scene.first.view();
+    const stratus_camera camera = camera_of(this->Context, this->Scene, view);
+    reference_scene r = {};
+    r.volume = &this->Scene.volume;
+    r.transfer = &transfer;
+    r.camera = &camera;
+    if (reference_render(&r, this->Size, this->Size, step, rgba.data(), nullptr) != 0) {
+      throw failure("no memory for the reference");
+    }
+    if (!path.empty()) {
+      save(path, rgba);
+    }
+    return rgba;
+  }
+
+private:
+  std::string path(int view, double step) const
+  {
+    char name[160];
+    std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash), this->Size,
+      view, static_cast<int>(std::lround(1.0 / step)));
+    return this->Cache + name;
+  }
+
+  static bool load(const std::string& path, std::vector<float>& rgba)
+  {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (!file) {
+      return false;
+    }
+    const bool whole = std::fread(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size() && std::fgetc(file) == EOF;
+    std::fclose(file);
+    return whole;
+  }
+
+  static void save(const std::string& path, const std::vector<float>& rgba)
+  {
+    const std::string part = path + ".part";
+    std::FILE* file = std::fopen(part.c_str(), "wb");
+    if (!file) {
+      throw failure("cannot write " + part);
+    }
+    const bool whole = std::fwrite(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size();
+    if (std::fclose(file) != 0 || !whole || std::rename(part.c_str(), path.c_str()) != 0) {
+      throw failure("cannot write " + path);
+    }
+  }
+
+  stratus_context* Context;
+  const scene& Scene;
+  int Size;
+  std::string Cache;
+  uint64_t Hash;
+};
+
+struct error
+{
+  double squares = 0.0, count = 0.0, largest = 0.0;
+  void add(const float* a, const float* b, size_t pixels) { reference_error(a, b, pixels, &this->squares, &this->count, &this->largest); }
+  // Equal pictures get a figure that a table and a chart can hold.
+  double psnr() const { return this->squares > 0.0 ? -10.0 * std::log10(this->squares / this->count) : 200.0; }
+};
+
+std::vector<float> to_floats(const std::vector<uint8_t>& bytes)
+{
+  std::vector<float> result(bytes.size());
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    result[i] = static_cast<float>(bytes[i]) / 255.0f;
+  }
+  return result;
+}
+
+void measure(const std::vector<std::vector<float>>& reference, result& r)
+{
+  error in_float;
+  error in_bytes;
+  for (int view = 0; view < views; ++view) {
+    const picture& p = r.pictures[static_cast<size_t>(view)];
+    const std::vector<float>& truth = reference[static_cast<size_t>(view)];
+    if (!p.rgba.empty()) {
+      in_float.add(p.rgba.data(), truth.data(), truth.size() / 4);
+    }
+    in_bytes.add(to_floats(p.bytes).data(), truth.data(), truth.size() / 4);
+  }
+  const bool floats = !r.pictures[0].rgba.empty();
+  r.psnr_db = floats ? in_float.psnr() : 0.0;
+  r.psnr8_db = in_bytes.psnr();
+  r.max_error = floats ? in_float.largest : in_bytes.largest;
+}
+
+// "@device" of stratus:octant@device: pictures are compared on one device.
+std::string where(const std::string& method)
+{
+  const size_t at = method.find('@');
+  return at == std::string::npos ? "" : method.substr(at);
+}
+
+void compare(stratus_context* context, const scene& s, int size, std::vector<result>& results)
+{
+  std::map<std::string, std::vector<picture>> none; // by device
+  for (const result& r : results) {
+    if (r.method.rfind("stratus:none", 0) == 0) {
+      none[where(r.method)] = r.pictures;
+    }
+  }
+  for (result& r : results) {
+    if (r.method.rfind("stratus:", 0) != 0) {
+      continue;
+    }
+    std::vector<picture>& plain = none[where(r.method)];
+    if (plain.empty()) {
+      plain = run_method(context, s, "stratus:none" + where(r.method), size).pictures;
+    }
+    r.differing_pixels = 0.0;
+    for (int view = 0; view < views; ++view) {
+      const std::vector<float>& a = r.pictures[static_cast<size_t>(view)].rgba;
+      const std::vector<float>& b = plain[static_cast<size_t>(view)].rgba;
+      for (size_t i = 0; i < a.size(); i += 4) {
+        r.differing_pixels += std::memcmp(a.data() + i, b.data() + i, 4 * sizeof(float)) != 0;
+      }
+    }
+  }
+}
+}
+
+void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results)
+{
+  if (results.empty()) {
+    return;
+  }
+  const references source(context, s, size, cache);
+  std::vector<std::vector<float>> coarse(views);
+  std::vector<std::vector<float>> fine(views);
+  double agreement = 0.0;
+  double best = 0.0;
+  for (int view = 0; view < views; ++view) {
+    fine[static_cast<size_t>(view)] = source.make(view, 0.125);
+  }
+  for (double step = 0.0625; step >= finest; step *= 0.5) {
+    error self;
+    for (int view = 0; view < views; ++view) {
+      progress(s, step, view);
+      const size_t v = static_cast<size_t>(view);
+      coarse[v].swap(fine[v]);
+      fine[v] = source.make(view, step);
+      self.add(coarse[v].data(), fine[v].data(), fine[v].size() / 4);
+    }
+    progress(s, step, views);
+    agreement = self.psnr();
+    best = 0.0;
+    for (result& r : results) {
+      measure(fine, r);
+      best = std::max({ best, r.psnr_db, r.psnr8_db });
+    }
+    if (agreement >= best + 10.0) {
+      break;
+    }
+  }
+  if (agreement < best + 10.0) {
+    std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n", s.name.c_str(), agreement, best);
+  }
+  for (result& r : results) {
+    r.reference_db = agreement;
+  }
+  compare(context, s, size, results);
+}
+}

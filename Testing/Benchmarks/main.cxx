@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// stratus-bench volume: this project's pictures and times beside those of what users have today, in one process.
+#include "bench.h"
+#include "rate.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace {
+
+const char* const help = R"(stratus-bench volume [options]
+
+  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, cloud-N (resampled to N x N/2 x N), or an image file;
+                            default: cloud,plume,fog,voxel,peak and ../shared/data/isabel_02.vti where it is
+  --size N                  N x N pixels (default 512)
+  --method M,...            stratus:none|block|distance|octant|auto, with @host or @device (the first OpenCL device) behind it;
+                            vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
+  --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+  --chart FILE.png          frame time against error
+  --reference-cache FOLDER  keep the reference's pictures, which take most of the time
+  --no-error                times and differing pixels only
+
+Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of 3.
+update_ms: from a change of the transfer function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the
+window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
+itself under xvfb-run.
+)";
+
+struct options
+{
+  std::vector<std::string> scenes, methods;
+  std::string csv = "-", chart, cache;
+  int size = 512;
+  bool error = true;
+};
+
+std::vector<std::string> list(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  std::string part;
+  while (std::getline(stream, part, ',')) {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+options parse(int argc, char* argv[])
+{
+  options o;
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--no-error") {
+      o.error = false;
+      continue;
+    }
+    if (i + 1 == argc) {
+      throw bench::failure(word + " is unknown or lacks its value; --help tells more");
+    }
+    const std::string value = argv[++i];
+    if (word == "--scene") {
+      const std::vector<std::string> more = list(value);
+      o.scenes.insert(o.scenes.end(), more.begin(), more.end());
+    } else if (word == "--method") {
+      const std::vector<std::string> more = list(value);
+      o.methods.insert(o.methods.end(), more.begin(), more.end());
+    } else if (word == "--size") {
+      o.size = std::atoi(value.c_str());
+    } else if (word == "--csv") {
+      o.csv = value;
+    } else if (word == "--chart") {
+      o.chart = value;
+    } else if (word == "--reference-cache") {
+      o.cache = value;
+    } else {
+      throw bench::failure("unknown option " + word + "; --help tells more");
+    }
+  }
+  if (o.size < 16 || o.size > 4096) {
+    throw bench::failure("--size must be within 16..4096");
+  }
+  if (o.scenes.empty()) {
+    o.scenes = { "cloud", "plume", "fog", "voxel", "peak" };
+    const char* isabel = "../shared/data/isabel_02.vti";
+    if (std::ifstream(isabel)) {
+      o.scenes.push_back(isabel);
+    } else {
+      std::fprintf(stderr, "%s is not here: isabel_02 is left out\n", isabel);
+    }
+  }
+  if (o.methods.empty()) {
+    o.methods = bench::all_methods();
+  }
+  for (const std::string& method : o.methods) {
+    bench::check_method(method);
+  }
+  return o;
+}
+
+void run_scene(stratus_context* context, const std::string& source, const options& o, std::vector<bench::row>& rows)
+{
+  std::fprintf(stderr, "%s\n", source.c_str());
+  const bench::scene scene = bench::make_scene(context, source);
+  std::vector<bench::result> results;
+  for (const std::string& method : o.methods) {
+    if (method == "floor") {
+      const bench::floor_result f = bench::run_floor(context, scene, o.size);
+      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate, bench_sample_loop(), f.ms);
+      bench::add_rows(scene.name, f, rows);
+      continue;
+    }
+    results.push_back(bench::run_method(context, scene, method, o.size));
+    const bench::timing& t = results.back().time;
+    std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms, t.device.c_str());
+  }
+  if (o.error) {
+    bench::judge(context, scene, o.size, o.cache, results);
+  }
+  for (const bench::result& r : results) {
+    bench::add_rows(r, rows);
+  }
+}
+
+void run(const options& o)
+{
+  stratus_context_options host = stratus_context_options_default();
+  stratus_context* context = nullptr;
+  char message[512];
+  host.device = "host";
+  if (stratus_context_create(&host, &context, message, sizeof message) != STRATUS_OK) {
+    throw bench::failure(message);
+  }
+  std::vector<bench::row> rows;
+  for (const std::string& source : o.scenes) {
+    run_scene(context, source, o, rows);
+  }
+  bench::print_table(rows);
+  bench::write_csv(o.csv, rows);
+  if (!o.chart.empty()) {
+    bench::write_chart(o.chart, rows);
+  }
+  stratus_context_destroy(context);
+}
+
+// VTK without a display ends the process; so start again with one.
+void ensure_display(char* argv[])
+{
+  if (std::getenv("DISPLAY")) {
+    return;
+  }
+  std::vector<std::string> words = { "xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset" };
+  for (char** word = argv; *word; ++word) {
+    words.push_back(*word);
+  }
+  std::vector<char*> pointers;
+  for (std::string& word : words) {
+    pointers.push_back(&word[0]);
+  }
+  pointers.push_back(nullptr);
+  execvp(pointers[0], pointers.data());
+  throw bench::failure("no display, and xvfb-run cannot be started (Debian: xvfb)");
+}
+}
+
+int main(int argc, char* argv[])
+{
+  if (argc < 2 || std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "volume") != 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0)) {
+    const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0));
+    std::fputs(help, asked ? stdout : stderr);
+    return asked ? 0 : 2;
+  }
+  try {
+    const options o = parse(argc, argv);
+    ensure_display(argv);
+    run(o);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stratus-bench: %s\n", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The methods by name, and the one way in which all of them are measured.
+#include "bench.h"
+#include "openvdb_mapper.h"
+#include "window.h"
+
+#include "vtkStratusVolumeMapper.h"
+
+#include <vtkFixedPointVolumeRayCastMapper.h>
+#include <vtkFloatArray.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace bench {
+
+namespace {
+
+const char* const structures[] = { "auto", "none", "block", "distance", "octant" };
+
+// stratus:STRUCTURE[@host|@device] -> structure and device; false for other names.
+bool parse_stratus(const std::string& name, int& structure, std::string& device)
+{
+  if (name.rfind("stratus:", 0) != 0) {
+    return false;
+  }
+  const size_t at = name.find('@');
+  const std::string kind = name.substr(8, at == std::string::npos ? at : at - 8);
+  const std::string where = at == std::string::npos ? "" : name.substr(at + 1);
+  const auto found = std::find(std::begin(structures), std::end(structures), kind);
+  if (found == std::end(structures) || (!where.empty() && where != "host" && where != "device")) {
+    return false;
+  }
+  structure = static_cast<int>(found - std::begin(structures));
+  device = where.empty() ? "auto" : where == "device" ? "0" : where;
+  return true;
+}
+
+vtkSmartPointer<vtkVolumeMapper> make_stratus(int structure, const std::string& device)
+{
+  if (device == "0" && stratus_device_count() == 0) {
+    throw failure("no OpenCL device for @device");
+  }
+  auto mapper = vtkSmartPointer<vtkStratusVolumeMapper>::New();
+  mapper->SetStructure(structure);
+  mapper->SetDevice(device.c_str());
+  return mapper;
+}
+
+// Every automatic adjustment off; steps in world units.
+vtkSmartPointer<vtkVolumeMapper> make_fixed_point(double step)
+{
+  auto mapper = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
+  mapper->AutoAdjustSampleDistancesOff();
+  mapper->LockSampleDistanceToInputSpacingOff();
+  mapper->SetImageSampleDistance(1.0f);
+  mapper->SetMinimumImageSampleDistance(1.0f);
+  mapper->SetMaximumImageSampleDistance(1.0f);
+  mapper->SetSampleDistance(static_cast<float>(step));
+  mapper->SetInteractiveSampleDistance(static_cast<float>(step));
+  return mapper;
+}
+
+vtkSmartPointer<vtkVolumeMapper> make_gpu(double step)
+{
+  auto mapper = vtkSmartPointer<vtkGPUVolumeRayCastMapper>::New();
+  mapper->AutoAdjustSampleDistancesOff();
+  mapper->LockSampleDistanceToInputSpacingOff();
+  mapper->UseJitteringOff();
+  mapper->SetImageSampleDistance(1.0f);
+  mapper->SetSampleDistance(static_cast<float>(step));
+  return mapper;
+}
+
+vtkSmartPointer<vtkVolumeMapper> make_mapper(const scene& s, const std::string& method)
+{
+  int structure = 0;
+  std::string device;
+  if (parse_stratus(method, structure, device)) {
+    return make_stratus(structure, device);
+  }
+  if (method == "vtk:fixedpoint" || method == "vtk:fixedpoint:0.5") {
+    return make_fixed_point(method == "vtk:fixedpoint" ? s.voxel : 0.5 * s.voxel);
+  }
+  if (method == "vtk:gpu") {
+    return make_gpu(s.voxel);
+  }
+  if (method == "openvdb") {
+    auto mapper = vtkSmartPointer<openvdb_mapper>::New();
+    mapper->set_volume(s.volume, s.voxel);
+    return mapper;
+  }
+  throw failure("unknown method " + method);
+}
+
+std::vector<float> float_picture(vtkVolumeMapper* mapper, int size)
+{
+  std::vector<float> rgba;
+  if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
+    vtkImageData* image = ours->GetLastImage();
+    auto* array = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA")) : nullptr;
+    if (!array || array->GetNumberOfValues() != 4 * static_cast<vtkIdType>(size) * size) {
+      throw failure("the mapper drew nothing");
+    }
+    rgba.assign(array->GetPointer(0), array->GetPointer(0) + array->GetNumberOfValues());
+  }
+  return rgba;
+}
+
+double samples_of(vtkVolumeMapper* mapper)
+{
+  if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
+    return static_cast<double>(ours->GetSamplesTaken());
+  }
+  if (auto* vdb = openvdb_mapper::SafeDownCast(mapper)) {
+    return static_cast<double>(vdb->samples());
+  }
+  return -1.0;
+}
+
+bool draws(const std::vector<uint8_t>& bytes)
+{
+  return std::any_of(bytes.begin(), bytes.end(), [](uint8_t b) { return b != 0; });
+}
+}
+
+std::vector<std::string> all_methods()
+{
+  return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:auto", "stratus:none@device", "stratus:auto@device",
+    "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
+}
+
+void check_method(const std::string& name)
+{
+  int structure = 0;
+  std::string device;
+  static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
+  if (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others)) {
+    throw failure("unknown method '" + name +
+      "'; known: stratus:none|block|distance|octant|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor");
+  }
+}
+
+result run_method(stratus_context* context, const scene& s, const std::string& method, int size)
+{
+  result r;
+  r.scene = s.name;
+  r.method = method;
+  const vtkSmartPointer<vtkVolumeMapper> mapper = make_mapper(s, method);
+  window w(context, s, mapper, size);
+  r.time.first_ms = w.first();
+  std::vector<double> frames;
+  std::vector<double> samples;
+  for (int view = 0; view < views; ++view) {
+    std::vector<double> times;
+    w.show(view);
+    for (int i = 0; i < 3; ++i) {
+      times.push_back(w.render());
+    }
+    frames.push_back(median(times));
+    samples.push_back(samples_of(mapper));
+    r.pictures.push_back({ float_picture(mapper, size), w.read() });
+    if (!draws(r.pictures.back().bytes)) {
+      throw failure(method + " shows nothing of " + s.name + " in view " + std::to_string(view));
+    }
+  }
+  std::vector<double> updates;
+  for (int view = 0; view < views; ++view) {
+    w.show(view);
+    w.use(s.edited);
+    w.render();
+    w.use(s.first);
+    updates.push_back(w.render());
+  }
+  r.time.frame_ms = median(frames);
+  r.time.update_ms = median(updates);
+  r.time.samples = median(samples);
+  if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
+    r.time.device = std::string(ours->GetDeviceName() ? ours->GetDeviceName() : "") + "; " + (ours->GetReason() ? ours->GetReason() : "");
+  }
+  return r;
+}
+}

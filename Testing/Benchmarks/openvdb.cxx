@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Dense.h>
+#include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/RayIntersector.h>
+
+#include "openvdb_mapper.h"
+
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+#include <vtk_glew.h>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+
+namespace bench {
+
+vtkStandardNewMacro(openvdb_mapper);
+
+namespace {
+
+using intersector = openvdb::tools::VolumeRayIntersector<openvdb::FloatGrid>;
+using ray = intersector::RayType;
+constexpr int table_size = 4096;
+
+struct entry
+{
+  float rgba[4]; // premultiplied, for one step
+};
+
+struct view
+{
+  openvdb::Vec3d eye, forward, right, up; // the ray of (u, v) within -1..1 goes along forward + u right + v up
+};
+
+view view_of(vtkRenderer* renderer)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const double half = std::tan(camera->GetViewAngle() * std::acos(-1.0) / 360.0);
+  const int* viewport = renderer->GetSize();
+  view v;
+  double direction[3];
+  v.eye = openvdb::Vec3d(camera->GetPosition());
+  camera->GetDirectionOfProjection(direction);
+  v.forward = openvdb::Vec3d(direction);
+  v.right = v.forward.cross(openvdb::Vec3d(camera->GetViewUp())).unit();
+  v.up = v.right.cross(v.forward) * half;
+  v.right *= half * viewport[0] / viewport[1];
+  return v;
+}
+}
+
+struct openvdb_mapper::inside
+{
+  stratus_volume volume;
+  double step = 1.0;
+  openvdb::FloatGrid::Ptr values;
+  openvdb::FloatGrid::Ptr shown; // its leaves are where a cell shows something
+  std::unique_ptr<intersector> rays;
+  std::vector<entry> table;
+  double low = 0.0, high = 1.0;
+  vtkMTimeType built = 0;
+  std::atomic<unsigned long long> samples{ 0 };
+  std::vector<uint8_t> bytes;
+
+  double value(size_t at) const
+  {
+    return this->volume.type == STRATUS_UINT8 ? static_cast<const uint8_t*>(this->volume.values)[at]
+      : this->volume.type == STRATUS_FLOAT32  ? static_cast<double>(static_cast<const float*>(this->volume.values)[at])
+                                              : static_cast<const double*>(this->volume.values)[at];
+  }
+  void make_grid();
+  void make_table(vtkVolumeProperty* property);
+  void make_topology();
+  void cast(const view& v, int width, int height);
+  void trace(intersector& hits, openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>& sampler,
+    const openvdb::Vec3d& eye, const openvdb::Vec3d& direction, float* pixel, unsigned long long& count) const;
+};
+
+void openvdb_mapper::inside::make_grid()
+{
+  const int64_t* n = this->volume.dimensions;
+  std::vector<float> dense(static_cast<size_t>(n[0] * n[1] * n[2]));
+  this->low = this->high = this->value(0);
+  for (size_t i = 0; i < dense.size(); ++i) {
+    const double v = this->value(i);
+    dense[i] = static_cast<float>(v);
+    this->low = std::min(this->low, v);
+    this->high = std::max(this->high, v);
+  }
+  const openvdb::CoordBBox box(0, 0, 0, static_cast<int>(n[0]) - 1, static_cast<int>(n[1]) - 1, static_cast<int>(n[2]) - 1);
+  openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> layout(box, dense.data());
+  this->values = openvdb::FloatGrid::create(static_cast<float>(this->low));
+  openvdb::tools::copyFromDense(layout, *this->values, 0.0f);
+}
+
+void openvdb_mapper::inside::make_table(vtkVolumeProperty* property)
+{
+  vtkPiecewiseFunction* opacity = property->GetScalarOpacity();
+  vtkColorTransferFunction* color = property->GetRGBTransferFunction();
+  this->table.resize(table_size + 1);
+  for (int i = 0; i <= table_size; ++i) {
+    const double value = this->low + (this->high - this->low) * i / table_size;
+    double rgb[3];
+    color->GetColor(value, rgb);
+    const double alpha = 1.0 - std::pow(1.0 - opacity->GetValue(value), this->step / property->GetScalarOpacityUnitDistance());
+    for (int c = 0; c < 3; ++c) {
+      this->table[i].rgba[c] = static_cast<float>(rgb[c] * alpha);
+    }
+    this->table[i].rgba[3] = static_cast<float>(alpha);
+  }
+}
+
+// A cell is active if the opacity is not zero everywhere between its lowest and highest corner.
+void openvdb_mapper::inside::make_topology()
+{
+  const int64_t* n = this->volume.dimensions;
+  std::vector<double> next(table_size + 2, 1e300); // lowest value from entry i on that shows
+  for (int i = table_size; i >= 0; --i) {
+    const double value = this->low + (this->high - this->low) * i / table_size;
+    next[i] = this->table[i].rgba[3] > 0.0f ? value : next[i + 1];
+  }
+  this->shown = openvdb::FloatGrid::create(0.0f);
+  openvdb::FloatGrid::Accessor mark = this->shown->getAccessor();
+  const double scale = table_size / std::max(this->high - this->low, 1e-300);
+  for (int64_t k = 0; k + 1 < n[2]; ++k) {
+    for (int64_t j = 0; j + 1 < n[1]; ++j) {
+      for (int64_t i = 0; i + 1 < n[0]; ++i) {
+        double lo = 1e300;
+        double hi = -1e300;
+        for (int c = 0; c < 8; ++c) {
+          const double v = this->value(static_cast<size_t>(((k + (c >> 2)) * n[1] + j + (c >> 1 & 1)) * n[0] + i + (c & 1)));
+          lo = std::min(lo, v);
+          hi = std::max(hi, v);
+        }
+        if (hi > this->low && next[static_cast<int>((lo - this->low) * scale)] <= hi + 1.0 / scale) {
+          mark.setValueOn(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)), 1.0f);
+        }
+      }
+    }
+  }
+  this->rays = this->shown->empty() ? nullptr : std::make_unique<intersector>(*this->shown);
+}
+
+void openvdb_mapper::inside::trace(intersector& hits,
+  openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>& sampler, const openvdb::Vec3d& eye,
+  const openvdb::Vec3d& direction, float* pixel, unsigned long long& count) const
+{
+  const float scale = static_cast<float>(table_size / (this->high - this->low));
+  float left = 1.0f;
+  double from = 0.0;
+  double to = 0.0;
+  // Times are world lengths: the direction in voxels is that of one world unit.
+  if (!hits.setIndexRay(ray(eye, direction, 1e-6, 1e30))) {
+    return;
+  }
+  while (hits.march(from, to)) {
+    for (double t = (std::floor(from / this->step - 0.5) + 1.5) * this->step; t < to; t += this->step) {
+      const float value = sampler.isSample(eye + t * direction);
+      const int at = std::min(std::max(static_cast<int>((value - static_cast<float>(this->low)) * scale + 0.5f), 0), table_size);
+      const entry& e = this->table[static_cast<size_t>(at)];
+      ++count;
+      for (int c = 0; c < 4; ++c) {
+        pixel[c] += left * e.rgba[c];
+      }
+      left *= 1.0f - e.rgba[3];
+      if (left < 0.001f) {
+        return;
+      }
+    }
+  }
+}
+
+void openvdb_mapper::inside::cast(const view& v, int width, int height)
+{
+  this->bytes.assign(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0);
+  this->samples = 0;
+  if (!this->rays) {
+    return;
+  }
+  const openvdb::Vec3d spacing(this->volume.spacing);
+  const openvdb::Vec3d eye = (v.eye - openvdb::Vec3d(this->volume.origin)) / spacing;
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, height, 16, 0, width, 16), [&](const tbb::blocked_range2d<int>& tile) {
+    intersector hits(*this->rays);
+    openvdb::FloatGrid::ConstAccessor accessor = this->values->getConstAccessor();
+    openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler> sampler(accessor, this->values->transform());
+    unsigned long long count = 0;
+    for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
+      for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
+        const openvdb::Vec3d direction = (v.forward + ((2.0 * x + 1.0) / width - 1.0) * v.right + ((2.0 * y + 1.0) / height - 1.0) * v.up).unit();
+        float pixel[4] = { 0, 0, 0, 0 };
+        this->trace(hits, sampler, eye, direction / spacing, pixel, count);
+        for (int c = 0; c < 4; ++c) {
+          this->bytes[4 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) + static_cast<size_t>(c)] =
+            static_cast<uint8_t>(std::min(pixel[c], 1.0f) * 255.0f + 0.5f);
+        }
+      }
+    }
+    this->samples += count;
+  });
+}
+
+openvdb_mapper::openvdb_mapper()
+  : In(new inside)
+{
+  openvdb::initialize();
+}
+
+openvdb_mapper::~openvdb_mapper() = default;
+
+void openvdb_mapper::set_volume(const stratus_volume& volume, double step)
+{
+  this->In->volume = volume;
+  this->In->step = step;
+  this->In->values.reset();
+}
+
+unsigned long long openvdb_mapper::samples() const
+{
+  return this->In->samples;
+}
+
+void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+{
+  vtkVolumeProperty* property = volume->GetProperty();
+  if (!this->In->values) {
+    this->In->make_grid();
+    this->In->built = 0;
+  }
+  if (this->In->built < property->GetMTime()) {
+    this->In->make_table(property);
+    this->In->make_topology();
+    this->In->built = property->GetMTime();
+  }
+  const int* size = renderer->GetSize();
+  this->In->cast(view_of(renderer), size[0], size[1]);
+  // Texel on pixel: vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, for which OpenVDB is not to blame. Nothing is behind.
+  auto* target = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  vtkOpenGLState* state = target->GetState();
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable depth(state, GL_DEPTH_TEST);
+  state->vtkglDisable(GL_BLEND);
+  state->vtkglDisable(GL_DEPTH_TEST);
+  target->DrawPixels(0, 0, size[0] - 1, size[1] - 1, 4, VTK_UNSIGNED_CHAR, this->In->bytes.data());
+}
+}

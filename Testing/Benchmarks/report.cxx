@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <map>
+
+namespace bench {
+
+void add_rows(const result& r, std::vector<row>& rows)
+{
+  const auto add = [&](const char* metric, double value, const char* unit) { rows.push_back({ r.scene, r.method, metric, unit, value }); };
+  add("first_ms", r.time.first_ms, "ms");
+  add("frame_ms", r.time.frame_ms, "ms");
+  add("update_ms", r.time.update_ms, "ms");
+  if (r.reference_db > 0.0) {
+    if (!r.pictures[0].rgba.empty()) {
+      add("psnr_db", r.psnr_db, "dB");
+    }
+    add("psnr8_db", r.psnr8_db, "dB");
+    add("max_error", r.max_error, "1");
+    add("reference_db", r.reference_db, "dB");
+  }
+  if (r.time.samples >= 0.0) {
+    add("samples", r.time.samples, "1");
+  }
+  if (r.differing_pixels >= 0.0) {
+    add("differing_pixels", r.differing_pixels, "1");
+  }
+}
+
+void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows)
+{
+  rows.push_back({ scene, "floor", "floor_ms", "ms", f.ms });
+  rows.push_back({ scene, "floor", "samples", "1", f.samples });
+  rows.push_back({ scene, "floor", "rate", "1/s", f.rate });
+}
+
+void write_csv(const std::string& path, const std::vector<row>& rows)
+{
+  std::FILE* file = path == "-" ? stdout : std::fopen(path.c_str(), "w");
+  if (!file) {
+    throw failure("cannot write " + path + ": " + std::strerror(errno));
+  }
+  std::fprintf(file, "benchmark,scene,method,metric,value,unit\n");
+  for (const row& r : rows) {
+    std::fprintf(file, "volume,%s,%s,%s,%.9g,%s\n", r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
+  }
+  const bool bad = std::ferror(file) != 0;
+  if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad) {
+    throw failure("cannot write " + path + ": " + std::strerror(errno));
+  }
+}
+
+void print_table(const std::vector<row>& rows)
+{
+  static const char* const metrics[] = { "first_ms", "frame_ms", "update_ms", "psnr_db", "psnr8_db", "max_error", "reference_db", "samples", "differing_pixels",
+    "floor_ms" };
+  std::map<std::string, double> values;
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const row& r : rows) {
+    values[r.scene + '\n' + r.method + '\n' + r.metric] = r.value;
+    if (lines.empty() || lines.back() != std::make_pair(r.scene, r.method)) {
+      lines.emplace_back(r.scene, r.method);
+    }
+  }
+  std::fprintf(stderr, "%-12s %-24s", "scene", "method");
+  for (const char* metric : metrics) {
+    std::fprintf(stderr, " %11.11s", metric);
+  }
+  std::fprintf(stderr, "\n");
+  for (const auto& line : lines) {
+    std::fprintf(stderr, "%-12s %-24s", line.first.c_str(), line.second.c_str());
+    for (const char* metric : metrics) {
+      const auto found = values.find(line.first + '\n' + line.second + '\n' + metric);
+      if (found == values.end()) {
+        std::fprintf(stderr, " %11s", "");
+      } else {
+        std::fprintf(stderr, std::strcmp(metric, "max_error") == 0 ? " %11.5f" : found->second >= 1e5 ? " %11.4g" : " %11.2f", found->second);
+      }
+    }
+    std::fprintf(stderr, "\n");
+  }
+}
+}

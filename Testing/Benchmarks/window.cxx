@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window.h"
+
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkUnsignedCharArray.h>
+
+namespace bench {
+
+window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size)
+  : Context(context)
+  , Scene(s)
+  , Size(size)
+{
+  this->Window->SetOffScreenRendering(1);
+  this->Window->SetMultiSamples(0);
+  this->Window->SetAlphaBitPlanes(1);
+  this->Window->SetSize(size, size);
+  this->Window->AddRenderer(this->Renderer);
+  this->Renderer->SetBackground(0, 0, 0);
+  this->Renderer->SetBackgroundAlpha(0.0);
+  this->Property->SetInterpolationTypeToLinear();
+  this->Property->ShadeOff();
+  this->Volume->SetProperty(this->Property);
+  this->Volume->SetMapper(mapper);
+  mapper->SetInputDataObject(0, s.image);
+  this->use(s.first);
+}
+
+void window::use(const transfer& t)
+{
+  vtkNew<vtkPiecewiseFunction> opacity;
+  vtkNew<vtkColorTransferFunction> color;
+  for (size_t i = 0; i < t.opacity.size(); i += 2) {
+    opacity->AddPoint(t.opacity[i], t.opacity[i + 1]);
+  }
+  for (size_t i = 0; i < t.color.size(); i += 4) {
+    color->AddRGBPoint(t.color[i], t.color[i + 1], t.color[i + 2], t.color[i + 3]);
+  }
+  this->Property->SetScalarOpacity(opacity);
+  this->Property->SetColor(color);
+  this->Property->SetScalarOpacityUnitDistance(t.unit_distance);
+}
+
+void window::show(int view)
+{
+  const stratus_camera at = camera_of(this->Context, this->Scene, view);
+  vtkCamera* camera = this->Renderer->GetActiveCamera();
+  const double* b = this->Scene.bounds;
+  const int up = this->Scene.up_axis;
+  camera->SetPosition(at.eye[0], at.eye[1], at.eye[2]);
+  camera->SetFocalPoint(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]));
+  camera->SetViewUp(up == 0, up == 1, up == 2);
+  camera->SetViewAngle(21.6);
+  this->Renderer->ResetCameraClippingRange();
+}
+
+double window::render()
+{
+  const double start = now_ms();
+  this->Window->Render();
+  this->Window->WaitForCompletion();
+  return now_ms() - start;
+}
+
+double window::first()
+{
+  this->Renderer->RemoveAllViewProps();
+  this->render(); // the window's own beginnings are not the method's
+  this->Renderer->AddVolume(this->Volume);
+  this->show(0);
+  return this->render();
+}
+
+std::vector<uint8_t> window::read() const
+{
+  vtkNew<vtkUnsignedCharArray> pixels;
+  this->Window->GetRGBACharPixelData(0, 0, this->Size - 1, this->Size - 1, 0, pixels);
+  return std::vector<uint8_t>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
+}
+}
