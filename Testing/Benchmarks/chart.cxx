@@ -24,7 +24,7 @@ namespace bench {
 
 namespace {
 
-constexpr int width = 620;
+constexpr int width = 720;
 constexpr int height = 460;
 
 struct mark
@@ -94,6 +94,7 @@ void add_chart(vtkContextScene* all, const std::string& title, const std::vector
   range(chart->GetAxis(vtkAxis::LEFT), low, high, "root mean square error of the window's pixels");
   chart->SetTitle(title);
   chart->SetShowLegend(true);
+  chart->GetLegend()->SetInline(false); // beside the plot, where it hides no mark
   chart->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
   chart->GetLegend()->SetLabelSize(10);
   chart->SetAutoSize(false);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly, and pixels to a few units in the
- * last place (the set-up of rays divides and takes roots, which OpenCL rounds as it likes). */
+ * last place: the set-up of rays divides and takes roots in double, which a device may round otherwise, and then rounds to float. PoCL: 0. */
 #include "../picture_case.h"
 
-#define ULPS_MOST 64
+#define ULPS_MOST 4
 
 static picture on_host;
 static picture on_device;
@@ -43,7 +43,11 @@ static void device_and_host_draw_the_same(void** state)
     case_render(host, &c, &on_host);
     c.options.audit = 1;
     case_render(device, &c, &on_device);
-    assert_int_equal(on_device.report.differing_pixels, 0);
+    if (on_device.report.differing_pixels) {
+      print_error("seed %u, %s, %s, %s: the audit on the device found %llu pixels\n", seed, stratus_structure_name(structure), case_type_names[c.volume.type],
+        c.options.interpolation ? "nearest" : "linear", (unsigned long long)on_device.report.differing_pixels);
+      fail();
+    }
     lit += case_lit(&on_host) > 0;
     for (int i = 0; i < CASE_PIXELS; ++i) {
       other_counts += on_host.samples[i] != on_device.samples[i];
