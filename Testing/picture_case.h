@@ -40,13 +40,14 @@ typedef struct picture_case {
   uint8_t* cell_ghosts;
 } picture_case;
 
-static const char* const case_type_names[] = { "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64" };
+static const char* const case_type_names[] = { "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32",
+  "float64" };
 
 /* Values are base + scale*f, f within -1..1: what each type is filled with. */
 static const struct {
   double base, scale;
-} case_type_values[] = { { 3, 120 }, { 127, 120 }, { -200, 30000 }, { 32000, 31000 }, { 1e9, 1e6 }, { 3e9, 1e6 }, { -4e15, 1e7 }, { 9e15, 1e7 },
-  { -20, 3 }, { 1e6, 0.001 } };
+} case_type_values[] = { { 3, 120 }, { 127, 120 }, { -200, 30000 }, { 32000, 31000 }, { 1e9, 1e6 }, { 3e9, 1e6 }, { -4e15, 1e7 },
+  { 9e15, 1e7 }, { -20, 3 }, { 1e6, 0.001 } };
 
 static inline uint32_t case_random(uint32_t* state)
 {
@@ -62,16 +63,36 @@ static inline double case_uniform(uint32_t* state, double lo, double hi)
 static inline void case_store(void* values, stratus_type type, size_t at, double value)
 {
   switch (type) {
-    case STRATUS_INT8: ((int8_t*)values)[at] = (int8_t)lround(value); break;
-    case STRATUS_UINT8: ((uint8_t*)values)[at] = (uint8_t)lround(value); break;
-    case STRATUS_INT16: ((int16_t*)values)[at] = (int16_t)lround(value); break;
-    case STRATUS_UINT16: ((uint16_t*)values)[at] = (uint16_t)lround(value); break;
-    case STRATUS_INT32: ((int32_t*)values)[at] = (int32_t)lround(value); break;
-    case STRATUS_UINT32: ((uint32_t*)values)[at] = (uint32_t)lround(value); break;
-    case STRATUS_INT64: ((int64_t*)values)[at] = (int64_t)llround(value); break;
-    case STRATUS_UINT64: ((uint64_t*)values)[at] = (uint64_t)llround(value); break;
-    case STRATUS_FLOAT32: ((float*)values)[at] = (float)value; break;
-    case STRATUS_FLOAT64: ((double*)values)[at] = value; break;
+    case STRATUS_INT8:
+      ((int8_t*)values)[at] = (int8_t)lround(value);
+      break;
+    case STRATUS_UINT8:
+      ((uint8_t*)values)[at] = (uint8_t)lround(value);
+      break;
+    case STRATUS_INT16:
+      ((int16_t*)values)[at] = (int16_t)lround(value);
+      break;
+    case STRATUS_UINT16:
+      ((uint16_t*)values)[at] = (uint16_t)lround(value);
+      break;
+    case STRATUS_INT32:
+      ((int32_t*)values)[at] = (int32_t)lround(value);
+      break;
+    case STRATUS_UINT32:
+      ((uint32_t*)values)[at] = (uint32_t)lround(value);
+      break;
+    case STRATUS_INT64:
+      ((int64_t*)values)[at] = (int64_t)llround(value);
+      break;
+    case STRATUS_UINT64:
+      ((uint64_t*)values)[at] = (uint64_t)llround(value);
+      break;
+    case STRATUS_FLOAT32:
+      ((float*)values)[at] = (float)value;
+      break;
+    case STRATUS_FLOAT64:
+      ((double*)values)[at] = value;
+      break;
   }
 }
 
@@ -104,13 +125,13 @@ static inline void case_look(stratus_context* context, picture_case* c, int view
 {
   double bounds[6];
   assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
-  assert_int_equal(
-    stratus_scene_camera(context, bounds, 2, view, parallel, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
+  assert_int_equal(stratus_scene_camera(context, bounds, 2, view, parallel, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
 }
 
 /* Unit spacing, about half of the volume transparent, samples a quarter of a voxel apart: so near that what is left against the reference is
  * rounding and the sampling's own second-order error, and any misplaced half voxel or step stands out. */
-static inline void case_create(stratus_context* context, picture_case* c, stratus_type type, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
+static inline void case_create(
+  stratus_context* context, picture_case* c, stratus_type type, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
 {
   memset(c, 0, sizeof *c);
   c->volume = stratus_volume_default();
@@ -203,8 +224,9 @@ static inline void case_destroy(picture_case* c)
 
 static inline void case_render_with(stratus_context* context, stratus_ray_caster* caster, const picture_case* c, picture* p)
 {
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples,
-    .opaque_depth = c->opaque_depth };
+  const stratus_image image = {
+    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples, .opaque_depth = c->opaque_depth
+  };
   memset(&p->report, 0, sizeof p->report);
   const stratus_status status = stratus_ray_caster_render(caster, &c->volume, &c->transfer, &c->camera, &c->options, &image, &p->report);
   if (status != STRATUS_OK) {
@@ -223,8 +245,13 @@ static inline void case_render(stratus_context* context, const picture_case* c, 
 
 static inline reference_scene case_scene(const picture_case* c)
 {
-  reference_scene scene = { .volume = &c->volume, .transfer = &c->transfer, .camera = &c->camera, .interpolation = c->options.interpolation,
-    .opaque_depth = c->opaque_depth, .crop = c->options.crop, .clip_plane_count = c->options.clip_plane_count };
+  reference_scene scene = { .volume = &c->volume,
+    .transfer = &c->transfer,
+    .camera = &c->camera,
+    .interpolation = c->options.interpolation,
+    .opaque_depth = c->opaque_depth,
+    .crop = c->options.crop,
+    .clip_plane_count = c->options.clip_plane_count };
   memcpy(scene.crop_bounds, c->options.crop_bounds, sizeof scene.crop_bounds);
   memcpy(scene.clip_planes, c->options.clip_planes, sizeof scene.clip_planes);
   return scene;

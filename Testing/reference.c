@@ -18,7 +18,7 @@ typedef struct grid {
   double lo[3], hi[3];   /* the box that is drawn, in index coordinates */
   double edge;           /* shortest edge of a voxel in the world */
   int64_t blocks[3];
-  uint8_t* shown;   /* per block */
+  uint8_t* shown; /* per block */
   bool linear;
 } grid;
 
@@ -206,7 +206,8 @@ static bool cell_hidden(const grid* g, const int64_t at[3])
   }
   int duplicates = 0;
   for (int c = 0; c < 8; ++c) {
-    const int64_t i = clamp_index(at[0] + (c & 1), n[0]), j = clamp_index(at[1] + (c >> 1 & 1), n[1]), k = clamp_index(at[2] + (c >> 2), n[2]);
+    const int64_t i = clamp_index(at[0] + (c & 1), n[0]), j = clamp_index(at[1] + (c >> 1 & 1), n[1]),
+                  k = clamp_index(at[2] + (c >> 2), n[2]);
     const int64_t p = (k * n[1] + j) * n[0] + i;
     if (v->cell_ghosts && v->cell_centered && g->linear && (v->cell_ghosts[p] & STRATUS_GHOST_HIDDEN_CELL)) {
       return true;
@@ -227,8 +228,8 @@ static void load_cell(const grid* g, const int64_t at[3], cell* c)
   memcpy(c->at, at, sizeof c->at);
   c->shown = !((g->volume->point_ghosts || g->volume->cell_ghosts) && cell_hidden(g, at));
   for (int k = 0; k < 8; ++k) {
-    c->corner[k] = read_value(g->volume, clamp_index(at[0] + (k & 1), n[0]), clamp_index(at[1] + (k >> 1 & 1), n[1]),
-      clamp_index(at[2] + (k >> 2), n[2]));
+    c->corner[k] = read_value(
+      g->volume, clamp_index(at[0] + (k & 1), n[0]), clamp_index(at[1] + (k >> 1 & 1), n[1]), clamp_index(at[2] + (k >> 2), n[2]));
     c->shown = c->shown && (!g->linear || isfinite(c->corner[k]));
   }
 }
@@ -411,8 +412,8 @@ int reference_render(const reference_scene* scene, int width, int height, double
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const size_t at = (size_t)y * (size_t)width + (size_t)x;
-      const ray r = make_ray(scene, &g, (2.0 * x + 1.0) / width - 1.0, (2.0 * y + 1.0) / height - 1.0,
-        scene->opaque_depth ? scene->opaque_depth + at : NULL);
+      const ray r = make_ray(
+        scene, &g, (2.0 * x + 1.0) / width - 1.0, (2.0 * y + 1.0) / height - 1.0, scene->opaque_depth ? scene->opaque_depth + at : NULL);
       double first = (double)INFINITY;
       memset(rgba + 4 * at, 0, 4 * sizeof *rgba);
       if (r.end > r.begin) {
@@ -427,7 +428,8 @@ int reference_render(const reference_scene* scene, int width, int height, double
   return 0;
 }
 
-int reference_converged(const reference_scene* scene, int width, int height, double wanted_db, float* rgba, float* depth, double* reference_db)
+int reference_converged(
+  const reference_scene* scene, int width, int height, double wanted_db, float* rgba, float* depth, double* reference_db)
 {
   const size_t pixels = (size_t)width * (size_t)height;
   float* coarse = malloc(4 * pixels * sizeof *coarse);

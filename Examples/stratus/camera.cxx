@@ -50,12 +50,11 @@ void fit(double around, double upward, double elevation, double away, bool paral
   }
 }
 
-}
+} // namespace
 
 namespace cli {
 
-stratus_camera place_camera(
-  const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up)
+stratus_camera place_camera(const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up)
 {
   const double degree = std::acos(-1.0) / 180.0;
   double bounds[6];
@@ -92,4 +91,4 @@ stratus_camera place_camera(
   }
   return camera;
 }
-}
+} // namespace cli

@@ -7,6 +7,5 @@
 namespace cli {
 
 // Looks at what the transfer function shows of the volume, from the options' azimuth and elevation about the axis `up`, so that all of it fits.
-stratus_camera place_camera(
-  const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up);
-}
+stratus_camera place_camera(const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up);
+} // namespace cli

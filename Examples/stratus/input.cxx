@@ -46,9 +46,7 @@ vtkStandardNewMacro(listener);
 class listening
 {
 public:
-  listening()
-    : Before(vtkOutputWindow::GetInstance())
-    , Stream(std::cerr.rdbuf(this->Text.rdbuf()))
+  listening() : Before(vtkOutputWindow::GetInstance()), Stream(std::cerr.rdbuf(this->Text.rdbuf()))
   {
     vtkOutputWindow::SetInstance(this->Now);
   }
@@ -92,8 +90,7 @@ std::string extension_of(const std::string& path)
   return dot == std::string::npos ? "" : name.substr(dot);
 }
 
-template <class Reader>
-vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& path)
+template <class Reader> vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& path)
 {
   auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
@@ -159,8 +156,8 @@ vtkDataArray* first_single(vtkDataSetAttributes* data)
 std::string names_of(vtkImageData* image)
 {
   std::string names;
-  for (vtkDataSetAttributes* data : { static_cast<vtkDataSetAttributes*>(image->GetPointData()),
-         static_cast<vtkDataSetAttributes*>(image->GetCellData()) }) {
+  for (vtkDataSetAttributes* data :
+    { static_cast<vtkDataSetAttributes*>(image->GetPointData()), static_cast<vtkDataSetAttributes*>(image->GetCellData()) }) {
     for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
       names += std::string(names.empty() ? "" : ", ") + (data->GetArrayName(i) ? data->GetArrayName(i) : "(unnamed)");
     }
@@ -186,7 +183,7 @@ std::string scene_names()
   }
   return names;
 }
-}
+} // namespace
 
 namespace cli {
 
@@ -311,8 +308,7 @@ stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)
   return volume;
 }
 
-input::input(context& core, const std::string& source, const std::string& array)
-  : Core(core)
+input::input(context& core, const std::string& source, const std::string& array) : Core(core)
 {
   struct stat status;
   const bool exists = stat(source.c_str(), &status) == 0;
@@ -341,4 +337,4 @@ input::~input()
 {
   stratus_scene_destroy(this->Core, this->scene);
 }
-}
+} // namespace cli

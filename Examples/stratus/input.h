@@ -41,4 +41,4 @@ public:
 private:
   context& Core;
 };
-}
+} // namespace cli

@@ -26,8 +26,8 @@ void row(const char* name, const std::string& value)
 std::string describe(const stratus_volume& v)
 {
   return cli::format("%lld x %lld x %lld %s on %s, spacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
-    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), cli::name_of(v.type), v.cell_centered ? "cells" : "points",
-    v.spacing[0], v.spacing[1], v.spacing[2]);
+    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), cli::name_of(v.type),
+    v.cell_centered ? "cells" : "points", v.spacing[0], v.spacing[1], v.spacing[2]);
 }
 
 void print_report(const cli::context& core, const cli::options& o, const stratus_ray_cast_report& r, const std::string& opacity)
@@ -36,14 +36,18 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
   row("opacity", opacity);
   row("device", stratus_context_device(core));
-  row("structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
+  row(
+    "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
   row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
   row("why", r.why);
-  row("build", cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
-                 r.occupancy_ms, r.structure_ms, r.upload_ms));
-  row("frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
+  row("build",
+    cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
+      r.occupancy_ms, r.structure_ms, r.upload_ms));
+  row(
+    "frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
   row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
-  row("samples", cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
+  row("samples",
+    cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
       (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
   if (o.audit) {
     row("audit", cli::grouped(r.differing_pixels) + " pixels differ from the march without skipping");
@@ -96,9 +100,9 @@ void list_arrays(vtkImageData* image)
     vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
     for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
       vtkAbstractArray* array = data->GetAbstractArray(i);
-      row(cells ? "cell array" : "point array", cli::format("'%s', %s, %d component%s", array->GetName() ? array->GetName() : "",
-                                                  array->GetDataTypeAsString(), array->GetNumberOfComponents(),
-                                                  array->GetNumberOfComponents() == 1 ? "" : "s"));
+      row(cells ? "cell array" : "point array",
+        cli::format("'%s', %s, %d component%s", array->GetName() ? array->GetName() : "", array->GetDataTypeAsString(),
+          array->GetNumberOfComponents(), array->GetNumberOfComponents() == 1 ? "" : "s"));
     }
   }
 }
@@ -113,7 +117,8 @@ void info(const cli::options& o)
   std::printf("%s\n", o.source.c_str());
   row("volume", describe(in.volume));
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
-  row("bounds", cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
+  row("bounds",
+    cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
   row("memory", cli::format("%.1f MiB of values", h.finite * static_cast<double>(stratus_type_size(in.volume.type)) / 1048576.0));
   if (in.image) {
     list_arrays(in.image);
@@ -154,7 +159,7 @@ void run(const cli::options& o)
     throw cli::failure("cannot write to the standard output");
   }
 }
-}
+} // namespace
 
 int main(int argc, char* argv[])
 {

@@ -121,7 +121,7 @@ void check_complete(const options& o)
     throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'");
   }
 }
-}
+} // namespace
 
 options parse(int argc, char* argv[])
 {
@@ -180,4 +180,4 @@ options parse(int argc, char* argv[])
   check_complete(o);
   return o;
 }
-}
+} // namespace cli

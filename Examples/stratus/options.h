@@ -7,8 +7,7 @@
 
 namespace cli {
 
-struct options
-{
+struct options {
   std::string command; // render, info, devices, help
   std::string source;
   std::string output;
@@ -36,4 +35,4 @@ struct options
 // Throws usage where the command line makes no sense.
 options parse(int argc, char* argv[]);
 std::string help();
-}
+} // namespace cli

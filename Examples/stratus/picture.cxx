@@ -109,8 +109,7 @@ std::vector<uint8_t> encode_png(const std::vector<uint8_t>& bytes, int width, in
   return std::vector<uint8_t>(result->GetPointer(0), result->GetPointer(0) + result->GetNumberOfValues());
 }
 
-output_file::output_file(const std::string& path)
-  : Path(path)
+output_file::output_file(const std::string& path) : Path(path)
 {
   struct stat status;
   const bool exists = stat(path.c_str(), &status) == 0;
@@ -169,4 +168,4 @@ void output_file::commit()
     this->Temporary.clear();
   }
 }
-}
+} // namespace cli

@@ -9,8 +9,7 @@
 
 namespace cli {
 
-struct background
-{
+struct background {
   bool transparent = false;
   double bottom[3] = { 0.05, 0.06, 0.09 };
   double top[3] = { 0.16, 0.20, 0.28 };
@@ -44,4 +43,4 @@ private:
   std::string Temporary; // empty: written in place
   std::FILE* File = nullptr;
 };
-}
+} // namespace cli

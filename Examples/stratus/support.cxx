@@ -10,8 +10,7 @@
 
 namespace cli {
 
-context::context(const std::string& device, int threads)
-  : Terminal(isatty(STDERR_FILENO) != 0)
+context::context(const std::string& device, int threads) : Terminal(isatty(STDERR_FILENO) != 0)
 {
   stratus_context_options options = stratus_context_options_default();
   options.device = device.c_str();
@@ -114,4 +113,4 @@ std::string format(const char* pattern, ...)
   va_end(arguments);
   return text;
 }
-}
+} // namespace cli

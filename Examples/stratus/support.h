@@ -49,4 +49,4 @@ int whole_number(const std::string& text, const std::string& what, int low, int 
 // 1234567 -> "1,234,567"
 std::string grouped(unsigned long long value);
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-}
+} // namespace cli

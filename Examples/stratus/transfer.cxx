@@ -9,8 +9,7 @@
 
 namespace {
 
-struct color_map
-{
+struct color_map {
   const char* name;
   std::vector<double> points; // position 0..1, r, g, b
 };
@@ -23,7 +22,8 @@ const std::vector<color_map>& color_maps()
     { "rainbow", { 0, .1, .2, .8, .5, .9, .9, .3, 1, .9, .1, .1 } },
     { "cool-warm", { 0, .23, .30, .75, .5, .87, .87, .87, 1, .71, .02, .15 } },
     { "viridis",
-      { 0, .267, .005, .329, .2, .254, .265, .530, .4, .164, .471, .558, .6, .135, .659, .518, .8, .478, .821, .318, 1, .993, .906, .144 } },
+      { 0, .267, .005, .329, .2, .254, .265, .530, .4, .164, .471, .558, .6, .135, .659, .518, .8, .478, .821, .318, 1, .993, .906,
+        .144 } },
     { "fire", { 0, .05, .0, .02, .35, .55, .06, .04, .65, .95, .45, .05, .88, 1, .88, .35, 1, 1, 1, .92 } },
     { "gray", { 0, 0, 0, 0, 1, 1, 1, 1 } },
     { "white", { 0, 1, 1, 1 } },
@@ -31,8 +31,7 @@ const std::vector<color_map>& color_maps()
   return maps;
 }
 
-template <class T>
-void count_values(const stratus_volume& volume, cli::histogram& h)
+template <class T> void count_values(const stratus_volume& volume, cli::histogram& h)
 {
   const T* values = static_cast<const T*>(volume.values);
   const int64_t n = volume.dimensions[0] * volume.dimensions[1] * volume.dimensions[2];
@@ -140,7 +139,7 @@ double top_opacity(const stratus_volume& volume, const cli::histogram& h, double
   const double depth_at_one = weight / total * length / footprint;
   return std::min(std::max(1.0 - std::exp(-2.0 / std::max(depth_at_one, 1e-6)), 0.004), 0.9);
 }
-}
+} // namespace
 
 namespace cli {
 
@@ -294,8 +293,8 @@ std::string color_names()
   return names;
 }
 
-transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color,
-  double unit_distance)
+transfer make_transfer(
+  const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color, double unit_distance)
 {
   transfer result;
   const double voxel = std::cbrt(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]);
@@ -324,4 +323,4 @@ transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene,
   }
   return result;
 }
-}
+} // namespace cli

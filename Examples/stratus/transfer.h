@@ -10,8 +10,7 @@
 namespace cli {
 
 // How often the values of a volume come.
-struct histogram
-{
+struct histogram {
   double low = 0.0, high = 0.0;   // of the finite values; low > high: there is none
   double first = 0.0, last = 0.0; // edges of the first and last bin; few integers lie in the middle of a bin each
   std::vector<double> count;      // of equally wide bins
@@ -45,6 +44,6 @@ std::vector<double> parse_color(const std::string& text, double low, double high
 std::string color_names();
 
 // Options may be empty: then the scene's own (may be null), else guesses.
-transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color,
-  double unit_distance);
-}
+transfer make_transfer(
+  const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color, double unit_distance);
+} // namespace cli

@@ -23,16 +23,14 @@ struct failure : std::runtime_error {
 
 // ---- scenes.cxx
 
-struct transfer
-{
+struct transfer {
   std::vector<double> opacity; // pairs
   std::vector<double> color;   // quadruples
   double unit_distance = 1.0;
   stratus_transfer view() const;
 };
 
-struct scene
-{
+struct scene {
   std::string name;
   vtkSmartPointer<vtkImageData> image;
   stratus_volume volume; // borrows the image's values
@@ -49,14 +47,12 @@ stratus_camera camera_of(stratus_context* context, const scene& s, int view);
 
 // ---- a method draws a scene's views
 
-struct picture
-{
+struct picture {
   std::vector<float> rgba;    // premultiplied; empty where a method has no float picture
   std::vector<uint8_t> bytes; // RGBA of the window
 };
 
-struct timing
-{
+struct timing {
   double first_ms = 0.0;
   double frame_ms = 0.0;
   double update_ms = 0.0;
@@ -64,8 +60,7 @@ struct timing
   std::string device;
 };
 
-struct result
-{
+struct result {
   std::string scene, method;
   timing time;
   std::vector<picture> pictures; // a view each
@@ -73,8 +68,7 @@ struct result
   double differing_pixels = -1.0; // -1: not compared
 };
 
-struct floor_result
-{
+struct floor_result {
   double ms = 0.0, samples = 0.0, rate = 0.0;
 };
 
@@ -96,8 +90,7 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
 
 // ---- report.cxx, chart.cxx
 
-struct row
-{
+struct row {
   std::string scene, method, metric, unit;
   double value;
 };
@@ -107,4 +100,4 @@ void write_csv(const std::string& path, const std::vector<row>& rows); // "-": t
 void print_table(const std::vector<row>& rows);
 // Frame time against error, both logarithmic, one mark a method, one chart a scene.
 void write_chart(const std::string& path, const std::vector<row>& rows);
-}
+} // namespace bench

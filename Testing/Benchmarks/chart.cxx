@@ -27,16 +27,15 @@ namespace {
 constexpr int width = 720;
 constexpr int height = 460;
 
-struct mark
-{
+struct mark {
   std::string method;
   double ms, error;
 };
 
 void style(const std::string& method, vtkPlotPoints* plot)
 {
-  static const unsigned char colors[][3] = { { 31, 119, 180 }, { 214, 39, 40 }, { 44, 160, 44 }, { 148, 103, 189 }, { 255, 127, 14 }, { 140, 86, 75 },
-    { 227, 119, 194 }, { 127, 127, 127 }, { 188, 189, 34 }, { 23, 190, 207 } };
+  static const unsigned char colors[][3] = { { 31, 119, 180 }, { 214, 39, 40 }, { 44, 160, 44 }, { 148, 103, 189 }, { 255, 127, 14 },
+    { 140, 86, 75 }, { 227, 119, 194 }, { 127, 127, 127 }, { 188, 189, 34 }, { 23, 190, 207 } };
   static std::vector<std::string> seen;
   auto found = std::find(seen.begin(), seen.end(), method);
   if (found == seen.end()) {
@@ -101,7 +100,7 @@ void add_chart(vtkContextScene* all, const std::string& title, const std::vector
   chart->SetSize(vtkRectf(static_cast<float>(column * width), static_cast<float>(line * height), width, height));
   all->AddItem(chart);
 }
-}
+} // namespace
 
 void write_chart(const std::string& path, const std::vector<row>& rows)
 {
@@ -143,4 +142,4 @@ void write_chart(const std::string& path, const std::vector<row>& rows)
     throw failure("cannot write " + path);
   }
 }
-}
+} // namespace bench

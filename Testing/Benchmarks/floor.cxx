@@ -53,8 +53,7 @@ double counter::opacity(double value) const
   return p.back();
 }
 
-counter::counter(const scene& s)
-  : Scene(s)
+counter::counter(const scene& s) : Scene(s)
 {
   const int64_t* n = s.volume.dimensions;
   for (int a = 0; a < 3; ++a) {
@@ -64,7 +63,8 @@ counter::counter(const scene& s)
   this->Shown.resize(static_cast<size_t>(blocks));
 #pragma omp parallel for
   for (int64_t b = 0; b < blocks; ++b) {
-    const int64_t at[3] = { b % this->Blocks[0] * block, b / this->Blocks[0] % this->Blocks[1] * block, b / this->Blocks[0] / this->Blocks[1] * block };
+    const int64_t at[3] = { b % this->Blocks[0] * block, b / this->Blocks[0] % this->Blocks[1] * block,
+      b / this->Blocks[0] / this->Blocks[1] * block };
     double lo = std::numeric_limits<double>::infinity();
     double hi = -lo;
     for (int64_t k = at[2]; k <= std::min(at[2] + block, n[2] - 1); ++k) {
@@ -145,7 +145,7 @@ double counter::count(const stratus_camera& camera, int size) const
   }
   return total;
 }
-}
+} // namespace
 
 floor_result run_floor(stratus_context* context, const scene& s, int size)
 {
@@ -160,4 +160,4 @@ floor_result run_floor(stratus_context* context, const scene& s, int size)
   f.ms = 1e3 * f.samples / f.rate;
   return f;
 }
-}
+} // namespace bench

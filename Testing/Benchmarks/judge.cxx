@@ -51,7 +51,8 @@ void progress(const scene& s, double step, int view)
   if (isatty(STDERR_FILENO)) {
     std::fprintf(stderr, "\r\033[K");
     if (view < views) {
-      std::fprintf(stderr, "  reference of %s, steps of 1/%d voxel, view %d of %d", s.name.c_str(), static_cast<int>(std::lround(1.0 / step)), view + 1, views);
+      std::fprintf(stderr, "  reference of %s, steps of 1/%d voxel, view %d of %d", s.name.c_str(),
+        static_cast<int>(std::lround(1.0 / step)), view + 1, views);
     }
   }
 }
@@ -60,11 +61,7 @@ class references
 {
 public:
   references(stratus_context* context, const scene& s, int size, const std::string& cache)
-    : Context(context)
-    , Scene(s)
-    , Size(size)
-    , Cache(cache)
-    , Hash(cache.empty() ? 0 : hash_of(s))
+      : Context(context), Scene(s), Size(size), Cache(cache), Hash(cache.empty() ? 0 : hash_of(s))
   {
   }
 
@@ -94,8 +91,8 @@ private:
   std::string path(int view, double step) const
   {
     char name[160];
-    std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash), this->Size,
-      view, static_cast<int>(std::lround(1.0 / step)));
+    std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash),
+      this->Size, view, static_cast<int>(std::lround(1.0 / step)));
     return this->Cache + name;
   }
 
@@ -130,8 +127,7 @@ private:
   uint64_t Hash;
 };
 
-struct error
-{
+struct error {
   double squares = 0.0, count = 0.0, largest = 0.0;
   void add(const float* a, const float* b, size_t pixels) { reference_error(a, b, pixels, &this->squares, &this->count, &this->largest); }
   // Equal pictures get a figure that a table and a chart can hold.
@@ -198,7 +194,7 @@ void compare(stratus_context* context, const scene& s, int size, std::vector<res
     }
   }
 }
-}
+} // namespace
 
 void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results)
 {
@@ -234,11 +230,12 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
     }
   }
   if (agreement < best + 10.0) {
-    std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n", s.name.c_str(), agreement, best);
+    std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n", s.name.c_str(),
+      agreement, best);
   }
   for (result& r : results) {
     r.reference_db = agreement;
   }
   compare(context, s, size, results);
 }
-}
+} // namespace bench

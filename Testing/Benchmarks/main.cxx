@@ -30,8 +30,7 @@ window read back in 8 bits, max_error of floats where a method has them. samples
 itself under xvfb-run.
 )";
 
-struct options
-{
+struct options {
   std::vector<std::string> scenes, methods;
   std::string csv = "-", chart, cache;
   int size = 512;
@@ -109,13 +108,15 @@ void run_scene(stratus_context* context, const std::string& source, const option
   for (const std::string& method : o.methods) {
     if (method == "floor") {
       const bench::floor_result f = bench::run_floor(context, scene, o.size);
-      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate, bench_sample_loop(), f.ms);
+      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate,
+        bench_sample_loop(), f.ms);
       bench::add_rows(scene.name, f, rows);
       continue;
     }
     results.push_back(bench::run_method(context, scene, method, o.size));
     const bench::timing& t = results.back().time;
-    std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms, t.device.c_str());
+    std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms,
+      t.device.c_str());
   }
   if (o.error) {
     bench::judge(context, scene, o.size, o.cache, results);
@@ -164,11 +165,12 @@ void ensure_display(char* argv[])
   execvp(pointers[0], pointers.data());
   throw bench::failure("no display, and xvfb-run cannot be started (Debian: xvfb)");
 }
-}
+} // namespace
 
 int main(int argc, char* argv[])
 {
-  if (argc < 2 || std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "volume") != 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0)) {
+  if (argc < 2 || std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "volume") != 0 ||
+    (argc > 2 && std::strcmp(argv[2], "--help") == 0)) {
     const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0));
     std::fputs(help, asked ? stdout : stderr);
     return asked ? 0 : 2;

@@ -124,12 +124,12 @@ bool draws(const std::vector<uint8_t>& bytes)
 {
   return std::any_of(bytes.begin(), bytes.end(), [](uint8_t b) { return b != 0; });
 }
-}
+} // namespace
 
 std::vector<std::string> all_methods()
 {
-  return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:auto", "stratus:none@device", "stratus:auto@device",
-    "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
+  return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:auto", "stratus:none@device",
+    "stratus:auto@device", "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
 }
 
 void check_method(const std::string& name)
@@ -139,7 +139,8 @@ void check_method(const std::string& name)
   static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
   if (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others)) {
     throw failure("unknown method '" + name +
-      "'; known: stratus:none|block|distance|octant|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor");
+      "'; known: stratus:none|block|distance|octant|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, "
+      "openvdb, floor");
   }
 }
 
@@ -182,4 +183,4 @@ result run_method(stratus_context* context, const scene& s, const std::string& m
   }
   return r;
 }
-}
+} // namespace bench

@@ -34,13 +34,11 @@ using intersector = openvdb::tools::VolumeRayIntersector<openvdb::FloatGrid>;
 using ray = intersector::RayType;
 constexpr int table_size = 4096;
 
-struct entry
-{
+struct entry {
   float rgba[4]; // premultiplied, for one step
 };
 
-struct view
-{
+struct view {
   openvdb::Vec3d eye, forward, right, up; // the ray of (u, v) within -1..1 goes along forward + u right + v up
 };
 
@@ -59,10 +57,9 @@ view view_of(vtkRenderer* renderer)
   v.right *= half * viewport[0] / viewport[1];
   return v;
 }
-}
+} // namespace
 
-struct openvdb_mapper::inside
-{
+struct openvdb_mapper::inside {
   stratus_volume volume;
   double step = 1.0;
   openvdb::FloatGrid::Ptr values;
@@ -162,7 +159,11 @@ void openvdb_mapper::inside::trace(intersector& hits,
   double from = 0.0;
   double to = 0.0;
   // Times are world lengths: the direction in voxels is that of one world unit.
-  if (!hits.setIndexRay(ray(eye, direction, 1e-6, 1e30))) {
+  ray r(eye, direction, 1e-6, 1e30);
+  const openvdb::Vec3d last(
+    double(this->volume.dimensions[0] - 1), double(this->volume.dimensions[1] - 1), double(this->volume.dimensions[2] - 1));
+  // Leaves stick out of the volume; what they hold there is not to be seen.
+  if (!r.clip(openvdb::BBoxd(openvdb::Vec3d(0.0), last)) || !hits.setIndexRay(r)) {
     return;
   }
   while (hits.march(from, to)) {
@@ -198,7 +199,8 @@ void openvdb_mapper::inside::cast(const view& v, int width, int height)
     unsigned long long count = 0;
     for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-        const openvdb::Vec3d direction = (v.forward + ((2.0 * x + 1.0) / width - 1.0) * v.right + ((2.0 * y + 1.0) / height - 1.0) * v.up).unit();
+        const openvdb::Vec3d direction =
+          (v.forward + ((2.0 * x + 1.0) / width - 1.0) * v.right + ((2.0 * y + 1.0) / height - 1.0) * v.up).unit();
         float pixel[4] = { 0, 0, 0, 0 };
         this->trace(hits, sampler, eye, direction / spacing, pixel, count);
         for (int c = 0; c < 4; ++c) {
@@ -211,8 +213,7 @@ void openvdb_mapper::inside::cast(const view& v, int width, int height)
   });
 }
 
-openvdb_mapper::openvdb_mapper()
-  : In(new inside)
+openvdb_mapper::openvdb_mapper() : In(new inside)
 {
   openvdb::initialize();
 }
@@ -254,4 +255,4 @@ void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   state->vtkglDisable(GL_DEPTH_TEST);
   target->DrawPixels(0, 0, size[0] - 1, size[1] - 1, 4, VTK_UNSIGNED_CHAR, this->In->bytes.data());
 }
-}
+} // namespace bench

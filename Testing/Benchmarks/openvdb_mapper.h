@@ -34,4 +34,4 @@ private:
   struct inside;
   std::unique_ptr<inside> In;
 };
-}
+} // namespace bench

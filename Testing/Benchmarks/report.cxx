@@ -55,8 +55,8 @@ void write_csv(const std::string& path, const std::vector<row>& rows)
 
 void print_table(const std::vector<row>& rows)
 {
-  static const char* const metrics[] = { "first_ms", "frame_ms", "update_ms", "psnr_db", "psnr8_db", "max_error", "reference_db", "samples", "differing_pixels",
-    "floor_ms" };
+  static const char* const metrics[] = { "first_ms", "frame_ms", "update_ms", "psnr_db", "psnr8_db", "max_error", "reference_db", "samples",
+    "differing_pixels", "floor_ms" };
   std::map<std::string, double> values;
   std::vector<std::pair<std::string, std::string>> lines;
   for (const row& r : rows) {
@@ -77,10 +77,14 @@ void print_table(const std::vector<row>& rows)
       if (found == values.end()) {
         std::fprintf(stderr, " %11s", "");
       } else {
-        std::fprintf(stderr, std::strcmp(metric, "max_error") == 0 ? " %11.5f" : found->second >= 1e5 ? " %11.4g" : " %11.2f", found->second);
+        std::fprintf(stderr,
+          std::strcmp(metric, "max_error") == 0 ? " %11.5f"
+            : found->second >= 1e5              ? " %11.4g"
+                                                : " %11.2f",
+          found->second);
       }
     }
     std::fprintf(stderr, "\n");
   }
 }
-}
+} // namespace bench

@@ -93,7 +93,8 @@ void resample(scene& s, int64_t along)
     double value = 0.0;
     for (int c = 0; c < 8; ++c) {
       const double weight = (c & 1 ? t[0] : 1 - t[0]) * (c & 2 ? t[1] : 1 - t[1]) * (c & 4 ? t[2] : 1 - t[2]);
-      value += weight * static_cast<double>(in[((i[2] + (c >> 2)) * from.dimensions[1] + i[1] + (c >> 1 & 1)) * from.dimensions[0] + i[0] + (c & 1)]);
+      value += weight *
+        static_cast<double>(in[((i[2] + (c >> 2)) * from.dimensions[1] + i[1] + (c >> 1 & 1)) * from.dimensions[0] + i[0] + (c & 1)]);
     }
     (*values)[static_cast<size_t>(at)] = static_cast<float>(value);
   }
@@ -140,7 +141,7 @@ scene scene_of_file(const std::string& path)
   s.name = s.name.substr(0, s.name.find_last_of('.'));
   return s;
 }
-}
+} // namespace
 
 scene make_scene(stratus_context* context, const std::string& source)
 {
@@ -182,4 +183,4 @@ double median(std::vector<double> values)
   const size_t half = values.size() / 2;
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
-}
+} // namespace bench

@@ -8,10 +8,7 @@
 
 namespace bench {
 
-window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size)
-  : Context(context)
-  , Scene(s)
-  , Size(size)
+window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size) : Context(context), Scene(s), Size(size)
 {
   this->Window->SetOffScreenRendering(1);
   this->Window->SetMultiSamples(0);
@@ -79,4 +76,4 @@ std::vector<uint8_t> window::read() const
   this->Window->GetRGBACharPixelData(0, 0, this->Size - 1, this->Size - 1, 0, pixels);
   return std::vector<uint8_t>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
 }
-}
+} // namespace bench

@@ -33,4 +33,4 @@ private:
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkVolumeProperty> Property;
 };
-}
+} // namespace bench

@@ -11,7 +11,8 @@ static void expect_same(const char* what, const picture* a, const picture* b)
   if (memcmp(a->rgba, b->rgba, sizeof a->rgba) || memcmp(a->depth, b->depth, sizeof a->depth)) {
     int differing = 0;
     for (int i = 0; i < CASE_PIXELS; ++i) {
-      differing += memcmp(a->rgba + 4 * i, b->rgba + 4 * i, 4 * sizeof(float)) != 0 || memcmp(a->depth + i, b->depth + i, sizeof(float)) != 0;
+      differing +=
+        memcmp(a->rgba + 4 * i, b->rgba + 4 * i, 4 * sizeof(float)) != 0 || memcmp(a->depth + i, b->depth + i, sizeof(float)) != 0;
     }
     print_error("%s: %d of %d pixels differ\n", what, differing, CASE_PIXELS);
     fail();

@@ -32,14 +32,17 @@ static stratus_volume view(const float* values, int64_t nx, int64_t ny, int64_t 
 
 static stratus_transfer flat_transfer(void)
 {
-  return (stratus_transfer){ .opacity = flat_opacity, .opacity_count = 2, .color = flat_color, .color_count = 1, .unit_distance = 2.0, .clamp = 1 };
+  return (stratus_transfer){
+    .opacity = flat_opacity, .opacity_count = 2, .color = flat_color, .color_count = 1, .unit_distance = 2.0, .clamp = 1
+  };
 }
 
 /* Looks along +z over the square from (0,0) to (4,4), one unit of world a pixel. */
 static stratus_camera along_z(void)
 {
-  return (stratus_camera){ .eye = { 2, 2, -3 }, .forward = { 0, 0, 1 }, .right = { 2.5, 0, 0 }, .up = { 0, 2.5, 0 }, .far_k = (double)INFINITY,
-    .parallel = 1 };
+  return (stratus_camera){
+    .eye = { 2, 2, -3 }, .forward = { 0, 0, 1 }, .right = { 2.5, 0, 0 }, .up = { 0, 2.5, 0 }, .far_k = (double)INFINITY, .parallel = 1
+  };
 }
 
 static void fill(float* values, size_t n, float value)

@@ -44,8 +44,9 @@ static void device_and_host_draw_the_same(void** state)
     c.options.audit = 1;
     case_render(device, &c, &on_device);
     if (on_device.report.differing_pixels) {
-      print_error("seed %u, %s, %s, %s: the audit on the device found %llu pixels\n", seed, stratus_structure_name(structure), case_type_names[c.volume.type],
-        c.options.interpolation ? "nearest" : "linear", (unsigned long long)on_device.report.differing_pixels);
+      print_error("seed %u, %s, %s, %s: the audit on the device found %llu pixels\n", seed, stratus_structure_name(structure),
+        case_type_names[c.volume.type], c.options.interpolation ? "nearest" : "linear",
+        (unsigned long long)on_device.report.differing_pixels);
       fail();
     }
     lit += case_lit(&on_host) > 0;
@@ -58,7 +59,8 @@ static void device_and_host_draw_the_same(void** state)
     }
     case_destroy(&c);
   }
-  print_message("             %d pictures, at most %lld units in the last place apart, %d pixels with other counts\n", lit, (long long)most, other_counts);
+  print_message("             %d pictures, at most %lld units in the last place apart, %d pixels with other counts\n", lit, (long long)most,
+    other_counts);
   assert_true(lit > 20);
   assert_int_equal(other_counts, 0);
   assert_true(most <= ULPS_MOST);
