@@ -119,7 +119,8 @@ void info(const cli::options& o)
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
   row("bounds",
     cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
-  row("memory", cli::format("%.1f MiB of values", h.finite * static_cast<double>(stratus_type_size(in.volume.type)) / 1048576.0));
+  row("memory",
+    cli::format("%.1f MiB of values", (h.finite + h.not_finite) * static_cast<double>(stratus_type_size(in.volume.type)) / 1048576.0));
   if (in.image) {
     list_arrays(in.image);
   }
