@@ -8,6 +8,7 @@
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkLogger.h>
 #include <vtkPointData.h>
 
 #include <algorithm>
@@ -164,6 +165,8 @@ void run(const cli::options& o)
 
 int main(int argc, char* argv[])
 {
+  // What VTK has to tell comes as an exception's text, once.
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   try {
     run(cli::parse(argc, argv));
     return 0;
