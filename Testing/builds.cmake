@@ -36,6 +36,8 @@ stratus_add_consumer(example_c_alone Examples/C install_core "${CMAKE_BINARY_DIR
 if (stratus_vtk)
   stratus_add_installation(install_all "${CMAKE_BINARY_DIR}")
   stratus_add_consumer(consumer_of_vtk Testing/Consumers/VTK install_all ${stratus_display} "${CMAKE_BINARY_DIR}/consumer_of_vtk/consumer")
+  stratus_add_consumer(example_cxx_alone Examples/Cxx install_all ${stratus_display}
+    "${CMAKE_BINARY_DIR}/example_cxx_alone/ball-in-cloud" "${CMAKE_BINARY_DIR}/example_cxx_alone/ball-in-cloud.png")
   if (stratus_python)
     stratus_add_test(python_of_installation consumers "${CMAKE_COMMAND}" -E env
       "PYTHONPATH=${CMAKE_BINARY_DIR}/install_all/lib/python3/dist-packages" "${Python3_EXECUTABLE}" -c
