@@ -3,6 +3,8 @@
 // float picture.
 #include "mapper_testing.h"
 
+#include "vtkWindowToImageFilter.h"
+
 namespace
 {
 // A quarter of a voxel a step reaches 82 dB and more on this field; a picture that is off by a pixel or half a voxel falls below 50.
@@ -38,6 +40,14 @@ void Cameras()
   Compare("sheared view", [](Scene& s) {
     s.Renderer->GetActiveCamera()->ParallelProjectionOn();
     s.Renderer->GetActiveCamera()->SetViewShear(0.2, -0.1, 1.0);
+  });
+  Compare("off-axis projection", [](Scene& s) {
+    // A screen before the eye, off to one side of it, in the eye's coordinates.
+    vtkCamera* camera = s.Renderer->GetActiveCamera();
+    camera->SetScreenBottomLeft(-13, -14, -60);
+    camera->SetScreenBottomRight(17, -14, -60);
+    camera->SetScreenTopRight(17, 12, -60);
+    camera->SetUseOffAxisProjection(1);
   });
   Compare("camera inside", [](Scene& s) {
     vtkCamera* camera = s.Renderer->GetActiveCamera();
@@ -93,6 +103,41 @@ void Volumes()
   }, cells);
 }
 
+// VTK draws large pictures in tiles; each tile's rays are the whole picture's.
+void Tiles()
+{
+  Scene whole(160, 120), tiles(80, 60);
+  whole.Render();
+  vtkNew<vtkWindowToImageFilter> tiled;
+  tiled->SetInput(tiles.Window);
+  tiled->SetScale(2, 2);
+  tiled->FixBoundaryOff();
+  tiled->ReadFrontBufferOff();
+  tiled->Update();
+  vtkNew<vtkWindowToImageFilter> single;
+  single->SetInput(whole.Window);
+  single->ReadFrontBufferOff();
+  single->Update();
+  vtkDataArray* a = tiled->GetOutput()->GetPointData()->GetScalars();
+  vtkDataArray* b = single->GetOutput()->GetPointData()->GetScalars();
+  CHECK(a->GetNumberOfValues() == b->GetNumberOfValues(), "tiles give another size");
+  double worst = 0.0;
+  for (vtkIdType t = 0; t < std::min(a->GetNumberOfTuples(), b->GetNumberOfTuples()); ++t) {
+    worst = std::max(worst, std::fabs(a->GetComponent(t, 0) - b->GetComponent(t, 0)));
+  }
+  CHECK(worst <= 1.0, "tiles differ from the whole by %g of 255", worst);
+}
+
+// A window with several samples a pixel shows the same.
+void Multisampled()
+{
+  Scene scene;
+  scene.Window->SetMultiSamples(4);
+  scene.Render();
+  const double shown = scene.ShownError(scene.Renderer->GetBackground());
+  CHECK(shown <= 1.0, "with 4 samples a pixel what is shown differs by %.2f of 255", shown);
+}
+
 // A volume behind the camera: nothing drawn, nothing said.
 void OutOfSight()
 {
@@ -113,6 +158,8 @@ int main()
 {
   Cameras();
   Volumes();
+  Tiles();
+  Multisampled();
   OutOfSight();
   return Failures == 0 ? 0 : 1;
 }

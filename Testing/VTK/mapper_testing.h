@@ -13,6 +13,7 @@
 #include "vtkCommand.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -186,8 +187,8 @@ struct Scene
   {
     const std::vector<unsigned char> bytes = this->Bytes();
     const float* rgba = this->Rgba();
-    double worst = 0.0;
-    for (size_t p = 0; p < this->Pixels(); ++p) {
+    double worst = rgba ? 0.0 : 255.0;
+    for (size_t p = 0; rgba && p < this->Pixels(); ++p) {
       for (size_t c = 0; c < 3; ++c) {
         const double meant = rgba[4 * p + c] + (1.0 - rgba[4 * p + 3]) * background[c];
         worst = std::max(worst, std::fabs(255.0 * meant - bytes[4 * p + c]));
@@ -221,22 +222,41 @@ inline stratus_camera ReferenceCamera(vtkRenderer* renderer)
       result[a] = world[a] / world[3];
     }
   };
-  double nearCenter[3], farCenter[3], right[3], up[3];
+  double nearCenter[3], farCenter[3], right[3], up[3], farRight[3], normal[3];
   point(0, 0, -1, nearCenter);
   point(0, 0, 1, farCenter);
   point(1, 0, -1, right);
   point(0, 1, -1, up);
-  const double* range = active->GetClippingRange();
+  point(1, 0, 1, farRight);
+  double along[3];
+  for (int a = 0; a < 3; ++a) {
+    right[a] -= nearCenter[a];
+    up[a] -= nearCenter[a];
+    farRight[a] -= farCenter[a];
+    along[a] = farCenter[a] - nearCenter[a];
+  }
+  vtkMath::Cross(up, right, normal);
+  vtkMath::Normalize(normal);
+  const double between = vtkMath::Dot(along, normal); // the planes
   stratus_camera camera = stratus_camera();
   camera.parallel = active->GetParallelProjection();
-  camera.near_k = range[0];
-  camera.far_k = range[1];
+  // Near and far plane are as far from the eye as they are wide.
+  const double ratio = vtkMath::Norm(right) / vtkMath::Norm(farRight);
+  camera.near_k = between * ratio / (1.0 - ratio);
+  if (camera.parallel) {
+    const double* position = active->GetPosition();
+    camera.near_k = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      camera.near_k += (nearCenter[a] - position[a]) * normal[a];
+    }
+  }
+  camera.far_k = camera.near_k + between;
   for (int a = 0; a < 3; ++a) {
-    camera.forward[a] = (farCenter[a] - nearCenter[a]) / (range[1] - range[0]);
-    camera.eye[a] = nearCenter[a] - range[0] * camera.forward[a];
-    const double scale = camera.parallel ? 1.0 : 1.0 / range[0];
-    camera.right[a] = (right[a] - nearCenter[a]) * scale;
-    camera.up[a] = (up[a] - nearCenter[a]) * scale;
+    camera.forward[a] = along[a] / between;
+    camera.eye[a] = nearCenter[a] - camera.near_k * camera.forward[a];
+    const double scale = camera.parallel ? 1.0 : 1.0 / camera.near_k;
+    camera.right[a] = right[a] * scale;
+    camera.up[a] = up[a] * scale;
   }
   return camera;
 }
