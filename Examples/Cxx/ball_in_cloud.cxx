@@ -97,7 +97,8 @@ int main(int argc, char** argv)
     return EXIT_SUCCESS;
   }
   window->Render();
-  std::printf("%s on %s, %.1f ms: %s\n", mapper->GetStructureUsedAsString(), mapper->GetDeviceName(), mapper->GetCastTime(), mapper->GetReason());
+  std::printf(
+    "%s on %s, %.1f ms: %s\n", mapper->GetStructureUsedAsString(), mapper->GetDeviceName(), mapper->GetCastTime(), mapper->GetReason());
   vtkNew<vtkWindowToImageFilter> picture;
   picture->SetInput(window);
   picture->ReadFrontBufferOff();

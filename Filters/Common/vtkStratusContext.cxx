@@ -3,10 +3,7 @@
 
 #include <utility>
 
-vtkStratusContext::vtkStratusContext(std::function<bool(double)> progress)
-  : Progress(std::move(progress))
-{
-}
+vtkStratusContext::vtkStratusContext(std::function<bool(double)> progress) : Progress(std::move(progress)) {}
 
 vtkStratusContext::~vtkStratusContext()
 {

@@ -12,8 +12,7 @@
 
 #include <algorithm>
 
-namespace
-{
+namespace {
 bool CoreType(int type, stratus_type& result)
 {
   switch (type) {
@@ -84,7 +83,7 @@ void AddNames(vtkDataSetAttributes* data, const char* where, std::string& text)
     }
   }
 }
-}
+} // namespace
 
 std::string vtkStratusArrayNames(vtkImageData* image)
 {

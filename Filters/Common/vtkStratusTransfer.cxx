@@ -9,8 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
-{
+namespace {
 constexpr int SamplesOfAFunction = 4096;
 
 // Positions to sample a function that bends between its nodes: every node, and each interval cut evenly (in the logarithm where that is
@@ -107,7 +106,7 @@ bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& resul
   }
   return true;
 }
-}
+} // namespace
 
 bool vtkStratusTransferView::Set(vtkVolumeProperty* property, std::string& error)
 {

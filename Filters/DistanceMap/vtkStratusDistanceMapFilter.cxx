@@ -26,11 +26,10 @@ class vtkStratusDistanceMapFilter::Internals
 {
 public:
   explicit Internals(vtkStratusDistanceMapFilter* filter)
-    : Filter(filter)
-    , Context([filter](double fraction) {
-      filter->UpdateProgress(fraction);
-      return filter->GetAbortExecute() != 0;
-    })
+      : Filter(filter), Context([filter](double fraction) {
+          filter->UpdateProgress(fraction);
+          return filter->GetAbortExecute() != 0;
+        })
   {
   }
   ~Internals() { this->Clear(); }
@@ -165,9 +164,8 @@ void vtkStratusDistanceMapFilter::Internals::Fill(vtkImageData* input, vtkImageD
 }
 
 vtkStratusDistanceMapFilter::vtkStratusDistanceMapFilter()
-  : LowerThreshold(-std::numeric_limits<double>::infinity())
-  , UpperThreshold(std::numeric_limits<double>::infinity())
-  , Internal(new Internals(this))
+    : LowerThreshold(-std::numeric_limits<double>::infinity()), UpperThreshold(std::numeric_limits<double>::infinity()),
+      Internal(new Internals(this))
 {
 }
 

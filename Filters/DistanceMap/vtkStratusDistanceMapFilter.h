@@ -60,13 +60,7 @@ public:
   vtkGetMacro(BlockSize, int);
   ///@}
 
-  enum KindType
-  {
-    BLOCK,
-    FULL,
-    PAPER,
-    OCTANT
-  };
+  enum KindType { BLOCK, FULL, PAPER, OCTANT };
   ///@{
   /**
    * BLOCK: 1 in every empty block; FULL: the distance to the nearest occupied block; PAPER: the same by Deakin and Knackstedt's own

@@ -12,8 +12,7 @@
 
 #include "vtk_glew.h"
 
-namespace
-{
+namespace {
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;

@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
-{
+namespace {
 // A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then go to
 // the world: inverting the composite matrix would cost digits far from the origin.
-struct ViewRays
-{
+struct ViewRays {
   double Eye[3], Forward[3], Right[3], Up[3], Near, Far;
 };
 
@@ -103,7 +101,7 @@ void CornerToWorld(const stratus_volume& volume, const double box[6], int corner
   }
   vtkMatrix4x4::MultiplyPoint(volume.matrix, local, world);
 }
-}
+} // namespace
 
 void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop)
 {

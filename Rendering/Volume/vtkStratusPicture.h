@@ -9,8 +9,7 @@
 
 class vtkRenderer;
 
-struct VTK_STRATUS_PRIVATE vtkStratusPicture
-{
+struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   int Viewport[4] = { 0, 0, 0, 0 };  // of the renderer: x, y in the window, width, height
   int Rectangle[4] = { 0, 0, 0, 0 }; // what the volume may cover: x, y in the viewport, width, height
   int Size[2] = { 0, 0 };            // pixels to cast; fewer than the rectangle's in a coarse picture

@@ -15,10 +15,7 @@
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
 
-vtkStratusVolumeMapper::vtkStratusVolumeMapper()
-  : Internal(new Internals(this))
-{
-}
+vtkStratusVolumeMapper::vtkStratusVolumeMapper() : Internal(new Internals(this)) {}
 
 vtkStratusVolumeMapper::~vtkStratusVolumeMapper() = default;
 

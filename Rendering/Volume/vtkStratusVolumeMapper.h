@@ -88,14 +88,7 @@ public:
   vtkGetMacro(FinalColorLevel, float);
   ///@}
 
-  enum StructureType
-  {
-    AUTO_STRUCTURE,
-    NO_STRUCTURE,
-    BLOCK_STRUCTURE,
-    DISTANCE_STRUCTURE,
-    OCTANT_STRUCTURE
-  };
+  enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE };
   ///@{
   /**
    * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, or eight of them by the ray's octant. No
@@ -111,12 +104,7 @@ public:
   const char* GetStructureAsString();
   ///@}
 
-  enum SamplingType
-  {
-    AUTO_SAMPLING,
-    MIDPOINT_SAMPLING,
-    PREINTEGRATED_SAMPLING
-  };
+  enum SamplingType { AUTO_SAMPLING, MIDPOINT_SAMPLING, PREINTEGRATED_SAMPLING };
   ///@{
   /**
    * One value in the middle of each segment, or the transfer function integrated between the values at its ends. Nearest interpolation is

@@ -16,8 +16,7 @@
 #include <cmath>
 
 vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
-  : Mapper(mapper)
-  , Context([this](double fraction) { return this->OnProgress(fraction); })
+    : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
 {
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
@@ -47,8 +46,7 @@ bool vtkStratusVolumeMapper::Internals::SetDevice(const std::string& device, std
 bool vtkStratusVolumeMapper::Internals::PrepareContext(std::string& error)
 {
   const int threads = this->Mapper->NumberOfThreads;
-  if ((!this->Context.Get() || this->Context.GetThreads() != threads) &&
-    !this->Context.Create(this->Context.GetDevice(), threads, error)) {
+  if ((!this->Context.Get() || this->Context.GetThreads() != threads) && !this->Context.Create(this->Context.GetDevice(), threads, error)) {
     return false;
   }
   if (!this->Caster && stratus_ray_caster_create(this->Context.Get(), &this->Caster) != STRATUS_OK) {

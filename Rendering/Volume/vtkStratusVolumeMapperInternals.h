@@ -42,8 +42,7 @@ public:
 
 private:
   // How much coarser than asked for the picture is drawn: times the sample distance, pixels between rays.
-  struct Coarseness
-  {
+  struct Coarseness {
     double Step = 1.0;
     double Pixels = 1.0;
   };

@@ -15,17 +15,17 @@
 #include <cmath>
 #include <limits>
 
-namespace
-{
+namespace {
 double Now() // milliseconds
 {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-}
+} // namespace
 
 // ---------------------------------------------------------------- how coarse
 
-vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop) const
+vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(
+  vtkRenderer* renderer, vtkVolume* prop) const
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   Coarseness coarseness;
@@ -94,7 +94,8 @@ const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* ren
   return this->OpaqueDepth.data();
 }
 
-bool vtkStratusVolumeMapper::Internals::Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error)
+bool vtkStratusVolumeMapper::Internals::Cast(
+  vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error)
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
   this->Rgba.resize(4 * pixels);

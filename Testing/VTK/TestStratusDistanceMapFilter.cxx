@@ -10,8 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace
-{
+namespace {
 using Image = vtkSmartPointer<vtkImageData>;
 
 Image RandomImage(std::mt19937& random, bool cells)
@@ -106,12 +105,13 @@ void CheckMap(vtkStratusDistanceMapFilter* filter, vtkImageData* input, bool cel
     static_cast<long long>(filter->GetOccupiedBlocks()));
   vtkDataArray* distance = output->GetCellData()->GetArray("Distance");
   for (vtkIdType b = 0; b < distance->GetNumberOfTuples(); ++b) {
-    const int from[3] = { static_cast<int>(b % blocks[0]), static_cast<int>(b / blocks[0] % blocks[1]), static_cast<int>(b / blocks[0] / blocks[1]) };
+    const int from[3] = { static_cast<int>(b % blocks[0]), static_cast<int>(b / blocks[0] % blocks[1]),
+      static_cast<int>(b / blocks[0] / blocks[1]) };
     const bool directed = kind == vtkStratusDistanceMapFilter::OCTANT;
     int expected = Nearest(occupied, blocks, from, directed ? octant : -1);
     expected = kind == vtkStratusDistanceMapFilter::BLOCK ? std::min(expected, 1) : expected;
-    CHECK(distance->GetTuple1(b) == expected, "block %lld of %d %d %d, size %d, kind %d, octant %d: %g instead of %d", static_cast<long long>(b),
-      blocks[0], blocks[1], blocks[2], size, kind, octant, distance->GetTuple1(b), expected);
+    CHECK(distance->GetTuple1(b) == expected, "block %lld of %d %d %d, size %d, kind %d, octant %d: %g instead of %d",
+      static_cast<long long>(b), blocks[0], blocks[1], blocks[2], size, kind, octant, distance->GetTuple1(b), expected);
   }
 }
 
@@ -170,7 +170,8 @@ void Property()
   scene.Opacity->AddPoint(0.6, 0.0);
   scene.Opacity->AddPoint(1.0, 0.5);
   filter->Update();
-  CHECK(filter->GetOccupiedBlocks() < before, "an edit of the opacity leaves %lld blocks", static_cast<long long>(filter->GetOccupiedBlocks()));
+  CHECK(
+    filter->GetOccupiedBlocks() < before, "an edit of the opacity leaves %lld blocks", static_cast<long long>(filter->GetOccupiedBlocks()));
 }
 
 void Refused(const char* word, const std::function<void(vtkStratusDistanceMapFilter*)>& breaks)
@@ -215,7 +216,7 @@ void Refusals()
   vtkNew<vtkImageData> none;
   Refused("empty", [&](Filter* f) { f->SetInputData(none); });
 }
-}
+} // namespace
 
 int main()
 {

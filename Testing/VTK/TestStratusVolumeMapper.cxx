@@ -5,8 +5,7 @@
 
 #include "vtkWindowToImageFilter.h"
 
-namespace
-{
+namespace {
 // A quarter of a voxel a step reaches 82 dB and more on this field; a picture that is off by a pixel or half a voxel falls below 50.
 constexpr double SmoothDb = 78.0;
 // Nearest interpolation jumps at voxel walls, where a midpoint rule meets the reference only to within its step.
@@ -91,16 +90,22 @@ void Volumes()
     s.Volume->SetScale(-1, 1, 1);
     s.Look(35, 20);
   });
-  Compare("nearest", [](Scene& s) {
-    s.Volume->GetProperty()->SetInterpolationTypeToNearest();
-    s.Mapper->SetSampleDistance(0.03);
-  }, nullptr, NearestDb);
+  Compare(
+    "nearest",
+    [](Scene& s) {
+      s.Volume->GetProperty()->SetInterpolationTypeToNearest();
+      s.Mapper->SetSampleDistance(0.03);
+    },
+    nullptr, NearestDb);
   vtkNew<vtkFloatArray> cells;
-  Compare("cell data", [&](Scene& s) {
-    FillField(s.Image, true, "cells");
-    s.Image->GetPointData()->Initialize();
-    cells->ShallowCopy(s.Image->GetCellData()->GetScalars());
-  }, cells);
+  Compare(
+    "cell data",
+    [&](Scene& s) {
+      FillField(s.Image, true, "cells");
+      s.Image->GetPointData()->Initialize();
+      cells->ShallowCopy(s.Image->GetCellData()->GetScalars());
+    },
+    cells);
 }
 
 // VTK draws large pictures in tiles; each tile's rays are the whole picture's.
@@ -152,7 +157,7 @@ void OutOfSight()
   }
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
-}
+} // namespace
 
 int main()
 {

@@ -16,8 +16,7 @@
 
 #include <fstream>
 
-namespace
-{
+namespace {
 std::string OutputFolder;
 
 void Compare(Scene& scene, const std::string& name)
@@ -114,7 +113,7 @@ bool Hurricane()
   Compare(scene, "TestStratusVolumeMapperHurricane");
   return true;
 }
-}
+} // namespace
 
 int main(int argc, char** argv)
 {

@@ -2,15 +2,11 @@
 // Rebuild by what changed, told by counters: a camera nothing, a transfer function tables and structure, data everything; and what is rebuilt shows.
 #include "mapper_testing.h"
 
-namespace
-{
-struct Counts
-{
+namespace {
+struct Counts {
   explicit Counts(vtkStratusVolumeMapper* mapper)
-    : Range(mapper->GetRangeBuilds())
-    , Table(mapper->GetTableBuilds())
-    , Occupancy(mapper->GetOccupancyBuilds())
-    , Structure(mapper->GetStructureBuilds())
+      : Range(mapper->GetRangeBuilds()), Table(mapper->GetTableBuilds()), Occupancy(mapper->GetOccupancyBuilds()),
+        Structure(mapper->GetStructureBuilds())
   {
   }
   vtkTypeUInt64 Range, Table, Occupancy, Structure;
@@ -26,7 +22,7 @@ void Expect(Scene& scene, Counts& counts, const char* what, bool range, bool res
   CHECK((now.Structure > counts.Structure) == rest, "%s: structure built %llu times", what, static_cast<unsigned long long>(now.Structure));
   counts = now;
 }
-}
+} // namespace
 
 int main()
 {
@@ -67,7 +63,8 @@ int main()
   }
   values->Modified();
   scene.Render();
-  CHECK(scene.Mapper->GetRangeBuilds() == 2, "changed values: ranges built %llu times", static_cast<unsigned long long>(scene.Mapper->GetRangeBuilds()));
+  CHECK(scene.Mapper->GetRangeBuilds() == 2, "changed values: ranges built %llu times",
+    static_cast<unsigned long long>(scene.Mapper->GetRangeBuilds()));
   CHECK(scene.Picture() != before, "changed values change nothing");
   scene.Image->Modified();
   scene.Render();

@@ -7,8 +7,7 @@
 #include "vtkPlane.h"
 #include "vtkSOADataArrayTemplate.h"
 
-namespace
-{
+namespace {
 // The field in 0..100, rounded, is exact in every type: all pictures must be the same to the bit.
 void Types()
 {
@@ -194,7 +193,7 @@ void Pipeline()
   shift->SetScale(0.5);
   CHECK(scene.Picture() != before, "the mapper does not update its pipeline");
 }
-}
+} // namespace
 
 int main()
 {

@@ -10,8 +10,7 @@
 
 #include <limits>
 
-namespace
-{
+namespace {
 bool IsBlack(Scene& scene)
 {
   const std::vector<unsigned char> bytes = scene.Bytes();
@@ -43,98 +42,129 @@ void Refused(const char* what, const char* word, const std::function<void(Scene&
 
 void Modes()
 {
-  Refused("maximum intensity", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToMaximumIntensity(); },
+  Refused(
+    "maximum intensity", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToMaximumIntensity(); },
     [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
-  Refused("shading", "shading", [](Scene& s) { s.Volume->GetProperty()->ShadeOn(); }, [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
+  Refused(
+    "shading", "shading", [](Scene& s) { s.Volume->GetProperty()->ShadeOn(); }, [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
   vtkNew<vtkPiecewiseFunction> gradient;
   gradient->AddPoint(0, 0);
   gradient->AddPoint(1, 1);
-  Refused("gradient opacity", "gradient opacity", [&](Scene& s) { s.Volume->GetProperty()->SetGradientOpacity(gradient); },
+  Refused(
+    "gradient opacity", "gradient opacity", [&](Scene& s) { s.Volume->GetProperty()->SetGradientOpacity(gradient); },
     [](Scene& s) { s.Volume->GetProperty()->DisableGradientOpacityOn(); });
-  Refused("2D transfer function", "TF_1D", [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
+  Refused(
+    "2D transfer function", "TF_1D", [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
     [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_1D); });
   vtkNew<vtkColorTransferFunction> label;
   label->AddRGBPoint(0, 1, 1, 1);
-  Refused("label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
+  Refused(
+    "label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
     [](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, nullptr); });
-  Refused("fence cropping", "cropping", [](Scene& s) {
-    s.Mapper->CroppingOn();
-    s.Mapper->SetCroppingRegionFlagsToFence();
-  }, [](Scene& s) { s.Mapper->CroppingOff(); });
-  Refused("seven clipping planes", "clipping planes", [](Scene& s) {
-    for (int p = 0; p < 7; ++p) {
-      s.Mapper->AddClippingPlane(vtkNew<vtkPlane>());
-    }
-  }, [](Scene& s) { s.Mapper->RemoveAllClippingPlanes(); });
-  Refused("colour window 0", "FinalColorWindow", [](Scene& s) { s.Mapper->SetFinalColorWindow(0); },
+  Refused(
+    "fence cropping", "cropping",
+    [](Scene& s) {
+      s.Mapper->CroppingOn();
+      s.Mapper->SetCroppingRegionFlagsToFence();
+    },
+    [](Scene& s) { s.Mapper->CroppingOff(); });
+  Refused(
+    "seven clipping planes", "clipping planes",
+    [](Scene& s) {
+      for (int p = 0; p < 7; ++p) {
+        s.Mapper->AddClippingPlane(vtkNew<vtkPlane>());
+      }
+    },
+    [](Scene& s) { s.Mapper->RemoveAllClippingPlanes(); });
+  Refused(
+    "colour window 0", "FinalColorWindow", [](Scene& s) { s.Mapper->SetFinalColorWindow(0); },
     [](Scene& s) { s.Mapper->SetFinalColorWindow(1); });
-  Refused("block size 3", "block", [](Scene& s) { s.Mapper->SetBlockSize(3); }, [](Scene& s) { s.Mapper->SetBlockSize(0); });
+  Refused(
+    "block size 3", "block", [](Scene& s) { s.Mapper->SetBlockSize(3); }, [](Scene& s) { s.Mapper->SetBlockSize(0); });
 }
 
 void Functions()
 {
   vtkNew<vtkPiecewiseFunction> empty;
-  Refused("opacity without points", "no points", [&](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(empty); },
+  Refused(
+    "opacity without points", "no points", [&](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(empty); },
     [](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(s.Opacity); });
   vtkNew<vtkColorTransferFunction> colorless;
-  Refused("colour without points", "no points", [&](Scene& s) { s.Volume->GetProperty()->SetColor(colorless); },
+  Refused(
+    "colour without points", "no points", [&](Scene& s) { s.Volume->GetProperty()->SetColor(colorless); },
     [](Scene& s) { s.Volume->GetProperty()->SetColor(s.Color); });
   vtkNew<vtkPiecewiseFunction> beyond;
   beyond->AddPoint(0, 0);
   beyond->AddPoint(1, 1.5);
-  Refused("opacity of 1.5", "1.5", [&](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(beyond); },
+  Refused(
+    "opacity of 1.5", "1.5", [&](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(beyond); },
     [](Scene& s) { s.Volume->GetProperty()->SetScalarOpacity(s.Opacity); });
-  Refused("unit distance 0", "distance", [](Scene& s) { s.Volume->GetProperty()->SetScalarOpacityUnitDistance(0); },
+  Refused(
+    "unit distance 0", "distance", [](Scene& s) { s.Volume->GetProperty()->SetScalarOpacityUnitDistance(0); },
     [](Scene& s) { s.Volume->GetProperty()->SetScalarOpacityUnitDistance(1.5); });
 }
 
 void Data()
 {
   vtkNew<vtkImageData> empty;
-  Refused("empty image", "empty", [&](Scene& s) { s.Mapper->SetInputData(empty); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  Refused(
+    "empty image", "empty", [&](Scene& s) { s.Mapper->SetInputData(empty); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   vtkNew<vtkImageData> bare;
   bare->SetDimensions(5, 5, 5);
-  Refused("no scalars", "no scalar array", [&](Scene& s) { s.Mapper->SetInputData(bare); },
-    [](Scene& s) { s.Mapper->SetInputData(s.Image); });
-  Refused("array that is not there", "'nowhere'", [](Scene& s) {
-    s.Mapper->SetScalarModeToUsePointFieldData();
-    s.Mapper->SelectScalarArray("nowhere");
-  }, [](Scene& s) { s.Mapper->SelectScalarArray("density"); });
-  Refused("array number 9", "number 9", [](Scene& s) {
-    s.Mapper->SetScalarModeToUsePointFieldData();
-    s.Mapper->SelectScalarArray(9);
-  }, [](Scene& s) { s.Mapper->SelectScalarArray(0); });
-  Refused("no cell data", "'density' (points)", [](Scene& s) { s.Mapper->SetScalarModeToUseCellData(); },
+  Refused(
+    "no scalars", "no scalar array", [&](Scene& s) { s.Mapper->SetInputData(bare); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  Refused(
+    "array that is not there", "'nowhere'",
+    [](Scene& s) {
+      s.Mapper->SetScalarModeToUsePointFieldData();
+      s.Mapper->SelectScalarArray("nowhere");
+    },
+    [](Scene& s) { s.Mapper->SelectScalarArray("density"); });
+  Refused(
+    "array number 9", "number 9",
+    [](Scene& s) {
+      s.Mapper->SetScalarModeToUsePointFieldData();
+      s.Mapper->SelectScalarArray(9);
+    },
+    [](Scene& s) { s.Mapper->SelectScalarArray(0); });
+  Refused(
+    "no cell data", "'density' (points)", [](Scene& s) { s.Mapper->SetScalarModeToUseCellData(); },
     [](Scene& s) { s.Mapper->SetScalarModeToUsePointData(); });
   vtkNew<vtkImageData> vectors;
   vectors->SetDimensions(5, 5, 5);
   vectors->AllocateScalars(VTK_FLOAT, 3);
-  Refused("three components", "3 components", [&](Scene& s) { s.Mapper->SetInputData(vectors); },
+  Refused(
+    "three components", "3 components", [&](Scene& s) { s.Mapper->SetInputData(vectors); },
     [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   vtkNew<vtkImageData> bits;
   bits->SetDimensions(5, 5, 5);
   vtkNew<vtkBitArray> array;
   array->SetNumberOfTuples(125);
   bits->GetPointData()->SetScalars(array);
-  Refused("bit array", "bit", [&](Scene& s) { s.Mapper->SetInputData(bits); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  Refused(
+    "bit array", "bit", [&](Scene& s) { s.Mapper->SetInputData(bits); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   vtkNew<vtkImageData> shortened;
   shortened->SetDimensions(5, 5, 5);
   vtkNew<vtkFloatArray> few;
   few->SetNumberOfTuples(100);
   shortened->GetPointData()->SetScalars(few);
-  Refused("array too short", "100", [&](Scene& s) { s.Mapper->SetInputData(shortened); },
-    [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  Refused(
+    "array too short", "100", [&](Scene& s) { s.Mapper->SetInputData(shortened); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   for (double bad : { 0.0, -1.0, std::numeric_limits<double>::quiet_NaN() }) {
     vtkNew<vtkImageData> image;
     image->SetDimensions(5, 5, 5);
     image->AllocateScalars(VTK_FLOAT, 1);
     image->SetSpacing(1, bad, 1);
-    Refused("spacing", "spacing", [&](Scene& s) {
-      s.Renderer->GetCullers()->RemoveAllItems(); // VTK's own drops bounds that are not numbers without a word
-      s.Mapper->SetInputData(image);
-    }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+    Refused(
+      "spacing", "spacing",
+      [&](Scene& s) {
+        s.Renderer->GetCullers()->RemoveAllItems(); // VTK's own drops bounds that are not numbers without a word
+        s.Mapper->SetInputData(image);
+      },
+      [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   }
-  Refused("matrix that flattens", "matrix", [](Scene& s) { s.Volume->SetScale(1, 0, 1); }, [](Scene& s) { s.Volume->SetScale(1, 1, 1); });
+  Refused(
+    "matrix that flattens", "matrix", [](Scene& s) { s.Volume->SetScale(1, 0, 1); }, [](Scene& s) { s.Volume->SetScale(1, 1, 1); });
 }
 
 // VTK draws nothing, silently, for a volume whose mapper has no input; the process must live through it.
@@ -159,7 +189,7 @@ void Device()
   CHECK(std::string(scene.Mapper->GetDevice()) == "host", "the device became %s", scene.Mapper->GetDevice());
   CHECK(scene.Picture() == before, "a device that is refused changes the picture");
 }
-}
+} // namespace
 
 int main()
 {

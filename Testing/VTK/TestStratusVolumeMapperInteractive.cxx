@@ -40,7 +40,8 @@ int main()
 
   scene.Window->SetDesiredUpdateRate(0.0001);
   CHECK(scene.Picture() == exact, "the still picture after moving is not the exact one");
-  CHECK(scene.Mapper->GetRangeBuilds() == 1, "value ranges built %llu times", static_cast<unsigned long long>(scene.Mapper->GetRangeBuilds()));
+  CHECK(
+    scene.Mapper->GetRangeBuilds() == 1, "value ranges built %llu times", static_cast<unsigned long long>(scene.Mapper->GetRangeBuilds()));
 
   scene.Window->SetDesiredUpdateRate(1.0); // a second is plenty: exact at an interactive rate too
   CHECK(scene.Picture() == exact, "coarser than the time allotted asks for");

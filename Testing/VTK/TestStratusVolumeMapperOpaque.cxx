@@ -9,10 +9,8 @@
 
 #include <numeric>
 
-namespace
-{
-struct Opaque
-{
+namespace {
+struct Opaque {
   Opaque(Scene& scene, double x, double y, double z, double radius)
   {
     this->Sphere->SetCenter(x, y, z);
@@ -105,7 +103,7 @@ void Coarse()
   const double coarse = scene.Light();
   CHECK(std::fabs(coarse / fine - 1.0) < 0.1, "light of %g fine and %g coarse", fine, coarse);
 }
-}
+} // namespace
 
 int main()
 {

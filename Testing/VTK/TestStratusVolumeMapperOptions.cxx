@@ -5,8 +5,7 @@
 #include <limits>
 #include <sstream>
 
-namespace
-{
+namespace {
 void Structures()
 {
   Scene scene;
@@ -131,7 +130,8 @@ void Depth()
   const double distance = scene.Renderer->GetActiveCamera()->GetDistance();
   for (size_t p = 0; p < scene.Pixels(); ++p) {
     CHECK((rgba[4 * p + 3] > 0.0f) == std::isfinite(depth[p]), "pixel %zu: alpha %g, depth %g", p, rgba[4 * p + 3], depth[p]);
-    CHECK(!std::isfinite(depth[p]) || std::fabs(depth[p] - distance) < 30.0, "pixel %zu: depth %g, the volume is at %g", p, depth[p], distance);
+    CHECK(
+      !std::isfinite(depth[p]) || std::fabs(depth[p] - distance) < 30.0, "pixel %zu: depth %g, the volume is at %g", p, depth[p], distance);
   }
 }
 
@@ -188,7 +188,7 @@ void Printing()
   }
   CHECK(std::string(scene.Mapper->GetDeviceName()).find("host") != std::string::npos, "device %s", scene.Mapper->GetDeviceName());
 }
-}
+} // namespace
 
 int main()
 {

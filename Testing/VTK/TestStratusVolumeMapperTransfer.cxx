@@ -5,8 +5,7 @@
 
 #include "vtkDiscretizableColorTransferFunction.h"
 
-namespace
-{
+namespace {
 // A slab one unit distance thick: its middle pixel has the opacity and colour of `value` itself.
 void Slab(const char* what, vtkVolumeProperty* property, double value, double opacity, const double rgb[3])
 {
@@ -33,7 +32,8 @@ void Slab(const char* what, vtkVolumeProperty* property, double value, double op
   // Tables have some thousand entries over the range of the data, and VTK's functions bend by less than this between two.
   CHECK(std::fabs(pixel[3] - opacity) < 2e-3, "%s at %g: opacity %g, VTK says %g", what, value, pixel[3], opacity);
   for (int c = 0; c < 3; ++c) {
-    CHECK(std::fabs(pixel[c] - opacity * rgb[c]) < 3e-3, "%s at %g: channel %d is %g, VTK says %g", what, value, c, pixel[c], opacity * rgb[c]);
+    CHECK(
+      std::fabs(pixel[c] - opacity * rgb[c]) < 3e-3, "%s at %g: channel %d is %g, VTK says %g", what, value, c, pixel[c], opacity * rgb[c]);
   }
 }
 
@@ -106,7 +106,7 @@ void Ends()
   Slab("colour beyond", property, 5.0, 0.5, black);
   Slab("colour before", property, 0.5, 0.5, black);
 }
-}
+} // namespace
 
 int main()
 {
@@ -131,7 +131,8 @@ int main()
   vtkNew<vtkDiscretizableColorTransferFunction> discrete;
   discrete->DiscretizeOn();
   discrete->SetNumberOfValues(5);
-  Check("discretised", [&](Opacity*, Color*) { discrete->Build(); }, discrete);
+  Check(
+    "discretised", [&](Opacity*, Color*) { discrete->Build(); }, discrete);
   Grey();
   Ends();
   return Failures == 0 ? 0 : 1;

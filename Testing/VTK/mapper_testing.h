@@ -82,8 +82,8 @@ inline void FillField(vtkImageData* image, bool cells, const char* name, double 
     for (int j = 0; j < points[1] - off; ++j) {
       for (int i = 0; i < points[0] - off; ++i) {
         const double half = 0.5 * off;
-        array->InsertNextValue(static_cast<float>(
-          scale * Field((i + half) / (points[0] - 1), (j + half) / (points[1] - 1), (k + half) / (points[2] - 1))));
+        array->InsertNextValue(
+          static_cast<float>(scale * Field((i + half) / (points[0] - 1), (j + half) / (points[1] - 1), (k + half) / (points[2] - 1))));
       }
     }
   }
@@ -95,8 +95,7 @@ inline void FillField(vtkImageData* image, bool cells, const char* name, double 
 }
 
 // A window with one volume of 33 x 29 x 25 points in it, black behind.
-struct Scene
-{
+struct Scene {
   explicit Scene(int width = 160, int height = 120)
   {
     this->Image->SetDimensions(33, 29, 25);
@@ -308,9 +307,8 @@ inline double ReferencePsnr(Scene& scene, const std::function<void(reference_sce
   reference.volume = &volume;
   reference.transfer = &transfer;
   reference.camera = &camera;
-  reference.interpolation = scene.Volume->GetProperty()->GetInterpolationType() == VTK_NEAREST_INTERPOLATION
-    ? STRATUS_INTERPOLATION_NEAREST
-    : STRATUS_INTERPOLATION_LINEAR;
+  reference.interpolation = scene.Volume->GetProperty()->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST
+                                                                                                             : STRATUS_INTERPOLATION_LINEAR;
   if (more) {
     more(reference);
   }
