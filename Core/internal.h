@@ -58,7 +58,7 @@ double stratus_now_ms(void); /* monotonic clock */
  * Traversal, ranges and tables see a voxel as the float that stratus_volume_fetch() makes of it, its "fetched" value:
  * types of at most 24 bits and float32 as they are, wider ones as (float)((double)value - bias). Monotone, so the fetched
  * range is the range of the fetched. */
-double stratus_volume_bias(const stratus_volume* volume); /* 0 for narrow types; else the first finite value, 0 if none */
+double stratus_volume_bias(const stratus_volume* volume); /* 0 for narrow types; else the finite value of least magnitude among some thousand, 0 if none */
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Size of the index box: cells between value positions, dimensions-1 at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
@@ -111,7 +111,7 @@ static inline int stratus_table_entry(const stratus_table* table, float value)
 {
   const float entry = fmaf(value, table->scale, table->offset);
   const float last = (float)(table->size - 1);
-  return (int)(entry < 0.0f ? 0.0f : entry > last ? last : entry);
+  return (int)(!(entry > 0.0f) ? 0.0f : entry > last ? last : entry); /* no number goes to 0 */
 }
 
 /* 1 if the table shows anything for any value interpolated within [lo, hi]: the hull is widened by more than interpolation can round. */

@@ -21,6 +21,24 @@ static double dot3(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* World distance from the eye (parallel: from anywhere in the window) that no point of the volume exceeds. */
+static double farthest_point(const stratus_volume* volume, const stratus_camera* camera, const double m[16])
+{
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double index[3], point[3], square = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      index[axis] = corner >> axis & 1 ? (double)volume->dimensions[axis] : -1.0;
+    }
+    stratus_matrix_point(m, index, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      square += (point[axis] - camera->eye[axis]) * (point[axis] - camera->eye[axis]);
+    }
+    farthest = fmax(farthest, sqrt(square));
+  }
+  return farthest + sqrt(dot3(camera->right, camera->right)) + sqrt(dot3(camera->up, camera->up));
+}
+
 static stratus_status check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
 {
   if (!camera) {
@@ -68,7 +86,8 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
   a->metric[4] = stratus_pair_of(2.0 * dot3(camera->right, camera->up));
   a->metric[5] = stratus_pair_of(dot3(camera->up, camera->up));
   a->near_k = stratus_pair_of(camera->near_k);
-  a->far_k = stratus_pair_of(camera->far_k);
+  a->has_far = isfinite(camera->far_k);
+  a->far_k = stratus_pair_of(a->has_far ? camera->far_k : 0.0);
   a->parallel = camera->parallel != 0;
 }
 
@@ -89,8 +108,7 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
     }
     a->box[0][axis] = stratus_pair_of(lo);
     a->box[1][axis] = stratus_pair_of(hi);
-    const bool linear = options->interpolation == STRATUS_INTERPOLATION_LINEAR;
-    a->last[axis] = (float)(linear && last > 0.0 ? last - margin : last);
+    a->last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`: the cell there, and its block, must exist */
   }
   return true;
 }
@@ -178,6 +196,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   TRY(check_samples(context, index_to_world, volume, sample_distance));
   set_camera(camera, world_to_index, a);
   a->step = stratus_pair_of(sample_distance);
+  a->reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
   a->world_step = (float)sample_distance;
   a->pixel[0] = stratus_pair_of(1.0 / image->width);
   a->pixel[1] = stratus_pair_of(1.0 / image->height);

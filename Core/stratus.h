@@ -119,7 +119,7 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type
 
 /* A view of one scalar component on a regular grid.
  * Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: such a voxel). Types of more than 24
- * bits are taken relative to the first finite value, in double, so that an offset costs no digits. */
+ * bits are taken relative to one of their values (the least in magnitude of some thousand), in double, so that an offset costs no digits. */
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, component_stride apart */
   stratus_type type;

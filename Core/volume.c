@@ -6,6 +6,8 @@
 
 /* Below this a matrix, its columns brought to length about 1, maps the volume onto what is a plane for all that doubles can tell. */
 #define SINGULAR_BELOW 1e-12
+/* Values, evenly spread, among which the least in magnitude is what wide types are taken relative to. */
+#define BIAS_VALUES_ASKED 4096
 
 static const double identity3[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
 static const double identity4[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
@@ -287,19 +289,20 @@ static double value_as_double(const stratus_volume* volume, size_t index)
   return 0.0;
 }
 
+/* Not simply the first value: that may be a fill value of 1e36, beside which every other digit would cancel. */
 double stratus_volume_bias(const stratus_volume* volume)
 {
   if (!stratus_type_is_wide(volume->type)) {
     return 0.0;
   }
   const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
-  for (size_t i = 0; i < count; i++) {
+  const size_t stride = count / BIAS_VALUES_ASKED + 1;
+  double bias = INFINITY;
+  for (size_t i = 0; i < count; i += stride) {
     const double value = value_as_double(volume, i);
-    if (isfinite(value)) {
-      return value;
-    }
+    bias = fabs(value) < fabs(bias) ? value : bias;
   }
-  return 0.0;
+  return isfinite(bias) ? bias : 0.0;
 }
 
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index)

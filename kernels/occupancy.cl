@@ -5,7 +5,7 @@
 static int table_entry(float value, int size, float scale, float offset)
 {
   const float entry = fma(value, scale, offset), last = (float)(size - 1);
-  return (int)(entry < 0.0f ? 0.0f : entry > last ? last : entry);
+  return (int)(!(entry > 0.0f) ? 0.0f : entry > last ? last : entry);
 }
 
 __kernel void occupancy(__global const float* lo, __global const float* hi, __global const uchar* gaps, __global const int* next_shown,

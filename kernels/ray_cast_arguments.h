@@ -13,7 +13,8 @@ typedef struct stratus_ray_cast_arguments {
   stratus_pair eye[3], forward[3], right[3], up[3];
   /* squared world length of forward + u right + v up: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5] */
   stratus_pair metric[6];
-  stratus_pair near_k, far_k;
+  stratus_pair near_k, far_k;    /* far_k only if has_far */
+  stratus_pair reach;            /* samples to beyond the volume's farthest corner */
   stratus_pair step;             /* sample distance, world */
   stratus_pair pixel[2];         /* 1/width, 1/height */
   stratus_pair box[2][3];        /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
@@ -29,7 +30,7 @@ typedef struct stratus_ray_cast_arguments {
   int width, height;
   int parallel;
   int clip_count;
-  int has_piece, has_depth;      /* has_depth: opaque depth is given */
+  int has_far, has_piece, has_depth;      /* has_depth: opaque depth is given */
   int want_depth, want_samples;
   int clamp;                     /* cell_centered: positions are clamped to 0..last */
   int nearest;
@@ -47,6 +48,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 28)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 29)
 
 #endif

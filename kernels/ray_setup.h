@@ -89,7 +89,10 @@ INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* 
   length = r_sqrt(length);
   const real samples_per_k = r_div(length, r_of(a->step)), k_per_sample = r_div(r_of(a->step), length);
 
-  real begin = r_mul(r_of(a->near_k), samples_per_k), end = r_mul(r_of(a->far_k), samples_per_k);
+  real begin = r_mul(r_of(a->near_k), samples_per_k), end = r_of(a->reach);
+  if (a->has_far) {
+    end = r_min(end, r_mul(r_of(a->far_k), samples_per_k));
+  }
   if (a->has_depth) {
     const real depth = r_load(z), near_k = r_of(a->near_k), far_k = r_of(a->far_k), extent = r_mul(depth, r_sub(far_k, near_k));
     const real k = a->parallel ? r_add(near_k, extent) : r_div(r_mul(near_k, far_k), r_sub(far_k, extent));

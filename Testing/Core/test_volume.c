@@ -125,7 +125,8 @@ static void every_type_is_fetched_as_it_is(void** state)
     v.values = values;                                                                                                                     \
     v.type = tag;                                                                                                                          \
     const double bias = stratus_volume_bias(&v);                                                                                           \
-    assert_true(bias == (stratus_type_is_wide(tag) ? (double)(a) : 0.0));                                                                  \
+    const double least = fabs((double)(b)) < fabs((double)(a)) ? (double)(b) : (double)(a);                                                 \
+    assert_true(bias == (stratus_type_is_wide(tag) ? least : 0.0));                                                                  \
     assert_true(stratus_volume_fetch(&v, bias, 0) == (float)((double)(a)-bias));                                                           \
     assert_true(stratus_volume_fetch(&v, bias, 1) == (float)((double)(b)-bias));                                                           \
     assert_int_equal(stratus_type_size(tag), sizeof(TYPE));                                                                                \
@@ -142,11 +143,12 @@ static void every_type_is_fetched_as_it_is(void** state)
   CHECK(double, STRATUS_FLOAT64, 6e6, 6e6 + 1e-5);
 #undef CHECK
   assert_int_equal(stratus_type_size((stratus_type)10), 0);
-  const double gaps[3] = { NAN, INFINITY, 4.0 };
+  /* a fill value in front must not swallow the digits of the rest */
+  const double gaps[3] = { NAN, 9.97e36, 4.0 };
   v.values = gaps;
   v.value_stride = 1;
   assert_true(stratus_volume_bias(&v) == 4.0);
-  v.dimensions[0] = 2;
+  v.dimensions[0] = 1;
   assert_true(stratus_volume_bias(&v) == 0.0);
 }
 
