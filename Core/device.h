@@ -10,9 +10,6 @@
 #endif
 #include <CL/cl.h>
 
-/* Text of kernels/<name>.cl with its includes, from the file that cmake/embed.cmake generates; NULL if there is no such kernel. */
-const char* stratus_kernel_source(const char* name);
-
 /* selector: "auto" (first GPU; none: STRATUS_OK and *device NULL), a decimal index, or a part of a name, any case. */
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
 void stratus_device_close(stratus_device* device); /* takes NULL */
