@@ -195,7 +195,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   }
   TRY(check_samples(context, index_to_world, volume, sample_distance));
   set_camera(camera, world_to_index, a);
-  a->step = stratus_pair_of(sample_distance);
+  a->per_step = stratus_pair_of(1.0 / sample_distance);
   a->reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
   a->world_step = (float)sample_distance;
   a->pixel[0] = stratus_pair_of(1.0 / image->width);
@@ -219,20 +219,8 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   return STRATUS_OK;
 }
 
-void stratus_ray_frame_structures(
-  const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+static void set_map(const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
-  if (table) {
-    a->table_scale = table->scale;
-    a->table_offset = table->offset;
-    a->table_last = (float)(table->size - 1);
-    a->tau_scale = table->sum_scale;
-    a->color_slope = table->color_slope;
-  }
-  a->structure = map != NULL;
-  if (!map) {
-    return;
-  }
   a->blocks_pitch = (int)map->pitch;
   a->blocks_rows = (int)map->blocks[1];
   a->octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
@@ -244,4 +232,74 @@ void stratus_ray_frame_structures(
     a->occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * map->block_size) : -UNBOUNDED;
     a->occupied[1][axis] = occupancy->hi[axis] < map->blocks[axis] ? (float)(occupancy->hi[axis] * map->block_size) : UNBOUNDED;
   }
+}
+
+static double pair_value(stratus_pair pair)
+{
+  return (double)pair.hi + (double)pair.lo;
+}
+
+/* Pixels that the box [lo, hi] (index coordinates) covers, and one more each way: all of them where it reaches behind the eye. */
+static void set_window(const double lo[3], const double hi[3], stratus_ray_cast_arguments* a)
+{
+  double matrix[16] = { [15] = 1.0 }, inverse[16], eye[3], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
+  const int sides[2] = { a->width, a->height };
+  a->window[0] = a->window[2] = 0;
+  a->window[1] = a->width;
+  a->window[3] = a->height;
+  for (int row = 0; row < 3; ++row) {
+    matrix[4 * row] = pair_value(a->right[row]);
+    matrix[4 * row + 1] = pair_value(a->up[row]);
+    matrix[4 * row + 2] = pair_value(a->forward[row]);
+    eye[row] = pair_value(a->eye[row]);
+  }
+  if (!stratus_matrix_invert_affine(matrix, inverse)) {
+    return;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    double point[3], uvk[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = (corner >> axis & 1 ? hi[axis] : lo[axis]) - eye[axis];
+    }
+    stratus_matrix_vector(inverse, point, uvk);
+    if (!a->parallel && !(uvk[2] > 0.0)) {
+      return;
+    }
+    for (int side = 0; side < 2; ++side) {
+      const double at = uvk[side] / (a->parallel ? 1.0 : uvk[2]);
+      range[2 * side] = fmin(range[2 * side], at);
+      range[2 * side + 1] = fmax(range[2 * side + 1], at);
+    }
+  }
+  for (int side = 0; side < 2; ++side) {
+    const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0), last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
+    a->window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
+    a->window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
+  }
+}
+
+void stratus_ray_frame_structures(
+  const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+{
+  if (table) {
+    a->table_scale = table->scale;
+    a->table_offset = table->offset;
+    a->table_last = (float)(table->size - 1);
+    a->tau_scale = table->sum_scale;
+    a->color_slope = table->color_slope;
+  }
+  a->structure = map != NULL;
+  double lo[3], hi[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = pair_value(a->box[0][axis]);
+    hi[axis] = pair_value(a->box[1][axis]);
+  }
+  if (map) {
+    set_map(occupancy, map, a);
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = fmax(lo[axis], (double)a->occupied[0][axis]);
+      hi[axis] = fmin(hi[axis], (double)a->occupied[1][axis]);
+    }
+  }
+  set_window(lo, hi, a);
 }

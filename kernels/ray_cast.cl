@@ -18,6 +18,21 @@
 
 #include "ray_cast.h"
 
+static void store_pixel(__constant stratus_ray_cast_arguments* a, __global float4* rgba, __global float* depth, __global uint* samples, int x, int y,
+  float4 color, float far, uint taken)
+{
+  if (x < a->width && y < a->height) {
+    const size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
+    rgba[pixel] = color;
+    if (a->want_depth) {
+      depth[pixel] = far >= LARGEST_FLOAT ? INFINITY : far;
+    }
+    if (a->want_samples) {
+      samples[pixel] = taken;
+    }
+  }
+}
+
 /* counts: rays, samples, skipped, lookups, a row of packets each, so that 32 bits hold them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden, __global const uchar* map,
   __global const void* table, __global const float* opaque_depth, __global float4* rgba, __global float* depth, __global uint* samples,
@@ -26,6 +41,12 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
   const int column = (int)get_global_id(0), row = (int)get_global_id(1);
   const int x = column * PACKET_X, y = row * PACKET_Y;
   if (x >= a->width || y >= a->height) {
+    return;
+  }
+  if (packet_outside(a, x, y)) {
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      store_pixel(a, rgba, depth, samples, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), (float4)(0.0f), LARGEST_FLOAT, 0u);
+    }
     return;
   }
   stratus_packet k;
@@ -45,17 +66,8 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
   vi_store(lookups, k.lookups);
   uint sum[3] = { 0, 0, 0 };
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    const int px = x + (lane & (PACKET_X - 1)), py = y + (lane >> PACKET_X_LOG2);
-    if (px < a->width && py < a->height) {
-      const size_t pixel = (size_t)py * (size_t)a->width + (size_t)px;
-      rgba[pixel] = (float4)(red[lane], green[lane], blue[lane], alpha[lane]);
-      if (a->want_depth) {
-        depth[pixel] = far[lane] >= LARGEST_FLOAT ? INFINITY : far[lane];
-      }
-      if (a->want_samples) {
-        samples[pixel] = (uint)taken[lane];
-      }
-    }
+    store_pixel(a, rgba, depth, samples, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2),
+      (float4)(red[lane], green[lane], blue[lane], alpha[lane]), far[lane], (uint)taken[lane]);
     sum[0] += (uint)taken[lane];
     sum[1] += (uint)skipped[lane];
     sum[2] += (uint)lookups[lane];

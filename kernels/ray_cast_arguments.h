@@ -15,7 +15,7 @@ typedef struct stratus_ray_cast_arguments {
   stratus_pair metric[6];
   stratus_pair near_k, far_k;    /* far_k only if has_far */
   stratus_pair reach;            /* samples to beyond the volume's farthest corner */
-  stratus_pair step;             /* sample distance, world */
+  stratus_pair per_step;         /* 1 / sample distance, world */
   stratus_pair pixel[2];         /* 1/width, 1/height */
   stratus_pair box[2][3];        /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
   stratus_pair piece[2][3];      /* owned part: a segment belongs to it if its middle does */
@@ -28,6 +28,7 @@ typedef struct stratus_ray_cast_arguments {
   float termination;             /* of transparency: 1 - alpha */
   float world_step;              /* the sample distance as a float, for depth */
   int width, height;
+  int window[4];                 /* x0, x1, y0, y1: pixels outside show nothing */
   int parallel;
   int clip_count;
   int has_far, has_piece, has_depth;      /* has_depth: opaque depth is given */
@@ -48,6 +49,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 29)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 33)
 
 #endif

@@ -97,10 +97,29 @@ INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
   return v_max(v_fma(leave, v_set(-0x1p-21f), leave - v_set(0x1p-10f)), v_set(0.0f));
 }
 
+/* No ray of the packet at pixel (x, y) can meet anything. */
+INLINE int packet_outside(CONSTANT stratus_ray_cast_arguments* a, int x, int y)
+{
+  return x + PACKET_X <= a->window[0] || x >= a->window[1] || y + PACKET_Y <= a->window[2] || y >= a->window[3];
+}
+
+/* What a packet that has seen nothing holds. */
+INLINE void packet_nothing(stratus_packet* k)
+{
+  k->samples = vi_set(0);
+  k->skipped = vi_set(0);
+  k->lookups = vi_set(0);
+  k->transparency = v_set(1.0f);
+  k->red = k->green = k->blue = k->front = v_set(0.0f);
+  k->depth = v_set(LARGEST_FLOAT);
+  k->live = k->hits = k->fresh = m_none();
+}
+
 /* Rays to packet: whole segments, the owned part, and the box of what can be seen. */
 INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, vmask inside, stratus_packet* k)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), most = v_set(8e6f);
+  const vfloat zero = v_set(0.0f), most = v_set(8e6f);
+  packet_nothing(k);
   k->begin = v_load(rays->begin);
   k->end = v_load(rays->end);
   k->live = inside & v_lt(k->begin, k->end);
@@ -126,9 +145,6 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     k->i = vi_max(k->i, vi_set(0));
     k->last = vi_min(k->last, vi_select(v_lt(v_from_int(i1), to), i1, i1 - vi_set(1)));
   }
-  k->skipped = vi_set(0);
-  k->samples = vi_set(0);
-  k->lookups = vi_set(0);
   k->run = vi_set(0x7fffffff);
   if (a->structure) {
     vfloat enter = zero, leave = most;
@@ -149,10 +165,6 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   }
   k->last = vi_select(k->live, k->last, vi_set(0));
   k->live = k->live & vi_lt(k->i, k->last);
-  k->transparency = one;
-  k->red = k->green = k->blue = k->front = zero;
-  k->depth = v_set(LARGEST_FLOAT);
-  k->fresh = m_none();
 }
 
 /* value, or a NaN where the cell (nearest: the voxel) is hidden. */

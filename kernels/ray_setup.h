@@ -87,7 +87,7 @@ INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* 
     length = r_add(length, r_mul(v, r_add(r_of(a->metric[2]), r_mul(v, r_of(a->metric[5])))));
   }
   length = r_sqrt(length);
-  const real samples_per_k = r_div(length, r_of(a->step)), k_per_sample = r_div(r_of(a->step), length);
+  const real samples_per_k = r_mul(length, r_of(a->per_step)), k_per_sample = r_div(one, samples_per_k);
 
   real begin = r_mul(r_of(a->near_k), samples_per_k), end = r_of(a->reach);
   if (a->has_far) {
@@ -108,7 +108,13 @@ INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* 
   real inverse[3];
   for (int axis = 0; axis < 3; ++axis) {
     direction[axis] = ray_away_from_zero(r_mul(direction[axis], k_per_sample));
-    inverse[axis] = r_div(one, direction[axis]);
+  }
+  /* three reciprocals for one division */
+  const real xy = r_mul(direction[0], direction[1]), per_xyz = r_div(one, r_mul(xy, direction[2]));
+  inverse[0] = r_mul(per_xyz, r_mul(direction[1], direction[2]));
+  inverse[1] = r_mul(per_xyz, r_mul(direction[0], direction[2]));
+  inverse[2] = r_mul(per_xyz, xy);
+  for (int axis = 0; axis < 3; ++axis) {
     ray_clip_slab(origin[axis], inverse[axis], a->box[0][axis], a->box[1][axis], &begin, &end);
   }
   /* rays that miss may have any numbers, but small ones */
