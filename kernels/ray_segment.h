@@ -8,8 +8,8 @@
 
 /* When the structure is asked: as soon as so many lanes need it, all that are left do, or one has waited so many samples. A lane that waits
  * takes samples which add nothing. */
-#define SKIP_LANES ((3 * STRATUS_WIDTH) / 4)
-#define SKIP_PATIENCE 16
+#define SKIP_LANES STRATUS_WIDTH
+#define SKIP_PATIENCE 64
 
 /* What wide types are relative to, and an index into any volume. */
 #ifdef STRATUS_DEVICE
