@@ -75,7 +75,7 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
 {
   stratus_ray_device* d = caster->device;
   if (d->data_serial != caster->data_serial) {
-    TRY(replace(caster, VALUES, frame->values, value_bytes(&caster->volume)));
+    TRY(replace(caster, VALUES, frame->values, value_bytes(&caster->traversed)));
     TRY(replace(caster, HIDDEN, frame->hidden, frame->hidden ? hidden_bytes(caster) : 0));
     d->data_serial = caster->data_serial;
   }
@@ -147,13 +147,13 @@ static const char* obstacle(const stratus_ray_caster* caster)
 {
   const stratus_device* device = caster->context->device;
   const size_t largest = stratus_device_largest_allocation(device);
-  if (value_bytes(&caster->volume) > largest) {
+  if (value_bytes(&caster->traversed) > largest) {
     return "the volume is larger than the device's largest allocation";
   }
   if (caster->map && caster->map->bytes_size > largest) {
     return "the distance map is larger than the device's largest allocation";
   }
-  if (stratus_type_is_wide(caster->volume.type) && !stratus_device_has_double(device)) {
+  if (stratus_type_is_wide(caster->traversed.type) && !stratus_device_has_double(device)) {
     return "the device has no double for this type of values";
   }
   return NULL;

@@ -11,6 +11,8 @@
 #define MAP_BYTES_MOST 2000000000.0
 /* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
 #define OCCUPIED_LARGEST 0.97
+/* Fetched values are kept up to this many bytes. */
+#define FETCHED_BYTES_MOST ((size_t)1 << 31)
 /* Eight maps cost about this many look-ups a block to build, and save every other look-up. */
 #define OCTANT_LOOKUPS_A_BLOCK 6
 
@@ -68,6 +70,13 @@ static void drop_transfer(stratus_ray_caster* caster)
   caster->points = NULL;
 }
 
+static void drop_fetched(stratus_ray_caster* caster)
+{
+  stratus_release(caster->context, caster->fetched);
+  caster->fetched = NULL;
+  caster->samples_since_data = 0;
+}
+
 void stratus_ray_caster_release(stratus_ray_caster* caster)
 {
   if (caster) {
@@ -76,6 +85,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_release(caster->context, caster->hidden);
     caster->ranges = NULL;
     caster->hidden = NULL;
+    drop_fetched(caster);
     stratus_ray_device_destroy(caster);
   }
 }
@@ -213,6 +223,52 @@ static int chosen_block_size(const stratus_volume* volume, int wanted)
   return size;
 }
 
+/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
+static bool is_regular(const stratus_volume* volume)
+{
+  const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
+  return values < (double)INT32_MAX && volume->dimensions[0] > 1 && volume->dimensions[1] > 1 && volume->dimensions[2] > 1;
+}
+
+static int fetch_type(const stratus_volume* volume)
+{
+  return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
+}
+
+/* Once rays have read more values than there are, types that are slow to read are fetched once and for all: the bits stay the same. */
+static stratus_status update_fetched(stratus_ray_caster* caster)
+{
+  const stratus_volume* volume = &caster->volume;
+  const int type = fetch_type(volume);
+  const bool slow = type < 0 || type == STRATUS_FLOAT64;
+  caster->traversed = *volume;
+  if (!slow || !is_regular(volume)) {
+    return STRATUS_OK;
+  }
+  const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
+  if (!caster->fetched) {
+    if (caster->samples_since_data < slice * slices || slice * slices > FETCHED_BYTES_MOST / sizeof(float)) {
+      return STRATUS_OK;
+    }
+    void* memory = NULL;
+    TRY(stratus_allocate(caster->context, slice * slices, sizeof(float), &memory));
+    float* fetched = memory;
+    const double bias = caster->ranges->bias;
+#pragma omp parallel for num_threads(caster->context->threads)
+    for (size_t k = 0; k < slices; ++k) {
+      for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
+        fetched[i] = stratus_volume_fetch(volume, bias, i);
+      }
+    }
+    caster->fetched = fetched;
+    ++caster->data_serial;
+  }
+  caster->traversed.values = caster->fetched;
+  caster->traversed.type = STRATUS_FLOAT32;
+  caster->traversed.value_stride = 1;
+  return STRATUS_OK;
+}
+
 static stratus_status update_ranges(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
 {
   const int block_size = chosen_block_size(volume, options->block_size);
@@ -229,11 +285,12 @@ static stratus_status update_ranges(stratus_ray_caster* caster, const stratus_vo
     drop_transfer(caster);
     stratus_value_range_destroy(caster->ranges);
     caster->ranges = ranges;
+    drop_fetched(caster);
     ++caster->range_builds;
     *ms = stratus_now_ms() - start;
   }
   caster->volume = *volume;
-  return STRATUS_OK;
+  return update_fetched(caster);
 }
 
 static bool same_transfer(const stratus_ray_caster* caster, const stratus_transfer* transfer)
@@ -372,23 +429,12 @@ static void clear_image(const stratus_image* image)
   }
 }
 
-/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
-static int fetch_type(const stratus_volume* volume)
-{
-  const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
-  bool fast = stratus_ray_cast_type_is_fast((int)volume->type) && values < (double)INT32_MAX && volume->value_stride == 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    fast = fast && volume->dimensions[axis] > 1;
-  }
-  return fast ? (int)volume->type : -1;
-}
-
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map,
   stratus_ray_counts* counts, double* upload_ms)
 {
   const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
   const stratus_ray_cast_frame frame = { .arguments = arguments,
-    .values = caster->volume.values,
+    .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
     .table = preintegrated ? (const void*)caster->table->sums : (const void*)caster->table->rgba,
@@ -396,7 +442,7 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
     .rgba = image->rgba,
     .depth = image->depth,
     .samples = image->samples };
-  const int type = fetch_type(&caster->volume);
+  const int type = fetch_type(&caster->traversed);
   if (caster->context->device) {
     bool drawn = false;
     TRY(stratus_ray_cast_device(caster, &frame, type, preintegrated, counts, upload_ms, &drawn));
@@ -471,7 +517,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
 
   TRY(update_ranges(caster, volume, options, &report->range_ms));
   TRY(update_table(caster, volume, transfer, options, &report->table_ms));
-  TRY(stratus_ray_frame_arguments(caster->context, volume, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(stratus_ray_frame_arguments(caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   TRY(update_structures(caster, options->structure, &used, why, sizeof why, report));
   const bool with_map = used != STRATUS_STRUCTURE_NONE;
   const double start = stratus_now_ms();
@@ -487,6 +533,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   }
   report->cast_ms = stratus_now_ms() - start - report->upload_ms;
   caster->lookups_since_edit += counts.lookups;
+  caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
   snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why, stratus_sampling_name(caster->choice.sampling),
     caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);

@@ -22,6 +22,9 @@ struct stratus_ray_caster {
 
   /* what was built, and from what */
   stratus_volume volume;
+  stratus_volume traversed; /* what rays read: the volume itself, or its fetched values */
+  float* fetched;           /* those, NULL as long as rays have not paid for them */
+  uint64_t samples_since_data;
   stratus_value_range* ranges;
   uint8_t* hidden;       /* in the form that traversal reads, or NULL */
   bool hidden_by_value;
