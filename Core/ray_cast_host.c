@@ -51,6 +51,25 @@ static void store_rows(const stratus_ray_cast_frame* frame, const stratus_packet
     _mm_storeu_ps(pixel + 3 * row + 4 * c, _mm512_extractf32x4_ps(column[c], 3));
   }
 }
+
+/* Depth and samples of one, where they are wanted. */
+static void store_extra_rows(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
+{
+  const size_t width = (size_t)frame->arguments->width, pixel = (size_t)y * width + (size_t)x;
+  if (frame->depth) {
+    const __m512 depth = v_select(v_le(v_set(LARGEST_FLOAT), k->depth), v_set(INFINITY), k->depth);
+    _mm_storeu_ps(frame->depth + pixel, _mm512_extractf32x4_ps(depth, 0));
+    _mm_storeu_ps(frame->depth + pixel + width, _mm512_extractf32x4_ps(depth, 1));
+    _mm_storeu_ps(frame->depth + pixel + 2 * width, _mm512_extractf32x4_ps(depth, 2));
+    _mm_storeu_ps(frame->depth + pixel + 3 * width, _mm512_extractf32x4_ps(depth, 3));
+  }
+  if (frame->samples) {
+    _mm_storeu_si128((__m128i*)(frame->samples + pixel), _mm512_extracti32x4_epi32((__m512i)k->samples, 0));
+    _mm_storeu_si128((__m128i*)(frame->samples + pixel + width), _mm512_extracti32x4_epi32((__m512i)k->samples, 1));
+    _mm_storeu_si128((__m128i*)(frame->samples + pixel + 2 * width), _mm512_extracti32x4_epi32((__m512i)k->samples, 2));
+    _mm_storeu_si128((__m128i*)(frame->samples + pixel + 3 * width), _mm512_extracti32x4_epi32((__m512i)k->samples, 3));
+  }
+}
 #endif
 
 /* Depth and samples, where they are wanted. */
@@ -80,13 +99,14 @@ static void store_packet(const stratus_ray_cast_frame* frame, const stratus_pack
 #if STRATUS_ISA == 2
   if (x + PACKET_X <= frame->arguments->width && y + PACKET_Y <= frame->arguments->height) {
     store_rows(frame, k, x, y);
+    store_extra_rows(frame, k, x, y);
   } else
 #endif
   {
     store_pixels(frame, k, x, y);
-  }
-  if (frame->depth || frame->samples) {
-    store_extras(frame, k, x, y);
+    if (frame->depth || frame->samples) {
+      store_extras(frame, k, x, y);
+    }
   }
   counts->rays += (uint64_t)m_count(k->hits);
   counts->samples += k->samples;

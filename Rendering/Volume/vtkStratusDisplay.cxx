@@ -59,7 +59,19 @@ bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow*
   return true;
 }
 
-bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba)
+// A quarter of the bytes to move and to sample.
+const void* vtkStratusDisplay::RoundToBytes(const float* rgba, size_t count)
+{
+  this->Bytes.resize(count);
+  unsigned char* bytes = this->Bytes.data();
+  for (size_t i = 0; i < count; ++i) {
+    const float value = rgba[i] * 255.0f + 0.5f;
+    bytes[i] = static_cast<unsigned char>(static_cast<int>(value < 255.0f ? value : 255.0f)); // premultiplied light is never below 0
+  }
+  return bytes;
+}
+
+bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba, bool bytes)
 {
   if (this->Window && this->Window != window) {
     this->ReleaseGraphicsResources(this->Window);
@@ -72,7 +84,8 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   const bool coarse = picture.Size[0] != picture.Rectangle[2] || picture.Size[1] != picture.Rectangle[3];
   this->Texture->SetMinificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
   this->Texture->SetMagnificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
-  if (!this->Texture->Create2DFromRaw(width, height, 4, VTK_FLOAT, const_cast<float*>(rgba))) {
+  const void* texels = bytes ? this->RoundToBytes(rgba, static_cast<size_t>(4) * width * height) : rgba;
+  if (!this->Texture->Create2DFromRaw(width, height, 4, bytes ? VTK_UNSIGNED_CHAR : VTK_FLOAT, const_cast<void*>(texels))) {
     return false;
   }
   if (!this->Quad) {
@@ -87,7 +100,7 @@ bool vtkStratusDisplay::Draw(
   vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias, bool onBlack)
 {
   vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  if (!window || !this->Upload(window, picture, rgba)) {
+  if (!window || !this->Upload(window, picture, rgba, onBlack && scale == 1.0f && bias == 0.0f)) {
     return false;
   }
   vtkOpenGLState* state = window->GetState();

@@ -2,7 +2,7 @@
 // Lays a float picture over what the window shows, texel on pixel. Private to the module.
 //
 // VTK's vtkRayCastImageDisplayHelper does the same for bytes, through texture coordinates that shrink the picture by a pixel, and rounds before
-// it blends. Here the window rounds once, after the blend.
+// it blends. Here the picture is rounded once: after the blend, or, with nothing behind, before the upload.
 #ifndef vtkStratusDisplay_h
 #define vtkStratusDisplay_h
 
@@ -11,6 +11,7 @@
 #include "vtkNew.h"
 
 #include <memory>
+#include <vector>
 
 class vtkOpenGLQuadHelper;
 class vtkOpenGLRenderWindow;
@@ -31,9 +32,11 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
-  bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba);
+  bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba, bool bytes);
+  const void* RoundToBytes(const float* rgba, size_t count);
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, int x, int y, const vtkStratusPicture& picture);
 
+  std::vector<unsigned char> Bytes;
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
