@@ -47,14 +47,16 @@ if (stratus_vtk)
 endif ()
 
 # ---- every kernel through clang's own OpenCL front end, warnings as errors
-set(kernel_flags -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Werror "-I${PROJECT_SOURCE_DIR}/kernels")
 file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/kernels/*.cl")
 foreach (kernel IN LISTS kernels)
   get_filename_component(name "${kernel}" NAME_WE)
-  foreach (width IN ITEMS 1 16)
-    stratus_add_test(kernel_${name}_width_${width} kernels "${CLANG}" ${kernel_flags} -DSTRATUS_WIDTH=${width} "${kernel}")
-  endforeach ()
-  stratus_add_test(kernel_${name}_width_16_avx512 kernels "${CLANG}" ${kernel_flags} -DSTRATUS_WIDTH=16 -mavx512f "${kernel}")
+  set(compile "${PROJECT_SOURCE_DIR}/Testing/compile-kernel" "${CLANG}" "${kernel}")
+  stratus_add_test(kernel_${name} kernels ${compile} -DSTRATUS_WIDTH=1)
+  if (name STREQUAL "ray_cast")
+    stratus_add_test(kernel_${name}_pairs kernels ${compile} -DSTRATUS_WIDTH=1 -DSTRATUS_REAL_PAIR=1)
+    stratus_add_test(kernel_${name}_packets kernels ${compile} -DSTRATUS_WIDTH=16)
+    stratus_add_test(kernel_${name}_packets_avx512 kernels ${compile} -DSTRATUS_WIDTH=16 -mavx512f)
+  endif ()
 endforeach ()
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
