@@ -90,16 +90,16 @@ struct stratus_value_range {
 
 /* The transfer function as traversal samples it. Entry e of a fetched value s is stratus_table_entry(). Midpoint sampling reads
  * rgba[4 e]: colour times alpha, alpha, for one whole sample distance. Pre-integrated sampling reads the inclusive range of entries
- * between two values: sums[4 (last+1)] - sums[4 first]. An entry with zero opacity is exactly 0 in both. */
+ * between two values: sums[last+1] - sums[first] of each of the four rows. An entry with zero opacity is exactly 0 in both. */
 typedef struct stratus_table {
   stratus_context* context;
   int size;            /* entries */
   float scale, offset; /* entry = (int) clamp(fma(s, scale, offset), 0, size-1) */
   int* next_shown;     /* size+1: smallest entry >= i with any opacity, `size` if none */
   float* rgba;         /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
-  int32_t* sums;       /* NULL if midpoint: (size+1)*4 running sums of r tau, g tau, b tau, tau in units of .. */
+  int32_t* sums;       /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of .. */
   float sum_scale;     /* .. optical depth per entry and per sample distance */
-  float color_slope;   /* pre-integrated: most that a colour changes between neighbouring entries with opacity, times 256 */
+  float color_slope;   /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
   int shown;           /* entries with opacity */
 } stratus_table;
 

@@ -10,7 +10,7 @@
 /* Traversal addresses the eight maps with one int. */
 #define MAP_BYTES_MOST 2000000000.0
 /* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
-#define OCCUPIED_LARGEST 0.97
+#define OCCUPIED_LARGEST 0.8
 /* Fetched values are kept up to this many bytes. */
 #define FETCHED_BYTES_MOST ((size_t)1 << 31)
 /* Eight maps cost about this many look-ups a block to build, and save every other look-up. */

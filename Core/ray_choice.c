@@ -19,7 +19,7 @@
 #define MIDPOINT_USUAL 0.9
 #define MIDPOINT_SHORTEST 0.25
 /* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear. */
-#define PREINTEGRATED_STEP 0.5
+#define PREINTEGRATED_STEP 0.55
 
 double stratus_ray_voxel_length(const stratus_volume* volume)
 {
@@ -60,7 +60,7 @@ static double opacity_at(const stratus_transfer* transfer, double x)
   return left[1] + (x - left[0]) / (left[2] - left[0]) * (left[3] - left[1]);
 }
 
-/* The values outside which the function is surely transparent, so that most empty blocks cost one comparison. */
+/* The open interval of values outside which the function is surely transparent, so that most empty blocks cost one comparison. */
 static void opaque_span(const stratus_transfer* transfer, double* lo, double* hi)
 {
   const double* points = transfer->opacity;
@@ -103,14 +103,14 @@ static void survey(const stratus_value_range* ranges, const stratus_transfer* tr
   const float from = (float)(lo - ranges->bias), to = (float)(hi - ranges->bias);
   int64_t candidates = 0;
   for (int64_t block = 0; block < blocks; ++block) {
-    candidates += ranges->hi[block] >= from && ranges->lo[block] <= to;
+    candidates += ranges->hi[block] > from && ranges->lo[block] < to;
   }
   const int64_t stride = candidates / BLOCKS_ASKED + 1;
   memset(sums, 0, 3 * sizeof *sums);
   *shown = 0;
   int64_t candidate = 0;
   for (int64_t block = 0; block < blocks; ++block) {
-    if (ranges->hi[block] >= from && ranges->lo[block] <= to && candidate++ % stride == 0) {
+    if (ranges->hi[block] > from && ranges->lo[block] < to && candidate++ % stride == 0) {
       survey_block(transfer, (double)ranges->lo[block] + ranges->bias, (double)ranges->hi[block] + ranges->bias, ranges->block_size, sums, shown);
     }
   }

@@ -12,8 +12,8 @@
 #define ENTRIES_A_FEATURE 32
 /* Opacity 1 is an infinite optical depth: this much lets 1e-7 of the light through. */
 #define OPAQUE_TAU 16.0
-/* Segments are cut into pieces until what averaging their colours gets wrong falls to about a sixth of one over this. */
-#define COLOR_ERROR_INVERSE 256.0
+/* Segments are cut into pieces where averaging their colours could be wrong by more than about 1/12 of one over this: half of 1/255. */
+#define COLOR_ERROR_INVERSE 48.0
 /* Largest running sum: differences of sums stay positive ints. */
 #define SUM_MOST 2147483000.0
 
@@ -179,7 +179,8 @@ static stratus_status fill_preintegrated(
   table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, lo, width, table->size, sums));
   const double total = sums[words - 1], scale = total > 0.0 ? SUM_MOST / total : 0.0;
   for (size_t i = 0; i < words; ++i) {
-    table->sums[i] = (int32_t)llrint(sums[i] * scale);
+    const size_t entry = i / 4, which = i % 4;
+    table->sums[which * (words / 4) + entry] = (int32_t)llrint(sums[i] * scale);
   }
   table->sum_scale = total > 0.0 ? (float)(sample_distance / scale) : 0.0f;
   stratus_release(table->context, sums);
@@ -188,7 +189,8 @@ static stratus_status fill_preintegrated(
 
 static bool entry_shows(const stratus_table* table, int e)
 {
-  return table->rgba ? table->rgba[4 * (size_t)e + 3] > 0.0f : table->sums[4 * ((size_t)e + 1) + 3] > table->sums[4 * (size_t)e + 3];
+  const int32_t* tau = table->sums ? table->sums + 3 * ((size_t)table->size + 1) : NULL;
+  return table->rgba ? table->rgba[4 * (size_t)e + 3] > 0.0f : tau[e + 1] > tau[e];
 }
 
 static void fill_next_shown(stratus_table* table)

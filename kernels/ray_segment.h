@@ -317,9 +317,10 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 
 /* Sum number `which` (0..2 red, green, blue times tau, 3 tau) over entries low..beyond-1. Differences of ints are exact, so a transparent
  * stretch gives exactly zero. */
-INLINE vfloat sum_between(GLOBAL const int* sums, int which, vint low, vint beyond, vmask mask)
+INLINE vfloat sum_between(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, int which, vint low, vint beyond, vmask mask)
 {
-  return v_from_int(gather_int32(sums + which, beyond * vi_set(4), mask) - gather_int32(sums + which, low * vi_set(4), mask));
+  GLOBAL const int* sum = sums + which * ((int)a->table_last + 2);
+  return v_from_int(gather_int32(sum, beyond, mask) - gather_int32(sum, low, mask));
 }
 
 /* Into how many pieces a segment goes, so that averaging the colour of each is wrong by little: from optical depth and the most that the
@@ -340,7 +341,7 @@ INLINE void integrate_segment(
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   const vint entry = table_entry(a, value), front = table_entry(a, k->front);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
-  vfloat tau = sum_between(sums, 3, low, beyond, mask);
+  vfloat tau = sum_between(a, sums, 3, low, beyond, mask);
   mask = mask & v_lt(zero, tau);
   if (!m_any(mask)) {
     return;
@@ -362,7 +363,7 @@ INLINE void integrate_segment(
       low = vi_min(from, to);
       beyond = vi_max(from, to) + vi_set(1);
       entries = v_from_int(beyond - low);
-      tau = sum_between(sums, 3, low, beyond, mask);
+      tau = sum_between(a, sums, 3, low, beyond, mask);
       from = to;
     }
     const vmask lit = mask & v_lt(zero, tau);
@@ -372,7 +373,7 @@ INLINE void integrate_segment(
       layer[3] = v_select(lit, v_absorbed(v_select(lit, depth, zero)), zero);
       const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(tau, one)), zero);
       for (int c = 0; c < 3; ++c) {
-        layer[c] = sum_between(sums, c, low, beyond, lit) * per_tau;
+        layer[c] = sum_between(a, sums, c, low, beyond, lit) * per_tau;
       }
       composite(a, k, lit, layer, lo);
     }
