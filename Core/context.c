@@ -154,8 +154,8 @@ static stratus_status choose_device(stratus_context* context, const char* select
     snprintf(context->device_name, sizeof context->device_name, "host (%s, %d thread%s)", stratus_ray_cast_isa(), context->threads,
       context->threads == 1 ? "" : "s");
     if (strcmp(selector, "auto") == 0) {
-      stratus_log(context, STRATUS_LOG_INFO, "no OpenCL GPU among %d device(s): drawing on the %s", stratus_device_count(),
-        context->device_name);
+      stratus_log(
+        context, STRATUS_LOG_INFO, "no OpenCL GPU among %d device(s): drawing on the %s", stratus_device_count(), context->device_name);
     }
   }
   return STRATUS_OK;

@@ -15,7 +15,7 @@ struct stratus_context {
   stratus_context_options options; /* device is not kept: see device_name */
   int threads;
   stratus_device* device; /* NULL: the host draws */
-  int isa; /* of the host's traversal at most: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
+  int isa;                /* of the host's traversal at most: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
   char device_name[256];
   char message[1024];
 };
@@ -41,8 +41,7 @@ struct stratus_context {
 /* ---- context.c */
 
 /* Leaves the message and returns the status. */
-stratus_status stratus_fail(stratus_context* context, stratus_status status, const char* format, ...)
-  __attribute__((format(printf, 3, 4)));
+stratus_status stratus_fail(stratus_context* context, stratus_status status, const char* format, ...) __attribute__((format(printf, 3, 4)));
 void stratus_log(stratus_context* context, stratus_log_level level, const char* format, ...) __attribute__((format(printf, 3, 4)));
 /* STRATUS_CANCELLED if the caller's callback says so. */
 stratus_status stratus_progress(stratus_context* context, const char* stage, double fraction);
@@ -58,7 +57,8 @@ double stratus_now_ms(void); /* monotonic clock */
  * Traversal, ranges and tables see a voxel as the float that stratus_volume_fetch() makes of it, its "fetched" value:
  * types of at most 24 bits and float32 as they are, wider ones as (float)((double)value - bias). Monotone, so the fetched
  * range is the range of the fetched. */
-double stratus_volume_bias(const stratus_volume* volume); /* 0 for narrow types; else the finite value of least magnitude among some thousand, 0 if none */
+double stratus_volume_bias(
+  const stratus_volume* volume); /* 0 for narrow types; else the finite value of least magnitude among some thousand, 0 if none */
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Size of the index box: cells between value positions, dimensions-1 at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
@@ -78,8 +78,8 @@ struct stratus_value_range {
   stratus_context* context;
   int64_t blocks[3]; /* at least 1 each */
   int block_size;
-  double bias;    /* of the fetched values */
-  float* lo;      /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
+  double bias; /* of the fetched values */
+  float* lo;   /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
   float* hi;
   uint8_t* gaps;  /* 1 where some voxel of the block is not finite or some cell hidden */
   float whole_lo; /* of all finite values */
@@ -96,11 +96,11 @@ typedef struct stratus_table {
   int size;            /* entries */
   float scale, offset; /* entry = (int) clamp(fma(s, scale, offset), 0, size-1) */
   int* next_shown;     /* size+1: smallest entry >= i with any opacity, `size` if none */
-  float* rgba;         /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
-  int32_t* sums;       /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of .. */
-  float sum_scale;     /* .. optical depth per entry and per sample distance */
-  float color_slope;   /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
-  int shown;           /* entries with opacity */
+  float* rgba;   /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
+  int32_t* sums; /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of .. */
+  float sum_scale;   /* .. optical depth per entry and per sample distance */
+  float color_slope; /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
+  int shown;         /* entries with opacity */
 } stratus_table;
 
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
@@ -145,8 +145,8 @@ struct stratus_distance_map {
   stratus_distance_kind kind;
   int64_t blocks[3];
   int block_size;
-  size_t pitch;     /* blocks[0] rounded up to 64 */
-  size_t map_bytes; /* pitch*blocks[1]*blocks[2] */
+  size_t pitch;      /* blocks[0] rounded up to 64 */
+  size_t map_bytes;  /* pitch*blocks[1]*blocks[2] */
   size_t bytes_size; /* all maps and 64 bytes of padding, which traversal may read */
   uint8_t* bytes;
 };

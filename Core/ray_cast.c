@@ -52,7 +52,8 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preinteg
   return stratus_ray_cast_tile_isa0(type, preintegrated);
 }
 
-stratus_status stratus_ray_cast_host(stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
+stratus_status stratus_ray_cast_host(
+  stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
 {
   const int width = frame->arguments->width, height = frame->arguments->height;
   const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);

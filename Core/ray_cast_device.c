@@ -159,13 +159,14 @@ static const char* obstacle(const stratus_ray_caster* caster)
   return NULL;
 }
 
-static stratus_status launch(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, bool packets, size_t* rows)
+static stratus_status launch(
+  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, bool packets, size_t* rows)
 {
   stratus_context* context = caster->context;
   char defines[160];
   cl_kernel kernel;
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d%s", type, preintegrated,
-    packets ? 16 : 1, stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d%s", type,
+    preintegrated, packets ? 16 : 1, stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   TRY(stratus_device_kernel(context, "ray_cast", defines, "ray_cast", &kernel));
   const size_t side = packets ? 4 : 1, group = packets ? 1 : LOCAL_SIDE;
   const size_t global[2] = { ((size_t)frame->arguments->width + side - 1) / side, ((size_t)frame->arguments->height + side - 1) / side };
@@ -179,8 +180,8 @@ static stratus_status launch(stratus_ray_caster* caster, const stratus_ray_cast_
   return stratus_device_run(context, kernel, 2, global, local);
 }
 
-stratus_status stratus_ray_cast_device(
-  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts, double* upload_ms, bool* drawn)
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated,
+  stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
   stratus_context* context = caster->context;
   const char* why_not = obstacle(caster);

@@ -106,7 +106,8 @@ static stratus_status check_image(stratus_context* context, const stratus_image*
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image%s is NULL", image ? "'s rgba buffer" : "");
   }
   if (image->width < 1 || image->width > SIDE_MOST || image->height < 1 || image->height > SIDE_MOST) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
   }
   return STRATUS_OK;
 }
@@ -120,12 +121,14 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
     }
   }
   if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_CLIP_PLANES_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clip_plane_count, STRATUS_CLIP_PLANES_MAX);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clip_plane_count, STRATUS_CLIP_PLANES_MAX);
   }
   for (int p = 0; p < options->clip_plane_count; ++p) {
     for (int i = 0; i < 4; ++i) {
       if (!isfinite(options->clip_planes[p][i])) {
-        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clip_planes[p][i]);
+        return stratus_fail(
+          context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clip_planes[p][i]);
       }
     }
   }
@@ -136,12 +139,14 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
 {
   if ((unsigned)options->structure > STRATUS_STRUCTURE_OCTANT || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range",
-      (int)options->structure, STRATUS_STRUCTURE_OCTANT, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
+      STRATUS_STRUCTURE_OCTANT, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
       STRATUS_INTERPOLATION_NEAREST);
   }
   if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
   }
   if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
@@ -269,7 +274,8 @@ static stratus_status update_fetched(stratus_ray_caster* caster)
   return STRATUS_OK;
 }
 
-static stratus_status update_ranges(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
+static stratus_status update_ranges(
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
 {
   const int block_size = chosen_block_size(volume, options->block_size);
   const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
@@ -332,7 +338,8 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   const double voxel = stratus_ray_voxel_length(volume);
   if (!same || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
     caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
-    stratus_ray_choose(caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
+    stratus_ray_choose(
+      caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
     caster->voxel_length = voxel;
     caster->interpolation = options->interpolation;
     caster->wanted_sampling = options->sampling;
@@ -382,7 +389,8 @@ static stratus_structure choose_structure(const stratus_ray_caster* caster, stra
 static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, double* ms)
 {
   static const stratus_distance_kind kinds[] = { [STRATUS_STRUCTURE_BLOCK] = STRATUS_DISTANCE_BLOCK,
-    [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL, [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT };
+    [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL,
+    [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT };
   if (structure == STRATUS_STRUCTURE_NONE || (caster->map && caster->map->kind == kinds[structure])) {
     return STRATUS_OK;
   }
@@ -397,8 +405,8 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
   return STRATUS_OK;
 }
 
-static stratus_status update_structures(
-  stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why, size_t capacity, stratus_ray_cast_report* report)
+static stratus_status update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
+  size_t capacity, stratus_ray_cast_report* report)
 {
   if (wanted == STRATUS_STRUCTURE_NONE) {
     *used = wanted;
@@ -429,8 +437,8 @@ static void clear_image(const stratus_image* image)
   }
 }
 
-static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map,
-  stratus_ray_counts* counts, double* upload_ms)
+static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
+  bool with_map, stratus_ray_counts* counts, double* upload_ms)
 {
   const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
   const stratus_ray_cast_frame frame = { .arguments = arguments,
@@ -454,7 +462,8 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
 }
 
 /* Draws again without structure and counts the pixels whose bits differ. */
-static stratus_status audit(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
+static stratus_status audit(
+  stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
 {
   const size_t pixels = (size_t)image->width * (size_t)image->height;
   stratus_ray_cast_arguments plain = *arguments;
@@ -484,7 +493,8 @@ cleanup:
   return status;
 }
 
-static void fill_report(const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report)
+static void fill_report(
+  const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report)
 {
   report->rays = counts->rays;
   report->samples = counts->samples;
@@ -517,7 +527,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
 
   TRY(update_ranges(caster, volume, options, &report->range_ms));
   TRY(update_table(caster, volume, transfer, options, &report->table_ms));
-  TRY(stratus_ray_frame_arguments(caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(stratus_ray_frame_arguments(
+    caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   TRY(update_structures(caster, options->structure, &used, why, sizeof why, report));
   const bool with_map = used != STRATUS_STRUCTURE_NONE;
   const double start = stratus_now_ms();
@@ -535,8 +546,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   caster->lookups_since_edit += counts.lookups;
   caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
-  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why, stratus_sampling_name(caster->choice.sampling),
-    caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);
+  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why,
+    stratus_sampling_name(caster->choice.sampling), caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);
   return STRATUS_OK;
 }
 

@@ -26,9 +26,9 @@ struct stratus_ray_caster {
   float* fetched;           /* those, NULL as long as rays have not paid for them */
   uint64_t samples_since_data;
   stratus_value_range* ranges;
-  uint8_t* hidden;       /* in the form that traversal reads, or NULL */
+  uint8_t* hidden; /* in the form that traversal reads, or NULL */
   bool hidden_by_value;
-  double* points;        /* the transfer function's, copied: opacity, then colour */
+  double* points; /* the transfer function's, copied: opacity, then colour */
   stratus_transfer transfer;
   stratus_interpolation interpolation; /* with the next three: what the choice was made for */
   stratus_sampling wanted_sampling;
@@ -40,29 +40,31 @@ struct stratus_ray_caster {
   stratus_distance_map* map;
   uint64_t lookups_since_edit;
 
-  stratus_ray_device* device; /* copies on the OpenCL device, NULL on the host */
+  stratus_ray_device* device;                     /* copies on the OpenCL device, NULL on the host */
   uint64_t data_serial, table_serial, map_serial; /* raised with each build: tells the device what is stale */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
 };
 
 /* ray_choice.c */
-void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer, stratus_interpolation interpolation,
-  stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
+void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
+  stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
 double stratus_ray_voxel_length(const stratus_volume* volume); /* shortest edge of a voxel, world */
 
 /* ray_frame.c: fills what camera, volume and options decide. *empty: no ray can meet anything. */
 stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,
-  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments, bool* empty);
+  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
+  bool* empty);
 /* Adds what table and map decide; either NULL leaves it out. */
 void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
 
 /* ray_cast.c: all tiles on the host. */
-stratus_status stratus_ray_cast_host(stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts);
+stratus_status stratus_ray_cast_host(
+  stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts);
 
 /* ray_cast_device.c: the same on the OpenCL device. *drawn stays false where the device can't (too large, no double): the host draws then. */
-stratus_status stratus_ray_cast_device(
-  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts, double* upload_ms, bool* drawn);
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated,
+  stratus_ray_counts* counts, double* upload_ms, bool* drawn);
 void stratus_ray_device_destroy(stratus_ray_caster* caster);
 
 #endif

@@ -111,13 +111,14 @@ static void survey(const stratus_value_range* ranges, const stratus_transfer* tr
   int64_t candidate = 0;
   for (int64_t block = 0; block < blocks; ++block) {
     if (ranges->hi[block] > from && ranges->lo[block] < to && candidate++ % stride == 0) {
-      survey_block(transfer, (double)ranges->lo[block] + ranges->bias, (double)ranges->hi[block] + ranges->bias, ranges->block_size, sums, shown);
+      survey_block(
+        transfer, (double)ranges->lo[block] + ranges->bias, (double)ranges->hi[block] + ranges->bias, ranges->block_size, sums, shown);
     }
   }
 }
 
-void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer, stratus_interpolation interpolation,
-  stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice)
+void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
+  stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice)
 {
   double sums[3];
   int64_t shown;

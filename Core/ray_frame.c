@@ -58,7 +58,8 @@ static stratus_status check_camera(stratus_context* context, const stratus_camer
       camera->far_k, camera->parallel ? "" : "at least 0, ");
   }
   if (image->opaque_depth && (!isfinite(camera->far_k) || (!camera->parallel && camera->near_k <= 0.0))) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "opaque depth needs a finite far and a positive near, not %g and %g", camera->far_k, camera->near_k);
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "opaque depth needs a finite far and a positive near, not %g and %g",
+      camera->far_k, camera->near_k);
   }
   return STRATUS_OK;
 }
@@ -177,8 +178,9 @@ static stratus_status check_samples(stratus_context* context, const double m[16]
     diagonal += sqrt(edge) * (double)volume->dimensions[axis];
   }
   if (diagonal / sample_distance > SAMPLES_MOST) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g",
-      sample_distance, diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g", sample_distance,
+      diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
   }
   return STRATUS_OK;
 }
@@ -272,7 +274,8 @@ static void set_window(const double lo[3], const double hi[3], stratus_ray_cast_
     }
   }
   for (int side = 0; side < 2; ++side) {
-    const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0), last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
+    const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0),
+                 last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
     a->window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
     a->window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
   }

@@ -65,7 +65,7 @@ typedef struct stratus_context_options {
   /* "auto" (or NULL): the first OpenCL GPU, else the host; "host": plain C; else the index of stratus_device_name(),
    * or a part of its name, any case. Default "auto". */
   const char* device;
-  int threads; /* of the host, 1..1024; 0: as many as OpenMP would take. Default 0. */
+  int threads;                        /* of the host, 1..1024; 0: as many as OpenMP would take. Default 0. */
   stratus_allocate_function allocate; /* both or neither; default: the C library */
   stratus_release_function release;
   void* allocator_user;
@@ -78,8 +78,8 @@ typedef struct stratus_context_options {
 STRATUS_API stratus_context_options stratus_context_options_default(void);
 
 /* options may be NULL. On failure *context is NULL and `message`, if not NULL, gets up to `capacity` bytes of reason. */
-STRATUS_API stratus_status stratus_context_create(const stratus_context_options* options, stratus_context** context,
-  char* message, size_t capacity);
+STRATUS_API stratus_status stratus_context_create(
+  const stratus_context_options* options, stratus_context** context, char* message, size_t capacity);
 STRATUS_API void stratus_context_destroy(stratus_context* context);
 
 /* Why the last failing call on this context failed; "" before any failure. Valid until the next call. */
@@ -123,17 +123,17 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, component_stride apart */
   stratus_type type;
-  int64_t dimensions[3];   /* values along x, y, z; each >= 1 */
-  int64_t value_stride;    /* distance between consecutive values, in values, >= 1; default 1 */
-  double origin[3];        /* local position of voxel (0,0,0), or of the corner of the first cell if cell_centered */
-  double spacing[3];       /* > 0 */
-  double direction[9];     /* row-major rotation: local = origin + direction * (spacing * index); default identity */
-  double matrix[16];       /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
-  int cell_centered;       /* 1: a value belongs to a cell: the volume is dimensions*spacing wide and, where linear, clamps
+  int64_t dimensions[3];       /* values along x, y, z; each >= 1 */
+  int64_t value_stride;        /* distance between consecutive values, in values, >= 1; default 1 */
+  double origin[3];            /* local position of voxel (0,0,0), or of the corner of the first cell if cell_centered */
+  double spacing[3];           /* > 0 */
+  double direction[9];         /* row-major rotation: local = origin + direction * (spacing * index); default identity */
+  double matrix[16];           /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
+  int cell_centered;           /* 1: a value belongs to a cell: the volume is dimensions*spacing wide and, where linear, clamps
                             * within half a cell of its border. Default 0: values sit on points, the volume is (dimensions-1)*spacing wide. */
   const uint8_t* point_ghosts; /* dimensions[] flags, NULL: none; not used if cell_centered */
   const uint8_t* cell_ghosts;  /* a flag a cell: dimensions-1 (cell_centered: dimensions) along each axis, NULL: none */
-  uint64_t revision; /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
+  uint64_t revision;           /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
 } stratus_volume;
 
 STRATUS_API stratus_volume stratus_volume_default(void);
@@ -213,10 +213,10 @@ STRATUS_API int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_
 STRATUS_API void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3]);
 
 typedef enum stratus_distance_kind {
-  STRATUS_DISTANCE_BLOCK,  /* 1 in every empty block: plain block skipping */
-  STRATUS_DISTANCE_FULL,   /* Chebyshev distance to the nearest occupied block (Deakin & Knackstedt 2019), O(n) sweeps */
-  STRATUS_DISTANCE_PAPER,  /* the same by the paper's O(n D) transform: the baseline, equal to the bit */
-  STRATUS_DISTANCE_OCTANT  /* eight maps: distance to the nearest occupied block among those a ray of that octant can reach */
+  STRATUS_DISTANCE_BLOCK, /* 1 in every empty block: plain block skipping */
+  STRATUS_DISTANCE_FULL,  /* Chebyshev distance to the nearest occupied block (Deakin & Knackstedt 2019), O(n) sweeps */
+  STRATUS_DISTANCE_PAPER, /* the same by the paper's O(n D) transform: the baseline, equal to the bit */
+  STRATUS_DISTANCE_OCTANT /* eight maps: distance to the nearest occupied block among those a ray of that octant can reach */
 } stratus_distance_kind;
 
 typedef struct stratus_distance_map stratus_distance_map;
@@ -247,25 +247,25 @@ typedef enum stratus_interpolation { STRATUS_INTERPOLATION_LINEAR, STRATUS_INTER
 #define STRATUS_CLIP_PLANES_MAX 6
 
 typedef struct stratus_ray_cast_options {
-  stratus_structure structure;         /* default auto: the cheapest that the scene needs, told in the report */
-  stratus_sampling sampling;           /* default auto: by the transfer function's bend against the data. Nearest is never pre-integrated. */
+  stratus_structure structure; /* default auto: the cheapest that the scene needs, told in the report */
+  stratus_sampling sampling;   /* default auto: by the transfer function's bend against the data. Nearest is never pre-integrated. */
   stratus_interpolation interpolation; /* default linear */
-  double sample_distance; /* world length; 0 (default): from the data's spacing and the transfer function */
-  double termination;     /* a ray ends when its alpha passes this, 0..1; default .999 */
-  int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4 */
-  int crop;               /* 1: only inside crop_bounds. Default 0. */
-  double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
-  int clip_plane_count;   /* 0..6 */
+  double sample_distance;              /* world length; 0 (default): from the data's spacing and the transfer function */
+  double termination;                  /* a ray ends when its alpha passes this, 0..1; default .999 */
+  int block_size;                      /* 2, 4, 8, 16, 32; 0 (default): 4 */
+  int crop;                            /* 1: only inside crop_bounds. Default 0. */
+  double crop_bounds[6]; /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
+  int clip_plane_count;  /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: a x + b y + c z + d >= 0 is kept */
-  int audit; /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
+  int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
 } stratus_ray_cast_options;
 
 STRATUS_API stratus_ray_cast_options stratus_ray_cast_options_default(void);
 
 /* The picture and what bounds it. All buffers are the caller's, width*height pixels, bottom row first. */
 typedef struct stratus_image {
-  int width;  /* 1..65536 */
-  int height; /* 1..65536 */
+  int width;                 /* 1..65536 */
+  int height;                /* 1..65536 */
   float* rgba;               /* out: 4 floats a pixel, premultiplied by alpha; 0 where nothing is */
   float* depth;              /* out, may be NULL: world distance along the ray from the eye (parallel: from its plane) to the first segment
                               * that contributes; INFINITY where none does */
@@ -300,8 +300,8 @@ STRATUS_API void stratus_ray_caster_destroy(stratus_ray_caster* caster);
  * anew only when pointer, type, dimensions, stride or revision (ranges), or transfer function (tables, occupancy, structure) change.
  * report may be NULL. A failed call leaves the picture undefined and the caster as it was. */
 STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume,
-  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options,
-  const stratus_image* image, stratus_ray_cast_report* report);
+  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
+  stratus_ray_cast_report* report);
 
 /* Frees what was built, on host and device; the next render builds anew. */
 STRATUS_API void stratus_ray_caster_release(stratus_ray_caster* caster);
@@ -326,8 +326,8 @@ STRATUS_API stratus_status stratus_scene_create(stratus_context* context, const 
 STRATUS_API void stratus_scene_destroy(stratus_context* context, stratus_scene* scene);
 /* Camera `view` 0..7 of record around bounds xmin xmax ymin ymax zmin zmax: distance R / sin 15 deg, view angle 21.6 deg, elevation 25 deg,
  * azimuth 30 + 45 view deg about up_axis; parallel scale .72 R. */
-STRATUS_API stratus_status stratus_scene_camera(stratus_context* context, const double bounds[6], int up_axis, int view,
-  int parallel, double aspect, stratus_camera* camera);
+STRATUS_API stratus_status stratus_scene_camera(
+  stratus_context* context, const double bounds[6], int up_axis, int view, int parallel, double aspect, stratus_camera* camera);
 /* World bounds of a volume. */
 STRATUS_API stratus_status stratus_volume_bounds(stratus_context* context, const stratus_volume* volume, double bounds[6]);
 

@@ -38,7 +38,8 @@ static stratus_status check_points(stratus_context* context, const char* what, c
     }
     for (size_t c = 1; c < width; ++c) {
       if (!(point[c] >= 0.0 && point[c] <= 1.0)) {
-        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s point %zu at value %g has component %g outside 0..1", what, i, point[0], point[c]);
+        return stratus_fail(
+          context, STRATUS_INVALID_ARGUMENT, "%s point %zu at value %g has component %g outside 0..1", what, i, point[0], point[c]);
       }
     }
   }

@@ -125,22 +125,13 @@ INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 
 #define VALUES ((GLOBAL const VALUE*)values)
 
-#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE) ? defined(__AVX512F__) : STRATUS_ISA == 2)
+#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
 #define FETCH_DWORD 1 /* small types: one gather of four bytes holds a pair */
 #endif
 
-#if defined(STRATUS_DEVICE) && defined(__AVX512F__) && STRATUS_WIDTH == 16
-typedef float stratus_f16 __attribute__((__vector_size__(64)));
-INLINE int16 gather_int(GLOBAL const void* base, vint index, vmask mask, int scale_log2)
-{
-  /* the builtin wants its scale as a literal */
-#define STRATUS_GATHER(scale)                                                                                                              \
-  __builtin_astype(                                                                                                                        \
-    __builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)base, STRATUS_V16(index), STRATUS_MASK16(mask), scale), int16)
-  return scale_log2 == 0 ? STRATUS_GATHER(1) : scale_log2 == 1 ? STRATUS_GATHER(2) : STRATUS_GATHER(4);
-}
-#define GATHER_DWORD(base, index, mask, scale_log2) gather_int((base), (index), (mask), (scale_log2))
-#define GATHER_FLOAT(base, index, mask) as_float16(gather_int((base), (index), (mask), 2))
+#if defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+#define GATHER_DWORD(base, index, mask, scale_log2) STRATUS_GATHER(base, index, mask, 1 << (scale_log2))
+#define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
 #define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
   ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
@@ -212,7 +203,8 @@ INLINE vint gather_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
 #endif
 
 /* values[index] and values[index+1]; end: the pair may be the volume's last. */
-INLINE void fetch_pair(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end, vfloat* v0, vfloat* v1)
+INLINE void fetch_pair(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end, vfloat* v0, vfloat* v1)
 {
 #ifdef FETCH_DWORD
   const vint dword = gather_bytes(a, values, index, mask, end);
@@ -226,6 +218,13 @@ INLINE void fetch_pair(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
   const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64((__m512i)index, 1), VALUES, 4);
   *v0 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
   *v1 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
+  (void)a;
+  (void)end;
+#elif STRATUS_TYPE == 8 && defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  const int16 low = STRATUS_GATHER_LONG(VALUES, index.lo, (uchar)mask, 4),
+              high = STRATUS_GATHER_LONG(VALUES, index.hi, (uchar)(mask >> 8), 4);
+  *v0 = as_float16((int16)(low.even, high.even));
+  *v1 = as_float16((int16)(low.odd, high.odd));
   (void)a;
   (void)end;
 #elif STRATUS_TYPE == 8 && defined(GATHER_FLOAT)

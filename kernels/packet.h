@@ -116,16 +116,50 @@ INLINE vint vi_load(const int* p) { return *p; }
 #elif defined(STRATUS_DEVICE)
 typedef float16 vfloat;
 typedef int16 vint;
-typedef int16 vmask;
 
-INLINE vfloat v_set(float a) { return (float16)(a); }
-INLINE vint vi_set(int a) { return (int16)(a); }
-INLINE vint vi_lanes(void) { return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
-INLINE vfloat v_fma(vfloat a, vfloat b, vfloat c) { return fma(a, b, c); }
-INLINE vfloat v_min(vfloat a, vfloat b) { return a < b ? a : b; }
-INLINE vfloat v_max(vfloat a, vfloat b) { return a > b ? a : b; }
-INLINE vint vi_min(vint a, vint b) { return min(a, b); }
-INLINE vint vi_max(vint a, vint b) { return max(a, b); }
+#if defined(__AVX512F__) && __has_builtin(__builtin_ia32_cmpps512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask) &&                   \
+  __has_builtin(__builtin_ia32_selectps_512) && __has_builtin(__builtin_ia32_selectd_512) && __has_builtin(__builtin_ia32_gathersiv16si)
+/* PoCL on a CPU with AVX-512: clang's own builtins, since OpenCL C has no word for a mask register or a gather. */
+#define STRATUS_DEVICE_AVX512 1
+#endif
+
+#ifdef STRATUS_DEVICE_AVX512
+typedef ushort vmask;
+typedef int stratus_i16 __attribute__((__vector_size__(64)));
+typedef float stratus_f16 __attribute__((__vector_size__(64)));
+typedef long stratus_l8 __attribute__((__vector_size__(64)));
+typedef int stratus_i8 __attribute__((__vector_size__(32)));
+#define STRATUS_I16(a) __builtin_astype((a), stratus_i16)
+#define STRATUS_F16(a) __builtin_astype((a), stratus_f16)
+#define STRATUS_COMPARE_FLOAT(a, b, what) ((ushort)__builtin_ia32_cmpps512_mask(STRATUS_F16(a), STRATUS_F16(b), what, (ushort)0xffff, 4))
+#define STRATUS_COMPARE_INT(a, b, what) ((ushort)__builtin_ia32_cmpd512_mask(STRATUS_I16(a), STRATUS_I16(b), what, (ushort)0xffff))
+/* 16 ints from base + scale*index, 0 in other lanes; scale is a literal. */
+#define STRATUS_GATHER(base, index, mask, scale)                                                                                           \
+  __builtin_astype(                                                                                                                        \
+    __builtin_ia32_gathersiv16si(STRATUS_I16((int16)(0)), (const void*)(uintptr_t)(base), STRATUS_I16(index), mask, scale), int16)
+/* 8 longs from base + scale*index, 0 in other lanes. */
+#define STRATUS_GATHER_LONG(base, index, mask, scale)                                                                                      \
+  __builtin_astype(__builtin_ia32_gathersiv8di(__builtin_astype((long8)(0), stratus_l8), (const void*)(uintptr_t)(base),                   \
+                     __builtin_astype((index), stratus_i8), mask, scale),                                                                  \
+    int16)
+INLINE vmask v_lt(vfloat a, vfloat b) { return STRATUS_COMPARE_FLOAT(a, b, 0x11); }
+INLINE vmask v_le(vfloat a, vfloat b) { return STRATUS_COMPARE_FLOAT(a, b, 0x12); }
+INLINE vmask vi_lt(vint a, vint b) { return STRATUS_COMPARE_INT(a, b, 1); }
+INLINE vmask vi_ge(vint a, vint b) { return STRATUS_COMPARE_INT(a, b, 5); }
+INLINE vfloat v_select(vmask m, vfloat a, vfloat b)
+{
+  return __builtin_astype(__builtin_ia32_selectps_512(m, STRATUS_F16(a), STRATUS_F16(b)), float16);
+}
+INLINE vint vi_select(vmask m, vint a, vint b)
+{
+  return __builtin_astype(__builtin_ia32_selectd_512(m, STRATUS_I16(a), STRATUS_I16(b)), int16);
+}
+INLINE vmask m_andnot(vmask a, vmask b) { return (ushort)(a & ~b); }
+INLINE vmask m_none(void) { return 0; }
+INLINE int m_any(vmask m) { return m != 0; }
+INLINE int m_count(vmask m) { return (int)popcount((uint)m); }
+#else
+typedef int16 vmask;
 INLINE vmask v_lt(vfloat a, vfloat b) { return a < b; }
 INLINE vmask v_le(vfloat a, vfloat b) { return a <= b; }
 INLINE vmask vi_lt(vint a, vint b) { return a < b; }
@@ -134,14 +168,6 @@ INLINE vfloat v_select(vmask m, vfloat a, vfloat b) { return m ? a : b; }
 INLINE vint vi_select(vmask m, vint a, vint b) { return m ? a : b; }
 INLINE vmask m_andnot(vmask a, vmask b) { return a & ~b; }
 INLINE vmask m_none(void) { return (int16)(0); }
-#ifdef __AVX512F__
-/* PoCL on a CPU with AVX-512: clang's own builtins, since OpenCL C has no word for a mask register or a gather. */
-typedef int stratus_v16 __attribute__((__vector_size__(64)));
-#define STRATUS_V16(a) __builtin_astype((a), stratus_v16)
-#define STRATUS_MASK16(m) ((ushort)__builtin_ia32_cvtd2mask512(STRATUS_V16(m)))
-INLINE int m_any(vmask m) { return STRATUS_MASK16(m) != 0; }
-INLINE int m_count(vmask m) { return (int)popcount((uint)STRATUS_MASK16(m)); }
-#else
 INLINE int m_any(vmask m) { return any(m); }
 INLINE int m_count(vmask m)
 {
@@ -151,6 +177,15 @@ INLINE int m_count(vmask m)
   return -(c.x + c.y);
 }
 #endif
+
+INLINE vfloat v_set(float a) { return (float16)(a); }
+INLINE vint vi_set(int a) { return (int16)(a); }
+INLINE vint vi_lanes(void) { return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
+INLINE vfloat v_fma(vfloat a, vfloat b, vfloat c) { return fma(a, b, c); }
+INLINE vfloat v_min(vfloat a, vfloat b) { return v_select(v_lt(a, b), a, b); }
+INLINE vfloat v_max(vfloat a, vfloat b) { return v_select(v_lt(b, a), a, b); }
+INLINE vint vi_min(vint a, vint b) { return min(a, b); }
+INLINE vint vi_max(vint a, vint b) { return max(a, b); }
 INLINE vfloat v_from_int(vint a) { return convert_float16(a); }
 INLINE vint v_to_int(vfloat a) { return convert_int16(a); }
 INLINE vfloat v_from_bits(vint a) { return as_float16(a); }

@@ -18,8 +18,8 @@
 
 #include "ray_cast.h"
 
-static void store_pixel(__constant stratus_ray_cast_arguments* a, __global float4* rgba, __global float* depth, __global uint* samples, int x, int y,
-  float4 color, float far, uint taken)
+static void store_pixel(__constant stratus_ray_cast_arguments* a, __global float4* rgba, __global float* depth, __global uint* samples,
+  int x, int y, float4 color, float far, uint taken)
 {
   if (x < a->width && y < a->height) {
     const size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
@@ -34,9 +34,9 @@ static void store_pixel(__constant stratus_ray_cast_arguments* a, __global float
 }
 
 /* counts: rays, samples, skipped, lookups, a row of packets each, so that 32 bits hold them. */
-__kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden, __global const uchar* map,
-  __global const void* table, __global const float* opaque_depth, __global float4* rgba, __global float* depth, __global uint* samples,
-  __global uint* counts)
+__kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float4* rgba, __global float* depth,
+  __global uint* samples, __global uint* counts)
 {
   const int column = (int)get_global_id(0), row = (int)get_global_id(1);
   const int x = column * PACKET_X, y = row * PACKET_Y;

@@ -102,8 +102,8 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
 
 /* One sample for every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended hangs on the
  * last sample's colour, and the next fetch need not wait for that. */
-INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, GLOBAL const void* table,
-  stratus_packet* k)
+INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, stratus_packet* k)
 {
   const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
   const vmask inside = vi_lt(k->i, k->last);
@@ -131,8 +131,8 @@ INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* 
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
 
-INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, GLOBAL const uchar* map,
-  GLOBAL const void* table, stratus_packet* k)
+INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
 {
   while (m_any(k->live)) {
     if (a->structure) {

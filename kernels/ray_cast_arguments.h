@@ -13,27 +13,27 @@ typedef struct stratus_ray_cast_arguments {
   stratus_pair eye[3], forward[3], right[3], up[3];
   /* squared world length of forward + u right + v up: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5] */
   stratus_pair metric[6];
-  stratus_pair near_k, far_k;    /* far_k only if has_far */
-  stratus_pair reach;            /* samples to beyond the volume's farthest corner */
-  stratus_pair per_step;         /* 1 / sample distance, world */
-  stratus_pair pixel[2];         /* 1/width, 1/height */
-  stratus_pair box[2][3];        /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
-  stratus_pair piece[2][3];      /* owned part: a segment belongs to it if its middle does */
+  stratus_pair near_k, far_k; /* far_k only if has_far */
+  stratus_pair reach;         /* samples to beyond the volume's farthest corner */
+  stratus_pair per_step;      /* 1 / sample distance, world */
+  stratus_pair pixel[2];      /* 1/width, 1/height */
+  stratus_pair box[2][3];     /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
+  stratus_pair piece[2][3];   /* owned part: a segment belongs to it if its middle does */
   stratus_pair clip[STRATUS_CLIP_MAX][4];
-  float occupied[2][3];          /* box of occupied blocks, unbounded where it ends with the volume */
-  float last[3];                 /* largest position along each axis (cell_centered clamps to it) */
+  float occupied[2][3]; /* box of occupied blocks, unbounded where it ends with the volume */
+  float last[3];        /* largest position along each axis (cell_centered clamps to it) */
   float table_scale, table_offset, table_last;
-  float tau_scale;               /* pre-integrated: optical depth of one unit of the sums */
-  float color_slope;             /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
-  float termination;             /* of transparency: 1 - alpha */
-  float world_step;              /* the sample distance as a float, for depth */
+  float tau_scale;   /* pre-integrated: optical depth of one unit of the sums */
+  float color_slope; /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
+  float termination; /* of transparency: 1 - alpha */
+  float world_step;  /* the sample distance as a float, for depth */
   int width, height;
-  int window[4];                 /* x0, x1, y0, y1: pixels outside show nothing */
+  int window[4]; /* x0, x1, y0, y1: pixels outside show nothing */
   int parallel;
   int clip_count;
-  int has_far, has_piece, has_depth;      /* has_depth: opaque depth is given */
+  int has_far, has_piece, has_depth; /* has_depth: opaque depth is given */
   int want_depth, want_samples;
-  int clamp;                     /* cell_centered: positions are clamped to 0..last */
+  int clamp; /* cell_centered: positions are clamped to 0..last */
   int nearest;
   int dimensions[3];
   int row, slice;                /* values from one row to the next, one slice to the next (when they fit) */
@@ -41,11 +41,11 @@ typedef struct stratus_ray_cast_arguments {
   int structure;                 /* 0: march without */
   int blocks_pitch, blocks_rows; /* of the map: a row, rows in a slice */
   int block_log2;
-  int octant_stride;             /* bytes between the eight maps, 0 if there is one */
+  int octant_stride; /* bytes between the eight maps, 0 if there is one */
   int has_hidden;
-  int type, stride;              /* of the generic fetch */
-  int row_high, slice_high;      /* upper 32 bits of row and slice for the generic fetch */
-  int bias_low, bias_high;       /* bits of the double that wide types are relative to */
+  int type, stride;         /* of the generic fetch */
+  int row_high, slice_high; /* upper 32 bits of row and slice for the generic fetch */
+  int bias_low, bias_high;  /* bits of the double that wide types are relative to */
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */

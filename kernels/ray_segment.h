@@ -30,19 +30,19 @@ typedef uint64_t stratus_index;
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat transparency, red, green, blue, depth;
-  vfloat front;         /* pre-integrated: value at the segment's front */
-  vint i, last;         /* segment, and the end of the ray in whole segments */
-  vint run;             /* segments below it need not ask the structure */
-  vint octant;          /* offset of the ray's map */
+  vfloat front; /* pre-integrated: value at the segment's front */
+  vint i, last; /* segment, and the end of the ray in whole segments */
+  vint run;     /* segments below it need not ask the structure */
+  vint octant;  /* offset of the ray's map */
   vint samples, skipped, lookups;
-  vmask live, hits;     /* hits: rays that met the bounds */
-  vmask fresh;          /* the front value is still to be sampled */
+  vmask live, hits; /* hits: rays that met the bounds */
+  vmask fresh;      /* the front value is still to be sampled */
 } stratus_packet;
 
-#if defined(STRATUS_DEVICE) || STRATUS_WIDTH == 1 || STRATUS_ISA != 2
-INLINE vint mask_int(vmask m) { return m; }
+#if STRATUS_WIDTH > 1 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
+INLINE vint mask_int(vmask m) { return vi_select(m, vi_set(-1), vi_set(0)); }
 #else
-INLINE vint mask_int(vmask m) { return (vint)_mm512_movm_epi32(m); }
+INLINE vint mask_int(vmask m) { return m; }
 #endif
 
 INLINE vfloat segment_middle(const stratus_packet* k, vfloat fi)
@@ -66,11 +66,8 @@ INLINE vint gather_map(GLOBAL const uchar* map, vint index, vmask mask)
 {
 #if STRATUS_WIDTH == 1
   return mask ? (int)map[index] : 0;
-#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
-  return __builtin_astype(__builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)map, STRATUS_V16(index),
-                            STRATUS_MASK16(mask), 1),
-           int16) &
-    (int16)(255);
+#elif defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  return STRATUS_GATHER(map, index, mask, 1) & (int16)(255);
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   return (vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)index, map, 1) & vi_set(255);
 #else
@@ -139,7 +136,8 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   k->last = vi_select(k->live & v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole);
   k->i = vi_set(0);
   if (a->has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
-    const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f), to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
+    const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f),
+                 to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
     const vint i0 = v_to_int(from), i1 = v_to_int(to);
     k->i = vi_select(v_lt(v_from_int(i0), from), i0, i0 - vi_set(1));
     k->i = vi_max(k->i, vi_set(0));
@@ -156,7 +154,8 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     }
     /* one segment of slack each way, and a miss ends here */
     const vint i0 = vi_max(v_to_int(v_min(enter, most)) - vi_set(1), k->i);
-    const vint i1 = vi_min(vi_select(v_lt(leave, v_fma(enter, v_set(0.999999f), v_set(-1.0f))), vi_set(0), v_to_int(v_max(leave, zero)) + vi_set(2)), k->last);
+    const vint i1 = vi_min(
+      vi_select(v_lt(leave, v_fma(enter, v_set(0.999999f), v_set(-1.0f))), vi_set(0), v_to_int(v_max(leave, zero)) + vi_set(2)), k->last);
     const vint segments = vi_max(k->last - k->i, vi_set(0)), left = vi_max(i1 - i0, vi_set(0));
     k->skipped = vi_select(k->live, segments - left, vi_set(0));
     k->i = i0;
@@ -232,11 +231,13 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
   for (int c = 0; c < 4; ++c) {
     out[c] = mask ? table[4 * entry + c] : 0.0f;
   }
-#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
-  for (int c = 0; c < 4; ++c) {
-    out[c] = as_float16(__builtin_astype(__builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)(table + c),
-                                           STRATUS_V16(entry * vi_set(4)), STRATUS_MASK16(mask), 4),
-      int16));
+#elif defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  const int16 twice = entry + entry;
+  for (int c = 0; c < 4; c += 2) {
+    const int16 low = STRATUS_GATHER_LONG(table + c, twice.lo, (uchar)mask, 8),
+                high = STRATUS_GATHER_LONG(table + c, twice.hi, (uchar)(mask >> 8), 8);
+    out[c] = as_float16((int16)(low.even, high.even));
+    out[c + 1] = as_float16((int16)(low.odd, high.odd));
   }
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
@@ -287,7 +288,8 @@ INLINE void shade_sample(
   if (m_any(part)) { /* the ends of a ray */
     vfloat last[4];
     gather_four(table + 4 * ((int)a->table_last + 1), entry, part, last);
-    const vfloat alpha = v_absorbed(last[0] * weight), ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
+    const vfloat alpha = v_absorbed(last[0] * weight),
+                 ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
     for (int c = 0; c < 4; ++c) {
       layer[c] = layer[c] * ratio;
     }
@@ -300,9 +302,8 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 {
 #if STRATUS_WIDTH == 1
   return mask ? table[index] : 0;
-#elif defined(STRATUS_DEVICE) && defined(__AVX512F__)
-  return __builtin_astype(
-    __builtin_ia32_gathersiv16si(STRATUS_V16((int16)(0)), (const void*)(uintptr_t)table, STRATUS_V16(index), STRATUS_MASK16(mask), 4), int16);
+#elif defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  return STRATUS_GATHER(table, index, mask, 4);
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   return (vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)index, table, 4);
 #else

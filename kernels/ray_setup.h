@@ -11,7 +11,7 @@
 typedef struct stratus_rays {
   float p[3][STRATUS_WIDTH], d[3][STRATUS_WIDTH], inverse[3][STRATUS_WIDTH];
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
-  float first[STRATUS_WIDTH];                            /* lattice index of segment 0, for depth */
+  float first[STRATUS_WIDTH];                                 /* lattice index of segment 0, for depth */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* owned part, in samples */
 } stratus_rays;
 
@@ -61,7 +61,8 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
 }
 
 /* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; `part` is where they stand in the packet. */
-INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, int part, stratus_rays* rays)
+INLINE void ray_setup_part(
+  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, int part, stratus_rays* rays)
 {
   stratus_pair number;
   number.lo = 0.0f;

@@ -161,10 +161,7 @@ INLINE real r_floor(real a)
   REAL_EACH r[lane] = floor(a[lane]);
   return r;
 }
-INLINE void r_store(float* p, real a)
-{
-  REAL_EACH p[lane] = (float)a[lane];
-}
+INLINE void r_store(float* p, real a) { REAL_EACH p[lane] = (float)a[lane]; }
 INLINE real r_load(const float* p)
 {
   real r = { 0 };
