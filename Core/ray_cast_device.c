@@ -84,9 +84,10 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, TABLE, frame->table, caster->table->rgba ? 8 * entries * sizeof(float) : 4 * (entries + 1) * sizeof(int32_t)));
     d->table_serial = caster->table_serial;
   }
-  if (!d->buffers[MAP] || (frame->map && d->map_serial != caster->map_serial)) {
+  const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* without a map, none may stay borrowed */
+  if (!d->buffers[MAP] || d->map_serial != map_serial) {
     TRY(replace(caster, MAP, frame->map, frame->map ? caster->map->bytes_size : 0));
-    d->map_serial = frame->map ? caster->map_serial : 0;
+    d->map_serial = map_serial;
   }
   return STRATUS_OK;
 }

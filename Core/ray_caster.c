@@ -52,6 +52,7 @@ static void drop_map(stratus_ray_caster* caster)
 {
   stratus_distance_map_destroy(caster->map);
   caster->map = NULL;
+  ++caster->map_serial; /* a device may still borrow it */
 }
 
 static void drop_occupancy(stratus_ray_caster* caster)
@@ -195,21 +196,10 @@ static stratus_status spread_hidden(stratus_context* context, const stratus_volu
   return STRATUS_OK;
 }
 
-static stratus_status update_hidden(stratus_ray_caster* caster, const stratus_volume* volume, bool by_value)
+static stratus_status make_hidden(stratus_context* context, const stratus_volume* volume, bool by_value, uint8_t** hidden)
 {
-  uint8_t* hidden = NULL;
-  TRY(stratus_volume_hidden_cells(caster->context, volume, &hidden));
-  if (hidden && volume->cell_centered && !by_value) {
-    const stratus_status status = spread_hidden(caster->context, volume, &hidden);
-    if (status != STRATUS_OK) {
-      stratus_release(caster->context, hidden);
-      return status;
-    }
-  }
-  stratus_release(caster->context, caster->hidden);
-  caster->hidden = hidden;
-  caster->hidden_by_value = by_value;
-  return STRATUS_OK;
+  TRY(stratus_volume_hidden_cells(context, volume, hidden));
+  return *hidden && volume->cell_centered && !by_value ? spread_hidden(context, volume, hidden) : STRATUS_OK;
 }
 
 static int chosen_block_size(const stratus_volume* volume, int wanted)
@@ -256,7 +246,11 @@ static stratus_status update_fetched(stratus_ray_caster* caster)
       return STRATUS_OK;
     }
     void* memory = NULL;
-    TRY(stratus_allocate(caster->context, slice * slices, sizeof(float), &memory));
+    if (stratus_allocate(caster->context, slice * slices, sizeof(float), &memory) != STRATUS_OK) {
+      stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
+      caster->samples_since_data = 0; /* tried again when as many more have been read */
+      return STRATUS_OK;
+    }
     float* fetched = memory;
     const double bias = caster->ranges->bias;
 #pragma omp parallel for num_threads(caster->context->threads)
@@ -281,18 +275,28 @@ static stratus_status update_ranges(
   const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
   const bool same = same_data(caster, volume, block_size);
   if (!same || caster->hidden_by_value != by_value) {
-    TRY(update_hidden(caster, volume, by_value));
-    ++caster->data_serial;
-  }
-  if (!same) {
     const double start = stratus_now_ms();
     stratus_value_range* ranges = NULL;
-    TRY(stratus_value_range_create(caster->context, volume, block_size, &ranges));
-    drop_transfer(caster);
-    stratus_value_range_destroy(caster->ranges);
-    caster->ranges = ranges;
-    drop_fetched(caster);
-    ++caster->range_builds;
+    uint8_t* hidden = NULL;
+    stratus_status status = make_hidden(caster->context, volume, by_value, &hidden);
+    if (status == STRATUS_OK && !same) {
+      status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
+    }
+    if (status != STRATUS_OK) {
+      stratus_release(caster->context, hidden);
+      return status;
+    }
+    stratus_release(caster->context, caster->hidden);
+    caster->hidden = hidden;
+    caster->hidden_by_value = by_value;
+    ++caster->data_serial;
+    if (!same) {
+      drop_transfer(caster);
+      stratus_value_range_destroy(caster->ranges);
+      caster->ranges = ranges;
+      drop_fetched(caster);
+      ++caster->range_builds;
+    }
     *ms = stratus_now_ms() - start;
   }
   caster->volume = *volume;
@@ -330,7 +334,6 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   const stratus_ray_cast_options* options, double* ms)
 {
   const double start = stratus_now_ms();
-  const stratus_sampling before = caster->choice.sampling;
   const bool same = same_transfer(caster, transfer);
   if (!same) {
     TRY(keep_transfer(caster, transfer));
@@ -345,7 +348,9 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
     caster->wanted_sampling = options->sampling;
     caster->wanted_distance = options->sample_distance;
   }
-  if (caster->table && caster->choice.sampling == before && caster->table_distance == caster->choice.sample_distance) {
+  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
+  if (same_kind && caster->table_distance == caster->choice.sample_distance) {
     return STRATUS_OK;
   }
   const stratus_value_range* ranges = caster->ranges;
@@ -353,7 +358,7 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   stratus_table* table = NULL;
   TRY(stratus_table_create(caster->context, &caster->transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
     caster->choice.sampling, caster->choice.sample_distance, &table));
-  if (caster->choice.sampling != before) {
+  if (!same_kind || caster->table->shown != table->shown) {
     drop_occupancy(caster);
   }
   stratus_table_destroy(caster->table);
@@ -532,12 +537,17 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   TRY(update_structures(caster, options->structure, &used, why, sizeof why, report));
   const bool with_map = used != STRATUS_STRUCTURE_NONE;
   const double start = stratus_now_ms();
-  if (empty || caster->table->shown == 0 || (with_map && caster->occupancy->count == 0)) {
+  if (empty || caster->table->shown == 0) {
     clear_image(image);
   } else {
+    const bool found = !with_map || caster->occupancy->count > 0;
     arguments.has_hidden = caster->hidden != NULL;
     stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
-    TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+    if (found) {
+      TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+    } else {
+      clear_image(image);
+    }
     if (options->audit) {
       TRY(audit(caster, &arguments, image, &report->differing_pixels));
     }

@@ -9,6 +9,10 @@
 /* Bounds are drawn in by this part of a voxel (and more where floats are coarser), so that no rounding takes a sample outside. */
 #define BOUNDS_MARGIN 0x1p-10
 #define FLOAT_COARSENESS 0x1p-21
+/* More voxels than this a sample, and the margin above would no longer hold. */
+#define VOXELS_A_SAMPLE_MOST 4096.0
+#define SMALLEST_VECTOR 1e-30
+#define LARGEST_VECTOR 1e30
 #define UNBOUNDED 1e30f
 
 static bool finite3(const double v[3])
@@ -50,8 +54,20 @@ static stratus_status check_camera(stratus_context* context, const stratus_camer
       camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2], camera->right[0], camera->right[1],
       camera->right[2], camera->up[0], camera->up[1], camera->up[2]);
   }
-  if (!(dot3(camera->forward, camera->forward) > 0.0)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera forward (0, 0, 0) has no direction");
+  const double* f = camera->forward;
+  const double* r = camera->right;
+  const double* u = camera->up;
+  const double ff = dot3(f, f), rr = dot3(r, r), uu = dot3(u, u);
+  if (!(ff >= SMALLEST_VECTOR && ff <= LARGEST_VECTOR)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera forward (%g, %g, %g) has no direction: its squared length %g must be %g..%g", f[0], f[1], f[2], ff, SMALLEST_VECTOR,
+      LARGEST_VECTOR);
+  }
+  const double volume = f[0] * (r[1] * u[2] - r[2] * u[1]) + f[1] * (r[2] * u[0] - r[0] * u[2]) + f[2] * (r[0] * u[1] - r[1] * u[0]);
+  if (!camera->parallel && rr > 0.0 && uu > 0.0 && !(fabs(volume) > 1e-12 * sqrt(ff) * sqrt(rr) * sqrt(uu))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) lie in one plane", f[0], f[1], f[2], r[0], r[1], r[2], u[0],
+      u[1], u[2]);
   }
   if (!(camera->near_k < camera->far_k) || !isfinite(camera->near_k) || (!camera->parallel && camera->near_k < 0.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera near %g and far %g: near must be %sfinite and below far", camera->near_k,
@@ -167,7 +183,8 @@ static void set_addressing(const stratus_volume* volume, stratus_ray_cast_argume
   a->stride = (int)stride;
 }
 
-static stratus_status check_samples(stratus_context* context, const double m[16], const stratus_volume* volume, double sample_distance)
+static stratus_status check_samples(
+  stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume, double sample_distance)
 {
   double diagonal = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -182,6 +199,15 @@ static stratus_status check_samples(stratus_context* context, const double m[16]
       "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g", sample_distance,
       diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
   }
+  double voxels = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    voxels = fmax(voxels, sample_distance * sqrt(dot3(inverse + 4 * axis, inverse + 4 * axis)));
+  }
+  if (!(voxels <= VOXELS_A_SAMPLE_MOST) || !(sample_distance >= SMALLEST_VECTOR && sample_distance <= LARGEST_VECTOR)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "sample distance %g is too long or out of range: %g voxels a sample, at most %g; distances %g..%g", sample_distance, voxels,
+      VOXELS_A_SAMPLE_MOST, SMALLEST_VECTOR, LARGEST_VECTOR);
+  }
   return STRATUS_OK;
 }
 
@@ -195,7 +221,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
   }
-  TRY(check_samples(context, index_to_world, volume, sample_distance));
+  TRY(check_samples(context, index_to_world, world_to_index, volume, sample_distance));
   set_camera(camera, world_to_index, a);
   a->per_step = stratus_pair_of(1.0 / sample_distance);
   a->reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);

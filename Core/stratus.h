@@ -121,7 +121,7 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type
  * Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: such a voxel). Types of more than 24
  * bits are taken relative to one of their values (the least in magnitude of some thousand), in double, so that an offset costs no digits. */
 typedef struct stratus_volume {
-  const void* values; /* dimensions[0]*[1]*[2] values, x fastest, component_stride apart */
+  const void* values; /* dimensions[0]*[1]*[2] values, x fastest, value_stride apart */
   stratus_type type;
   int64_t dimensions[3];       /* values along x, y, z; each >= 1 */
   int64_t value_stride;        /* distance between consecutive values, in values, >= 1; default 1 */
@@ -250,12 +250,12 @@ typedef struct stratus_ray_cast_options {
   stratus_structure structure; /* default auto: the cheapest that the scene needs, told in the report */
   stratus_sampling sampling;   /* default auto: by the transfer function's bend against the data. Nearest is never pre-integrated. */
   stratus_interpolation interpolation; /* default linear */
-  double sample_distance;              /* world length; 0 (default): from the data's spacing and the transfer function */
-  double termination;                  /* a ray ends when its alpha passes this, 0..1; default .999 */
-  int block_size;                      /* 2, 4, 8, 16, 32; 0 (default): 4 */
-  int crop;                            /* 1: only inside crop_bounds. Default 0. */
-  double crop_bounds[6]; /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
-  int clip_plane_count;  /* 0..6 */
+  double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
+  double termination;     /* a ray ends when its alpha passes this, 0..1; default .999 */
+  int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4. More where the maps would outgrow 2e9 bytes. */
+  int crop;               /* 1: only inside crop_bounds. Default 0. */
+  double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
+  int clip_plane_count;   /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: a x + b y + c z + d >= 0 is kept */
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
 } stratus_ray_cast_options;
@@ -275,7 +275,7 @@ typedef struct stratus_image {
 } stratus_image;
 
 typedef struct stratus_ray_cast_report {
-  uint64_t rays;             /* that met the volume's bounds */
+  uint64_t rays;             /* that met the volume's bounds, among those of the pixels that what is occupied covers */
   uint64_t samples;          /* values interpolated */
   uint64_t skipped;          /* segments that the structure skipped */
   uint64_t lookups;          /* reads of the structure */
@@ -296,9 +296,10 @@ typedef struct stratus_ray_caster stratus_ray_caster;
 STRATUS_API stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** caster);
 STRATUS_API void stratus_ray_caster_destroy(stratus_ray_caster* caster);
 
-/* Draws. volume->values stay borrowed until the next call with another volume or the caster's destruction: what is built from them is kept and built
- * anew only when pointer, type, dimensions, stride or revision (ranges), or transfer function (tables, occupancy, structure) change.
- * report may be NULL. A failed call leaves the picture undefined and the caster as it was. */
+/* Draws. volume->values and ghosts stay borrowed until the next call with another volume, _release or _destroy. What is built is kept, and built anew only when
+ * what it is built from changes: ranges with the volume's pointers, type, dimensions, stride, centring, revision or the block size; tables,
+ * occupancy and structure with the transfer function, the sampling, and (tables) the sample distance. Geometry and camera rebuild nothing.
+ * report may be NULL. A failed call leaves the picture undefined, and the caster fit for the next call. */
 STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);

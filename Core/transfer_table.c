@@ -178,12 +178,21 @@ static stratus_status fill_preintegrated(
   TRY(stratus_allocate(table->context, words, sizeof(double), &memory));
   double* sums = memory;
   table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, lo, width, table->size, sums));
-  const double total = sums[words - 1], scale = total > 0.0 ? SUM_MOST / total : 0.0;
-  for (size_t i = 0; i < words; ++i) {
-    const size_t entry = i / 4, which = i % 4;
-    table->sums[which * (words / 4) + entry] = (int32_t)llrint(sums[i] * scale);
+  const size_t row = words / 4;
+  const double total = sums[words - 1], scale = total > 0.0 ? (SUM_MOST - table->size) / total : 0.0;
+  const bool any = total > 0.0 && isfinite(scale);
+  int64_t tau = 0;
+  for (size_t e = 0; e < row; ++e) {
+    for (size_t which = 0; which < 3; ++which) {
+      table->sums[which * row + e] = any ? (int32_t)llrint(sums[4 * e + which] * scale) : 0;
+    }
+    if (e > 0 && any) { /* what shows at all counts for something, however faint beside the rest */
+      const int64_t rounded = llrint(sums[4 * e + 3] * scale), least = tau + (sums[4 * e + 3] > sums[4 * e - 1]);
+      tau = rounded > least ? rounded : least;
+    }
+    table->sums[3 * row + e] = (int32_t)tau;
   }
-  table->sum_scale = total > 0.0 ? (float)(sample_distance / scale) : 0.0f;
+  table->sum_scale = any ? (float)(sample_distance / scale) : 0.0f;
   stratus_release(table->context, sums);
   return STRATUS_OK;
 }
@@ -222,6 +231,11 @@ stratus_status stratus_table_create(stratus_context* context, const stratus_tran
   table->size = size;
   table->scale = width > 0.0 ? (float)(1.0 / width) : 0.0f;
   table->offset = (float)(0.5 - (from - bias) * (double)table->scale);
+  if (!isfinite(table->scale) || !isfinite(table->offset)) {
+    status = stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "values from %g to %g lie too close together: floats can't tell %d steps between them", from, to, size);
+    goto cleanup;
+  }
   TRY_CLEANUP(stratus_allocate(context, (size_t)size + 1, sizeof *table->next_shown, &memory));
   table->next_shown = memory;
   if (sampling == STRATUS_SAMPLING_PREINTEGRATED) {

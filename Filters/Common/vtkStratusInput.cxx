@@ -137,10 +137,11 @@ bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bo
   }
   vtkDataArray* plain = array;
   if (!array->HasStandardMemoryLayout()) {
-    if (this->Source != array || !this->Plain || this->PlainTime != array->GetMTime()) {
+    const vtkMTimeType time = std::max(array->GetMTime(), image->GetMTime());
+    if (this->Source != array || !this->Plain || this->PlainTime != time) {
       this->Plain = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
       this->Plain->DeepCopy(array);
-      this->PlainTime = array->GetMTime();
+      this->PlainTime = time;
     }
     plain = this->Plain;
   } else {

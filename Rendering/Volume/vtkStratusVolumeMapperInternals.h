@@ -11,6 +11,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,7 @@ private:
   bool PrepareInput(vtkVolume* prop, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
-  Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop) const;
+  Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error);
   const float* ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop);
@@ -62,6 +63,7 @@ private:
   vtkStratusPicture Picture;
   bool HasPicture = false;
   std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth;
+  std::array<double, 17> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to
   double FullMilliseconds = 0.0; // estimate of an exact picture's cast; 0: unknown
   double FullSampleDistance = 0.0;
   vtkSmartPointer<vtkImageData> LastImage;

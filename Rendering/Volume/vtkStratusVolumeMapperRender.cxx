@@ -25,12 +25,23 @@ double Now() // milliseconds
 // ---------------------------------------------------------------- how coarse
 
 vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(
-  vtkRenderer* renderer, vtkVolume* prop) const
+  vtkRenderer* renderer, vtkVolume* prop)
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   Coarseness coarseness;
   coarseness.Pixels = mapper->ImageSampleDistance;
   vtkRenderWindow* window = renderer->GetRenderWindow();
+  // What was learned of a full picture holds for its settings and geometry only.
+  const stratus_volume& volume = this->Image.GetVolume();
+  std::array<double, 17> learnedFor;
+  learnedFor[0] = mapper->SampleDistance;
+  std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
+  std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
+  learnedFor[16] = static_cast<double>(prop->GetProperty()->GetMTime());
+  if (learnedFor != this->LearnedFor) {
+    this->LearnedFor = learnedFor;
+    this->FullMilliseconds = 0.0;
+  }
   const bool interactive = mapper->AutoAdjustSampleDistances && window && window->GetDesiredUpdateRate() >= mapper->InteractiveUpdateRate;
   if (!interactive || this->FullMilliseconds <= 0.0) {
     return coarseness;
