@@ -25,7 +25,6 @@
 #define GLOBAL
 #define CONSTANT const
 #define INLINE static inline __attribute__((always_inline))
-typedef int8_t stratus_char;
 typedef unsigned char uchar;
 typedef unsigned short ushort;
 typedef unsigned int uint;
@@ -311,7 +310,5 @@ INLINE vfloat v_clamp(vfloat a, float lo, float hi) { return v_min(v_max(a, v_se
 INLINE vfloat v_abs(vfloat a) { return v_from_bits(v_to_bits(a) & vi_set(0x7fffffff)); }
 INLINE vmask v_finite(vfloat a) { return v_le(v_abs(a), v_set(LARGEST_FLOAT)); }
 INLINE vfloat v_lerp(vfloat a, vfloat b, vfloat t) { return v_fma(t, b - a, a); }
-/* Whole part of a >= 0, and what v_to_int can hold. */
-INLINE vfloat v_whole(vfloat a) { return v_from_int(v_to_int(a)); }
 
 #endif

@@ -20,13 +20,7 @@ typedef struct stratus_rays {
 
 INLINE real ray_away_from_zero(real d)
 {
-  stratus_pair smallest;
-  smallest.hi = SMALLEST_STEP;
-  smallest.lo = 0.0f;
-  const real plus = r_of(smallest), minus = r_neg(plus);
-  stratus_pair nothing;
-  nothing.hi = nothing.lo = 0.0f;
-  const real zero = r_of(nothing);
+  const real plus = r_number(SMALLEST_STEP), minus = r_neg(plus), zero = r_number(0.0f);
   return r_select(r_lt(d, zero), r_min(d, minus), r_max(d, plus));
 }
 
@@ -40,9 +34,7 @@ INLINE void ray_clip_slab(real origin, real inverse, stratus_pair lo, stratus_pa
 /* The half space n x + d >= 0 along origin + s direction. */
 INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, const real* direction, real* begin, real* end)
 {
-  stratus_pair nothing;
-  nothing.hi = nothing.lo = 0.0f;
-  const real zero = r_of(nothing);
+  const real zero = r_number(0.0f);
   real height = r_of(plane[3]), slope = zero;
   for (int axis = 0; axis < 3; ++axis) {
     height = r_add(height, r_mul(r_of(plane[axis]), origin[axis]));
@@ -54,26 +46,14 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
   *begin = r_select(rising, r_max(*begin, crossing), *begin);
   *end = r_select(falling, r_min(*end, crossing), *end);
   const rmask outside = r_lt(height, zero);
-  stratus_pair far_away;
-  far_away.hi = -1e30f;
-  far_away.lo = 0.0f;
-  *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_of(far_away), *end)));
+  *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_number(-1e30f), *end)));
 }
 
 /* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; `part` is where they stand in the packet. */
 INLINE void ray_setup_part(
   CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, int part, stratus_rays* rays)
 {
-  stratus_pair number;
-  number.lo = 0.0f;
-  number.hi = 0.0f;
-  const real zero = r_of(number);
-  number.hi = 1.0f;
-  const real one = r_of(number);
-  number.hi = 2.0f;
-  const real two = r_of(number);
-  number.hi = 0.5f;
-  const real half_one = r_of(number);
+  const real zero = r_number(0.0f), half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
   const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->pixel[0])), one);
   const real v = r_sub(r_mul(r_mul(r_add(r_load(y), half_one), two), r_of(a->pixel[1])), one);
   real origin[3], direction[3];

@@ -177,6 +177,13 @@ INLINE real r_mul(real a, real b) { return a * b; }
 INLINE real r_div(real a, real b) { return a / b; }
 #endif
 
+INLINE real r_number(float a)
+{
+  stratus_pair number;
+  number.hi = a;
+  number.lo = 0.0f;
+  return r_of(number);
+}
 INLINE real r_min(real a, real b) { return r_select(r_lt(b, a), b, a); }
 INLINE real r_max(real a, real b) { return r_select(r_lt(a, b), b, a); }
 
