@@ -229,6 +229,206 @@ STRATUS_API void stratus_distance_map_destroy(stratus_distance_map* map);
 STRATUS_API int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_t i, int64_t j, int64_t k);
 STRATUS_API size_t stratus_distance_map_bytes(const stratus_distance_map* map);
 
+/* ---------------------------------------------------------------- effective voxels
+ * The voxels that a criterion makes visible (Guo et al. 2025, section 3). Voxel (i,j,k) is the cube of edge 1 about (i,j,k) in index
+ * coordinates. At most 2^18 voxels along an axis. */
+
+typedef struct stratus_criterion {
+  const stratus_transfer* transfer; /* not NULL: values of opacity > 0. Default NULL. */
+  double lower, upper;              /* else values in lower..upper, ends included, lower <= upper, infinities allowed. Default: all. */
+} stratus_criterion;
+
+STRATUS_API stratus_criterion stratus_criterion_default(void);
+
+typedef struct stratus_voxels stratus_voxels;
+
+/* Finite values that meet the criterion, but none that is hidden or owned by another piece (cell flags count where cell_centered). */
+STRATUS_API stratus_status stratus_voxels_create(
+  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
+/* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has them;
+ * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. */
+STRATUS_API stratus_status stratus_voxels_create_cells(
+  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
+/* `count` triples of i, j, k, each in 0..dimensions-1; one that comes twice counts once. Index (i,j,k) is world (i+.5, j+.5, k+.5): the
+ * voxel fills [i,i+1] and so on. */
+STRATUS_API stratus_status stratus_voxels_create_list(
+  stratus_context* context, const int64_t dimensions[3], const int32_t* positions, size_t count, stratus_voxels** voxels);
+STRATUS_API void stratus_voxels_destroy(stratus_voxels* voxels);
+STRATUS_API int64_t stratus_voxels_count(const stratus_voxels* voxels);
+STRATUS_API void stratus_voxels_dimensions(const stratus_voxels* voxels, int64_t dimensions[3]);
+STRATUS_API int stratus_voxels_get(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k); /* 0 beyond the dimensions */
+/* Tight box [lo, hi) in voxels; lo = hi = 0 if there is none. */
+STRATUS_API void stratus_voxels_bounds(const stratus_voxels* voxels, int64_t lo[3], int64_t hi[3]);
+
+/* ---------------------------------------------------------------- density
+ * Kernel density of effective voxels (eq. 2 to 5) with the quartic kernel, whose constant in three dimensions is 105 / (32 pi) for densities
+ * a voxel to add up to 1. Lengths are voxels, at voxel centres. */
+
+/* Bandwidth by eq. 3 and 4, never below 1 voxel (a shell's deviation of radii is next to nothing, and below 1 a voxel sees only itself);
+ * 1 for fewer than two voxels. `raw`, may be NULL: as printed, unbounded below. */
+STRATUS_API stratus_status stratus_density_bandwidth(stratus_context* context, const stratus_voxels* voxels, double* bandwidth, double* raw);
+/* Density at a point in index coordinates, with its first (eq. 10) and second (eq. 11) partial derivatives. first, second: may be NULL. */
+STRATUS_API stratus_status stratus_density_at(stratus_context* context, const stratus_voxels* voxels, double bandwidth, const double point[3],
+  double* density, double first[3], double second[3]);
+
+/* ---------------------------------------------------------------- distance field
+ * Euclidean distance, voxel centre to voxel centre, from each voxel to the nearest effective one. */
+
+typedef enum stratus_field_method {
+  STRATUS_FIELD_EXACT,      /* separable, squared distances as integers; zigzag or envelope, whichever is cheaper for the set */
+  STRATUS_FIELD_ZIGZAG,     /* rows searched outward from each voxel, up to the best so far */
+  STRATUS_FIELD_ENVELOPE,   /* lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012) */
+  STRATUS_FIELD_JFA,        /* jump flooding (Rong & Tan 2006): steps n/2, n/4 .. 1 */
+  STRATUS_FIELD_JFA_1,      /* JFA+1: one more pass of step 1 */
+  STRATUS_FIELD_JFA_2,      /* JFA+2: passes of steps 2 and 1 more */
+  STRATUS_FIELD_1_JFA,      /* 1+JFA: a pass of step 1 first */
+  STRATUS_FIELD_JFA_SQUARED, /* JFA^2: all passes twice */
+  STRATUS_FIELD_AJFA,       /* adaptive (eq. 6 and 7): E1 and E2 of a pass decide how far the next step falls */
+  STRATUS_FIELD_AJFA_FIG5   /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid */
+} stratus_field_method;
+
+STRATUS_API const char* stratus_field_method_name(stratus_field_method method);
+
+typedef struct stratus_field_options {
+  stratus_field_method method; /* default exact */
+  int is_signed;               /* 1: inside effective voxels minus the distance to the nearest voxel that is not one. Default 0. */
+  int first_step;              /* floodings: cap on the first step, >= 1; 0 (default): half the longest edge */
+} stratus_field_options;
+
+STRATUS_API stratus_field_options stratus_field_options_default(void);
+
+typedef struct stratus_field_report {
+  int passes;              /* floodings: over the grid; exact: 3, signed 6 */
+  uint64_t updated;        /* voxels that a flooding pass brought nearer, all passes */
+  int steps[64];           /* floodings: step of each pass */
+  double e1[64], e2[64];   /* floodings: eq. 6 and 7 of each pass */
+  double build_ms;
+} stratus_field_report;
+
+typedef struct stratus_field stratus_field;
+
+/* Over all of the voxels' dimensions. report: may be NULL. STRATUS_OVERFLOW where 4 bytes a voxel do not fit. */
+STRATUS_API stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels, const stratus_field_options* options,
+  stratus_field** field, stratus_field_report* report);
+STRATUS_API void stratus_field_destroy(stratus_field* field);
+/* Distance in voxels; INFINITY where no effective voxel is known (none at all, or a flooding left it unfilled), -INFINITY inside a signed
+ * field that is all effective. */
+STRATUS_API double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64_t k);
+/* dimensions[0]*[1]*[2] distances, x fastest. */
+STRATUS_API void stratus_field_distances(const stratus_field* field, float* distances);
+/* The paper's layout (2.3): four floats a voxel, the nearest effective voxel's position and the distance; -1, -1, -1, INFINITY where unknown.
+ * A signed field names the voxel that its distance goes to. */
+STRATUS_API stratus_status stratus_field_rgba(const stratus_field* field, const stratus_voxels* voxels, float* rgba);
+
+/* ---------------------------------------------------------------- trees for first hits */
+
+typedef enum stratus_tree_method {
+  STRATUS_TREE_HYBRID,       /* default: splits by density only where one distance field would be a waste */
+  STRATUS_TREE_HYBRID_PAPER, /* Guo et al. 2025 as written: node test and split at every node, threshold in voxels */
+  STRATUS_TREE_DISTANCE,     /* one distance-field leaf over everything */
+  STRATUS_TREE_OCTANT,       /* the same with a distance for each of the eight ray octants */
+  STRATUS_TREE_SAH,          /* bounding volume hierarchy over voxels, binned surface area heuristic */
+  STRATUS_TREE_SWEEP,        /* SAH, every split tried */
+  STRATUS_TREE_LBVH,         /* Morton codes (Lauterbach et al. 2009, Karras 2012) */
+  STRATUS_TREE_PLOC,         /* parallel locally-ordered clustering (Meister & Bittner 2018) */
+  STRATUS_TREE_AC,           /* agglomerative clustering (Walter et al. 2008) */
+  STRATUS_TREE_DPC,          /* density peaks (Rodriguez & Laio 2014), split cluster by cluster */
+  STRATUS_TREE_KMEANS        /* k-means (Meister & Bittner 2016) */
+} stratus_tree_method;
+
+#define STRATUS_TREE_METHODS 11
+
+STRATUS_API const char* stratus_tree_method_name(stratus_tree_method method); /* "hybrid", "hybrid-paper", "distance", "octant", "sah", .. */
+
+typedef struct stratus_tree_options {
+  stratus_tree_method method; /* default hybrid */
+  int max_depth;              /* 1..64; default 32. A node at it is a leaf. */
+  int leaf_bricks;            /* bricks (4^3 voxels and a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
+  int leaf_voxels;            /* voxels in a leaf of the baselines, 1..64; default 1 */
+  int64_t field_bricks;       /* most bricks that a distance-field leaf covers; default 2^22 */
+  double field_emptiness;     /* most bricks that it covers an occupied one; default 64 */
+  double uniform;             /* hybrid: greatest difference between the axes' deviations of eq. 8, over the node's extent; default .1 */
+  double paper_threshold;     /* hybrid-paper: the same difference in voxels, as printed; default 8 */
+  double bandwidth;           /* of density, voxels; 0 (default): eq. 3 with its floor */
+  int exact_density;          /* 1: density summed voxel by voxel; 0: over bricks as weights. Default 0; hybrid-paper always 1. */
+  int density_per_node;       /* 1: bandwidth and density anew in each node, as in the paper; default 0, hybrid-paper 1 */
+} stratus_tree_options;
+
+STRATUS_API stratus_tree_options stratus_tree_options_default(void);
+
+typedef struct stratus_tree stratus_tree;
+
+/* A copy of what it needs: the voxels may go. Out-of-range options: STRATUS_INVALID_ARGUMENT. No voxel at all makes a tree that nothing hits.
+ * The same tree on host and device, at any thread count. */
+STRATUS_API stratus_status stratus_tree_create(
+  stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree** tree);
+STRATUS_API void stratus_tree_destroy(stratus_tree* tree);
+
+typedef struct stratus_tree_statistics {
+  stratus_tree_method method;
+  int64_t voxels, bricks;    /* bricks: with any effective voxel */
+  int64_t nodes, leaves, field_leaves;
+  int64_t field_bricks;      /* that distance-field leaves cover */
+  int depth;                 /* of the deepest leaf, the root's is 0 */
+  size_t bytes;
+  double sah;                /* surface area heuristic, both costs 1; a distance-field leaf counts as one primitive */
+  double bandwidth;          /* of density; 0: none was needed */
+  int dbscan_splits, density_splits, sah_splits, median_splits; /* how each split was found */
+  double build_ms;
+  char why[256];             /* one sentence: what decided the shape */
+} stratus_tree_statistics;
+
+STRATUS_API void stratus_tree_get_statistics(const stratus_tree* tree, stratus_tree_statistics* statistics);
+
+typedef enum stratus_node_kind { STRATUS_NODE_INNER, STRATUS_NODE_BRICKS, STRATUS_NODE_FIELD } stratus_node_kind;
+
+typedef struct stratus_node_box {
+  int64_t lo[3], hi[3]; /* voxels, [lo, hi) */
+  int depth;
+  stratus_node_kind kind;
+  int64_t voxels; /* effective ones in it */
+} stratus_node_box;
+
+/* Boxes of all nodes, statistics.nodes of them, parents before children. */
+STRATUS_API void stratus_tree_boxes(const stratus_tree* tree, stratus_node_box* boxes);
+
+/* Every voxel in exactly one leaf, boxes tight, distances never too long: checked against the voxels. STRATUS_INVALID_ARGUMENT, and what is
+ * wrong in the message. */
+STRATUS_API stratus_status stratus_tree_check(stratus_context* context, const stratus_tree* tree, const stratus_voxels* voxels);
+
+/* A tree as bytes, for files and messages: little-endian, versioned, with a checksum. */
+STRATUS_API size_t stratus_tree_bytes(const stratus_tree* tree);
+STRATUS_API void stratus_tree_save(const stratus_tree* tree, void* bytes);
+/* STRATUS_INVALID_ARGUMENT for bytes that are cut short, of another version or byte order, or changed. */
+STRATUS_API stratus_status stratus_tree_load(stratus_context* context, const void* bytes, size_t size, stratus_tree** tree);
+/* 1 if the tree may stand in for one of these voxels' making: it was built for the same use (cells or voxels) from a volume with the same
+ * values, dimensions and hidden parts, and its criterion covers this one. Reads the whole volume once. */
+STRATUS_API stratus_status stratus_tree_covers(
+  stratus_context* context, const stratus_tree* tree, const stratus_volume* volume, const stratus_criterion* criterion, int cells, int* covers);
+
+typedef struct stratus_ray {
+  double origin[3];     /* world */
+  double direction[3];  /* world, any length > 0 */
+  double t_min, t_max;  /* origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
+} stratus_ray;
+
+typedef struct stratus_hit {
+  double t;           /* where the ray enters the voxel, t_min if it begins inside; INFINITY: no hit */
+  int32_t voxel[3];   /* -1: no hit */
+  int32_t face;       /* 2*axis + (1 if it is the upper one) of the voxel's face that the ray enters by; -1 where it begins inside, or no hit */
+  float normal[3];    /* outward, world, of that face (of length 1); begun inside: against the direction */
+  uint32_t visited;   /* nodes and steps in distance fields */
+} stratus_hit;
+
+/* The first effective voxel along each of `count` rays: the same as a walk through all voxels in double precision, but where a ray
+ * grazes edges within rounding. Rays with a direction of length 0, or with a number that is not finite (t_max aside): STRATUS_INVALID_ARGUMENT
+ * with the first one's index. Threads and device: the context's. */
+STRATUS_API stratus_status stratus_tree_first_hit(stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count,
+  stratus_hit* hits);
+/* The same answer by a plain walk from voxel to voxel in double precision, one thread: slow, and the measure of the other. */
+STRATUS_API stratus_status stratus_voxels_first_hit(
+  stratus_context* context, const stratus_voxels* voxels, const stratus_ray* rays, size_t count, stratus_hit* hits);
+
 /* ---------------------------------------------------------------- ray cast */
 
 typedef enum stratus_structure {
@@ -331,6 +531,16 @@ STRATUS_API stratus_status stratus_scene_camera(
   stratus_context* context, const double bounds[6], int up_axis, int view, int parallel, double aspect, stratus_camera* camera);
 /* World bounds of a volume. */
 STRATUS_API stratus_status stratus_volume_bounds(stratus_context* context, const stratus_volume* volume, double bounds[6]);
+
+/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M; and their rays, 512*512 of each kind: kind 0 primary, 1 random from empty
+ * voxels, in world coordinates of stratus_voxels_create_list(). */
+STRATUS_API int stratus_voxel_scene_count(void);
+STRATUS_API const char* stratus_voxel_scene_name(int index); /* NULL beyond */
+/* *positions: *count triples, freed with stratus_voxel_scene_release(). */
+STRATUS_API stratus_status stratus_voxel_scene_create(
+  stratus_context* context, const char* name, int64_t dimensions[3], int32_t** positions, size_t* count);
+STRATUS_API void stratus_voxel_scene_release(stratus_context* context, int32_t* positions);
+STRATUS_API stratus_status stratus_voxel_scene_rays(stratus_context* context, const stratus_voxels* voxels, int kind, stratus_ray* rays);
 
 #ifdef __cplusplus
 }

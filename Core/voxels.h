@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A set of effective voxels as trees are built from: bricks of 4^3 voxels with a bit each, only those that hold any. */
+#ifndef STRATUS_VOXELS_H
+#define STRATUS_VOXELS_H
+
+#include "internal.h"
+
+#define STRATUS_BRICK 4
+#define STRATUS_AXIS_MAX (1 << 18) /* voxels along an axis: brick coordinates fit 16 bits */
+
+/* Bit (z*4 + y)*4 + x of mask is voxel (4*at[0] + x, 4*at[1] + y, 4*at[2] + z). The same bytes on host and device. */
+typedef struct stratus_brick {
+  uint64_t mask;
+  uint16_t at[3];
+  uint16_t count; /* bits in mask, 1..64 */
+} stratus_brick;
+
+#define STRATUS_INTERVALS_MAX 64
+
+/* What a tree may stand in for. */
+typedef struct stratus_origin {
+  uint64_t hash;      /* of values, type, dimensions and hidden parts; 0: a list, which nothing covers */
+  int32_t cells;      /* 1: of stratus_voxels_create_cells() */
+  int32_t intervals;  /* of values that show; more than the maximum are merged across their narrowest gaps */
+  double interval[STRATUS_INTERVALS_MAX][2]; /* ascending, disjoint, ends included */
+} stratus_origin;
+
+struct stratus_voxels {
+  stratus_context* context;
+  int64_t dimensions[3];
+  int64_t bricks_along[3];
+  int64_t count;       /* voxels */
+  int64_t brick_count;
+  stratus_brick* bricks; /* ascending in (at[2], at[1], at[0]) */
+  int64_t lo[3], hi[3];  /* tight box of the voxels */
+  double index_to_world[16];
+  stratus_origin origin;
+};
+
+/* The intervals of values that a criterion shows, and whether one list covers another. voxels.c */
+stratus_status stratus_criterion_intervals(
+  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin);
+stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash);
+int stratus_origin_covers(const stratus_origin* tree, const stratus_origin* wanted);
+
+#endif
