@@ -45,6 +45,13 @@ struct stratus_ray_caster {
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
 };
 
+/* ray_caster.c: builds anew what changed and nothing else. */
+stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
+  size_t capacity, stratus_ray_cast_report* report);
+int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE that traversal is compiled for, -1 the generic one */
+
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
   stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
