@@ -17,7 +17,7 @@
 
 const char* stratus_structure_name(stratus_structure structure)
 {
-  static const char* const names[] = { "auto", "none", "block", "distance", "octant" };
+  static const char* const names[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
   return (unsigned)structure < sizeof names / sizeof *names ? names[structure] : "unknown";
 }
 
@@ -29,7 +29,8 @@ const char* stratus_sampling_name(stratus_sampling sampling)
 
 stratus_ray_cast_options stratus_ray_cast_options_default(void)
 {
-  return (stratus_ray_cast_options){ .termination = 0.999 };
+  return (stratus_ray_cast_options){ .termination = 0.999,
+    .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 } };
 }
 
 stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** out)

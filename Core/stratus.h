@@ -436,13 +436,46 @@ typedef enum stratus_structure {
   STRATUS_STRUCTURE_NONE,
   STRATUS_STRUCTURE_BLOCK,
   STRATUS_STRUCTURE_DISTANCE,
-  STRATUS_STRUCTURE_OCTANT
+  STRATUS_STRUCTURE_OCTANT,
+  STRATUS_STRUCTURE_HYBRID /* a hybrid tree */
 } stratus_structure;
 
 STRATUS_API const char* stratus_structure_name(stratus_structure structure);
 STRATUS_API const char* stratus_sampling_name(stratus_sampling sampling);
 
 typedef enum stratus_interpolation { STRATUS_INTERPOLATION_LINEAR, STRATUS_INTERPOLATION_NEAREST } stratus_interpolation;
+
+typedef enum stratus_mode {
+  STRATUS_MODE_COMPOSITE, /* light through the whole of a ray */
+  STRATUS_MODE_FIRST_HIT  /* effective voxels (opacity > 0) as lit solids, opaque. Structure none walks from voxel to voxel, block and distance
+                           * read one distance field, octant eight of them, hybrid and auto a hybrid tree: all the same picture. */
+} stratus_mode;
+
+STRATUS_API const char* stratus_mode_name(stratus_mode mode); /* "composite", "first-hit" */
+
+typedef enum stratus_normals {
+  STRATUS_NORMALS_FACES,   /* of the voxel's face that the ray enters by */
+  STRATUS_NORMALS_GRADIENT /* of the field, by central differences, turned towards the ray's begin; where it is 0, the face's */
+} stratus_normals;
+
+#define STRATUS_LIGHTS_MAX 8
+
+typedef struct stratus_light {
+  double vector[3]; /* world; positional: where it stands, else the direction from the scene to it, of any length > 0 */
+  double color[3];  /* red, green, blue, each finite and >= 0 */
+  int positional;
+} stratus_light;
+
+/* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power). */
+typedef struct stratus_shading {
+  int on;                /* 0: c = C. Default 1. */
+  double ambient;        /* finite and >= 0, as the next three; default .1 */
+  double diffuse;        /* default .9 */
+  double specular;       /* default 0 */
+  double specular_power; /* default 10 */
+  int light_count;       /* 0..8, or -1 (default): one white light at the eye (parallel: from its plane) */
+  stratus_light lights[STRATUS_LIGHTS_MAX];
+} stratus_shading;
 
 #define STRATUS_CLIP_PLANES_MAX 6
 
@@ -458,6 +491,9 @@ typedef struct stratus_ray_cast_options {
   int clip_plane_count;   /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: a x + b y + c z + d >= 0 is kept */
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
+  stratus_mode mode;       /* default composite */
+  stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
+  stratus_shading shading; /* first hit */
 } stratus_ray_cast_options;
 
 STRATUS_API stratus_ray_cast_options stratus_ray_cast_options_default(void);
@@ -489,6 +525,7 @@ typedef struct stratus_ray_cast_report {
   stratus_sampling sampling;   /* used */
   double sample_distance;      /* used, world */
   char why[256];               /* the reasons for structure, sampling and sample distance, one sentence */
+  int offered_tree;            /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;
 
 typedef struct stratus_ray_caster stratus_ray_caster;
@@ -504,7 +541,16 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);
 
-/* Frees what was built, on host and device; the next render builds anew. */
+/* First hits (STRATUS_MODE_FIRST_HIT): voxels count as cubes about their values, so the solid reaches half a voxel beyond a volume of points. In the report, samples are
+ * hits, lookups what trees visited, blocks and occupied_blocks bricks of 4^3 voxels with any effective one, occupancy_builds the making of
+ * voxels; sampling, sample distance, termination and block size are not used. A change of colours alone rebuilds nothing. */
+
+/* Offers a tree that comes with the data, as stratus_tree_save() wrote it: structure hybrid, and auto in first hits, use it in place of one of the
+ * caster's own where it serves (stratus_tree_covers(); first hits: with the same voxels exactly). The bytes are copied. NULL: none any more. Bytes
+ * that stratus_tree_load() refuses: its status, and none is offered any more. */
+STRATUS_API stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const void* bytes, size_t size);
+
+/* Frees what was built, on host and device; the next render builds anew. An offered tree stays. */
 STRATUS_API void stratus_ray_caster_release(stratus_ray_caster* caster);
 
 /* ---------------------------------------------------------------- scenes of record
