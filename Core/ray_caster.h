@@ -65,7 +65,15 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
 void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
 
-/* ray_cast.c: all tiles on the host. */
+/* The same checks and window for who draws otherwise. Pixels [window[0], window[1]) x [window[2], window[3]) that the box [lo, hi] covers, and one
+ * more each way: all of them where it reaches behind the eye. Vectors as in stratus_camera, in the box's coordinates. */
+stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image);
+void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel, const double lo[3],
+  const double hi[3], const int sides[2], int window[4]);
+
+/* ray_cast.c: rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
+void stratus_ray_round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1);
+/* All tiles on the host. */
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts);
 

@@ -43,7 +43,7 @@ static double farthest_point(const stratus_volume* volume, const stratus_camera*
   return farthest + sqrt(dot3(camera->right, camera->right)) + sqrt(dot3(camera->up, camera->up));
 }
 
-static stratus_status check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
+stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
 {
   if (!camera) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
@@ -216,7 +216,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
 {
   double index_to_world[16], world_to_index[16];
   memset(a, 0, sizeof *a);
-  TRY(check_camera(context, camera, image));
+  TRY(stratus_ray_check_camera(context, camera, image));
   stratus_volume_index_to_world(volume, index_to_world);
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
@@ -267,19 +267,17 @@ static double pair_value(stratus_pair pair)
   return (double)pair.hi + (double)pair.lo;
 }
 
-/* Pixels that the box [lo, hi] (index coordinates) covers, and one more each way: all of them where it reaches behind the eye. */
-static void set_window(const double lo[3], const double hi[3], stratus_ray_cast_arguments* a)
+void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel, const double lo[3],
+  const double hi[3], const int sides[2], int window[4])
 {
-  double matrix[16] = { [15] = 1.0 }, inverse[16], eye[3], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
-  const int sides[2] = { a->width, a->height };
-  a->window[0] = a->window[2] = 0;
-  a->window[1] = a->width;
-  a->window[3] = a->height;
+  double matrix[16] = { [15] = 1.0 }, inverse[16], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
+  window[0] = window[2] = 0;
+  window[1] = sides[0];
+  window[3] = sides[1];
   for (int row = 0; row < 3; ++row) {
-    matrix[4 * row] = pair_value(a->right[row]);
-    matrix[4 * row + 1] = pair_value(a->up[row]);
-    matrix[4 * row + 2] = pair_value(a->forward[row]);
-    eye[row] = pair_value(a->eye[row]);
+    matrix[4 * row] = right[row];
+    matrix[4 * row + 1] = up[row];
+    matrix[4 * row + 2] = forward[row];
   }
   if (!stratus_matrix_invert_affine(matrix, inverse)) {
     return;
@@ -290,11 +288,11 @@ static void set_window(const double lo[3], const double hi[3], stratus_ray_cast_
       point[axis] = (corner >> axis & 1 ? hi[axis] : lo[axis]) - eye[axis];
     }
     stratus_matrix_vector(inverse, point, uvk);
-    if (!a->parallel && !(uvk[2] > 0.0)) {
+    if (!parallel && !(uvk[2] > 0.0)) {
       return;
     }
     for (int side = 0; side < 2; ++side) {
-      const double at = uvk[side] / (a->parallel ? 1.0 : uvk[2]);
+      const double at = uvk[side] / (parallel ? 1.0 : uvk[2]);
       range[2 * side] = fmin(range[2 * side], at);
       range[2 * side + 1] = fmax(range[2 * side + 1], at);
     }
@@ -302,8 +300,15 @@ static void set_window(const double lo[3], const double hi[3], stratus_ray_cast_
   for (int side = 0; side < 2; ++side) {
     const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0),
                  last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
-    a->window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
-    a->window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
+    window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
+    window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
+  }
+}
+
+static void pair_values(const stratus_pair pairs[3], double values[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    values[axis] = pair_value(pairs[axis]);
   }
 }
 
@@ -330,5 +335,11 @@ void stratus_ray_frame_structures(
       hi[axis] = fmin(hi[axis], (double)a->occupied[1][axis]);
     }
   }
-  set_window(lo, hi, a);
+  double eye[3], right[3], up[3], forward[3];
+  const int sides[2] = { a->width, a->height };
+  pair_values(a->eye, eye);
+  pair_values(a->right, right);
+  pair_values(a->up, up);
+  pair_values(a->forward, forward);
+  stratus_ray_window(eye, right, up, forward, a->parallel, lo, hi, sides, a->window);
 }
