@@ -37,10 +37,34 @@ struct stratus_voxels {
   stratus_origin origin;
 };
 
-/* The intervals of values that a criterion shows, and whether one list covers another. voxels.c */
+/* ---- voxels.c */
+
+/* Mask of brick (i,j,k), 0 where there is none: a binary search. */
+uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k);
+
+/* ---- voxels_cells.c */
+
+/* stratus_voxels_create_cells() from ranges of 4^3 cells that are there already. hash: of the volume, or 0. */
+stratus_status stratus_voxels_create_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
+  const stratus_criterion* criterion, uint64_t hash, stratus_voxels** voxels);
+
+/* ---- criterion.c */
+
+/* The intervals of values that a criterion shows. cells: reads the whole volume, for the tables span its values. */
 stratus_status stratus_criterion_intervals(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin);
-stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash);
+/* 1 if what was made for `tree` may stand in for what would be made for `wanted`: the same use and hash, and for cells intervals that lie
+ * within the tree's, for voxels the very same ones, since a voxel too many would be hit. */
 int stratus_origin_covers(const stratus_origin* tree, const stratus_origin* wanted);
+
+/* ---- volume_hash.c: of the values as they are (not the stride between them), type, dimensions, centring and ghost flags. */
+stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash);
+
+/* ---- voxel_walk.c */
+
+/* Refuses a ray that stratus_tree_first_hit() refuses, with its index in the message. */
+stratus_status stratus_rays_check(stratus_context* context, const double world_to_index[16], const stratus_ray* rays, size_t count);
+/* World to the frame where voxel (i,j,k) fills [i,i+1] and so on: borders of voxels are whole numbers, to the bit for a list. */
+bool stratus_voxels_world_to_corner(const double index_to_world[16], double world_to_corner[16]);
 
 #endif
