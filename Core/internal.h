@@ -101,6 +101,7 @@ typedef struct stratus_table {
   float sum_scale;   /* .. optical depth per entry and per sample distance */
   float color_slope; /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
   int shown;         /* entries with opacity */
+  int last_shown;    /* the last of them, -1 if none */
 } stratus_table;
 
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,

@@ -319,6 +319,8 @@ void stratus_ray_frame_structures(
     a->table_scale = table->scale;
     a->table_offset = table->offset;
     a->table_last = (float)(table->size - 1);
+    a->shown_first = (float)table->next_shown[0];
+    a->shown_beyond = (float)(table->last_shown + 1);
     a->tau_scale = table->sum_scale;
     a->color_slope = table->color_slope;
   }

@@ -206,10 +206,12 @@ static bool entry_shows(const stratus_table* table, int e)
 static void fill_next_shown(stratus_table* table)
 {
   table->shown = 0;
+  table->last_shown = -1;
   table->next_shown[table->size] = table->size;
   for (int e = table->size - 1; e >= 0; --e) {
     const bool shows = entry_shows(table, e);
     table->shown += shows;
+    table->last_shown = shows && table->last_shown < 0 ? e : table->last_shown;
     table->next_shown[e] = shows ? e : table->next_shown[e + 1];
   }
 }

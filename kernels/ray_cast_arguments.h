@@ -23,6 +23,7 @@ typedef struct stratus_ray_cast_arguments {
   float occupied[2][3]; /* box of occupied blocks, unbounded where it ends with the volume */
   float last[3];        /* largest position along each axis (cell_centered clamps to it) */
   float table_scale, table_offset, table_last;
+  float shown_first, shown_beyond; /* pre-integrated: entries outside [shown_first, shown_beyond) are transparent */
   float tau_scale;   /* pre-integrated: optical depth of one unit of the sums */
   float color_slope; /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
   float termination; /* of transparency: 1 - alpha */
@@ -49,6 +50,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 7 + 33)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 33)
 
 #endif

@@ -219,9 +219,15 @@ INLINE vfloat v_absorbed(vfloat x)
   return v_min(v_fma(scale, series, v_set(1.0f) - scale), v_set(1.0f));
 }
 
+/* Where a value falls in the table: its entry and a fraction. */
+INLINE vfloat table_place(CONSTANT stratus_ray_cast_arguments* a, vfloat value)
+{
+  return v_clamp(v_fma(value, v_set(a->table_scale), v_set(a->table_offset)), 0.0f, a->table_last);
+}
+
 INLINE vint table_entry(CONSTANT stratus_ray_cast_arguments* a, vfloat value)
 {
-  return v_to_int(v_clamp(v_fma(value, v_set(a->table_scale), v_set(a->table_offset)), 0.0f, a->table_last));
+  return v_to_int(table_place(a, value));
 }
 
 /* Four consecutive floats (as bits) from table + 4 entry; 0 in other lanes. */
@@ -340,7 +346,13 @@ INLINE void integrate_segment(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const vint entry = table_entry(a, value), front = table_entry(a, k->front);
+  const vfloat place = table_place(a, value), front_place = table_place(a, k->front);
+  /* most segments, even of occupied blocks, pass beside all that shows: they need not read the sums */
+  mask = mask & v_lt(v_min(place, front_place), v_set(a->shown_beyond)) & v_le(v_set(a->shown_first), v_max(place, front_place));
+  if (!m_any(mask)) {
+    return;
+  }
+  const vint entry = v_to_int(place), front = v_to_int(front_place);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
   vfloat tau = sum_between(a, sums, 3, low, beyond, mask);
   mask = mask & v_lt(zero, tau);
