@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits of a batch of rays: which way, which threads. */
+#include "first_hit.h"
+
+#include "../kernels/first_hit.h"
+#include "device.h"
+#include "ray_cast.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+#include <string.h>
+
+_Static_assert(sizeof(stratus_hit_arguments) == 4 * STRATUS_HIT_ARGUMENTS_WORDS, "arguments must have no padding");
+
+/* The unit normals of the voxels' faces: gradients of the index coordinates. */
+static void find_normals(const stratus_tree* tree, double normal[6][3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    double length = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      length = fmax(length, fabs(tree->world_to_index[4 * axis + a]));
+    }
+    double scaled[3], squares = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      scaled[a] = tree->world_to_index[4 * axis + a] / length;
+      squares += scaled[a] * scaled[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      normal[2 * axis + 1][a] = scaled[a] / sqrt(squares);
+      normal[2 * axis][a] = -normal[2 * axis + 1][a];
+    }
+  }
+}
+
+void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
+{
+  int32_t most = 1;
+  *batch = (stratus_hit_batch){ .tree = tree, .mask_words = (const int32_t*)(const void*)tree->masks };
+  memcpy(batch->to_voxels, tree->world_to_index, sizeof batch->to_voxels);
+  for (int a = 0; a < 3; ++a) {
+    batch->to_voxels[4 * a + 3] += 0.5;
+    batch->lo[a] = tree->node_count ? tree->nodes[0].lo[a] : 0;
+    batch->hi[a] = tree->node_count ? tree->nodes[0].hi[a] : 0;
+    most = tree->dimensions[a] > most ? tree->dimensions[a] : most;
+  }
+  /* A float position is that of its rounded start, direction and length: some five roundings of at most twice the longest edge. */
+  batch->slack = 1.2e-7f * 8.0f * (float)most;
+  find_normals(tree, batch->normal);
+}
+
+static bool usable(const stratus_hit_batch* batch, const stratus_ray* ray)
+{
+  const double* m = batch->to_voxels;
+  double sum = ray->t_min, length = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    const double *o = ray->origin, *d = ray->direction;
+    sum += m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
+    length += fabs(m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2]);
+  }
+  return isfinite(sum) && isfinite(length) && isfinite(1.0 / length) && !isnan(ray->t_max);
+}
+
+/* One chunk's answers; false if ray *bad of it can't be used. */
+static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count,
+  stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
+{
+  if (functions) {
+    if (!functions->prepare(batch, rays, count, chunk, bad)) {
+      return false;
+    }
+    functions->walk(batch, chunk);
+    functions->finish(batch, rays, chunk, hits);
+    return true;
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!usable(batch, &rays[i])) {
+      *bad = i;
+      return false;
+    }
+    stratus_first_hit_exact(batch, &rays[i], &hits[i]);
+  }
+  return true;
+}
+
+const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context)
+{
+  const int best = stratus_ray_cast_best_isa(), isa = context->isa < best ? context->isa : best;
+#if STRATUS_HAVE_X86_ISAS
+  if (isa == 2) {
+    return &stratus_hit_functions_isa2;
+  }
+  if (isa == 1) {
+    return &stratus_hit_functions_isa1;
+  }
+#endif
+  (void)isa;
+  return &stratus_hit_functions_isa0;
+}
+
+/* Packets walk one field; and where every position is in doubt they would be a waste. */
+static bool takes_packets(const stratus_hit_batch* batch)
+{
+  return batch->tree->node_count == 1 && batch->tree->field_count == 1 && batch->slack <= 0.05f;
+}
+
+static stratus_status run_host(
+  stratus_context* context, const stratus_hit_batch* batch, const stratus_ray* rays, size_t count, stratus_hit* hits)
+{
+  const stratus_hit_functions* functions = takes_packets(batch) ? stratus_hit_functions_for(context) : NULL;
+  const int64_t chunks = (int64_t)((count + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK);
+  const int threads = chunks < context->threads ? (int)chunks : context->threads;
+  void* memory;
+  int64_t worst = INT64_MAX;
+  TRY(stratus_allocate(context, (size_t)threads, sizeof(stratus_hit_chunk), &memory));
+  stratus_hit_chunk* const room = memory;
+#pragma omp parallel num_threads(threads)
+  {
+    stratus_hit_chunk* const chunk = &room[omp_get_thread_num()];
+#pragma omp for schedule(dynamic, 8) reduction(min : worst)
+    for (int64_t c = 0; c < chunks; ++c) {
+      const size_t first = (size_t)c * STRATUS_HIT_CHUNK, left = count - first;
+      int bad = 0;
+      if (!run_chunk(batch, functions, rays + first, left < STRATUS_HIT_CHUNK ? (int)left : STRATUS_HIT_CHUNK, chunk, hits + first, &bad)) {
+        worst = (int64_t)first + bad < worst ? (int64_t)first + bad : worst;
+      }
+    }
+  }
+  stratus_release(context, room);
+  if (worst != INT64_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %lld has no direction, or a number that is not finite", (long long)worst);
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tree_first_hit(
+  stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count, stratus_hit* hits)
+{
+  stratus_hit_batch batch;
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!tree || (count && (!rays || !hits))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", !tree ? "tree" : !rays ? "rays" : "hits");
+  }
+  if (count == 0) {
+    return STRATUS_OK;
+  }
+  stratus_hit_batch_begin(tree, &batch);
+  if (context->device && takes_packets(&batch)) {
+    return stratus_first_hit_device(context, tree, rays, count, hits);
+  }
+  if (context->device) {
+    stratus_log(context, STRATUS_LOG_INFO, "first hits: a tree of %u nodes is walked on the host", tree->node_count);
+  }
+  return run_host(context, &batch, rays, count, hits);
+}

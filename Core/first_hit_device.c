@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits on the context's device: the host makes rays ready and answers ready, chunk by chunk, the device walks. The tree is copied with
+ * each batch (a device that shares memory with the host reads it in place). */
+#include "first_hit.h"
+
+#include "../kernels/first_hit.h"
+#include "device.h"
+#include "ray_cast.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define CHUNKS 128 /* a launch */
+#define GROUP 64   /* work items a group, one ray each */
+
+typedef enum buffer_name { ARGUMENTS, ENTRIES, ROWS, MASKS, RAYS, RESULTS, BUFFERS } buffer_name;
+
+typedef struct launch {
+  stratus_context* context;
+  const stratus_hit_batch* batch;
+  const stratus_hit_functions* functions;
+  stratus_hit_arguments arguments;
+  cl_kernel kernel;
+  bool packets;
+  cl_mem buffers[BUFFERS];
+  stratus_hit_chunk* chunks;
+  int32_t* words; /* what a launch takes and gives */
+} launch;
+
+/* The arrays of chunk c among those of `count` rays. */
+static void pack_chunk(const launch* l, int c, int count)
+{
+  const stratus_hit_chunk* chunk = &l->chunks[c];
+  const size_t bytes = (size_t)chunk->count * 4, first = (size_t)c * STRATUS_HIT_CHUNK, n = (size_t)count;
+  int32_t* const words = l->words + first;
+  for (size_t a = 0; a < 3; ++a) {
+    memcpy(words + a * n, chunk->o[a], bytes);
+    memcpy(words + (3 + a) * n, chunk->d[a], bytes);
+    memcpy(words + (6 + a) * n, chunk->inverse[a], bytes);
+    memcpy(words + (10 + a) * n, chunk->cell[a], bytes);
+  }
+  memcpy(words + 9 * n, chunk->end, bytes);
+}
+
+static void unpack_chunk(const launch* l, int c, int count)
+{
+  stratus_hit_chunk* chunk = &l->chunks[c];
+  const size_t bytes = (size_t)chunk->count * 4, first = (size_t)c * STRATUS_HIT_CHUNK, n = (size_t)count;
+  const int32_t* const words = l->words + first;
+  memcpy(chunk->state, words, bytes);
+  for (size_t a = 0; a < 3; ++a) {
+    memcpy(chunk->cell[a], words + (1 + a) * n, bytes);
+  }
+  memcpy(chunk->visited, words + 4 * n, bytes);
+}
+
+static stratus_status walk(launch* l, const stratus_ray* rays, int count, stratus_hit* hits, int* bad)
+{
+  const int chunks = (count + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK;
+  int worst = count;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(l->context->threads) reduction(min : worst)
+  for (int c = 0; c < chunks; ++c) {
+    const int first = c * STRATUS_HIT_CHUNK, left = count - first;
+    int wrong = 0;
+    if (l->functions->prepare(l->batch, rays + first, left < STRATUS_HIT_CHUNK ? left : STRATUS_HIT_CHUNK, &l->chunks[c], &wrong)) {
+      pack_chunk(l, c, count);
+    } else {
+      worst = first + wrong < worst ? first + wrong : worst;
+    }
+  }
+  *bad = worst < count ? worst : -1;
+  if (*bad >= 0) {
+    return STRATUS_OK;
+  }
+  l->arguments.count = count;
+  TRY(stratus_device_write(l->context, l->buffers[ARGUMENTS], 0, sizeof l->arguments, &l->arguments));
+  TRY(stratus_device_write(l->context, l->buffers[RAYS], 0, (size_t)count * 13 * 4, l->words));
+  for (unsigned b = 0; b < BUFFERS; ++b) {
+    TRY(stratus_device_argument(l->context, l->kernel, b, sizeof(cl_mem), &l->buffers[b]));
+  }
+  const size_t items = l->packets ? ((size_t)count + 15) / 16 : (size_t)count, local = l->packets ? 4 : GROUP;
+  TRY(stratus_device_run(l->context, l->kernel, 1, &items, &local));
+  TRY(stratus_device_read(l->context, l->buffers[RESULTS], 0, (size_t)count * 5 * 4, l->words));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(l->context->threads)
+  for (int c = 0; c < chunks; ++c) {
+    unpack_chunk(l, c, count);
+    l->functions->finish(l->batch, rays + (size_t)c * STRATUS_HIT_CHUNK, &l->chunks[c], hits + (size_t)c * STRATUS_HIT_CHUNK);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status begin(launch* l, size_t most)
+{
+  const stratus_tree* tree = l->batch->tree;
+  const stratus_tree_field* field = &tree->fields[0];
+  const stratus_device* device = l->context->device;
+  char defines[64];
+  void* memory;
+  l->packets = stratus_device_is_cpu(device);
+  l->arguments = (stratus_hit_arguments){ .at = { field->at[0], field->at[1], field->at[2] },
+    .cells = { field->cells[0], field->cells[1], field->cells[2] },
+    .row_start = (int)field->first_row,
+    .octants = tree->octants,
+    .entry_bytes = tree->entry_bytes,
+    .cell_log2 = tree->cell_log2,
+    .slack = l->batch->slack };
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d", l->packets ? 16 : 1);
+  TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
+  TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
+  l->chunks = memory;
+  TRY(stratus_allocate(l->context, most, 13 * 4, &memory));
+  l->words = memory;
+  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
+  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4, tree->entries, true,
+    &l->buffers[ENTRIES]));
+  TRY(stratus_device_buffer(
+    l->context, CL_MEM_READ_ONLY, tree->row_count ? (size_t)tree->row_count * 4 : 16, tree->row_count ? tree->rows : NULL, tree->row_count > 0, &l->buffers[ROWS]));
+  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->mask_count ? (size_t)tree->mask_count * 8 : 16,
+    tree->mask_count ? tree->masks : NULL, tree->mask_count > 0, &l->buffers[MASKS]));
+  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, most * 13 * 4, NULL, false, &l->buffers[RAYS]));
+  return stratus_device_buffer(l->context, CL_MEM_WRITE_ONLY, most * 5 * 4, NULL, false, &l->buffers[RESULTS]);
+}
+
+stratus_status stratus_first_hit_device(
+  stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count, stratus_hit* hits)
+{
+  const size_t most = count < CHUNKS * STRATUS_HIT_CHUNK ? count : CHUNKS * STRATUS_HIT_CHUNK;
+  stratus_hit_batch batch;
+  stratus_hit_batch_begin(tree, &batch);
+  launch l = { .context = context, .batch = &batch, .functions = stratus_hit_functions_for(context) };
+  stratus_status status = begin(&l, most);
+  for (size_t first = 0; status == STRATUS_OK && first < count; first += most) {
+    int bad = -1;
+    status = walk(&l, rays + first, count - first < most ? (int)(count - first) : (int)most, hits + first, &bad);
+    if (status == STRATUS_OK && bad >= 0) {
+      status = stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %zu has no direction, or a number that is not finite", first + (size_t)bad);
+    }
+  }
+  for (int b = 0; b < BUFFERS; ++b) {
+    stratus_device_buffer_release(l.buffers[b]);
+  }
+  stratus_release(context, l.words);
+  stratus_release(context, l.chunks);
+  return status;
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits in double precision, one ray at a time, through any tree: the way through trees of many nodes, and the judge of rays that the
+ * packets left in doubt. Boxes are met a hair wider than they are, and wherever the ray lands near an edge all voxels about it are tried, so that
+ * rounding can hide none; of all voxels that the ray meets the first counts. */
+#include "first_hit.h"
+
+/* How far a position may be off, over its size: some ten roundings. */
+#define HAIR 4e-15
+
+typedef struct walker {
+  const stratus_hit_batch* batch;
+  const stratus_tree* tree;
+  const stratus_ray* ray;
+  double o[3], d[3], inverse[3]; /* voxel coordinates */
+  double hair;                   /* of positions */
+  int up[3], octant;
+  stratus_hit* hit;
+  uint32_t visited;
+} walker;
+
+void stratus_hit_of_voxel(
+  const stratus_hit_batch* batch, const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], stratus_hit* hit)
+{
+  double enter = -INFINITY, leave = INFINITY;
+  int face = -1;
+  hit->t = INFINITY;
+  for (int a = 0; a < 3; ++a) {
+    const double near = (double)(along[a] > 0.0 ? voxel[a] : voxel[a] + 1) - from[a];
+    const double far = (double)(along[a] > 0.0 ? voxel[a] + 1 : voxel[a]) - from[a];
+    if (along[a] == 0.0) {
+      if (from[a] < voxel[a] || from[a] > voxel[a] + 1) {
+        return;
+      }
+      continue;
+    }
+    const double t0 = near / along[a], t1 = far / along[a];
+    if (t0 > enter) {
+      enter = t0;
+      face = 2 * a + (along[a] < 0.0);
+    }
+    leave = t1 < leave ? t1 : leave;
+  }
+  if (enter > leave || leave < ray->t_min || enter > ray->t_max) {
+    return;
+  }
+  hit->t = enter > ray->t_min ? enter : ray->t_min;
+  hit->face = enter > ray->t_min ? face : -1;
+  if (hit->face >= 0) {
+    for (int a = 0; a < 3; ++a) {
+      hit->normal[a] = (float)batch->normal[face][a];
+    }
+  } else {
+    const double* d = ray->direction;
+    const double most = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
+    const double x = d[0] / most, y = d[1] / most, z = d[2] / most, length = sqrt(x * x + y * y + z * z);
+    hit->normal[0] = (float)(-x / length);
+    hit->normal[1] = (float)(-y / length);
+    hit->normal[2] = (float)(-z / length);
+  }
+  for (int a = 0; a < 3; ++a) {
+    hit->voxel[a] = voxel[a];
+  }
+}
+
+/* Keeps the hit of an effective voxel if it is the first so far. */
+static void try_voxel(walker* w, int x, int y, int z)
+{
+  stratus_hit hit;
+  const int voxel[3] = { x, y, z };
+  const int32_t* best = w->hit->voxel;
+  stratus_hit_of_voxel(w->batch, w->ray, w->o, w->d, voxel, &hit);
+  if (hit.t < w->hit->t ||
+    (hit.t == w->hit->t && hit.t < INFINITY &&
+      (z < best[2] || (z == best[2] && (y < best[1] || (y == best[1] && x < best[0])))))) {
+    *w->hit = hit;
+  }
+}
+
+/* Where the ray enters and leaves a box grown by a hair; false if nowhere, or only behind what was hit. */
+static bool meets_box(const walker* w, const int32_t lo[3], const int32_t hi[3], double* enter, double* leave)
+{
+  double t0 = w->ray->t_min, t1 = w->ray->t_max < w->hit->t ? w->ray->t_max : w->hit->t;
+  for (int a = 0; a < 3; ++a) {
+    const double l = lo[a] - w->hair - w->o[a], h = hi[a] + w->hair - w->o[a];
+    if (w->d[a] == 0.0) {
+      if (l > 0.0 || h < 0.0) {
+        return false;
+      }
+      continue;
+    }
+    const double near = (w->up[a] ? l : h) * w->inverse[a], far = (w->up[a] ? h : l) * w->inverse[a];
+    t0 = near > t0 ? near : t0;
+    t1 = far < t1 ? far : t1;
+  }
+  *enter = t0;
+  *leave = t1;
+  return t0 <= t1;
+}
+
+/* ---------------------------------------------------------------- leaves */
+
+static void try_brick(walker* w, const stratus_brick* brick)
+{
+  for (uint64_t left = brick->mask; left; left &= left - 1) {
+    const int bit = __builtin_ctzll(left);
+    try_voxel(w, brick->at[0] * 4 + (bit & 3), brick->at[1] * 4 + (bit >> 2 & 3), brick->at[2] * 4 + (bit >> 4));
+  }
+}
+
+static void walk_bricks(walker* w, const stratus_tree_node* node)
+{
+  const uint32_t count = stratus_tree_node_count(node);
+  for (uint32_t b = 0; b < count; ++b) {
+    const stratus_brick* brick = &w->tree->bricks[node->first + b];
+    const int32_t lo[3] = { brick->at[0] * 4, brick->at[1] * 4, brick->at[2] * 4 };
+    const int32_t hi[3] = { lo[0] + 4, lo[1] + 4, lo[2] + 4 };
+    double enter, leave;
+    ++w->visited;
+    if (brick->count == 1 || meets_box(w, lo, hi, &enter, &leave)) {
+      try_brick(w, brick);
+    }
+  }
+}
+
+/* How far a ray may leap from a voxel's cell, 0 if the voxel is effective, -1 if only its cell is occupied, -2 beyond the field. */
+static int32_t look(const walker* w, const stratus_tree_field* field, const int voxel[3])
+{
+  const int log2 = w->tree->cell_log2;
+  int32_t at[3];
+  uint64_t mask;
+  for (int a = 0; a < 3; ++a) {
+    at[a] = (voxel[a] >> log2) - field->at[a];
+    if (at[a] < 0 || at[a] >= field->cells[a]) {
+      return -2;
+    }
+  }
+  const int32_t leap = stratus_tree_field_leap(w->tree, field, w->octant, at[0], at[1], at[2], &mask);
+  if (leap > 0 || log2 == 0) {
+    return leap;
+  }
+  return mask >> ((voxel[2] & 3) << 4 | (voxel[1] & 3) << 2 | (voxel[0] & 3)) & 1 ? 0 : -1;
+}
+
+/* Voxels that a position within a hair of their border may lie in, but the one it is said to lie in. */
+static void try_neighbours(walker* w, const stratus_tree_field* field, const double position[3], const int voxel[3])
+{
+  int other[3], any = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double f = position[a] - voxel[a];
+    other[a] = f < w->hair ? -1 : f > 1.0 - w->hair ? 1 : 0;
+    any |= other[a] != 0;
+  }
+  for (int corner = 1; any && corner < 8; ++corner) {
+    int c[3], real = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int moved = corner >> a & 1;
+      real &= !moved || other[a] != 0;
+      c[a] = voxel[a] + (moved ? other[a] : 0);
+    }
+    if (real && look(w, field, c) == 0) {
+      try_voxel(w, c[0], c[1], c[2]);
+    }
+  }
+}
+
+static void walk_field(walker* w, const stratus_tree_field* field, double enter, double leave)
+{
+  const int log2 = w->tree->cell_log2;
+  double t = enter, position[3];
+  int voxel[3];
+  for (int a = 0; a < 3; ++a) {
+    const int lo = field->at[a] << log2, hi = (field->at[a] + field->cells[a]) << log2;
+    position[a] = w->o[a] + t * w->d[a];
+    const double floored = floor(position[a]);
+    voxel[a] = floored < lo ? lo : floored > hi - 1 ? hi - 1 : (int)floored;
+  }
+  for (;;) {
+    ++w->visited;
+    const int32_t leap = look(w, field, voxel);
+    if (leap == -2 || t > leave || t > w->hit->t + w->hair * 4.0) {
+      return;
+    }
+    if (leap == 0) {
+      try_voxel(w, voxel[0], voxel[1], voxel[2]);
+    }
+    try_neighbours(w, field, position, voxel);
+    /* On to the border of what is known to be empty. */
+    double next = INFINITY, at[3];
+    int far[3], near[3];
+    for (int a = 0; a < 3; ++a) {
+      const int block = voxel[a] >> log2;
+      far[a] = leap <= 0 ? voxel[a] + w->up[a] : (w->up[a] ? block + leap : block + 1 - leap) * (1 << log2);
+      near[a] = leap <= 0 ? voxel[a] : w->up[a] ? block * (1 << log2) : (block + 1) * (1 << log2) - 1;
+      at[a] = w->d[a] == 0.0 ? INFINITY : (far[a] - w->o[a]) * w->inverse[a];
+      next = at[a] < next ? at[a] : next;
+    }
+    t = next > t ? next : t;
+    for (int a = 0; a < 3; ++a) {
+      position[a] = w->o[a] + next * w->d[a];
+      const int last = w->up[a] ? far[a] - 1 : far[a];
+      const int lo = near[a] < last ? near[a] : last, hi = near[a] < last ? last : near[a];
+      const double floored = floor(position[a]);
+      voxel[a] = at[a] <= next ? (w->up[a] ? far[a] : far[a] - 1) : floored < lo ? lo : floored > hi ? hi : (int)floored;
+    }
+  }
+}
+
+/* ---------------------------------------------------------------- nodes */
+
+typedef struct pending {
+  uint32_t node;
+  double enter, leave;
+} pending;
+
+static void walk_tree(walker* w)
+{
+  const stratus_tree* tree = w->tree;
+  pending stack[2 * 64 + 2]; /* no tree is deeper than 64 but where boxes could not be told apart: see stratus_tree_create() */
+  int top = 0;
+  double enter, leave;
+  if (tree->node_count == 0 || !meets_box(w, tree->nodes[0].lo, tree->nodes[0].hi, &enter, &leave)) {
+    return;
+  }
+  stack[top++] = (pending){ 0, enter, leave };
+  while (top > 0) {
+    const pending now = stack[--top];
+    const stratus_tree_node* node = &tree->nodes[now.node];
+    if (now.enter > w->hit->t) {
+      continue;
+    }
+    ++w->visited;
+    switch (stratus_tree_node_kind(node)) {
+      case STRATUS_NODE_BRICKS:
+        walk_bricks(w, node);
+        break;
+      case STRATUS_NODE_FIELD:
+        walk_field(w, &tree->fields[node->first], now.enter, now.leave);
+        break;
+      case STRATUS_NODE_INNER: {
+        pending child[2];
+        bool met[2];
+        for (uint32_t c = 0; c < 2; ++c) {
+          const stratus_tree_node* n = &tree->nodes[node->first + c];
+          child[c].node = node->first + c;
+          met[c] = meets_box(w, n->lo, n->hi, &child[c].enter, &child[c].leave);
+        }
+        const int near = met[0] && (!met[1] || child[0].enter <= child[1].enter) ? 0 : 1;
+        if (met[1 - near]) {
+          stack[top++] = child[1 - near];
+        }
+        if (met[near]) {
+          stack[top++] = child[near];
+        }
+        break;
+      }
+    }
+  }
+}
+
+void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* ray, stratus_hit* hit)
+{
+  const double* m = batch->to_voxels;
+  const double *o = ray->origin, *d = ray->direction;
+  walker w = { .batch = batch, .tree = batch->tree, .ray = ray, .hit = hit };
+  double size = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    w.o[a] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
+    w.d[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+    w.inverse[a] = 1.0 / w.d[a];
+    w.up[a] = w.d[a] > 0.0;
+    w.octant |= w.up[a] << a;
+    size = fmax(size, fmax(fabs(w.o[a]), batch->tree->dimensions[a]));
+  }
+  w.hair = HAIR * size;
+  *hit = (stratus_hit){ .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1 };
+  walk_tree(&w);
+  hit->visited = w.visited;
+}

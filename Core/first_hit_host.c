@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits on the host, compiled for one instruction set, STRATUS_ISA: rays into packets, packets through the field, lanes whose ray has ended
+ * given the next, and the answers in double precision. */
+#include "first_hit.h"
+
+#include "../kernels/first_hit.h"
+
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
+/* ---------------------------------------------------------------- in */
+
+static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
+{
+  const double* m = batch->to_voxels;
+  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], finite = 0.0;
+  chunk->count = count;
+  for (int i = 0; i < count; ++i) {
+    const double *o = rays[i].origin, *d = rays[i].direction;
+    for (int a = 0; a < 3; ++a) {
+      chunk->from[a][i] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
+      chunk->along[a][i] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+    }
+    first[i] = rays[i].t_min;
+    last[i] = rays[i].t_max;
+  }
+  for (int i = 0; i < count; ++i) {
+    const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
+    finite += 0.0 * (chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length);
+    finite += last[i] == last[i] ? 0.0 : NAN;
+  }
+  if (!(finite == 0.0)) {
+    for (int i = 0; i < count; ++i) {
+      const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
+      if (!isfinite(chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length) || isnan(last[i])) {
+        *bad = i;
+        return false;
+      }
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = batch->lo[a], hi = batch->hi[a];
+    for (int i = 0; i < count; ++i) {
+      const double d = chunk->along[a][i], inverse = 1.0 / (fabs(d) < 1e-300 ? 1e-300 : d);
+      const double t0 = (lo - chunk->from[a][i]) * inverse, t1 = (hi - chunk->from[a][i]) * inverse;
+      const double enter = t0 < t1 ? t0 : t1, leave = t0 < t1 ? t1 : t0;
+      first[i] = enter > first[i] ? enter : first[i];
+      last[i] = leave < last[i] ? leave : last[i];
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const double x = fabs(chunk->along[0][i]), y = fabs(chunk->along[1][i]), z = fabs(chunk->along[2][i]);
+    const double most = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    const double scale = 1.0 / most, length = (last[i] - first[i]) * most;
+    /* The box is entered a hair early and left a hair late: what begins or ends within rounding of its border is looked at. */
+    const double roundoff = 1e-12 * (fabs(first[i]) + fabs(last[i] < 1e300 ? last[i] : 0.0)) * most;
+    chunk->end[i] = length + roundoff >= 0.0 ? (float)(length < 1e30 ? length : 1e30) + 8.0f * batch->slack : -1.0f;
+    for (int a = 0; a < 3; ++a) {
+      const double p = chunk->from[a][i] + first[i] * chunk->along[a][i];
+      const double in = p < batch->lo[a] ? batch->lo[a] : p > batch->hi[a] - 1.0 ? (p >= batch->hi[a] ? batch->hi[a] - 1.0 : p) : p;
+      const double d = chunk->along[a][i] * scale;
+      const float along = (float)(d >= 0.0 ? (d < 1e-30 ? 1e-30 : d) : (d > -1e-30 ? -1e-30 : d));
+      chunk->o[a][i] = (float)p;
+      chunk->cell[a][i] = (int)in;
+      chunk->d[a][i] = along;
+      chunk->inverse[a][i] = 1.0f / along;
+    }
+  }
+  return true;
+}
+
+/* ---------------------------------------------------------------- through */
+
+/* Lanes of `mask` get the next values from p in turn. */
+static inline vfloat expand(vfloat old, vmask mask, const int* lanes, int count, const float* p)
+{
+#if STRATUS_ISA == 2
+  (void)lanes;
+  (void)count;
+  return _mm512_mask_expandloadu_ps(old, mask, p);
+#else
+  float values[STRATUS_WIDTH];
+  (void)mask;
+  v_store(values, old);
+  for (int i = 0; i < count; ++i) {
+    values[lanes[i]] = p[i];
+  }
+  return v_load(values);
+#endif
+}
+
+static inline vint expand_int(vint old, vmask mask, const int* lanes, int count, const int* p)
+{
+#if STRATUS_ISA == 2
+  (void)lanes;
+  (void)count;
+  return (vint)_mm512_mask_expandloadu_epi32((__m512i)old, mask, p);
+#else
+  int values[STRATUS_WIDTH];
+  (void)mask;
+  vi_store(values, old);
+  for (int i = 0; i < count; ++i) {
+    values[lanes[i]] = p[i];
+  }
+  return vi_load(values);
+#endif
+}
+
+typedef struct stream {
+  stratus_hit_chunk* chunk;
+  int next;                  /* ray of the chunk */
+  int id[STRATUS_WIDTH];     /* ray of each lane, -1: none */
+} stream;
+
+/* Puts down the rays of lanes that have ended, and gives those lanes the next. */
+static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
+{
+  stratus_hit_chunk* const c = s->chunk;
+  int live[STRATUS_WIDTH], hit[STRATUS_WIDTH], doubtful[STRATUS_WIDTH], visited[STRATUS_WIDTH], cell[3][STRATUS_WIDTH], lanes[STRATUS_WIDTH];
+  const vint one = vi_set(1), zero = vi_set(0);
+  int count = 0;
+  vi_store(live, vi_select(k->live, one, zero));
+  vi_store(hit, vi_select(k->hit, one, zero));
+  vi_store(doubtful, vi_select(k->doubtful, one, zero));
+  vi_store(visited, k->visited);
+  for (int axis = 0; axis < 3; ++axis) {
+    vi_store(cell[axis], k->cell[axis]);
+  }
+  const int first = s->next;
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    if (live[lane]) {
+      continue;
+    }
+    const int id = s->id[lane];
+    if (id >= 0) {
+      c->state[id] = doubtful[lane] ? STRATUS_HIT_DOUBTFUL : hit[lane] ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
+      c->visited[id] = visited[lane];
+      for (int axis = 0; axis < 3; ++axis) {
+        c->cell[axis][id] = cell[axis][lane];
+      }
+      s->id[lane] = -1;
+    }
+    if (s->next < c->count) {
+      s->id[lane] = s->next++;
+      lanes[count++] = lane;
+      live[lane] = 2;
+    }
+  }
+  const vint now = vi_load(live);
+  const vmask fresh = vi_zero(now - vi_set(2));
+  vint octant = zero;
+  for (int axis = 0; axis < 3; ++axis) {
+    k->o[axis] = expand(k->o[axis], fresh, lanes, count, c->o[axis] + first);
+    k->d[axis] = expand(k->d[axis], fresh, lanes, count, c->d[axis] + first);
+    k->inverse[axis] = expand(k->inverse[axis], fresh, lanes, count, c->inverse[axis] + first);
+    k->cell[axis] = expand_int(k->cell[axis], fresh, lanes, count, c->cell[axis] + first);
+    k->up[axis] = v_lt(v_set(0.0f), k->d[axis]);
+    octant = octant | vi_select(k->up[axis], vi_set(1 << axis), zero);
+  }
+  k->octant_shift = octant * vi_set(a->entry_bytes);
+  k->end = expand(k->end, fresh, lanes, count, c->end + first);
+  k->hit = m_none();
+  k->doubtful = m_none();
+  k->visited = vi_select(fresh, zero, k->visited);
+  k->live = k->live | (fresh & v_le(v_set(0.0f), k->end));
+}
+
+/* A lane that has ended costs as much as one that has not: so many may stand idle before they are given new rays. */
+#define IDLE (STRATUS_WIDTH / 4)
+
+static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
+{
+  const stratus_tree* tree = batch->tree;
+  const stratus_tree_field* field = &tree->fields[0];
+  const stratus_hit_arguments a = { .at = { field->at[0], field->at[1], field->at[2] },
+    .cells = { field->cells[0], field->cells[1], field->cells[2] },
+    .row_start = (int)field->first_row,
+    .octants = tree->octants,
+    .entry_bytes = tree->entry_bytes,
+    .cell_log2 = tree->cell_log2,
+    .slack = batch->slack };
+  stream s = { .chunk = chunk };
+  stratus_hit_packet k;
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    s.id[lane] = -1;
+  }
+  memset(&k, 0, sizeof k);
+  refill(&a, &s, &k);
+  for (;;) {
+    const int live = m_count(k.live);
+    if (live == 0 || (s.next < chunk->count && STRATUS_WIDTH - live >= IDLE)) {
+      if (live == 0 && s.next >= chunk->count) {
+        break;
+      }
+      refill(&a, &s, &k);
+      if (!m_any(k.live)) {
+        continue;
+      }
+    }
+    hit_step(&a, tree->entries, (const int*)tree->rows, batch->mask_words, &k);
+  }
+  refill(&a, &s, &k);
+}
+
+/* ---------------------------------------------------------------- out */
+
+static void finish(const stratus_hit_batch* batch, const stratus_ray* rays, const stratus_hit_chunk* chunk, stratus_hit* hits)
+{
+  for (int i = 0; i < chunk->count; ++i) {
+    stratus_hit* const hit = &hits[i];
+    *hit = (stratus_hit){ .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1, .visited = (uint32_t)chunk->visited[i] };
+    if (chunk->state[i] == STRATUS_HIT_NONE) {
+      continue;
+    }
+    const double from[3] = { chunk->from[0][i], chunk->from[1][i], chunk->from[2][i] };
+    const double along[3] = { chunk->along[0][i], chunk->along[1][i], chunk->along[2][i] };
+    const int voxel[3] = { chunk->cell[0][i], chunk->cell[1][i], chunk->cell[2][i] };
+    bool certain = chunk->state[i] == STRATUS_HIT_VOXEL;
+    if (certain) {
+      stratus_hit_of_voxel(batch, &rays[i], from, along, voxel, hit);
+      certain = hit->t < INFINITY;
+    }
+    if (!certain) {
+      stratus_first_hit_exact(batch, &rays[i], hit);
+      hit->visited += (uint32_t)chunk->visited[i];
+    }
+  }
+}
+
+const stratus_hit_functions JOIN(stratus_hit_functions_isa, STRATUS_ISA) = { prepare, walk, finish };
