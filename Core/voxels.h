@@ -21,7 +21,8 @@ typedef struct stratus_brick {
 typedef struct stratus_origin {
   uint64_t hash;      /* of values, type, dimensions and hidden parts; 0: a list, which nothing covers */
   int32_t cells;      /* 1: of stratus_voxels_create_cells() */
-  int32_t intervals;  /* of values that show; more than the maximum are merged across their narrowest gaps */
+  int32_t intervals;  /* of values that show. More than the maximum: of cells, merged across their narrowest gaps (and cells
+                       * chosen by that); of voxels, a single one from INFINITY to -INFINITY, so that no tree covers another's. */
   double interval[STRATUS_INTERVALS_MAX][2]; /* ascending, disjoint, ends included */
 } stratus_origin;
 

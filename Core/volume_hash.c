@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A volume's content in 64 bits, so that a structure that comes with the data is used for these data only. Rows are hashed apart and
+ * added up: the order of threads doesn't matter, and whoever reads the rows anyway hashes them while they are in the cache. */
+#include "voxels_build.h"
+
+#include <omp.h>
+#include <string.h>
+
+/* Odd constants with bits well mixed. */
+#define MIX_A UINT64_C(0x9fb21c651e98df25)
+#define MIX_B UINT64_C(0xd6e8feb86659fd93)
+
+static inline uint64_t rotate(uint64_t x, int bits)
+{
+  return x << bits | x >> (64 - bits);
+}
+
+static inline uint64_t read_word(const uint8_t* bytes)
+{
+  uint64_t word;
+  memcpy(&word, bytes, sizeof word);
+  return word;
+}
+
+/* Every bit of x changes half the result's. */
+static uint64_t finish(uint64_t x)
+{
+  x = (x ^ x >> 32) * MIX_A;
+  x = (x ^ x >> 29) * MIX_B;
+  return x ^ x >> 32;
+}
+
+/* Four chains, so that a multiplication needs not wait for the last. */
+static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
+{
+  uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
+  size_t at = 0;
+  for (; at + 32 <= size; at += 32) {
+    for (int l = 0; l < 4; l++) {
+      lane[l] = rotate((lane[l] ^ read_word(bytes + at + 8 * l)) * MIX_A, 31);
+    }
+  }
+  uint64_t result = finish(lane[0]) + rotate(finish(lane[1]), 16) + rotate(finish(lane[2]), 32) + rotate(finish(lane[3]), 48);
+  for (; at < size; at += 8) {
+    uint64_t word = 0;
+    memcpy(&word, bytes + at, size - at < 8 ? size - at : 8);
+    result = rotate((result ^ word) * MIX_B, 29);
+  }
+  return finish(result ^ size);
+}
+
+#define GATHER(type)                                                                                                                       \
+  {                                                                                                                                        \
+    const type* from = (const type*)volume->values + first;                                                                                \
+    type* to = room;                                                                                                                       \
+    for (int64_t i = 0; i < n; i++) {                                                                                                      \
+      to[i] = from[i * volume->value_stride];                                                                                              \
+    }                                                                                                                                      \
+    return room;                                                                                                                           \
+  }
+
+const void* stratus_volume_row(const stratus_volume* volume, int64_t j, int64_t k, void* room)
+{
+  const int64_t n = volume->dimensions[0], first = (k * volume->dimensions[1] + j) * n * volume->value_stride;
+  const size_t size = stratus_type_size(volume->type);
+  if (volume->value_stride == 1) {
+    return (const uint8_t*)volume->values + (size_t)first * size;
+  }
+  switch (size) { /* bits as they are: a type of the same size serves */
+    case 1:
+      GATHER(uint8_t)
+    case 2:
+      GATHER(uint16_t)
+    case 4:
+      GATHER(uint32_t)
+    default:
+      GATHER(uint64_t)
+  }
+}
+
+/* Flags of one row that matter, 0 if there are none, so that flags of 0 throughout are no flags. */
+static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint64_t seed)
+{
+  uint64_t sum = 0;
+  for (int64_t i = 0; flags && i < n; i++) {
+    if (flags[i] & wanted) {
+      sum += finish(seed ^ ((uint64_t)i << 8 | (flags[i] & wanted)));
+    }
+  }
+  return sum;
+}
+
+uint64_t stratus_volume_hash_row(const stratus_volume* volume, int64_t j, int64_t k, const void* row)
+{
+  const int64_t* n = volume->dimensions;
+  const uint64_t seed = finish((uint64_t)(k * n[1] + j) + MIX_B);
+  const int64_t less = !volume->cell_centered;
+  int64_t cells[3];
+  for (int a = 0; a < 3; a++) {
+    cells[a] = n[a] > 1 ? n[a] - less : 1;
+  }
+  uint64_t sum = hash_bytes(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
+  if (!volume->cell_centered && volume->point_ghosts) {
+    const uint8_t wanted = STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_POINT;
+    sum += hash_flags(volume->point_ghosts + (k * n[1] + j) * n[0], n[0], wanted, seed ^ MIX_A);
+  }
+  if (volume->cell_ghosts && j < cells[1] && k < cells[2]) {
+    const uint8_t wanted = STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_CELL;
+    sum += hash_flags(volume->cell_ghosts + (k * cells[1] + j) * cells[0], cells[0], wanted, seed ^ MIX_B);
+  }
+  return sum;
+}
+
+uint64_t stratus_volume_hash_shape(const stratus_volume* volume)
+{
+  uint64_t hash = finish((uint64_t)volume->type * 2 + (volume->cell_centered ? 1 : 0));
+  for (int a = 0; a < 3; a++) {
+    hash = finish(rotate(hash, 21) ^ (uint64_t)volume->dimensions[a]);
+  }
+  return hash;
+}
+
+stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash)
+{
+  TRY(stratus_volume_check(context, volume));
+  const int64_t ny = volume->dimensions[1], rows = ny * volume->dimensions[2];
+  const size_t room = volume->value_stride == 1 ? 0 : (size_t)volume->dimensions[0] * stratus_type_size(volume->type);
+  uint64_t sum = stratus_volume_hash_shape(volume);
+  void* memory;
+  TRY(stratus_allocate(context, (size_t)context->threads, room, &memory));
+#pragma omp parallel num_threads(context->threads) reduction(+ : sum)
+  {
+    void* mine = (uint8_t*)memory + (size_t)omp_get_thread_num() * room;
+#pragma omp for schedule(static)
+    for (int64_t row = 0; row < rows; row++) {
+      const int64_t j = row % ny, k = row / ny;
+      sum += stratus_volume_hash_row(volume, j, k, stratus_volume_row(volume, j, k, mine));
+    }
+  }
+  stratus_release(context, memory);
+  *hash = sum ? sum : 1;
+  return STRATUS_OK;
+}

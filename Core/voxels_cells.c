@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Effective voxels for ray casting: whole blocks of 4^3 cells, each the brick of the same place, wherever the range of the block's values
+ * meets an interval that shows. */
+#include "voxels_build.h"
+
+#include <string.h>
+
+#define SLACK 1e-6f /* as in stratus_table_shows() */
+
+/* A block's hull, as wide as occupancy takes it, against all intervals. */
+static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
+{
+  const float slack = SLACK * fmaxf(fabsf(lo), fabsf(hi));
+  const double from = (double)(lo - slack), to = (double)(hi + slack);
+  for (int32_t i = 0; lo <= hi && i < origin->intervals; i++) {
+    if (origin->interval[i][0] - bias <= to && origin->interval[i][1] - bias >= from) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* As stratus_occupancy_build() has it, a block with gaps counts if anything shows at all. */
+static void mark_blocks(const stratus_voxels* voxels, const stratus_value_range* ranges, uint64_t* masks)
+{
+  const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+  const stratus_origin* origin = &voxels->origin;
+  bool any = false;
+  if (ranges->whole_lo <= ranges->whole_hi) {
+    any = shows(ranges->whole_lo, ranges->whole_hi, ranges->bias, origin);
+  }
+#pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
+  for (int64_t b = 0; b < count; b++) {
+    masks[b] = (any && ranges->gaps[b]) || shows(ranges->lo[b], ranges->hi[b], ranges->bias, origin) ? ~UINT64_C(0) : 0;
+  }
+}
+
+/* Voxel (i,j,k) is cell (i,j,k): its middle lies half a step beyond the value of that place. */
+static void place_cells(const stratus_volume* volume, double index_to_world[16])
+{
+  static const double half[3] = { 0.5, 0.5, 0.5 };
+  double first[3];
+  stratus_volume_index_to_world(volume, index_to_world);
+  stratus_matrix_point(index_to_world, half, first);
+  for (int a = 0; a < 3; a++) {
+    index_to_world[4 * a + 3] = first[a];
+  }
+}
+
+stratus_status stratus_voxels_create_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
+  const stratus_criterion* criterion, uint64_t hash, stratus_voxels** out)
+{
+  stratus_voxels* voxels = NULL;
+  stratus_status status;
+  void* masks = NULL;
+  int64_t dimensions[3];
+  TRY(stratus_criterion_check(context, criterion));
+  for (int a = 0; a < 3; a++) {
+    dimensions[a] = STRATUS_BRICK * ranges->blocks[a];
+  }
+  TRY(stratus_voxels_create_empty(context, dimensions, &voxels));
+  place_cells(volume, voxels->index_to_world);
+  TRY_CLEANUP(stratus_origin_take_cells(context, ranges, criterion, &voxels->origin));
+  voxels->origin.hash = hash;
+  TRY_CLEANUP(
+    stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), sizeof(uint64_t), &masks));
+  mark_blocks(voxels, ranges, masks);
+  TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
+  *out = voxels;
+  voxels = NULL;
+cleanup:
+  stratus_release(context, masks);
+  stratus_voxels_destroy(voxels);
+  return status;
+}
+
+stratus_status stratus_voxels_create_cells(
+  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** out)
+{
+  stratus_value_range* ranges = NULL;
+  stratus_status status;
+  uint64_t hash = 0;
+  TRY(stratus_volume_check(context, volume));
+  TRY(stratus_criterion_check(context, criterion));
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "voxels is NULL");
+  }
+  TRY_CLEANUP(stratus_value_range_create(context, volume, STRATUS_BRICK, &ranges));
+  TRY_CLEANUP(stratus_volume_hash(context, volume, &hash));
+  TRY_CLEANUP(stratus_voxels_create_ranges(context, volume, ranges, criterion, hash, out));
+cleanup:
+  stratus_value_range_destroy(ranges);
+  return status;
+}

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Effective voxels of a volume: rows of values are compared with the criterion's intervals, a byte a value, and the bytes packed into the
+ * masks of a row of bricks. */
+#include "voxels_build.h"
+
+#include <float.h>
+#include <omp.h>
+#include <string.h>
+
+#define WORD 64 /* values whose flags make a word, and bricks' rows times four */
+
+/* An interval in the values' own type, ends included. */
+typedef union bound {
+  int64_t i;
+  uint64_t u;
+  double d;
+} bound;
+
+typedef struct bounds {
+  bound lo, hi;
+} bounds;
+
+#define TYPE int8_t
+#define NAME(f) f##_int8
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE uint8_t
+#define NAME(f) f##_uint8
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE int16_t
+#define NAME(f) f##_int16
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE uint16_t
+#define NAME(f) f##_uint16
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE int32_t
+#define NAME(f) f##_int32
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE uint32_t
+#define NAME(f) f##_uint32
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE int64_t
+#define NAME(f) f##_int64
+#define BOUND i
+#include "voxels_rows.h"
+
+#define TYPE uint64_t
+#define NAME(f) f##_uint64
+#define BOUND u
+#include "voxels_rows.h"
+
+#define TYPE float
+#define NAME(f) f##_float32
+#define BOUND d
+#include "voxels_rows.h"
+
+#define TYPE double
+#define NAME(f) f##_float64
+#define BOUND d
+#include "voxels_rows.h"
+
+typedef void (*mark_function)(const void*, int64_t, const bounds*, int64_t, uint8_t*);
+
+static mark_function mark_of(stratus_type type)
+{
+  static const mark_function marks[] = { mark_int8, mark_uint8, mark_int16, mark_uint16, mark_int32, mark_uint32, mark_int64, mark_uint64,
+    mark_float32, mark_float64 };
+  return marks[type];
+}
+
+/* ---------------------------------------------------------------- intervals in the values' own type */
+
+/* Whole numbers within lo..hi and within least .. below-1, the type's; both are powers of two or 0, hence doubles. */
+static bool whole_bounds(double lo, double hi, double least, double below, bool is_unsigned64, bounds* result)
+{
+  const double first = ceil(lo), last = floor(hi);
+  if (!(first <= last) || first >= below || last < least) {
+    return false;
+  }
+  if (is_unsigned64) {
+    result->lo.u = first < least ? 0 : (uint64_t)first;
+    result->hi.u = last >= below ? UINT64_MAX : (uint64_t)last;
+  } else {
+    result->lo.i = (int64_t)(first < least ? least : first);
+    /* One less than `below` need not be a double. */
+    result->hi.i = last >= below ? (int64_t)(below / 2.0) - 1 + (int64_t)(below / 2.0) : (int64_t)last;
+  }
+  return true;
+}
+
+/* Finite floats within lo..hi. */
+static bool float_bounds(double lo, double hi, bounds* result)
+{
+  if (lo > FLT_MAX || hi < -FLT_MAX) {
+    return false;
+  }
+  float first = lo <= -FLT_MAX ? -FLT_MAX : (float)lo, last = hi >= FLT_MAX ? FLT_MAX : (float)hi;
+  first = (double)first < lo ? nextafterf(first, INFINITY) : first;
+  last = (double)last > hi ? nextafterf(last, -INFINITY) : last;
+  result->lo.d = (double)first;
+  result->hi.d = (double)last;
+  return first <= last;
+}
+
+static bool bounds_of(stratus_type type, const double interval[2], bounds* result)
+{
+  static const struct {
+    double least, below;
+  } whole[] = { { -0x1p7, 0x1p7 }, { 0, 0x1p8 }, { -0x1p15, 0x1p15 }, { 0, 0x1p16 }, { -0x1p31, 0x1p31 }, { 0, 0x1p32 },
+    { -0x1p63, 0x1p63 }, { 0, 0x1p64 } };
+  if (type == STRATUS_FLOAT32) {
+    return float_bounds(interval[0], interval[1], result);
+  }
+  if (type == STRATUS_FLOAT64) {
+    result->lo.d = fmax(interval[0], -DBL_MAX);
+    result->hi.d = fmin(interval[1], DBL_MAX);
+    return result->lo.d <= result->hi.d;
+  }
+  return whole_bounds(interval[0], interval[1], whole[type].least, whole[type].below, type == STRATUS_UINT64, result);
+}
+
+/* ---------------------------------------------------------------- rows */
+
+typedef struct scan {
+  const stratus_volume* volume;
+  const bounds* intervals;
+  int64_t count;
+  const uint8_t* ghosts; /* a flag a value, NULL: none */
+  uint8_t hidden;        /* flags that take a value out */
+  uint64_t* masks;
+  int64_t bricks_along[3];
+} scan;
+
+/* Eight bytes of 0 or 1 as eight bits, the first the lowest. */
+static uint64_t pack8(const uint8_t* flags)
+{
+  uint64_t bytes;
+  memcpy(&bytes, flags, sizeof bytes);
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  bytes = __builtin_bswap64(bytes);
+#endif
+  return bytes * UINT64_C(0x0102040810204080) >> 56;
+}
+
+/* Flags of a row of voxels into the masks of its bricks, four at the place of row y of layer z. flags: padded with 0 to whole words. */
+static void add_row(const uint8_t* flags, int64_t bricks, int shift, uint64_t* masks)
+{
+  for (int64_t first = 0; first < bricks; first += WORD / STRATUS_BRICK) {
+    uint64_t word = 0;
+    for (int b = 0; b < 8; b++) {
+      word |= pack8(flags + first * STRATUS_BRICK + 8 * b) << 8 * b;
+    }
+    for (int64_t b = first; word; b++) {
+      masks[b] |= (word & 15) << shift;
+      word >>= STRATUS_BRICK;
+    }
+  }
+}
+
+/* The masks of row (j, k) of bricks, and the hash of its values. */
+static uint64_t scan_bricks(const scan* s, mark_function mark, int64_t j, int64_t k, void* room, uint8_t* flags)
+{
+  const int64_t* n = s->volume->dimensions;
+  uint64_t* masks = s->masks + (k * s->bricks_along[1] + j) * s->bricks_along[0];
+  uint64_t hash = 0;
+  memset(masks, 0, (size_t)s->bricks_along[0] * sizeof *masks);
+  for (int64_t z = 4 * k; z < 4 * k + 4 && z < n[2]; z++) {
+    for (int64_t y = 4 * j; y < 4 * j + 4 && y < n[1]; y++) {
+      const void* row = stratus_volume_row(s->volume, y, z, room);
+      hash += stratus_volume_hash_row(s->volume, y, z, row);
+      mark(row, n[0], s->intervals, s->count, flags);
+      const uint8_t* ghosts = s->ghosts ? s->ghosts + (z * n[1] + y) * n[0] : NULL;
+      for (int64_t i = 0; ghosts && i < n[0]; i++) {
+        flags[i] &= (ghosts[i] & s->hidden) == 0;
+      }
+      add_row(flags, s->bricks_along[0], (int)((z % 4 * 4 + y % 4) * 4), masks);
+    }
+  }
+  return hash;
+}
+
+static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* hash)
+{
+  const int64_t ny = s->bricks_along[1], rows = ny * s->bricks_along[2];
+  const size_t line = ((size_t)s->volume->dimensions[0] + WORD - 1) / WORD * WORD;
+  const size_t room = s->volume->value_stride == 1 ? 0 : line * stratus_type_size(s->volume->type);
+  const mark_function mark = mark_of(s->volume->type);
+  uint64_t sum = stratus_volume_hash_shape(s->volume);
+  void* memory;
+  TRY(stratus_allocate_zero(context, (size_t)context->threads, room + line, &memory));
+#pragma omp parallel num_threads(context->threads) reduction(+ : sum)
+  {
+    uint8_t* mine = (uint8_t*)memory + (size_t)omp_get_thread_num() * (room + line);
+#pragma omp for schedule(static)
+    for (int64_t row = 0; row < rows; row++) {
+      sum += scan_bricks(s, mark, row % ny, row / ny, mine, mine + room);
+    }
+  }
+  stratus_release(context, memory);
+  *hash = sum ? sum : 1;
+  return STRATUS_OK;
+}
+
+/* The intervals that any value of the type can lie in. */
+static stratus_status take_intervals(stratus_context* context, const stratus_criterion* criterion, scan* s, stratus_origin* origin, void** out)
+{
+  stratus_intervals list = { 0 };
+  void* memory = NULL;
+  TRY(stratus_intervals_create(context, criterion, &list));
+  const stratus_status status = stratus_allocate(context, (size_t)list.count, sizeof(bounds), &memory);
+  if (status == STRATUS_OK) {
+    bounds* intervals = memory;
+    for (int64_t i = 0; i < list.count; i++) {
+      s->count += bounds_of(s->volume->type, list.of[i], intervals + s->count);
+    }
+    s->intervals = intervals;
+    stratus_origin_take(origin, &list);
+    *out = memory;
+  }
+  stratus_release(context, list.of);
+  return status;
+}
+
+stratus_status stratus_voxels_create(
+  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** out)
+{
+  stratus_voxels* voxels = NULL;
+  stratus_status status;
+  void *masks = NULL, *intervals = NULL;
+  TRY(stratus_volume_check(context, volume));
+  TRY(stratus_criterion_check(context, criterion));
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "voxels is NULL");
+  }
+  TRY(stratus_progress(context, "effective voxels", 0.0));
+  TRY(stratus_voxels_create_empty(context, volume->dimensions, &voxels));
+  stratus_volume_index_to_world(volume, voxels->index_to_world);
+  scan s = { .volume = volume, .bricks_along = { voxels->bricks_along[0], voxels->bricks_along[1], voxels->bricks_along[2] } };
+  s.ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
+  s.hidden = STRATUS_GHOST_DUPLICATE | (volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
+  TRY_CLEANUP(take_intervals(context, criterion, &s, &voxels->origin, &intervals));
+  TRY_CLEANUP(stratus_allocate(
+    context, (size_t)(s.bricks_along[0] * s.bricks_along[1] * s.bricks_along[2]), sizeof(uint64_t), &masks));
+  s.masks = masks;
+  TRY_CLEANUP(scan_rows(context, &s, &voxels->origin.hash));
+  TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
+  TRY_CLEANUP(stratus_progress(context, "effective voxels", 1.0));
+  *out = voxels;
+  voxels = NULL;
+cleanup:
+  stratus_release(context, intervals);
+  stratus_release(context, masks);
+  stratus_voxels_destroy(voxels);
+  return status;
+}
