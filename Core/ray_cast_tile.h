@@ -2,20 +2,33 @@
  * One type's tile of rays on the host: included by ray_cast_host.c with STRATUS_TYPE, STRATUS_PREINTEGRATED and RAY_NAME set. */
 #include "../kernels/ray_cast.h"
 
+static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k)
+{
+  if (packet_outside(frame->arguments, x, y)) {
+    packet_nothing(k);
+  } else {
+    RAY_NAME(ray_load)(frame->arguments, frame->opaque_depth, x, y, k);
+  }
+}
+
 static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts)
 {
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
-  stratus_packet k;
   for (int y = y0; y < y1; y += PACKET_Y) {
-    for (int x = x0; x < x1; x += PACKET_X) {
-      if (packet_outside(a, x, y)) {
-        packet_nothing(&k);
-      } else {
-        RAY_NAME(ray_load)(a, frame->opaque_depth, x, y, &k);
-        RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k);
+    for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
+      stratus_packet k[PACKETS_TOGETHER];
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i]); /* beyond the picture: no live ray, nothing stored */
       }
-      store_packet(frame, &k, x, y, &mine);
+#if PACKETS_TOGETHER == 2
+      RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0], &k[1]);
+#else
+      RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0]);
+#endif
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        store_packet(frame, &k[i], x + i * PACKET_X, y, &mine);
+      }
     }
   }
   add_counts(&mine, counts);

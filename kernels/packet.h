@@ -54,6 +54,13 @@ typedef unsigned int uint;
 #endif
 #define PACKET_Y (STRATUS_WIDTH / PACKET_X)
 
+/* Packets that march side by side: two where registers are many and gathers wait long. */
+#if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+#define PACKETS_TOGETHER 2
+#else
+#define PACKETS_TOGETHER 1
+#endif
+
 #define LARGEST_FLOAT 3.402823466e+38f
 
 /* ------------------------------------------------------------------------------------------------ scalar, either language */

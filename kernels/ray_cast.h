@@ -22,8 +22,11 @@
 #define gather_bytes RAY_NAME(gather_bytes)
 #define ray_value RAY_NAME(ray_value)
 #define ray_skip RAY_NAME(ray_skip)
-#define ray_step RAY_NAME(ray_step)
+#define ray_sample RAY_NAME(ray_sample)
+#define ray_shade RAY_NAME(ray_shade)
+#define ray_leap RAY_NAME(ray_leap)
 #define ray_march RAY_NAME(ray_march)
+#define ray_march_two RAY_NAME(ray_march_two)
 #define ray_load RAY_NAME(ray_load)
 
 #include "fetch.h"
@@ -100,53 +103,81 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
   } while (m_any(need));
 }
 
-/* One sample for every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended hangs on the
- * last sample's colour, and the next fetch need not wait for that. */
-INLINE void ray_step(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const void* table, stratus_packet* k)
+/* The next sample of every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended hangs on
+ * the last sample's colour, and the next fetch need not wait for that. */
+INLINE stratus_sample ray_sample(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {
   const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
   const vmask inside = vi_lt(k->i, k->last);
-  const vfloat lo = v_min(v_max(fi, k->begin), k->end), hi = v_min(fi + one, k->end), weight = hi - lo;
+  const vfloat lo = v_min(v_max(fi, k->begin), k->end), hi = v_min(fi + one, k->end);
 #if STRATUS_PREINTEGRATED
-  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
   const vfloat s = v_select(k->fresh, lo, hi);
 #else
-  const vmask whole = k->live;
   const vfloat s = v_set(0.5f) * (lo + hi);
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  const vfloat value = ray_value(a, values, hidden, x, inside);
+  stratus_sample sample;
+  sample.value = ray_value(a, values, hidden, x, inside);
+  sample.lo = lo;
+  sample.weight = hi - lo;
+  return sample;
+}
+
+/* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
+INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
   k->samples -= mask_int(k->live);
 #if STRATUS_PREINTEGRATED
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
   const vmask valid = whole & v_finite(value) & v_finite(k->front);
   integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
   k->front = value;
   k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
   k->fresh = m_none();
 #else
-  shade_sample(a, (GLOBAL const float*)table, k, whole & v_finite(value), value, weight, lo);
+  shade_sample(a, (GLOBAL const float*)table, k, k->live & v_finite(value), value, weight, lo);
   k->i = k->i + vi_set(1);
 #endif
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
 
+/* Asks the structure where enough rays need it. False if that was the end of all of them. */
+INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
+{
+  if (a->structure) {
+    const vmask need = lanes_to_skip(k);
+    if (m_any(need)) {
+      ray_skip(a, map, k, need);
+      return m_any(k->live);
+    }
+  }
+  return 1;
+}
+
 INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
 {
-  while (m_any(k->live)) {
-    if (a->structure) {
-      const vmask need = lanes_to_skip(k);
-      if (m_any(need)) {
-        ray_skip(a, map, k, need);
-        if (!m_any(k->live)) {
-          break;
-        }
-      }
-    }
-    ray_step(a, values, hidden, table, k);
+  while (m_any(k->live) && ray_leap(a, map, k)) {
+    const stratus_sample sample = ray_sample(a, values, hidden, k);
+    ray_shade(a, table, k, &sample);
   }
 }
+
+#if PACKETS_TOGETHER == 2
+/* Two packets side by side: while one waits for its values, the other computes. Each does what it would do alone. */
+INLINE void ray_march_two(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
+{
+  while (m_any(left->live) && m_any(right->live) && ray_leap(a, map, left) && ray_leap(a, map, right)) {
+    const stratus_sample one = ray_sample(a, values, hidden, left), other = ray_sample(a, values, hidden, right);
+    ray_shade(a, table, left, &one);
+    ray_shade(a, table, right, &other);
+  }
+  ray_march(a, values, hidden, map, table, m_any(left->live) ? left : right);
+}
+#endif
 
 /* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look. */
 INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k)
@@ -183,6 +214,9 @@ INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float*
 #undef gather_bytes
 #undef ray_value
 #undef ray_skip
-#undef ray_step
+#undef ray_sample
+#undef ray_shade
+#undef ray_leap
 #undef ray_march
+#undef ray_march_two
 #undef ray_load

@@ -39,6 +39,11 @@ typedef struct stratus_packet {
   vmask fresh;      /* the front value is still to be sampled */
 } stratus_packet;
 
+/* What one sample of every ray finds in the segment [lo, lo + weight]. */
+typedef struct stratus_sample {
+  vfloat value, lo, weight;
+} stratus_sample;
+
 #if STRATUS_WIDTH > 1 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
 INLINE vint mask_int(vmask m) { return vi_select(m, vi_set(-1), vi_set(0)); }
 #else
