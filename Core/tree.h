@@ -33,16 +33,18 @@ typedef struct stratus_box {
 typedef struct stratus_bvh_options {
   stratus_tree_method method; /* SAH .. KMEANS */
   int leaf_boxes;             /* most boxes a leaf, 1..64 */
-  int max_depth;              /* 1..64: deeper is made a leaf where leaf_boxes allows it, else split at the median, whatever the depth */
+  int max_depth;              /* 1..64: deeper is made a leaf where leaf_boxes allows it, else split at the median (of the boxes' Morton order),
+                               * whatever the depth */
 } stratus_bvh_options;
 
-/* bvh.c: any builder, 1 <= count < 2^29. The same tree at any thread count and on any device. On failure *bvh is untouched. */
+/* bvh.c: any builder, 1 <= count < 2^29, lo < hi, coordinates within 2^28. Boxes may overlap and repeat. The same tree at any thread count and on
+ * any device. On failure *bvh is untouched. */
 stratus_status stratus_bvh_create(
   stratus_context* context, const stratus_box* boxes, uint32_t count, const stratus_bvh_options* options, stratus_bvh* bvh);
 void stratus_bvh_release(stratus_context* context, stratus_bvh* bvh);
 /* Every box in exactly one leaf, node boxes tight, children behind their parents. */
 stratus_status stratus_bvh_check(stratus_context* context, const stratus_bvh* bvh, const stratus_box* boxes, uint32_t count);
-/* Surface area heuristic over the root's area: cost 1 for a node's visit, 1 for a primitive's. */
+/* Surface area heuristic over the root's area: an inner node costs 1, a leaf 1 a box, a distance field 1. */
 double stratus_bvh_sah(const stratus_tree_node* nodes, uint32_t node_count);
 
 /* ---- density.c: the field that the hybrid tree splits by. Deterministic: the same bits at any thread count and on host and device. */

@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Clustering by density peaks (Rodriguez & Laio 2014): a box's density is how many boxes lie within a cutoff distance, delta how far the nearest one of
+ * higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its nearest denser
+ * neighbour. Over the clusters stands an agglomerative tree, in each a SAH one.
+ *
+ * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so none
+ * looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
+#include "bvh.h"
+
+#include <string.h>
+
+#define LEVELS_MAX 32
+#define BOXES_A_CENTRE 64   /* a cluster for as many boxes .. */
+#define CENTRES_MAX 1024    /* .. but no more of them */
+#define NEIGHBOURS .01      /* within the cutoff, of all sites, as the paper has it .. */
+#define NEIGHBOURS_MAX 128. /* .. but no more of them */
+#define SAMPLES_FROM 128u
+#define SAMPLES_TO 2048u
+
+typedef struct block {
+  stratus_box bounds; /* of middles, hi included */
+  uint64_t weight;
+  uint64_t densest; /* rank of density: density << 32 | ~site */
+} block;
+
+typedef struct density_peaks {
+  const stratus_bvh_build* build;
+  uint32_t sites;
+  uint32_t* first;          /* a site's first box, by rank; sites + 1 */
+  uint32_t* denser;         /* a site's nearest denser one; itself for the densest */
+  uint64_t* delta;          /* to it, squared */
+  uint32_t* cluster;        /* a site's */
+  uint32_t* order;          /* sites by rising density, or by rising density * delta */
+  uint64_t* keys;           /* of that order */
+  block* level[LEVELS_MAX]; /* block b of level v: sites b << v .. ((b+1) << v) - 1 */
+  int levels;
+  uint64_t cutoff; /* squared */
+} density_peaks;
+
+static uint32_t level_size(uint32_t count, int level)
+{
+  return ((count - 1) >> level) + 1;
+}
+
+/* ---- distances */
+
+static uint64_t squared(int64_t x, int64_t y, int64_t z)
+{
+  return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
+}
+
+static uint64_t distance_between(const stratus_box* a, const stratus_box* b) /* of points: their lo */
+{
+  return squared((int64_t)a->lo[0] - b->lo[0], (int64_t)a->lo[1] - b->lo[1], (int64_t)a->lo[2] - b->lo[2]);
+}
+
+static uint64_t least_distance(const stratus_box* point, const stratus_box* bounds)
+{
+  int64_t d[3];
+  for (int a = 0; a < 3; a++) {
+    const int64_t below = (int64_t)bounds->lo[a] - point->lo[a], above = (int64_t)point->lo[a] - bounds->hi[a];
+    d[a] = below > 0 ? below : above > 0 ? above : 0;
+  }
+  return squared(d[0], d[1], d[2]);
+}
+
+static uint64_t greatest_distance(const stratus_box* point, const stratus_box* bounds)
+{
+  int64_t d[3];
+  for (int a = 0; a < 3; a++) {
+    const int64_t low = (int64_t)point->lo[a] - bounds->lo[a], high = (int64_t)bounds->hi[a] - point->lo[a];
+    d[a] = low > high ? low : high;
+  }
+  return squared(d[0], d[1], d[2]);
+}
+
+/* ---- sites and the tree over them */
+
+static void find_sites(density_peaks* p)
+{
+  p->sites = 0;
+  for (uint32_t i = 0; i < p->build->count; i++) {
+    if (i == 0 || p->build->codes[i] != p->build->codes[i - 1]) {
+      p->first[p->sites++] = i;
+    }
+  }
+  p->first[p->sites] = p->build->count;
+}
+
+static block merge_blocks(const block* a, const block* b)
+{
+  block both = *a;
+  stratus_box_add(&both.bounds, &b->bounds);
+  both.weight += b->weight;
+  both.densest = b->densest > both.densest ? b->densest : both.densest;
+  return both;
+}
+
+static void merge_levels(const density_peaks* p)
+{
+  for (int level = 1; level < p->levels; level++) {
+    const uint32_t below = level_size(p->sites, level - 1);
+#pragma omp parallel for schedule(static) num_threads(p->build->context->threads) if (below > 4096)
+    for (uint32_t b = 0; b < level_size(p->sites, level); b++) {
+      const block* first = p->level[level - 1] + 2 * (size_t)b;
+      p->level[level][b] = 2 * b + 1 < below ? merge_blocks(first, first + 1) : *first;
+    }
+  }
+}
+
+static stratus_status make_levels(density_peaks* p)
+{
+  size_t total = 1, at = 0;
+  void* memory;
+  for (p->levels = 1; level_size(p->sites, p->levels - 1) > 1; p->levels++) {
+    total += level_size(p->sites, p->levels - 1);
+  }
+  TRY(stratus_allocate(p->build->context, total, sizeof(block), &memory));
+  for (int level = 0; level < p->levels; level++) {
+    p->level[level] = (block*)memory + at;
+    at += level_size(p->sites, level);
+  }
+  for (uint32_t s = 0; s < p->sites; s++) {
+    const stratus_box* box = p->build->boxes + p->first[s];
+    const int32_t x = stratus_box_middle(box, 0), y = stratus_box_middle(box, 1), z = stratus_box_middle(box, 2);
+    p->level[0][s] = (block){ { { x, y, z }, { x, y, z } }, p->first[s + 1] - p->first[s], 0 };
+  }
+  merge_levels(p);
+  return STRATUS_OK;
+}
+
+/* The distance within which a site has NEIGHBOURS of the others on average, by a sample of pairs. */
+static stratus_status find_cutoff(density_peaks* p)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_context* context = p->build->context;
+  const uint32_t from = p->sites < SAMPLES_FROM ? p->sites : SAMPLES_FROM, to = p->sites < SAMPLES_TO ? p->sites : SAMPLES_TO;
+  uint32_t count = 0;
+  void *keys = NULL, *values = NULL;
+
+  TRY_CLEANUP(stratus_allocate(context, (size_t)from * to, sizeof(uint64_t), &keys));
+  TRY_CLEANUP(stratus_allocate_zero(context, (size_t)from * to, sizeof(uint32_t), &values));
+  uint64_t* distances = keys;
+  for (uint32_t i = 0; i < from; i++) {
+    const uint32_t site = (uint32_t)((uint64_t)p->sites * i / from);
+    for (uint32_t j = 0; j < to; j++) {
+      const uint32_t other = (uint32_t)((uint64_t)p->sites * j / to);
+      if (other != site) {
+        distances[count++] = distance_between(&p->level[0][site].bounds, &p->level[0][other].bounds);
+      }
+    }
+  }
+  TRY_CLEANUP(stratus_radix_sort(context, distances, values, count, 64));
+  const double share = fmin(NEIGHBOURS, NEIGHBOURS_MAX / (double)p->sites);
+  p->cutoff = distances[(size_t)(share * (double)(count - 1))];
+
+cleanup:
+  stratus_release(context, keys);
+  stratus_release(context, values);
+  return status;
+}
+
+/* ---- density and delta */
+
+static uint64_t count_near(const density_peaks* p, const stratus_box* point, int level, uint32_t b)
+{
+  const block* at = p->level[level] + b;
+  if (least_distance(point, &at->bounds) > p->cutoff) {
+    return 0;
+  }
+  if (greatest_distance(point, &at->bounds) <= p->cutoff) {
+    return at->weight;
+  }
+  const uint32_t first = 2 * b; /* a single site is either near or not: below are two */
+  return count_near(p, point, level - 1, first) +
+    (first + 1 < level_size(p->sites, level - 1) ? count_near(p, point, level - 1, first + 1) : 0);
+}
+
+static void find_densities(const density_peaks* p)
+{
+#pragma omp parallel for schedule(dynamic, 64) num_threads(p->build->context->threads)
+  for (uint32_t s = 0; s < p->sites; s++) {
+    p->keys[s] = count_near(p, &p->level[0][s].bounds, p->levels - 1, 0);
+  }
+  for (uint32_t s = 0; s < p->sites; s++) {
+    p->level[0][s].densest = p->keys[s] << 32 | ~s;
+  }
+  merge_levels(p);
+}
+
+typedef struct denser_search {
+  const density_peaks* p;
+  const block* site;
+  uint32_t number, best;
+  uint64_t distance;
+} denser_search;
+
+static void search_block(denser_search* s, int level, uint32_t b)
+{
+  const block* at = s->p->level[level] + b;
+  if (at->densest <= s->site->densest) {
+    return;
+  }
+  const uint64_t distance = least_distance(&s->site->bounds, &at->bounds);
+  if (distance >= s->distance) {
+    return;
+  }
+  if (level == 0) {
+    s->best = b;
+    s->distance = distance;
+    return;
+  }
+  const uint32_t near = 2 * b + (s->number >> (level - 1) & 1);
+  for (uint32_t c = 0; c < 2; c++) {
+    if ((near ^ c) < level_size(s->p->sites, level - 1)) {
+      search_block(s, level - 1, near ^ c);
+    }
+  }
+}
+
+/* Nearest first: what agrees with the site in most bits of its number. */
+static void find_denser(const density_peaks* p)
+{
+#pragma omp parallel for schedule(dynamic, 64) num_threads(p->build->context->threads)
+  for (uint32_t number = 0; number < p->sites; number++) {
+    denser_search s = { p, p->level[0] + number, number, number, UINT64_MAX };
+    for (int level = 0; level < p->levels; level++) {
+      const uint32_t sibling = (number >> level) ^ 1u;
+      if (sibling < level_size(p->sites, level)) {
+        search_block(&s, level, sibling);
+      }
+    }
+    p->denser[number] = s.best;
+    /* The densest of all has none: farther than any other's, so that it is a centre. */
+    p->delta[number] = s.best != number ? s.distance : 4 * greatest_distance(&s.site->bounds, &p->level[p->levels - 1]->bounds);
+  }
+}
+
+/* ---- clusters */
+
+static stratus_status sort_sites(const density_peaks* p)
+{
+  for (uint32_t s = 0; s < p->sites; s++) {
+    p->order[s] = s;
+  }
+  return stratus_radix_sort(p->build->context, p->keys, p->order, p->sites, 64);
+}
+
+/* Each site's cluster, numbered in the order of the sites. *clusters: how many. */
+static stratus_status find_clusters(const density_peaks* p, uint32_t* number, uint32_t* clusters)
+{
+  const uint32_t wanted = p->build->count / BOXES_A_CENTRE, most = wanted < 2 ? 2 : wanted < CENTRES_MAX ? wanted : CENTRES_MAX;
+  for (uint32_t s = 0; s < p->sites; s++) {
+    const double gamma = (double)(p->level[0][s].densest >> 32) * sqrt((double)p->delta[s]);
+    memcpy(p->keys + s, &gamma, sizeof gamma); /* positive doubles sort as integers do */
+    p->cluster[s] = UINT32_MAX;
+  }
+  TRY(sort_sites(p));
+  for (uint32_t c = 0; c < most && c < p->sites; c++) {
+    p->cluster[p->order[p->sites - 1 - c]] = p->order[p->sites - 1 - c];
+  }
+  for (uint32_t s = 0; s < p->sites; s++) {
+    p->keys[s] = p->level[0][s].densest;
+    number[s] = UINT32_MAX;
+  }
+  TRY(sort_sites(p));
+  for (uint32_t i = p->sites; i-- > 0;) {
+    const uint32_t s = p->order[i];
+    if (p->cluster[s] == UINT32_MAX) {
+      p->cluster[s] = p->denser[s] == s ? s : p->cluster[p->denser[s]];
+    }
+  }
+  *clusters = 0;
+  for (uint32_t s = 0; s < p->sites; s++) {
+    uint32_t* n = number + p->cluster[s];
+    *n = *n == UINT32_MAX ? (*clusters)++ : *n;
+    p->cluster[s] = *n;
+  }
+  return STRATUS_OK;
+}
+
+/* ---- from clusters to a tree */
+
+typedef struct cluster_lists {
+  uint32_t count;
+  uint32_t *start, *room, **child;
+  stratus_box* boxes;
+  stratus_bvh_pair* pairs;
+} cluster_lists;
+
+/* Items by cluster, and each cluster's box. */
+static void sort_items(const density_peaks* p, const cluster_lists* c, const stratus_bvh_item* from, stratus_bvh_item* to)
+{
+  memset(c->start, 0, (c->count + 1) * sizeof *c->start);
+  for (uint32_t s = 0; s < p->sites; s++) {
+    c->start[p->cluster[s] + 1] += p->first[s + 1] - p->first[s];
+  }
+  for (uint32_t i = 0; i < c->count; i++) {
+    c->start[i + 1] += c->start[i];
+    c->room[i] = c->start[i];
+    c->boxes[i] = stratus_box_none();
+  }
+  for (uint32_t s = 0; s < p->sites; s++) {
+    for (uint32_t i = p->first[s]; i < p->first[s + 1]; i++) {
+      stratus_box_add(c->boxes + p->cluster[s], &from[i].box);
+      to[c->room[p->cluster[s]]++] = from[i];
+    }
+  }
+}
+
+static stratus_status join_clusters(const density_peaks* p, const cluster_lists* c, stratus_bvh_item* items, uint32_t* root)
+{
+  stratus_status status = STRATUS_OK;
+  const stratus_bvh_build* build = p->build;
+  stratus_bvh_item* sorted = NULL;
+  uint32_t top = 0;
+  TRY(stratus_bvh_items_create(build, &sorted));
+  sort_items(p, c, items, sorted);
+  TRY_CLEANUP(stratus_bvh_agglomerate(build->context, STRATUS_BVH_EDGES, c->boxes, c->count, c->pairs, &top));
+  const stratus_bvh_join join = { c->count, c->pairs, top, c->start, c->child, c->room };
+  stratus_bvh_join_ranges(&join, sorted, items, build->pairs, root);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(build->context->threads)
+  for (uint32_t i = 0; i < c->count; i++) {
+    stratus_bvh_split_items(sorted, c->start[i], c->start[i + 1], 0, build->max_depth, build->pairs, c->child[i]);
+  }
+
+cleanup:
+  stratus_release(build->context, sorted);
+  return status;
+}
+
+static stratus_status build_over_clusters(const density_peaks* p, uint32_t clusters, stratus_bvh_item* items, uint32_t* root)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_context* context = p->build->context;
+  cluster_lists c = { .count = clusters };
+  void *numbers = NULL, *child = NULL, *boxes = NULL, *pairs = NULL;
+
+  TRY_CLEANUP(stratus_allocate(context, 4 * (size_t)clusters + 2, sizeof(uint32_t), &numbers));
+  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.child, &child));
+  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.boxes, &boxes));
+  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.pairs, &pairs));
+  c.start = numbers;
+  c.room = c.start + clusters + 1;
+  c.child = child;
+  c.boxes = boxes;
+  c.pairs = pairs;
+  TRY_CLEANUP(join_clusters(p, &c, items, root));
+
+cleanup:
+  stratus_release(context, numbers);
+  stratus_release(context, child);
+  stratus_release(context, boxes);
+  stratus_release(context, pairs);
+  return status;
+}
+
+static stratus_status cluster_sites(density_peaks* p, uint32_t* clusters)
+{
+  stratus_context* context = p->build->context;
+  void* number = NULL;
+  TRY(make_levels(p));
+  TRY(find_cutoff(p));
+  find_densities(p);
+  find_denser(p);
+  TRY(stratus_allocate(context, p->sites, sizeof(uint32_t), &number));
+  const stratus_status status = find_clusters(p, number, clusters);
+  stratus_release(context, number);
+  return status;
+}
+
+stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_context* context = build->context;
+  density_peaks p = { .build = build };
+  const size_t count = build->count;
+  uint32_t clusters = 1;
+  stratus_bvh_item* items = NULL;
+  void *numbers = NULL, *wide = NULL;
+
+  TRY_CLEANUP(stratus_bvh_items_create(build, &items));
+  TRY_CLEANUP(stratus_allocate(context, 4 * count + 1, sizeof(uint32_t), &numbers));
+  TRY_CLEANUP(stratus_allocate(context, 2 * count, sizeof(uint64_t), &wide));
+  p.denser = numbers;
+  p.cluster = p.denser + count;
+  p.order = p.cluster + count;
+  p.first = p.order + count;
+  p.delta = wide;
+  p.keys = p.delta + count;
+  find_sites(&p);
+  if (p.sites > 1) {
+    TRY_CLEANUP(cluster_sites(&p, &clusters));
+  }
+  if (clusters > 1) {
+    TRY_CLEANUP(build_over_clusters(&p, clusters, items, &build->root));
+  } else {
+#pragma omp parallel num_threads(context->threads)
+#pragma omp single
+    stratus_bvh_split_items(items, 0, build->count, 0, build->max_depth, build->pairs, &build->root);
+  }
+
+cleanup:
+  stratus_release(context, p.level[0]);
+  stratus_release(context, items);
+  stratus_release(context, numbers);
+  stratus_release(context, wide);
+  return status;
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * LBVH (Lauterbach et al. 2009): boxes are parted where the highest bit of their Morton codes differs; every node finds its own range
+ * (Karras 2012), on the device or on the host, by the same text. */
+#include "bvh.h"
+
+#include "kernels/morton.h"
+
+stratus_status stratus_bvh_build_lbvh(stratus_bvh_build* build)
+{
+  _Static_assert(MORTON_LEAF == STRATUS_BVH_LEAF, "the kernel's children are the layout's");
+  build->root = 0;
+  if (stratus_device_takes_boxes(build->context, build->count)) {
+    return stratus_device_morton_hierarchy(build->context, build->codes, build->count, build->pairs);
+  }
+#pragma omp parallel for schedule(static) num_threads(build->context->threads)
+  for (uint32_t i = 0; i < build->count - 1; i++) {
+    uint32_t* child = build->pairs[i].child;
+    morton_children(build->codes, build->count, i, child, child + 1);
+  }
+  return STRATUS_OK;
+}
