@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The exact transform for one width of a lane and one instruction set (distance_field_lanes.h), included by distance_field_exact.c.
+ *
+ * One array holds both halves of a signed field: squared distances outside, minus those inside. That works after every axis, for where one
+ * half is not 0 the other one is. What a voxel looks for has distance 0 there: so `plus` rows hold what voxels outside look at, `minus` rows
+ * what those inside do.
+ *
+ * Along y distances are counted up and down the plane, with x in the lanes. Along x and z each vector looks outward from itself, n = 1, 2 ..,
+ * and keeps c = best - n^2, which needs one subtraction a step, no sum that could overflow, and tells when to stop: c <= 0 everywhere. */
+#include "distance_field_lanes.h"
+
+/* A thread's memory. Lines have `pad` values FAR on either side, so that x looks beyond the ends without asking. */
+typedef struct NAME(room) {
+  VALUE *plus, *minus; /* a row, at x = 0 */
+  VALUE *line, *up, *down, *spare; /* signed; padded to whole vectors */
+  VALUE *tile_plus, *tile_minus;
+  VALUE *column, *result;
+  uint64_t *any, *all; /* columns of a plane that hold an effective voxel; that hold nothing else */
+  field_hull* hull;
+} NAME(room);
+#define room NAME(room)
+
+typedef struct NAME(layout) {
+  int64_t pad, row, tile, longest;
+} NAME(layout);
+#define layout NAME(layout)
+
+FIELD_INLINE layout NAME(sizes)(const field_work* w)
+{
+  const int64_t nx = w->n[0], reach = nx < FAR_LINE ? nx : FAR_LINE;
+  return (layout){ .pad = (reach + 3 * LANES) / LANES * LANES,
+    .row = (nx + LANES - 1) / LANES * LANES,
+    .tile = w->n[2] * FIELD_TILE_VECTORS * LANES,
+    .longest = nx > w->n[2] ? nx : w->n[2] };
+}
+
+static FIELD_TARGET size_t NAME(room_bytes)(const field_work* w)
+{
+  const layout l = NAME(sizes)(w);
+  const int64_t values = 2 * (l.row + 2 * l.pad) + 4 * l.row + (w->is_signed ? 2 : 1) * l.tile + 2 * l.longest + LANES;
+  const int64_t bytes = values * (int64_t)sizeof(VALUE) + 2 * w->words * (int64_t)sizeof(uint64_t) +
+    (l.longest + 2) * (int64_t)sizeof(field_hull) + 8 * 64;
+  return (size_t)((bytes + 63) / 64 * 64);
+}
+
+static FIELD_TARGET room NAME(make_room)(const field_work* w, unsigned char* memory)
+{
+  const layout l = NAME(sizes)(w);
+  room r = { .hull = (field_hull*)(void*)memory };
+  memory += (size_t)(l.longest + 2) * sizeof(field_hull);
+  r.any = (uint64_t*)(void*)memory;
+  r.all = r.any + w->words;
+  VALUE* values = (VALUE*)(void*)(((uintptr_t)(r.all + w->words) + 63) / 64 * 64);
+  r.plus = values + l.pad;
+  r.minus = r.plus + l.row + 2 * l.pad;
+  r.line = r.minus + l.row + l.pad;
+  r.up = r.line + l.row;
+  r.down = r.up + l.row;
+  r.spare = r.down + l.row;
+  r.tile_plus = r.spare + l.row;
+  r.tile_minus = w->is_signed ? r.tile_plus + l.tile : r.tile_plus;
+  r.column = r.tile_minus + l.tile;
+  r.result = r.column + l.longest;
+  return r;
+}
+
+static FIELD_TARGET void NAME(clear_lines)(const field_work* w, const room* r)
+{
+  const layout l = NAME(sizes)(w);
+  for (VALUE* v = r->plus - l.pad; v < r->line; v++) {
+    *v = FAR;
+  }
+  for (int64_t x = 0; x < l.row; x++) {
+    r->line[x] = 0;
+  }
+}
+
+/* ---- lower envelope */
+
+/* Adds the parabola about u with height g to the hull of a run [first, end); returns its top. */
+FIELD_INLINE int64_t NAME(push)(field_hull* hull, int64_t top, int64_t u, int64_t g, int64_t first, int64_t end)
+{
+  while (top >= 0) {
+    const field_hull h = hull[top];
+    const int64_t old = h.start - h.at, now = h.start - u;
+    if (old * old + h.height <= now * now + g) {
+      break;
+    }
+    top--;
+  }
+  int64_t start = first;
+  if (top >= 0) {
+    const field_hull h = hull[top];
+    /* They cross at h.start or beyond, so the quotient is not negative; and of whole numbers below 2^53 it never rounds up to the next. */
+    start = 1 + (int64_t)((double)(u * u - h.at * h.at + g - h.height) / (double)(2 * (u - h.at)));
+  }
+  if (start < end) {
+    hull[++top] = (field_hull){ u, g, start };
+  }
+  return top;
+}
+
+/* One line of signed squared distances: each run of one sign sees itself and the zeros at its two ends, beyond which nothing is nearer. */
+static FIELD_TARGET void NAME(envelope_line)(const VALUE* s, int64_t n, field_hull* hull, VALUE* out)
+{
+  for (int64_t first = 0, end; first < n; first = end) {
+    end = first + 1;
+    if (s[first] == 0) {
+      out[first] = 0;
+      continue;
+    }
+    const int inside = s[first] < 0;
+    while (end < n && s[end] != 0 && (s[end] < 0) == inside) {
+      end++;
+    }
+    int64_t top = first > 0 ? NAME(push)(hull, -1, first - 1, 0, first, end) : -1;
+    for (int64_t i = first; i < end; i++) {
+      const int64_t height = inside ? -(int64_t)s[i] : s[i];
+      top = height < FAR ? NAME(push)(hull, top, i, height, first, end) : top;
+    }
+    top = end < n ? NAME(push)(hull, top, end, 0, first, end) : top;
+    for (int64_t i = end - 1; i >= first; i--) {
+      const int64_t away = top >= 0 ? i - hull[top].at : 0, sum = top >= 0 ? away * away + hull[top].height : FAR;
+      const VALUE far = sum < FAR ? (VALUE)sum : FAR;
+      out[i] = inside ? (VALUE)-far : far;
+      top -= top > 0 && i == hull[top].start;
+    }
+  }
+}
+
+/* ---- zigzag */
+
+typedef struct NAME(aim) {
+  vector c, inside; /* c = best - n^2 */
+  int kinds;        /* bit 0: some lane is outside and can still get nearer, bit 1: inside */
+  int64_t n;        /* the step that comes next */
+} NAME(aim);
+#define aim NAME(aim)
+
+FIELD_INLINE aim NAME(take_aim)(vector target)
+{
+  aim a;
+  a.inside = (vector)(target < 0);
+  a.c = NAME(flip)(target, a.inside);
+  a.kinds = NAME(positive)(target) | NAME(positive)(-a.inside) << 1;
+  a.n = 1;
+  return a;
+}
+
+/* What the kinds of `a` look for lies at first..last along a line. */
+FIELD_INLINE void NAME(range_of)(const aim* a, const field_range* range, int64_t* first, int64_t* last)
+{
+  const int some = a->kinds == 2, other = a->kinds != 1;
+  *first = range[some].first < range[other].first ? range[some].first : range[other].first;
+  *last = range[some].last > range[other].last ? range[some].last : range[other].last;
+}
+
+FIELD_INLINE void NAME(start_at)(aim* a, int64_t n)
+{
+  if (n > a->n) {
+    a->n = n > FAR_LINE ? FAR_LINE : n; /* where nothing is nearer than FAR */
+  }
+  a->c -= NAME(all)((VALUE)(a->n * a->n));
+}
+
+/* Looks at n*one and n*other from where it stands, for n up to `last`. */
+FIELD_INLINE void NAME(look)(aim* a, const VALUE* plus, const VALUE* minus, int64_t one, int64_t other, int64_t last)
+{
+  const VALUE* only = a->kinds == 1 ? plus : minus;
+  vector c = a->c;
+  int64_t n = a->n;
+  if (a->kinds != 3) {
+    for (; n <= last && NAME(positive)(c); n++) {
+      c = NAME(least)(c, NAME(least)(NAME(load)(only + n * one), NAME(load)(only + n * other)));
+      c -= NAME(all)((VALUE)(2 * n + 1));
+    }
+  } else {
+    for (; n <= last && NAME(positive)(c); n++) {
+      const vector out = NAME(least)(NAME(load)(plus + n * one), NAME(load)(plus + n * other));
+      const vector in = NAME(least)(NAME(load)(minus + n * one), NAME(load)(minus + n * other));
+      c = NAME(least)(c, NAME(select)(a->inside, in, out));
+      c -= NAME(all)((VALUE)(2 * n + 1));
+    }
+  }
+  a->c = c;
+  a->n = n;
+}
+
+/* Squared distances, at most FAR, without their sign. */
+FIELD_INLINE vector NAME(found)(const aim* a)
+{
+  return a->c + NAME(all)((VALUE)(a->n * a->n));
+}
+
+/* The vector at x of the row in r. Returns the steps taken. */
+FIELD_INLINE int64_t NAME(search_row)(const room* r, const field_range* range, int64_t x, VALUE* out)
+{
+  aim a = NAME(take_aim)(NAME(load)(r->line + x));
+  int64_t steps = 0;
+  if (a.kinds) {
+    int64_t first, last;
+    NAME(range_of)(&a, range, &first, &last);
+    const int64_t below = first - (x + LANES - 1), above = x - last;
+    const int64_t left = x + LANES - 1 - first, right = last - x;
+    NAME(start_at)(&a, below > above ? below : above);
+    steps = -a.n;
+    NAME(look)(&a, r->plus + x, r->minus + x, -1, 1, left > right ? left : right);
+    steps += a.n;
+    NAME(store)(out + x, NAME(flip)(NAME(found)(&a), a.inside));
+  } else {
+    NAME(store)(out + x, a.c);
+  }
+  return steps;
+}
+
+/* Entry k of a tile of `n`. Returns the steps taken. */
+FIELD_INLINE int64_t NAME(search_tile)(const VALUE* plus, const VALUE* minus, const field_range* range, int64_t k, vector* out)
+{
+  const VALUE *p = plus + k * LANES, *m = minus + k * LANES;
+  vector target = NAME(load)(p);
+  if (plus != minus) {
+    target -= NAME(load)(m);
+  }
+  aim a = NAME(take_aim)(target);
+  int64_t steps = 0;
+  if (a.kinds) {
+    int64_t first, last;
+    NAME(range_of)(&a, range, &first, &last);
+    const int64_t left = k - first, right = last - k;
+    NAME(start_at)(&a, left < 0 ? -left : -right);
+    steps = -a.n;
+    if (left > 0 && right > 0) {
+      NAME(look)(&a, p, m, -LANES, LANES, left < right ? left : right);
+    }
+    if (left > right) {
+      NAME(look)(&a, p, m, -LANES, -LANES, left);
+    } else {
+      NAME(look)(&a, p, m, LANES, LANES, right);
+    }
+    steps += a.n;
+    *out = NAME(flip)(NAME(found)(&a), a.inside);
+  } else {
+    *out = a.c;
+  }
+  return steps;
+}
+
+/* ---- along y and x: a plane */
+
+/* One step along y of signed distances: `before` in the last row, `inside` in this one. */
+FIELD_INLINE vector NAME(step)(vector before, vector inside, int is_signed)
+{
+  const vector cap = NAME(all)((VALUE)FAR_LINE);
+  if (!is_signed) {
+    return NAME(least)(before + 1, cap) & ~inside;
+  }
+  const vector same = NAME(flip)(before, inside); /* below 0: of the other kind, so this one is its neighbour */
+  return NAME(flip)(NAME(least)((same & (vector)(same > 0)) + 1, cap), inside);
+}
+
+/* The same in the first row. */
+FIELD_INLINE vector NAME(border)(vector inside, int is_signed)
+{
+  const vector cap = NAME(all)((VALUE)FAR_LINE);
+  if (!is_signed) {
+    return cap & ~inside;
+  }
+  return NAME(flip)(cap, inside);
+}
+
+/* Which columns of plane k hold what. Returns bit 0: some effective voxel, bit 1: some other. */
+static FIELD_TARGET int NAME(survey)(const field_work* w, const room* r, int64_t k, field_range* range)
+{
+  const int64_t nx = w->n[0];
+  const uint64_t* row = w->bits + k * w->n[1] * w->words;
+  memcpy(r->any, row, (size_t)w->words * sizeof *row);
+  memcpy(r->all, row, (size_t)w->words * sizeof *row);
+  for (int64_t j = 1; j < w->n[1]; j++) {
+    row += w->words;
+    for (int64_t i = 0; i < w->words; i++) {
+      r->any[i] |= row[i];
+      r->all[i] &= row[i];
+    }
+  }
+  int kinds = 0;
+  for (int64_t x = 0; x < nx; x++) {
+    const int holds[2] = { r->any[x >> 6] >> (x & 63) & 1, !(r->all[x >> 6] >> (x & 63) & 1) };
+    for (int kind = 0; kind < 2; kind++) {
+      if (holds[kind]) {
+        range[kind].first = kinds >> kind & 1 ? range[kind].first : x;
+        range[kind].last = x;
+        kinds |= 1 << kind;
+      }
+    }
+  }
+  return kinds;
+}
+
+static FIELD_TARGET void NAME(row)(const field_work* w, const room* r, const field_range* range, VALUE* field)
+{
+  const int64_t nx = w->n[0], vectors = (nx + LANES - 1) / LANES;
+  int envelope = w->method == STRATUS_FIELD_ENVELOPE;
+  if (FIELD_BITS != 16 && w->method == STRATUS_FIELD_EXACT && vectors >= 2 * FIELD_SAMPLES) {
+    int64_t steps = 0;
+    for (int64_t i = 0; i < FIELD_SAMPLES; i++) {
+      steps += NAME(search_row)(r, range, (2 * i + 1) * vectors / (2 * FIELD_SAMPLES) * LANES, r->spare);
+    }
+    envelope = steps > FIELD_SAMPLES * LANES * FIELD_STEPS_A_LANE;
+  }
+  if (envelope) {
+    NAME(envelope_line)(r->line, nx, r->hull, field);
+    return;
+  }
+  for (int64_t x = 0; x + LANES <= nx; x += LANES) {
+    NAME(search_row)(r, range, x, field);
+  }
+  if (nx % LANES) {
+    const int64_t x = nx / LANES * LANES;
+    NAME(search_row)(r, range, x, r->spare);
+    memcpy(field + x, r->spare + x, (size_t)(nx - x) * sizeof *field);
+  }
+}
+
+/* Row j on the way down: distances along y from both sides, squared, into r->line and what others see of them. */
+static FIELD_TARGET void NAME(square_row)(const field_work* w, const room* r, int first)
+{
+  const int64_t nx = w->n[0], row = (nx + LANES - 1) / LANES * LANES;
+  for (int64_t x = 0; x < row; x += LANES) {
+    const vector up = NAME(load)(r->line + x);
+    vector inside, sign = { 0 };
+    if (w->is_signed) {
+      inside = sign = (vector)(up < 0);
+    } else {
+      inside = (vector)(up == 0);
+    }
+    vector s;
+    if (first) {
+      s = NAME(border)(inside, w->is_signed);
+    } else {
+      s = NAME(step)(NAME(load)(r->down + x), inside, w->is_signed);
+    }
+    NAME(store)(r->down + x, s);
+    const vector d = NAME(least)(NAME(flip)(up, sign), NAME(flip)(s, sign)), squared = d * d;
+    NAME(store)(r->line + x, NAME(flip)(squared, sign));
+    NAME(store)(r->plus + x, squared & ~sign);
+    NAME(store)(r->minus + x, squared & sign);
+  }
+  for (int64_t x = nx; x < row; x++) {
+    r->line[x] = 0;
+    r->plus[x] = r->minus[x] = FAR;
+  }
+}
+
+static FIELD_TARGET void NAME(plane)(const field_work* w, unsigned char* memory, int64_t k)
+{
+  const room r = NAME(make_room)(w, memory);
+  const int64_t nx = w->n[0], ny = w->n[1];
+  VALUE* field = (VALUE*)w->values + k * nx * ny;
+  field_range range[2] = { { 0, 0 }, { 0, 0 } };
+  const int kinds = NAME(survey)(w, &r, k, range);
+  w->planes[k] = (uint8_t)kinds;
+  if (kinds != 3) {
+    const VALUE fill = kinds == 2 ? FAR : w->is_signed ? (VALUE)-FAR : 0;
+    for (int64_t i = 0; i < nx * ny; i++) {
+      field[i] = fill;
+    }
+    return;
+  }
+  NAME(clear_lines)(w, &r);
+  for (int64_t j = 0; j < ny; j++) {
+    const uint64_t* bits = w->bits + (k * ny + j) * w->words;
+    for (int64_t x = 0; x < nx; x += LANES) {
+      const vector inside = NAME(spread_bits)(bits, x);
+      if (j > 0) {
+        NAME(store)(r.up + x, NAME(step)(NAME(load)(r.up + x), inside, w->is_signed));
+      } else {
+        NAME(store)(r.up + x, NAME(border)(inside, w->is_signed));
+      }
+    }
+    memcpy(field + j * nx, r.up, (size_t)nx * sizeof *field);
+  }
+  for (int64_t j = ny - 1; j >= 0; j--) {
+    memcpy(r.line, field + j * nx, (size_t)nx * sizeof *field);
+    NAME(square_row)(w, &r, j == ny - 1);
+    NAME(row)(w, &r, range, field + j * nx);
+  }
+}
+
+/* ---- along z: columns */
+
+static FIELD_TARGET void NAME(envelope_tile)(
+  const field_work* w, const room* r, const VALUE* plus, const VALUE* minus, VALUE* field, int64_t lanes, int* far)
+{
+  const int64_t nz = w->n[2], plane = w->n[0] * w->n[1];
+  for (int64_t lane = 0; lane < lanes; lane++) {
+    for (int64_t k = 0; k < nz; k++) {
+      r->column[k] = plus == minus ? plus[k * LANES + lane] : (VALUE)(plus[k * LANES + lane] - minus[k * LANES + lane]);
+    }
+    NAME(envelope_line)(r->column, nz, r->hull, r->result);
+    for (int64_t k = 0; k < nz; k++) {
+      field[k * plane + lane] = r->result[k];
+      *far |= r->result[k] >= FAR || r->result[k] <= -FAR;
+    }
+  }
+}
+
+/* The tile's first `lanes` lanes, into the field. *far becomes 1 where FAR comes out. */
+static FIELD_TARGET void NAME(tile)(
+  const field_work* w, const room* r, const VALUE* plus, const VALUE* minus, VALUE* field, int64_t lanes, int* far)
+{
+  const int64_t nz = w->n[2], plane = w->n[0] * w->n[1];
+  int envelope = w->method == STRATUS_FIELD_ENVELOPE;
+  vector out, farthest = { 0 };
+  if (FIELD_BITS != 16 && w->method == STRATUS_FIELD_EXACT && nz >= 2 * FIELD_SAMPLES) {
+    int64_t steps = 0;
+    for (int64_t i = 0; i < FIELD_SAMPLES; i++) {
+      steps += NAME(search_tile)(plus, minus, w->range, (2 * i + 1) * nz / (2 * FIELD_SAMPLES), &out);
+    }
+    envelope = steps > FIELD_SAMPLES * LANES * FIELD_STEPS_A_LANE;
+  }
+  if (envelope) {
+    NAME(envelope_tile)(w, r, plus, minus, field, lanes, far);
+    return;
+  }
+  for (int64_t k = 0; k < nz; k++) {
+    NAME(search_tile)(plus, minus, w->range, k, &out);
+    if (lanes == LANES) {
+      NAME(store)(field + k * plane, out);
+    } else {
+      memcpy(field + k * plane, &out, (size_t)lanes * sizeof *field);
+    }
+    farthest = NAME(least)(farthest, NAME(least)(out, -out));
+  }
+  *far |= NAME(positive)(-farthest - NAME(all)((VALUE)(FAR - 1)));
+}
+
+/* Columns of voxels first .. of a plane, FIELD_TILE_VECTORS vectors of them. */
+static FIELD_TARGET void NAME(columns)(field_work* w, unsigned char* memory, int64_t first)
+{
+  const room r = NAME(make_room)(w, memory);
+  const int64_t nz = w->n[2], plane = w->n[0] * w->n[1];
+  VALUE* field = (VALUE*)w->values + first;
+  const int64_t left = plane - first, most = FIELD_TILE_VECTORS * LANES, count = left < most ? left : most;
+  const int64_t apart = nz * LANES;
+  for (int64_t k = 0; k < nz; k++) {
+    for (int64_t v = 0; v * LANES < count; v++) {
+      const int64_t lanes = count - v * LANES, at = v * apart + k * LANES;
+      vector s = { 0 };
+      if (lanes >= LANES) {
+        s = NAME(load)(field + k * plane + v * LANES);
+      } else {
+        memcpy(&s, field + k * plane + v * LANES, (size_t)lanes * sizeof *field);
+      }
+      if (w->is_signed) {
+        NAME(store)(r.tile_plus + at, s & (vector)(s > 0));
+        NAME(store)(r.tile_minus + at, -(s & (vector)(s < 0)));
+      } else {
+        NAME(store)(r.tile_plus + at, s);
+      }
+    }
+  }
+  int far = 0;
+  for (int64_t v = 0; v * LANES < count; v++) {
+    const int64_t lanes = count - v * LANES;
+    NAME(tile)(w, &r, r.tile_plus + v * apart, r.tile_minus + v * apart, field + v * LANES, lanes < LANES ? lanes : LANES, &far);
+  }
+  if (far) {
+    stratus_field_is_far(w);
+  }
+}
+
+static const field_passes NAME(passes) = { FIELD_BITS / 8, (int64_t)FIELD_TILE_VECTORS * LANES, NAME(room_bytes), NAME(plane), NAME(columns) };
+
+#undef room
+#undef layout
+#undef aim
+#undef vector
+#undef NAME
+#undef FIELD_TARGET
+#undef FIELD_INLINE
+#undef VECTOR_BYTES
+#undef VALUE
+#undef FAR_LINE
+#undef FAR
+#undef LANES
+#undef FIELD_BITS
+#undef FIELD_ISA

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Distance fields on the context's OpenCL device: buffers, arguments and launches of distance_field.cl and jump_flooding.cl. */
+#include "device.h"
+#include "jump_flooding.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define GROUP 64 /* items along x of a group */
+#define DEFINES_MAX 64
+
+typedef struct argument {
+  size_t size;
+  const void* value;
+} argument;
+
+#define ARGUMENT(x)                                                                                                                        \
+  {                                                                                                                                        \
+    sizeof(x), &(x)                                                                                                                        \
+  }
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
+static stratus_status run_kernel(stratus_context* context, const char* source, const char* defines, const char* name,
+  const argument* arguments, size_t count, const int64_t items[3])
+{
+  cl_kernel kernel;
+  TRY(stratus_device_kernel(context, source, defines, name, &kernel));
+  for (size_t i = 0; i < count; i++) {
+    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
+  }
+  const size_t local[3] = { GROUP, 1, 1 };
+  const size_t global[3] = { ((size_t)items[0] + GROUP - 1) / GROUP * GROUP, (size_t)items[1], (size_t)items[2] };
+  return stratus_device_run(context, kernel, 3, global, local);
+}
+
+static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
+{
+  return stratus_device_buffer(context, CL_MEM_READ_WRITE, bytes, NULL, false, buffer);
+}
+
+/* ---- exact */
+
+static stratus_status run_axes(stratus_context* context, const stratus_bits* set, int is_signed, int wide, cl_mem bits, const cl_mem field[2])
+{
+  const cl_long nx = set->n[0], ny = set->n[1], nz = set->n[2], words = set->words;
+  const cl_int along_x = 0, along_z = 2, with_sign = is_signed;
+  const char* defines = wide ? "-DWIDE=1" : "-DWIDE=0";
+  const argument columns[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words), ARGUMENT(with_sign),
+    ARGUMENT(field[0]) };
+  const argument x[] = { ARGUMENT(field[0]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_x), ARGUMENT(field[1]) };
+  const argument z[] = { ARGUMENT(field[1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_z), ARGUMENT(field[0]) };
+  TRY(run_kernel(context, "distance_field", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, nz, 1 }));
+  TRY(run_kernel(context, "distance_field", defines, "search", x, COUNT_OF(x), set->n));
+  return run_kernel(context, "distance_field", defines, "search", z, COUNT_OF(z), set->n);
+}
+
+stratus_status stratus_device_field_exact(stratus_context* context, const stratus_bits* set, stratus_field* field)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem bits = NULL, buffers[2] = { NULL, NULL };
+  void* values = NULL;
+  const size_t count = (size_t)(set->n[0] * set->n[1] * set->n[2]);
+  const size_t words = (size_t)(set->words * set->n[1] * set->n[2]);
+  const int wide = stratus_field_is_wide(set->n);
+  const size_t size = wide ? sizeof(int64_t) : sizeof(int32_t);
+
+  TRY_CLEANUP(stratus_allocate(context, count, size, &values));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, words * sizeof(uint64_t), set->bits, true, &bits));
+  TRY_CLEANUP(make_buffer(context, count * size, &buffers[0]));
+  TRY_CLEANUP(make_buffer(context, count * size, &buffers[1]));
+  TRY_CLEANUP(run_axes(context, set, field->is_signed, wide, bits, buffers));
+  TRY_CLEANUP(stratus_device_read(context, buffers[0], 0, count * size, values));
+  field->values = values;
+  field->bytes = (int)size;
+  values = NULL;
+
+cleanup:
+  stratus_release(context, values);
+  stratus_device_buffer_release(bits);
+  stratus_device_buffer_release(buffers[0]);
+  stratus_device_buffer_release(buffers[1]);
+  return status;
+}
+
+/* ---- floodings */
+
+struct flood_device {
+  int64_t n[3];
+  int wide;
+  size_t groups;
+  cl_mem from, to, sums;
+  cl_uint* host_sums; /* two a group */
+};
+
+stratus_status stratus_flood_device_create(stratus_context* context, const int64_t n[3], int wide, const uint32_t* from, flood_device** out)
+{
+  stratus_status status = STRATUS_OK;
+  flood_device* device = NULL;
+  void* memory = NULL;
+  const size_t rows = (size_t)(n[1] * n[2]), bytes = rows * (size_t)n[0] * sizeof(uint32_t);
+
+  TRY(stratus_allocate_zero(context, 1, sizeof *device, &memory));
+  device = memory;
+  memcpy(device->n, n, sizeof device->n);
+  device->wide = wide;
+  device->groups = rows * (((size_t)n[0] + GROUP - 1) / GROUP);
+  TRY_CLEANUP(stratus_allocate(context, device->groups, 2 * sizeof(cl_uint), &memory));
+  device->host_sums = memory;
+  TRY_CLEANUP(make_buffer(context, bytes, &device->from));
+  TRY_CLEANUP(make_buffer(context, bytes, &device->to));
+  TRY_CLEANUP(make_buffer(context, device->groups * 2 * sizeof(cl_uint), &device->sums));
+  TRY_CLEANUP(stratus_device_write(context, device->from, 0, bytes, from));
+  *out = device;
+  device = NULL;
+
+cleanup:
+  stratus_flood_device_destroy(context, device);
+  return status;
+}
+
+stratus_status stratus_flood_device_pass(stratus_context* context, flood_device* device, int step, flood_count* count)
+{
+  const flood_layout layout = flood_shifts(device->n);
+  const cl_long nx = device->n[0], ny = device->n[1], nz = device->n[2];
+  const cl_int step_argument = step, shift_y = layout.shift_y, shift_z = layout.shift_z;
+  char defines[DEFINES_MAX];
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DWIDE=%d -DGROUP=%d", device->wide, GROUP);
+  const argument arguments[] = { ARGUMENT(device->from), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(step_argument),
+    ARGUMENT(shift_y), ARGUMENT(shift_z), ARGUMENT(device->to), ARGUMENT(device->sums) };
+  TRY(run_kernel(context, "jump_flooding", defines, "flood", arguments, COUNT_OF(arguments), device->n));
+  TRY(stratus_device_read(context, device->sums, 0, device->groups * 2 * sizeof(cl_uint), device->host_sums));
+  *count = (flood_count){ 0, 0 };
+  for (size_t group = 0; group < device->groups; group++) {
+    count->updated += device->host_sums[2 * group];
+    count->ratios += device->host_sums[2 * group + 1];
+  }
+  const cl_mem swap = device->from;
+  device->from = device->to;
+  device->to = swap;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_flood_device_read(stratus_context* context, const flood_device* device, uint32_t* to)
+{
+  return stratus_device_read(context, device->from, 0, (size_t)(device->n[0] * device->n[1] * device->n[2]) * sizeof(uint32_t), to);
+}
+
+void stratus_flood_device_destroy(stratus_context* context, flood_device* device)
+{
+  if (device) {
+    stratus_device_buffer_release(device->from);
+    stratus_device_buffer_release(device->to);
+    stratus_device_buffer_release(device->sums);
+    stratus_release(context, device->host_sums);
+    stratus_release(context, device);
+  }
+}
