@@ -2,7 +2,7 @@
  * First hits of a batch of rays: which way, which threads. */
 #include "first_hit.h"
 
-#include "../kernels/first_hit.h"
+#include "../kernels/first_hit_arguments.h"
 #include "device.h"
 #include "ray_cast.h"
 

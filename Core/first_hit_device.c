@@ -3,7 +3,7 @@
  * each batch (a device that shares memory with the host reads it in place). */
 #include "first_hit.h"
 
-#include "../kernels/first_hit.h"
+#include "../kernels/first_hit_arguments.h"
 #include "device.h"
 #include "ray_cast.h"
 

@@ -14,60 +14,101 @@
 
 /* ---------------------------------------------------------------- in */
 
-static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
+/* Loops over a chunk, written so that the compiler makes vectors of them. */
+#define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
+
+static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+
+/* The ray in voxel coordinates; 0 if all of its numbers can be used. */
+static double transform(const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* first, double* last)
 {
   const double* m = batch->to_voxels;
-  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], finite = 0.0;
-  chunk->count = count;
-  for (int i = 0; i < count; ++i) {
-    const double *o = rays[i].origin, *d = rays[i].direction;
-    for (int a = 0; a < 3; ++a) {
-      chunk->from[a][i] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
-      chunk->along[a][i] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+  const int n = chunk->count;
+  double finite = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    double *const from = chunk->from[a], *const along = chunk->along[a];
+    const double x = m[4 * a], y = m[4 * a + 1], z = m[4 * a + 2], w = m[4 * a + 3];
+    EACH_RAY
+    {
+      from[i] = x * rays[i].origin[0] + y * rays[i].origin[1] + z * rays[i].origin[2] + w;
+      along[i] = x * rays[i].direction[0] + y * rays[i].direction[1] + z * rays[i].direction[2];
     }
+  }
+  for (int i = 0; i < n; ++i) {
     first[i] = rays[i].t_min;
     last[i] = rays[i].t_max;
   }
-  for (int i = 0; i < count; ++i) {
+#pragma omp simd reduction(+ : finite)
+  for (int i = 0; i < n; ++i) {
     const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
     finite += 0.0 * (chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length);
-    finite += last[i] == last[i] ? 0.0 : NAN;
+    finite += last[i] == last[i] ? 0.0 : 1.0;
   }
-  if (!(finite == 0.0)) {
-    for (int i = 0; i < count; ++i) {
-      const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
-      if (!isfinite(chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length) || isnan(last[i])) {
-        *bad = i;
-        return false;
-      }
+  return finite;
+}
+
+static int find_bad(const stratus_hit_chunk* chunk, const double* first, const double* last)
+{
+  int i = 0;
+  for (; i < chunk->count - 1; ++i) {
+    const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
+    if (!isfinite(chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length) || isnan(last[i])) {
+      break;
     }
   }
+  return i;
+}
+
+/* Cuts each ray to the root's box. */
+static void clip(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, double* first, double* last)
+{
+  const int n = chunk->count;
   for (int a = 0; a < 3; ++a) {
     const double lo = batch->lo[a], hi = batch->hi[a];
-    for (int i = 0; i < count; ++i) {
-      const double d = chunk->along[a][i], inverse = 1.0 / (fabs(d) < 1e-300 ? 1e-300 : d);
-      const double t0 = (lo - chunk->from[a][i]) * inverse, t1 = (hi - chunk->from[a][i]) * inverse;
-      const double enter = t0 < t1 ? t0 : t1, leave = t0 < t1 ? t1 : t0;
-      first[i] = enter > first[i] ? enter : first[i];
-      last[i] = leave < last[i] ? leave : last[i];
+    const double *const from = chunk->from[a], *const along = chunk->along[a];
+    EACH_RAY
+    {
+      const double d = along[i], inverse = 1.0 / (fabs(d) < 1e-300 ? 1e-300 : d);
+      const double t0 = (lo - from[i]) * inverse, t1 = (hi - from[i]) * inverse;
+      first[i] = larger(first[i], smaller(t0, t1));
+      last[i] = smaller(last[i], larger(t0, t1));
     }
   }
-  for (int i = 0; i < count; ++i) {
-    const double x = fabs(chunk->along[0][i]), y = fabs(chunk->along[1][i]), z = fabs(chunk->along[2][i]);
-    const double most = x > y ? (x > z ? x : z) : (y > z ? y : z);
-    const double scale = 1.0 / most, length = (last[i] - first[i]) * most;
-    /* The box is entered a hair early and left a hair late: what begins or ends within rounding of its border is looked at. */
-    const double roundoff = 1e-12 * (fabs(first[i]) + fabs(last[i] < 1e300 ? last[i] : 0.0)) * most;
-    chunk->end[i] = length + roundoff >= 0.0 ? (float)(length < 1e30 ? length : 1e30) + 8.0f * batch->slack : -1.0f;
-    for (int a = 0; a < 3; ++a) {
-      const double p = chunk->from[a][i] + first[i] * chunk->along[a][i];
-      const double in = p < batch->lo[a] ? batch->lo[a] : p > batch->hi[a] - 1.0 ? (p >= batch->hi[a] ? batch->hi[a] - 1.0 : p) : p;
-      const double d = chunk->along[a][i] * scale;
-      const float along = (float)(d >= 0.0 ? (d < 1e-30 ? 1e-30 : d) : (d > -1e-30 ? -1e-30 : d));
-      chunk->o[a][i] = (float)p;
-      chunk->cell[a][i] = (int)in;
-      chunk->d[a][i] = along;
-      chunk->inverse[a][i] = 1.0f / along;
+}
+
+static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
+{
+  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], scale[STRATUS_HIT_CHUNK];
+  const int n = count;
+  const float slack = 8.0f * batch->slack;
+  chunk->count = count;
+  if (!(transform(batch, rays, chunk, first, last) == 0.0)) {
+    *bad = find_bad(chunk, first, last);
+    return false;
+  }
+  clip(batch, chunk, first, last);
+  EACH_RAY
+  {
+    const double most = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
+    /* The box is left a hair late: what begins or ends within rounding of its border is looked at. */
+    const double hair = 1e-12 * (fabs(first[i]) + smaller(fabs(last[i]), 1e300)) * most, length = (last[i] - first[i]) * most;
+    chunk->end[i] = length + hair >= 0.0 ? (float)smaller(length, 1e30) + slack : -1.0f;
+    scale[i] = 1.0 / most;
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = batch->lo[a], inside = batch->hi[a] - 0.5; /* in the last voxel */
+    const double *const from = chunk->from[a], *const along = chunk->along[a];
+    float *const o = chunk->o[a], *const d = chunk->d[a], *const inverse = chunk->inverse[a];
+    int* const cell = chunk->cell[a];
+    EACH_RAY
+    {
+      const double p = from[i] + first[i] * along[i];
+      o[i] = (float)p;
+      cell[i] = (int)smaller(larger(p, lo), inside);
+      const float unit = (float)(along[i] * scale[i]);
+      d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
+      inverse[i] = 1.0f / d[i];
     }
   }
   return true;

@@ -8,22 +8,8 @@
 #ifndef STRATUS_FIRST_HIT_H
 #define STRATUS_FIRST_HIT_H
 
+#include "first_hit_arguments.h"
 #include "gather.h"
-
-/* The field and what is known of all rays; 4-byte scalars, the same bytes on host and device. */
-typedef struct stratus_hit_arguments {
-  int at[3], cells[3]; /* in cells */
-  int row_start;       /* first of rows[] */
-  int octants, entry_bytes, cell_log2;
-  int count; /* rays */
-  float slack;
-} stratus_hit_arguments;
-#define STRATUS_HIT_ARGUMENTS_WORDS 12
-
-/* What became of a ray. */
-#define STRATUS_HIT_NONE 0
-#define STRATUS_HIT_VOXEL 1
-#define STRATUS_HIT_DOUBTFUL 2
 
 typedef struct stratus_hit_packet {
   vfloat o[3], d[3], inverse[3];
@@ -89,13 +75,17 @@ INLINE void hit_step(
   }
   const vint row = (block[1] - vi_set(a->at[1])) + (block[2] - vi_set(a->at[2])) * vi_set(a->cells[1]);
   const vint index = (block[0] - vi_set(a->at[0])) + row * vi_set(a->cells[0]);
-  const vint entry = v_gather_bytes(entries, a->entry_bytes == 2 ? index + index : index + index + index, k->live);
+  const vint entry = v_gather_bytes(entries, index * vi_set(a->entry_bytes), k->live);
   const vmask occupied = k->live & vi_zero(entry & low);
   k->visited = vi_select(k->live, k->visited + one, k->visited);
   vint leap;
   if (a->octants) {
     const vint code = (entry >> k->octant_shift) & low;
-    leap = a->entry_bytes == 2 ? (one << code) >> one : ((vi_set(2) + (code & one)) << (code >> one)) >> one;
+    if (a->entry_bytes == 2) {
+      leap = (one << code) >> one;
+    } else {
+      leap = ((vi_set(2) + (code & one)) << (code >> one)) >> one;
+    }
   } else {
     leap = (entry & vi_set(0xffff)) >> vi_set(2);
   }
@@ -107,7 +97,7 @@ INLINE void hit_step(
     vmask found = occupied;
     if (a->cell_log2) {
       const vint number = v_gather_ints(rows, row + vi_set(a->row_start), occupied) +
-        ((a->entry_bytes == 2 ? entry & vi_set(0xffff) : entry & vi_set(0xffffff)) >> vi_set(a->entry_bytes));
+        ((entry & vi_set(a->entry_bytes == 2 ? 0xffff : 0xffffff)) >> vi_set(a->entry_bytes));
       const vint three = vi_set(3);
       const vint bit = (k->cell[0] & three) | (k->cell[1] & three) << vi_set(2) | (k->cell[2] & three) << vi_set(4);
       const vint word = v_gather_ints(masks, number + number + (bit >> vi_set(5)), occupied);
