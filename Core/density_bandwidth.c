@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The bandwidth of density by a rule of thumb (Guo et al. 2025, eq. 3 and 4): spread of the voxels' distances to their mean place, over the
+ * fifth root of their number. Sums run in chunks that depend on the number of bricks alone, so that threads change no bit. */
+#include "density.h"
+#include "tree.h"
+
+#define CHUNKS 64
+#define BINS 4096 /* of a histogram of distances; three refinements leave 2^-36 of the largest squared distance */
+
+/* Calls `body` with the offset (x, y, z), in voxels from `origin`, of every voxel of brick `brick`. */
+#define FOR_EACH_VOXEL(brick, origin, x, y, z, body)                                                                                       \
+  for (uint64_t bits = (brick)->mask; bits; bits &= bits - 1) {                                                                            \
+    const int bit = __builtin_ctzll(bits);                                                                                                 \
+    const double x = STRATUS_BRICK * (brick)->at[0] + (bit & 3) - (origin)[0];                                                             \
+    const double y = STRATUS_BRICK * (brick)->at[1] + (bit >> 2 & 3) - (origin)[1];                                                        \
+    const double z = STRATUS_BRICK * (brick)->at[2] + (bit >> 4) - (origin)[2];                                                            \
+    body                                                                                                                                   \
+  }
+
+/* Whole numbers: the mean is right to the last bit, in any order. Returns the number of voxels. */
+static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean[3])
+{
+  int64_t voxels = 0, sum[3] = { 0, 0, 0 };
+  for (int64_t b = 0; b < count; b++) {
+    for (uint64_t bits = bricks[b].mask; bits; bits &= bits - 1) {
+      const int bit = __builtin_ctzll(bits);
+      voxels++;
+      sum[0] += STRATUS_BRICK * bricks[b].at[0] + (bit & 3);
+      sum[1] += STRATUS_BRICK * bricks[b].at[1] + (bit >> 2 & 3);
+      sum[2] += STRATUS_BRICK * bricks[b].at[2] + (bit >> 4);
+    }
+  }
+  for (int a = 0; a < 3; a++) {
+    mean[a] = voxels ? (double)sum[a] / (double)voxels : 0.0;
+  }
+  return voxels;
+}
+
+/* Standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances count from the first one's: a shell's differ
+ * by little, and squares of the whole would lose that. */
+static double find_deviation(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double* largest)
+{
+  double sums[CHUNKS], squares[CHUNKS], most[CHUNKS], shift = 0.0;
+  FOR_EACH_VOXEL (bricks, mean, x, y, z, { shift = sqrt(x * x + y * y + z * z); })
+#pragma omp parallel for schedule(static) num_threads(context->threads) if (count >= DENSITY_PARALLEL)
+  for (int chunk = 0; chunk < CHUNKS; chunk++) {
+    double sum = 0.0, square = 0.0, top = 0.0;
+    for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; b++) {
+      FOR_EACH_VOXEL (bricks + b, mean, x, y, z, {
+        const double squared = x * x + y * y + z * z;
+        const double distance = sqrt(squared) - shift;
+        sum += distance;
+        square += distance * distance;
+        top = squared > top ? squared : top;
+      })
+    }
+    sums[chunk] = sum;
+    squares[chunk] = square;
+    most[chunk] = top;
+  }
+  double sum = 0.0, square = 0.0;
+  *largest = 0.0;
+  for (int chunk = 0; chunk < CHUNKS; chunk++) {
+    sum += sums[chunk];
+    square += squares[chunk];
+    *largest = most[chunk] > *largest ? most[chunk] : *largest;
+  }
+  const double average = sum / (double)voxels, variance = square / (double)voxels - average * average;
+  return variance > 0.0 ? sqrt(variance) : 0.0;
+}
+
+/* Voxels whose squared distance to `mean` is below `limit`. */
+static int64_t count_below(stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double limit)
+{
+  int64_t below = 0;
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : below) if (count >= DENSITY_PARALLEL)
+  for (int64_t b = 0; b < count; b++) {
+    FOR_EACH_VOXEL (bricks + b, mean, x, y, z, { below += x * x + y * y + z * z < limit; })
+  }
+  return below;
+}
+
+/* Counts the squared distances in [low, high) by bin. Returns how many are below low. */
+static int64_t fill_bins(stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double low, double high,
+  int64_t bins[BINS])
+{
+  const double scale = BINS / (high - low);
+  int64_t below = 0;
+  for (int i = 0; i < BINS; i++) {
+    bins[i] = 0;
+  }
+#pragma omp parallel num_threads(context->threads) if (count >= DENSITY_PARALLEL)
+  {
+    uint32_t own[BINS] = { 0 };
+    int64_t own_below = 0;
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < count; b++) {
+      FOR_EACH_VOXEL (bricks + b, mean, x, y, z, {
+        const double place = (x * x + y * y + z * z - low) * scale;
+        own_below += place < 0.0;
+        if (place >= 0.0 && place < BINS) {
+          own[(int)place]++;
+        }
+      })
+    }
+#pragma omp critical(stratus_density_bins)
+    {
+      below += own_below;
+      for (int i = 0; i < BINS; i++) {
+        bins[i] += own[i];
+      }
+    }
+  }
+  return below;
+}
+
+/* The distance that as many voxels are nearer than as are farther (of an even number the upper one of the middle two). */
+static double find_median(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double largest)
+{
+  int64_t bins[BINS];
+  double low = 0.0, high = largest * (1.0 + 1e-9);
+  for (int refinement = 0; refinement < 3 && low < high; refinement++) {
+    int64_t before = fill_bins(context, bricks, count, mean, low, high, bins);
+    const double width = (high - low) / BINS;
+    int bin = 0;
+    while (bin < BINS - 1 && before + bins[bin] <= voxels / 2) {
+      before += bins[bin++];
+    }
+    low += width * bin;
+    high = low + width;
+  }
+  return sqrt(0.5 * (low + high));
+}
+
+stratus_status stratus_density_bandwidth_of(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, double* bandwidth, double* raw)
+{
+  const double widen = sqrt(1.0 / log(2.0));
+  double mean[3], largest, printed = 0.0;
+  const int64_t voxels = find_mean(bricks, count, mean);
+  if (voxels >= 2) {
+    double spread = find_deviation(context, bricks, count, voxels, mean, &largest);
+    /* The median is looked for only where it is the lesser: where more than half of the voxels are that near. */
+    const double near = spread / widen;
+    if (count_below(context, bricks, count, mean, near * near) > voxels / 2) {
+      const double median = find_median(context, bricks, count, voxels, mean, largest);
+      spread = fmin(spread, widen * median);
+    }
+    printed = 0.9 * spread * pow((double)voxels, -0.2);
+  }
+  *bandwidth = fmax(printed, 1.0);
+  if (raw) {
+    *raw = printed;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_density_bandwidth(stratus_context* context, const stratus_voxels* voxels, double* bandwidth, double* raw)
+{
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!voxels || !bandwidth) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", voxels ? "bandwidth" : "voxels");
+  }
+  return stratus_density_bandwidth_of(context, voxels->bricks, voxels->brick_count, bandwidth, raw);
+}

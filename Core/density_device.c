@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The sums of density_rows.c on the context's OpenCL device: buffers, arguments and launches of kernels/density.cl. */
+#include "density.h"
+#include "device.h"
+
+#define GROUP 64 /* as in the kernel: an item for each of a brick's voxels */
+
+typedef struct argument {
+  size_t size;
+  const void* value;
+} argument;
+
+#define ARGUMENT(x)                                                                                                                        \
+  {                                                                                                                                        \
+    sizeof(x), &(x)                                                                                                                        \
+  }
+
+typedef struct density_buffers {
+  cl_mem bricks, start, rows, table, sums;
+} density_buffers;
+
+bool stratus_device_takes_density(const stratus_context* context, const density_plan* plan, int64_t count, int64_t voxels)
+{
+  const size_t largest = stratus_device_largest_allocation(context->device);
+  return count > 0 && (size_t)count <= largest / sizeof(stratus_brick) && (size_t)voxels <= largest / sizeof(uint64_t) &&
+    (size_t)count + 1 <= largest / sizeof(int64_t) && plan->table_size <= largest / sizeof(uint32_t);
+}
+
+static stratus_status make_buffers(
+  stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, density_buffers* b)
+{
+  const size_t values = (size_t)(plan->exact ? start[count] : count);
+  TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)count * sizeof *bricks, bricks, true, &b->bricks));
+  TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, plan->table_size * sizeof *plan->table, plan->table, true, &b->table));
+  TRY(stratus_device_buffer(context, CL_MEM_READ_WRITE, values * sizeof(uint64_t), NULL, false, &b->sums));
+  if (plan->exact) {
+    TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, ((size_t)count + 1) * sizeof *start, start, true, &b->start));
+    TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)plan->row_count * sizeof *plan->rows, plan->rows, true, &b->rows));
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status run_sums(stratus_context* context, const density_plan* plan, int64_t count, const density_buffers* b)
+{
+  const cl_ulong bricks = (cl_ulong)count;
+  const size_t local = GROUP, items = plan->exact ? (size_t)count * GROUP : ((size_t)count + GROUP - 1) / GROUP * GROUP;
+  const size_t side = (size_t)(STRATUS_BRICK * (2 * plan->reach + 1));
+  const argument exact[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(b->start), ARGUMENT(plan->reach), ARGUMENT(plan->radius),
+    ARGUMENT(plan->width), ARGUMENT(plan->row_count), ARGUMENT(b->rows), ARGUMENT(b->table), ARGUMENT(b->sums),
+    { side * side * sizeof(cl_ulong), NULL } };
+  const argument binned[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(plan->reach), ARGUMENT(b->table), ARGUMENT(b->sums) };
+  const argument* const arguments = plan->exact ? exact : binned;
+  const unsigned argument_count = plan->exact ? sizeof exact / sizeof *exact : sizeof binned / sizeof *binned;
+  cl_kernel kernel;
+  TRY(stratus_device_kernel(context, "density", "", plan->exact ? "exact" : "binned", &kernel));
+  for (unsigned i = 0; i < argument_count; i++) {
+    TRY(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
+  }
+  return stratus_device_run(context, kernel, 1, &items, &local);
+}
+
+stratus_status stratus_device_density(stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count,
+  const int64_t* start, uint64_t* sums)
+{
+  stratus_status status = STRATUS_OK;
+  density_buffers b = { .bricks = NULL };
+  TRY_CLEANUP(make_buffers(context, plan, bricks, count, start, &b));
+  TRY_CLEANUP(run_sums(context, plan, count, &b));
+  TRY_CLEANUP(stratus_device_read(context, b.sums, 0, (size_t)(plan->exact ? start[count] : count) * sizeof *sums, sums));
+
+cleanup:
+  stratus_device_buffer_release(b.bricks);
+  stratus_device_buffer_release(b.start);
+  stratus_device_buffer_release(b.rows);
+  stratus_device_buffer_release(b.table);
+  stratus_device_buffer_release(b.sums);
+  return status;
+}
