@@ -50,6 +50,9 @@ stratus_status stratus_bvh_build_agglomerative(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_k_means(stratus_bvh_build* build);
 
+/* bvh_density_peaks.c: each box's cluster by rank, numbered in the order of ranks; *clusters: how many. */
+stratus_status stratus_bvh_density_clusters(const stratus_bvh_build* build, uint32_t* cluster, uint32_t* clusters);
+
 /* A box and its rank, where a builder moves boxes. */
 typedef struct stratus_bvh_item {
   stratus_box box;

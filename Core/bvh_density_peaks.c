@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Clustering by density peaks (Rodriguez & Laio 2014): a box's density is how many boxes lie within a cutoff distance, delta how far the nearest one of
  * higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its nearest denser
- * neighbour. Over the clusters stands an agglomerative tree, in each a SAH one.
+ * neighbour.
  *
  * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so none
  * looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
@@ -279,82 +279,6 @@ static stratus_status find_clusters(const density_peaks* p, uint32_t* number, ui
   return STRATUS_OK;
 }
 
-/* ---- from clusters to a tree */
-
-typedef struct cluster_lists {
-  uint32_t count;
-  uint32_t *start, *room, **child;
-  stratus_box* boxes;
-  stratus_bvh_pair* pairs;
-} cluster_lists;
-
-/* Items by cluster, and each cluster's box. */
-static void sort_items(const density_peaks* p, const cluster_lists* c, const stratus_bvh_item* from, stratus_bvh_item* to)
-{
-  memset(c->start, 0, (c->count + 1) * sizeof *c->start);
-  for (uint32_t s = 0; s < p->sites; s++) {
-    c->start[p->cluster[s] + 1] += p->first[s + 1] - p->first[s];
-  }
-  for (uint32_t i = 0; i < c->count; i++) {
-    c->start[i + 1] += c->start[i];
-    c->room[i] = c->start[i];
-    c->boxes[i] = stratus_box_none();
-  }
-  for (uint32_t s = 0; s < p->sites; s++) {
-    for (uint32_t i = p->first[s]; i < p->first[s + 1]; i++) {
-      stratus_box_add(c->boxes + p->cluster[s], &from[i].box);
-      to[c->room[p->cluster[s]]++] = from[i];
-    }
-  }
-}
-
-static stratus_status join_clusters(const density_peaks* p, const cluster_lists* c, stratus_bvh_item* items, uint32_t* root)
-{
-  stratus_status status = STRATUS_OK;
-  const stratus_bvh_build* build = p->build;
-  stratus_bvh_item* sorted = NULL;
-  uint32_t top = 0;
-  TRY(stratus_bvh_items_create(build, &sorted));
-  sort_items(p, c, items, sorted);
-  TRY_CLEANUP(stratus_bvh_agglomerate(build->context, STRATUS_BVH_EDGES, c->boxes, c->count, c->pairs, &top));
-  const stratus_bvh_join join = { c->count, c->pairs, top, c->start, c->child, c->room };
-  stratus_bvh_join_ranges(&join, sorted, items, build->pairs, root);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < c->count; i++) {
-    stratus_bvh_split_items(sorted, c->start[i], c->start[i + 1], 0, build->max_depth, build->pairs, c->child[i]);
-  }
-
-cleanup:
-  stratus_release(build->context, sorted);
-  return status;
-}
-
-static stratus_status build_over_clusters(const density_peaks* p, uint32_t clusters, stratus_bvh_item* items, uint32_t* root)
-{
-  stratus_status status = STRATUS_OK;
-  stratus_context* context = p->build->context;
-  cluster_lists c = { .count = clusters };
-  void *numbers = NULL, *child = NULL, *boxes = NULL, *pairs = NULL;
-
-  TRY_CLEANUP(stratus_allocate(context, 4 * (size_t)clusters + 2, sizeof(uint32_t), &numbers));
-  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.child, &child));
-  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.boxes, &boxes));
-  TRY_CLEANUP(stratus_allocate(context, clusters, sizeof *c.pairs, &pairs));
-  c.start = numbers;
-  c.room = c.start + clusters + 1;
-  c.child = child;
-  c.boxes = boxes;
-  c.pairs = pairs;
-  TRY_CLEANUP(join_clusters(p, &c, items, root));
-
-cleanup:
-  stratus_release(context, numbers);
-  stratus_release(context, child);
-  stratus_release(context, boxes);
-  stratus_release(context, pairs);
-  return status;
-}
-
 static stratus_status cluster_sites(density_peaks* p, uint32_t* clusters)
 {
   stratus_context* context = p->build->context;
@@ -369,17 +293,14 @@ static stratus_status cluster_sites(density_peaks* p, uint32_t* clusters)
   return status;
 }
 
-stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build)
+stratus_status stratus_bvh_density_clusters(const stratus_bvh_build* build, uint32_t* cluster, uint32_t* clusters)
 {
   stratus_status status = STRATUS_OK;
   stratus_context* context = build->context;
   density_peaks p = { .build = build };
   const size_t count = build->count;
-  uint32_t clusters = 1;
-  stratus_bvh_item* items = NULL;
   void *numbers = NULL, *wide = NULL;
 
-  TRY_CLEANUP(stratus_bvh_items_create(build, &items));
   TRY_CLEANUP(stratus_allocate(context, 4 * count + 1, sizeof(uint32_t), &numbers));
   TRY_CLEANUP(stratus_allocate(context, 2 * count, sizeof(uint64_t), &wide));
   p.denser = numbers;
@@ -389,20 +310,19 @@ stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build)
   p.delta = wide;
   p.keys = p.delta + count;
   find_sites(&p);
+  *clusters = 1;
+  p.cluster[0] = 0;
   if (p.sites > 1) {
-    TRY_CLEANUP(cluster_sites(&p, &clusters));
+    TRY_CLEANUP(cluster_sites(&p, clusters));
   }
-  if (clusters > 1) {
-    TRY_CLEANUP(build_over_clusters(&p, clusters, items, &build->root));
-  } else {
-#pragma omp parallel num_threads(context->threads)
-#pragma omp single
-    stratus_bvh_split_items(items, 0, build->count, 0, build->max_depth, build->pairs, &build->root);
+  for (uint32_t s = 0; s < p.sites; s++) {
+    for (uint32_t i = p.first[s]; i < p.first[s + 1]; i++) {
+      cluster[i] = p.cluster[s];
+    }
   }
 
 cleanup:
   stratus_release(context, p.level[0]);
-  stratus_release(context, items);
   stratus_release(context, numbers);
   stratus_release(context, wide);
   return status;
