@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Random voxels and rays, and first hits compared with the plain walk's. */
+#ifndef STRATUS_TESTING_FIRST_HITS_H
+#define STRATUS_TESTING_FIRST_HITS_H
+
+#include "internal.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static inline uint32_t next_random(uint32_t* state)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return *state >> 8;
+}
+
+static inline double unit_random(uint32_t* state)
+{
+  return next_random(state) / 16777216.0;
+}
+
+/* `fill` in 0..1 of the voxels; cluster > 0: those lie in a few boxes of that edge. */
+static inline stratus_voxels* random_voxels(stratus_context* context, const int64_t dimensions[3], double fill, int cluster, uint32_t* random)
+{
+  const size_t cells = (size_t)(dimensions[0] * dimensions[1] * dimensions[2]);
+  int32_t* positions = malloc((cells + 1) * 3 * sizeof *positions);
+  int32_t corner[4][3];
+  size_t count = 0;
+  stratus_voxels* voxels = NULL;
+  for (int b = 0; b < 4; b++) {
+    for (int a = 0; a < 3; a++) {
+      corner[b][a] = (int32_t)(unit_random(random) * (double)dimensions[a]);
+    }
+  }
+  for (int32_t k = 0; k < dimensions[2]; k++) {
+    for (int32_t j = 0; j < dimensions[1]; j++) {
+      for (int32_t i = 0; i < dimensions[0]; i++) {
+        bool inside = cluster == 0;
+        for (int b = 0; b < 4; b++) {
+          inside |= abs(i - corner[b][0]) < cluster && abs(j - corner[b][1]) < cluster && abs(k - corner[b][2]) < cluster;
+        }
+        if (inside && unit_random(random) < fill) {
+          positions[3 * count] = i;
+          positions[3 * count + 1] = j;
+          positions[3 * count + 2] = k;
+          count++;
+        }
+      }
+    }
+  }
+  assert_int_equal(stratus_voxels_create_list(context, dimensions, positions, count, &voxels), STRATUS_OK);
+  free(positions);
+  return voxels;
+}
+
+/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, short, from far away. */
+static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
+{
+  stratus_ray ray = { .t_max = INFINITY };
+  const uint32_t kind = next_random(random) % 8;
+  for (int a = 0; a < 3; a++) {
+    const double size = (double)dimensions[a];
+    ray.origin[a] = (unit_random(random) * 3.0 - 1.0) * size;
+    ray.direction[a] = unit_random(random) * 2.0 - 1.0;
+    if (kind == 1) { /* along lattice lines and diagonals */
+      ray.origin[a] = floor(ray.origin[a]);
+      ray.direction[a] = (double)(next_random(random) % 3) - 1.0;
+    } else if (kind == 2) { /* through the middles of voxels, along axes */
+      ray.origin[a] = floor(ray.origin[a]) + 0.5;
+      ray.direction[a] = (double)(next_random(random) % 3) - 1.0;
+    } else if (kind == 3) { /* from inside */
+      ray.origin[a] = unit_random(random) * size;
+    } else if (kind == 4) { /* at a corner, from elsewhere */
+      ray.direction[a] = floor(unit_random(random) * size) - ray.origin[a];
+    }
+  }
+  if (kind == 5) {
+    ray.t_min = unit_random(random);
+    ray.t_max = ray.t_min + unit_random(random) * (double)dimensions[0];
+  }
+  if (kind == 6) { /* almost along an axis */
+    ray.direction[next_random(random) % 3] *= 1e-6;
+  }
+  if (ray.direction[0] == 0.0 && ray.direction[1] == 0.0 && ray.direction[2] == 0.0) {
+    ray.direction[next_random(random) % 3] = kind == 1 ? -1.0 : 1.0;
+  }
+  if (next_random(random) % 4 == 0) {
+    ray.direction[next_random(random) % 3] *= -1.0; /* makes -0 of 0, too */
+  }
+  return ray;
+}
+
+/* The ray enters both voxels within rounding of one another, or grazes one of them: neither answer is wrong. */
+static inline bool is_tie(const stratus_ray* ray, const stratus_hit* a, const stratus_hit* b)
+{
+  const stratus_hit* const both[2] = { a, b };
+  if (a->t < INFINITY && b->t < INFINITY && fabs(a->t - b->t) <= 1e-10 * (1.0 + fabs(a->t))) {
+    return true;
+  }
+  for (int i = 0; i < 2; i++) { /* the earlier one may be met by a corner or an edge only */
+    if (both[i]->t < INFINITY && both[i]->t <= both[1 - i]->t) {
+      double enter = ray->t_min, leave = ray->t_max;
+      for (int axis = 0; axis < 3; axis++) {
+        const double lo = both[i]->voxel[axis], o = ray->origin[axis], d = ray->direction[axis];
+        if (d == 0.0) {
+          if (o == lo || o == lo + 1.0) {
+            return true;
+          }
+        } else {
+          const double t0 = (lo - o) / d, t1 = (lo + 1.0 - o) / d;
+          enter = fmax(enter, fmin(t0, t1));
+          leave = fmin(leave, fmax(t0, t1));
+        }
+      }
+      if (leave - enter <= 1e-10 * (1.0 + fabs(enter))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* Compares the tree's answers with the walk's; rays in the coordinates of lists. Returns ties. */
+static inline size_t compare_hits(stratus_context* context, const stratus_voxels* voxels, const stratus_tree* tree, const stratus_ray* rays, size_t count)
+{
+  stratus_hit* ours = malloc(count * sizeof *ours);
+  stratus_hit* theirs = malloc(count * sizeof *theirs);
+  size_t ties = 0;
+  assert_int_equal(stratus_voxels_first_hit(context, voxels, rays, count, theirs), STRATUS_OK);
+  assert_int_equal(stratus_tree_first_hit(context, tree, rays, count, ours), STRATUS_OK);
+  for (size_t i = 0; i < count; i++) {
+    const stratus_hit *a = &ours[i], *b = &theirs[i];
+    const bool same = memcmp(a->voxel, b->voxel, sizeof a->voxel) == 0 &&
+      (a->t == b->t || fabs(a->t - b->t) <= 1e-10 * (1.0 + fabs(b->t)));
+    if (!same && !is_tie(&rays[i], a, b)) {
+      const stratus_ray* r = &rays[i];
+      fail_msg("ray %zu from %.17g %.17g %.17g along %.17g %.17g %.17g, t %g..%g: voxel %d %d %d at %.17g, not %d %d %d at %.17g", i, r->origin[0],
+        r->origin[1], r->origin[2], r->direction[0], r->direction[1], r->direction[2], r->t_min, r->t_max, a->voxel[0], a->voxel[1],
+        a->voxel[2], a->t, b->voxel[0], b->voxel[1], b->voxel[2], b->t);
+    }
+    ties += !same;
+    if (same && a->t < INFINITY && a->face >= 0) {
+      const int axis = a->face / 2;
+      assert_true(a->normal[axis] == (a->face % 2 ? 1.0f : -1.0f));
+    }
+  }
+  free(ours);
+  free(theirs);
+  return ties;
+}
+
+#endif
