@@ -246,7 +246,8 @@ typedef struct stratus_voxels stratus_voxels;
 STRATUS_API stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has them;
- * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. */
+ * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is cell (i,j,k), between the
+ * values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges' blocks. */
 STRATUS_API stratus_status stratus_voxels_create_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* `count` triples of i, j, k, each in 0..dimensions-1; one that comes twice counts once. Index (i,j,k) is world (i+.5, j+.5, k+.5): the
@@ -345,7 +346,7 @@ typedef struct stratus_tree_options {
   int max_depth;              /* 1..64; default 32. A node at it is a leaf. */
   int leaf_bricks;            /* bricks (4^3 voxels and a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
   int leaf_voxels;            /* voxels in a leaf of the baselines, 1..64; default 1 */
-  int64_t field_bricks;       /* most bricks that a distance-field leaf covers; default 2^22 */
+  int64_t field_bricks;       /* most bricks that a distance-field leaf covers, 1..2^29; default 2^25 */
   double field_emptiness;     /* most bricks that it covers an occupied one; default 64 */
   double uniform;             /* hybrid: greatest difference between the axes' deviations of eq. 8, over the node's extent; default .1 */
   double paper_threshold;     /* hybrid-paper: the same difference in voxels, as printed; default 8 */
@@ -583,8 +584,9 @@ STRATUS_API stratus_side stratus_frustum_side(const stratus_frustum* frustum, co
  * is whole again when no border has crossed it for long.
  *
  * What is seen does not depend on the tree: an object is visible if its box reaches into each of the six half-spaces (rounded so that a box
- * that touches is seen), in every placement, stop rule, depth, history and number of threads; with `exact`, if it also has no
- * separating axis. Only the order of the list depends on the tree.
+ * that touches is seen), at every stop rule, depth, history and number of threads; with `exact`, if it also has no separating axis.
+ * Only the order of the list depends on the tree. Touching placement without `exact` is the paper's, and differs where boxes are out of sight: it
+ * keeps those whose sphere touches a node that is seen whole, and drops those of which no node crosses the frustum.
  *
  * Objects have ids 0.. that stay theirs until removed; the lowest-numbered freed ids are not necessarily the next. Bounds are xmin xmax ymin
  * ymax zmin zmax, min <= max; an empty interval (min > max) is refused. An object with a bound that is NaN, infinite or beyond 1e30 has no bounds: it is in
@@ -673,12 +675,16 @@ STRATUS_API stratus_status stratus_octree_cull(stratus_octree_view* view, const 
   const stratus_octree_cull_options* options, stratus_octree_visible* visible);
 
 /* Queries refine the tree, too: they split what they cross if it holds more than leaf_objects, whatever the stop rule. Lists are in rising order of
- * id (nearest: of distance, then id). `ids` gets the first `capacity`, *count how many there are. Distances go to the box, 0 within. */
+ * id (nearest: of distance, then id). `ids` gets the first `capacity`, *count how many there are. Boxes are closed, a turned one counts as its
+ * bounds; distances go to the box, 0 within. Numbers that are not finite, where the comments name none: STRATUS_INVALID_ARGUMENT. */
+/* min <= max; bounds may be infinite. */
 STRATUS_API stratus_status stratus_octree_query_box(
   stratus_octree* octree, const double bounds[6], uint32_t* ids, size_t capacity, size_t* count);
+/* radius >= 0, may be INFINITY. */
 STRATUS_API stratus_status stratus_octree_query_sphere(
   stratus_octree* octree, const double center[3], double radius, uint32_t* ids, size_t capacity, size_t* count);
-/* Boxes along origin + t direction, 0 <= t <= t_max, in rising order of where it enters (0 if it begins inside), then id. t may be NULL. */
+/* Boxes along origin + t direction, 0 <= t <= t_max, in rising order of where it enters (0 if it begins inside), then id. t may be NULL.
+ * t_max >= 0, may be INFINITY; the direction has a length. */
 STRATUS_API stratus_status stratus_octree_query_ray(stratus_octree* octree, const double origin[3], const double direction[3], double t_max,
   uint32_t* ids, double* t, size_t capacity, size_t* count);
 /* The k nearest; *count is less where there are fewer objects. distances may be NULL. */
@@ -692,7 +698,7 @@ typedef struct stratus_octree_statistics {
   int depth;                 /* of the deepest node, the root's is 0 */
   size_t object_bytes;       /* a linear list's: boxes as given, boxes as tested, ids */
   size_t bytes;              /* what the tree adds: nodes, places, spare room and copies in lists */
-  double root[6];            /* bounds; all 0 before the first split */
+  double root[6];            /* bounds; all 0 while everything is in one list */
 } stratus_octree_statistics;
 
 STRATUS_API void stratus_octree_get_statistics(const stratus_octree* octree, stratus_octree_statistics* statistics);
@@ -705,8 +711,8 @@ typedef struct stratus_octree_node {
   stratus_side side; /* against the frustum, by its half-spaces; crossing if there is none */
 } stratus_octree_node;
 
-/* All nodes, statistics.nodes of them, level by level in Morton order; none before the first split. frustum may be NULL. */
-STRATUS_API void stratus_octree_nodes(const stratus_octree* octree, const stratus_frustum* frustum, stratus_octree_node* nodes);
+/* All nodes, statistics.nodes of them, level by level in Morton order; bounds are 0 while statistics.root is. frustum may be NULL. */
+STRATUS_API stratus_status stratus_octree_nodes(const stratus_octree* octree, const stratus_frustum* frustum, stratus_octree_node* nodes);
 /* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message. */
 STRATUS_API stratus_status stratus_octree_check(const stratus_octree* octree);
 
