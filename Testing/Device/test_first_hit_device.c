@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits on an OpenCL device: packets of 16, as on a CPU, and one ray a work item, as on a GPU. The same answers as the host's, to the bit. */
+#include "first_hits.h"
+
+#include "device_state.h"
+
+#define COUNT 70000 /* more than one launch */
+
+static stratus_context* open_context(const char* device, bool as_gpu)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = device;
+  options.threads = 2;
+  if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
+    return NULL;
+  }
+  if (as_gpu) {
+    context->device->is_cpu = false;
+  }
+  return context;
+}
+
+static void device_and_host_hit_the_same(void** state)
+{
+  (void)state;
+  static stratus_ray rays[COUNT];
+  static stratus_hit ours[COUNT], theirs[COUNT];
+  static const int methods[4] = { STRATUS_TREE_HYBRID, STRATUS_TREE_OCTANT, STRATUS_TREE_DISTANCE, STRATUS_TREE_LBVH };
+  const int64_t dimensions[3] = { 90, 60, 75 };
+  stratus_context* host = open_context("host", false);
+  for (int as_gpu = 0; as_gpu < 2; as_gpu++) {
+    stratus_context* device = open_context("0", as_gpu);
+    if (!device) {
+      skip(); /* no OpenCL platform */
+    }
+    for (int m = 0; m < 4; m++) {
+      uint32_t random = 8;
+      stratus_voxels* voxels = random_voxels(host, dimensions, m == 1 ? 0.001 : 0.02, 0, &random);
+      stratus_tree_options options = stratus_tree_options_default();
+      stratus_tree* tree = NULL;
+      options.method = (stratus_tree_method)methods[m];
+      for (int i = 0; i < COUNT; i++) {
+        rays[i] = random_ray(dimensions, &random);
+      }
+      assert_int_equal(stratus_tree_create(host, voxels, &options, &tree), STRATUS_OK);
+      assert_int_equal(stratus_tree_first_hit(host, tree, rays, COUNT, theirs), STRATUS_OK);
+      if (stratus_tree_first_hit(device, tree, rays, COUNT, ours) != STRATUS_OK) {
+        fail_msg("%s", stratus_context_message(device));
+      }
+      for (int i = 0; i < COUNT; i++) {
+        assert_true(ours[i].t == theirs[i].t && ours[i].face == theirs[i].face && ours[i].visited == theirs[i].visited);
+        assert_memory_equal(ours[i].voxel, theirs[i].voxel, sizeof ours[i].voxel);
+      }
+      rays[66000].direction[1] = NAN;
+      assert_int_equal(stratus_tree_first_hit(device, tree, rays, COUNT, ours), STRATUS_INVALID_ARGUMENT);
+      assert_non_null(strstr(stratus_context_message(device), "ray 66000"));
+      stratus_tree_destroy(tree);
+      stratus_voxels_destroy(voxels);
+    }
+    stratus_context_destroy(device);
+  }
+  stratus_context_destroy(host);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(device_and_host_hit_the_same) };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
