@@ -87,6 +87,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     caster->ranges = NULL;
     caster->hidden = NULL;
     drop_fetched(caster);
+    stratus_first_hit_release(caster);
     stratus_ray_device_destroy(caster);
   }
 }
@@ -95,6 +96,7 @@ void stratus_ray_caster_destroy(stratus_ray_caster* caster)
 {
   if (caster) {
     stratus_ray_caster_release(caster);
+    stratus_first_hit_destroy(caster);
     stratus_release(caster->context, caster);
   }
 }

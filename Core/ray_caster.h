@@ -7,6 +7,7 @@
 #include "ray_cast.h"
 
 typedef struct stratus_ray_device stratus_ray_device;
+typedef struct stratus_first_hit stratus_first_hit;
 
 /* What the scene asks for, decided from counts alone, so that the same input always gets the same answer. */
 typedef struct stratus_ray_choice {
@@ -40,6 +41,8 @@ struct stratus_ray_caster {
   stratus_distance_map* map;
   uint64_t lookups_since_edit;
 
+  stratus_first_hit* first_hit; /* NULL until asked for: first_hit_picture.h */
+
   stratus_ray_device* device;                     /* copies on the OpenCL device, NULL on the host */
   uint64_t data_serial, table_serial, map_serial; /* raised with each build: tells the device what is stale */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
@@ -51,6 +54,12 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report);
 int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE that traversal is compiled for, -1 the generic one */
+
+/* first_hit_picture.c, first_hit_scene.c: the mode of first hits; dropping what it built; that and the offered tree */
+stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
+void stratus_first_hit_release(stratus_ray_caster* caster);
+void stratus_first_hit_destroy(stratus_ray_caster* caster);
 
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,

@@ -46,11 +46,16 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
 
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->structure > STRATUS_STRUCTURE_OCTANT || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
+  if ((unsigned)options->mode > STRATUS_MODE_FIRST_HIT || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
+      STRATUS_MODE_FIRST_HIT, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+  }
+  const stratus_structure last = options->mode == STRATUS_MODE_FIRST_HIT ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_OCTANT;
+  if ((unsigned)options->structure > last || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
-      STRATUS_STRUCTURE_OCTANT, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
+      last, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
       STRATUS_INTERPOLATION_NEAREST);
   }
   if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
@@ -212,7 +217,11 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(check_options(caster->context, options));
   TRY(check_image(caster->context, image));
-  TRY(render(caster, volume, transfer, camera, options, image, &mine));
+  if (options->mode == STRATUS_MODE_FIRST_HIT) {
+    TRY(stratus_first_hit_render(caster, volume, transfer, camera, options, image, &mine));
+  } else {
+    TRY(render(caster, volume, transfer, camera, options, image, &mine));
+  }
   if (report) {
     *report = mine;
   }

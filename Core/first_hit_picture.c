@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First-hit pictures: rays of a camera, in batches, to the first effective voxel, and what it looks like there.
+ *
+ * Rays are in index coordinates; k of the camera is a ray's t. A tree or a walk only names the voxel: where the ray enters it, and all that
+ * follows, is computed here from the ray and the voxel, so that the picture is the same by every way. */
+#include "first_hit_picture.h"
+
+#include <string.h>
+
+/* Rays are handed over tile by tile, so that those of a packet lie together. */
+#define TILE 4
+/* Enough for the threads or the device to share, few enough for their caches. */
+#define BATCH_RAYS 32768
+
+typedef struct first_hit_frame {
+  const stratus_ray_cast_options* options;
+  const stratus_image* image;
+  const stratus_camera* camera;
+  stratus_first_hit_scene scene;
+  stratus_shader shader;
+  double eye[3], forward[3], right[3], up[3];        /* index coordinates */
+  double crop[6];                                    /* index coordinates */
+  double planes[STRATUS_CLIP_PLANES_MAX][4];         /* index coordinates */
+  int window[4];
+  stratus_ray* rays;
+  stratus_first_hit_pixel* pixels;
+  stratus_hit *hits, *plain_hits;
+  int rows; /* a batch, in tiles */
+} first_hit_frame;
+
+const char* stratus_mode_name(stratus_mode mode)
+{
+  static const char* const names[] = { "composite", "first-hit" };
+  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
+}
+
+/* ---- rays */
+
+/* Cuts the ray to where slope*t + height >= 0. What begins there carries `cut`. */
+static void cut(double height, double slope, uint32_t number, stratus_ray* ray, uint32_t* cut_by)
+{
+  if (slope > 0.0) {
+    const double t = -height / slope;
+    if (t > ray->t_min) {
+      ray->t_min = t;
+      *cut_by = number;
+    }
+  } else if (slope < 0.0) {
+    ray->t_max = fmin(ray->t_max, -height / slope);
+  } else if (height < 0.0) {
+    ray->t_max = -INFINITY;
+  }
+}
+
+static double opaque_k(const first_hit_frame* frame, uint32_t x, uint32_t y)
+{
+  const double near_k = frame->camera->near_k, far_k = frame->camera->far_k;
+  const double depth = (double)frame->image->opaque_depth[(size_t)y * (size_t)frame->image->width + x];
+  const double extent = depth * (far_k - near_k);
+  return frame->camera->parallel ? near_k + extent : near_k * far_k / (far_k - extent);
+}
+
+/* Whether the ray, cut by what it is cut by, can meet the box of all voxels. */
+static bool meets(const first_hit_frame* frame, const stratus_ray* ray)
+{
+  double begin = ray->t_min, end = ray->t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = ray->direction[axis], lo = frame->scene.lo[axis] - ray->origin[axis], hi = frame->scene.hi[axis] - ray->origin[axis];
+    if (d != 0.0) {
+      /* a little wider: no rounding may lose a voxel's edge */
+      const double a = lo / d, b = hi / d, slack = 1e-9 * (fabs(a) + fabs(b));
+      begin = fmax(begin, fmin(a, b) - slack);
+      end = fmin(end, fmax(a, b) + slack);
+    } else if (lo > 0.0 || hi < 0.0) {
+      return false;
+    }
+  }
+  return begin <= end;
+}
+
+/* False where the ray can't meet anything. */
+static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, stratus_ray* ray, stratus_first_hit_pixel* pixel)
+{
+  const double u = (2.0 * x + 1.0) / frame->image->width - 1.0, v = (2.0 * y + 1.0) / frame->image->height - 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = u * frame->right[axis] + v * frame->up[axis];
+    ray->origin[axis] = frame->eye[axis] + (frame->camera->parallel ? offset : 0.0);
+    ray->direction[axis] = frame->forward[axis] + (frame->camera->parallel ? 0.0 : offset);
+  }
+  ray->t_min = frame->camera->near_k;
+  ray->t_max = frame->camera->far_k;
+  *pixel = (stratus_first_hit_pixel){ .x = x, .y = y, .cut = STRATUS_CUT_NEAR };
+  if (frame->image->opaque_depth) {
+    ray->t_max = fmin(ray->t_max, opaque_k(frame, x, y));
+  }
+  for (uint32_t side = 0; frame->options->crop && side < 6; ++side) {
+    const uint32_t axis = side / 2;
+    const double sign = side % 2 ? -1.0 : 1.0;
+    cut(sign * (ray->origin[axis] - frame->crop[side]), sign * ray->direction[axis], STRATUS_CUT_CROP + side, ray, &pixel->cut);
+  }
+  for (int p = 0; p < frame->options->clip_plane_count; ++p) {
+    const double* plane = frame->planes[p];
+    const double height = plane[0] * ray->origin[0] + plane[1] * ray->origin[1] + plane[2] * ray->origin[2] + plane[3];
+    const double slope = plane[0] * ray->direction[0] + plane[1] * ray->direction[1] + plane[2] * ray->direction[2];
+    cut(height, slope, STRATUS_CUT_PLANE + (uint32_t)p, ray, &pixel->cut);
+  }
+  return ray->t_min <= ray->t_max && meets(frame, ray);
+}
+
+/* The rays of one row of tiles, from `at` on; returns how many. */
+static size_t make_row(first_hit_frame* frame, int tile_row, size_t at)
+{
+  size_t count = 0;
+  for (int x0 = frame->window[0]; x0 < frame->window[1]; x0 += TILE) {
+    for (int y = tile_row * TILE; y < (tile_row + 1) * TILE; ++y) {
+      for (int x = x0; x < x0 + TILE; ++x) {
+        const bool inside = x < frame->window[1] && y >= frame->window[2] && y < frame->window[3];
+        if (inside && make_ray(frame, (uint32_t)x, (uint32_t)y, &frame->rays[at + count], &frame->pixels[at + count])) {
+          ++count;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+/* All rows' rays of a batch, one behind another. counts: of `rows` sizes. */
+static size_t make_batch(const stratus_context* context, first_hit_frame* frame, int first, int rows, size_t* counts)
+{
+  const size_t pitch = (size_t)(frame->window[1] - frame->window[0]) * TILE;
+#pragma omp parallel for schedule(dynamic) num_threads(context->threads)
+  for (int row = 0; row < rows; ++row) {
+    counts[row] = make_row(frame, first + row, (size_t)row * pitch);
+  }
+  size_t count = 0;
+  for (int row = 0; row < rows; ++row) {
+    memmove(frame->rays + count, frame->rays + (size_t)row * pitch, counts[row] * sizeof *frame->rays);
+    memmove(frame->pixels + count, frame->pixels + (size_t)row * pitch, counts[row] * sizeof *frame->pixels);
+    count += counts[row];
+  }
+  return count;
+}
+
+/* ---- pixels */
+
+static void shade(const first_hit_frame* frame, size_t ray, const stratus_hit* hit, float rgba[4], float* depth)
+{
+  memset(rgba, 0, 4 * sizeof *rgba);
+  *depth = INFINITY;
+  if (hit->voxel[0] >= 0) {
+    stratus_shader_apply(&frame->shader, &frame->rays[ray], frame->pixels[ray].cut, hit->voxel, rgba, depth);
+  }
+}
+
+static void shade_batch(const stratus_context* context, const first_hit_frame* frame, size_t count, stratus_ray_cast_report* report)
+{
+  const stratus_image* image = frame->image;
+  uint64_t samples = 0, lookups = 0, differing = 0;
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : samples, lookups, differing)
+  for (size_t ray = 0; ray < count; ++ray) {
+    const stratus_hit* hit = &frame->hits[ray];
+    const size_t at = (size_t)frame->pixels[ray].y * (size_t)image->width + frame->pixels[ray].x;
+    float depth, plain_depth, plain_rgba[4];
+    shade(frame, ray, hit, image->rgba + 4 * at, &depth);
+    samples += hit->voxel[0] >= 0;
+    lookups += hit->visited;
+    if (image->depth) {
+      image->depth[at] = depth;
+    }
+    for (int c = 0; image->rgba8 && c < 4; ++c) {
+      image->rgba8[4 * at + (size_t)c] = (uint8_t)(image->rgba[4 * at + (size_t)c] * 255.0f + 0.5f); /* within 0..1 */
+    }
+    if (image->samples) {
+      image->samples[at] = hit->voxel[0] >= 0;
+    }
+    if (frame->plain_hits) {
+      shade(frame, ray, &frame->plain_hits[ray], plain_rgba, &plain_depth);
+      differing += memcmp(plain_rgba, image->rgba + 4 * at, sizeof plain_rgba) != 0 || memcmp(&plain_depth, &depth, sizeof depth) != 0;
+    }
+  }
+  report->rays += count;
+  report->samples += samples;
+  report->lookups += lookups;
+  report->differing_pixels += differing;
+}
+
+static stratus_status draw_batch(
+  stratus_context* context, first_hit_frame* frame, int first, int rows, size_t* counts, stratus_ray_cast_report* report)
+{
+  const size_t count = make_batch(context, frame, first, rows, counts);
+  if (count == 0) {
+    return STRATUS_OK;
+  }
+  if (frame->scene.tree) {
+    TRY(stratus_tree_first_hit(context, frame->scene.tree, frame->rays, count, frame->hits));
+  } else {
+    TRY(stratus_voxels_first_hit(context, frame->scene.voxels, frame->rays, count, frame->hits));
+  }
+  if (frame->plain_hits) {
+    TRY(stratus_voxels_first_hit(context, frame->scene.voxels, frame->rays, count, frame->plain_hits));
+  }
+  shade_batch(context, frame, count, report);
+  return STRATUS_OK;
+}
+
+static stratus_status draw(stratus_context* context, first_hit_frame* frame, stratus_ray_cast_report* report)
+{
+  const int first = frame->window[2] / TILE, last = (frame->window[3] + TILE - 1) / TILE;
+  const int width = frame->window[1] - frame->window[0];
+  void *rays = NULL, *pixels = NULL, *hits = NULL, *plain_hits = NULL, *counts = NULL;
+  stratus_status status = STRATUS_OK;
+  if (width <= 0 || last <= first) {
+    return STRATUS_OK;
+  }
+  const int fitting = BATCH_RAYS / (width * TILE), rows = fitting < 1 ? 1 : fitting < last - first ? fitting : last - first;
+  const size_t most = (size_t)width * TILE * (size_t)rows;
+  TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->rays, &rays));
+  TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->pixels, &pixels));
+  TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->hits, &hits));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)rows, sizeof(size_t), &counts));
+  if (frame->options->audit) {
+    TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->plain_hits, &plain_hits));
+  }
+  frame->rays = rays;
+  frame->pixels = pixels;
+  frame->hits = hits;
+  frame->plain_hits = plain_hits;
+  for (int row = first; row < last; row += rows) {
+    const int left = last - row;
+    TRY_CLEANUP(stratus_progress(context, "first hits", (double)(row - first) / (last - first)));
+    TRY_CLEANUP(draw_batch(context, frame, row, left < rows ? left : rows, counts, report));
+  }
+  status = stratus_progress(context, "first hits", 1.0);
+cleanup:
+  stratus_release(context, rays);
+  stratus_release(context, pixels);
+  stratus_release(context, hits);
+  stratus_release(context, plain_hits);
+  stratus_release(context, counts);
+  return status;
+}
+
+/* ---- set-up */
+
+static void set_limits(const stratus_volume* volume, const double index_to_world[16], first_hit_frame* frame)
+{
+  const double half = volume->cell_centered ? 0.5 : 0.0;
+  for (int side = 0; side < 6; ++side) {
+    frame->crop[side] = (frame->options->crop_bounds[side] - volume->origin[side / 2]) / volume->spacing[side / 2] - half;
+  }
+  for (int p = 0; p < frame->options->clip_plane_count; ++p) {
+    const double* plane = frame->options->clip_planes[p];
+    for (int column = 0; column < 4; ++column) {
+      frame->planes[p][column] = column == 3 ? plane[3] : 0.0;
+      for (int row = 0; row < 3; ++row) {
+        frame->planes[p][column] += plane[row] * index_to_world[4 * row + column];
+      }
+    }
+  }
+}
+
+static void set_window(first_hit_frame* frame)
+{
+  const int sides[2] = { frame->image->width, frame->image->height };
+  memset(frame->window, 0, sizeof frame->window);
+  if (frame->scene.lo[0] < frame->scene.hi[0]) {
+    stratus_ray_window(frame->eye, frame->right, frame->up, frame->forward, frame->camera->parallel != 0, frame->scene.lo, frame->scene.hi,
+      sides, frame->window);
+  }
+}
+
+static void clear_image(const stratus_image* image)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
+  for (size_t i = 0; image->depth && i < pixels; ++i) {
+    image->depth[i] = INFINITY;
+  }
+  if (image->samples) {
+    memset(image->samples, 0, pixels * sizeof *image->samples);
+  }
+  if (image->rgba8) {
+    memset(image->rgba8, 0, pixels * 4);
+  }
+}
+
+stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  stratus_context* context = caster->context;
+  first_hit_frame frame = { .options = options, .image = image, .camera = camera };
+  double index_to_world[16], world_to_index[16];
+  TRY(stratus_ray_check_camera(context, camera, image));
+  TRY(stratus_shading_check(context, &options->shading));
+  stratus_volume_index_to_world(volume, index_to_world);
+  if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
+  }
+  TRY(stratus_first_hit_update(caster, volume, transfer, options->structure, options->audit != 0, &frame.scene, report));
+  const double start = stratus_now_ms();
+  stratus_matrix_point(world_to_index, camera->eye, frame.eye);
+  stratus_matrix_vector(world_to_index, camera->forward, frame.forward);
+  stratus_matrix_vector(world_to_index, camera->right, frame.right);
+  stratus_matrix_vector(world_to_index, camera->up, frame.up);
+  set_limits(volume, index_to_world, &frame);
+  set_window(&frame);
+  stratus_shader_set(&frame.shader, volume, transfer, camera, options, index_to_world, world_to_index);
+  clear_image(image);
+  TRY(draw(context, &frame, report));
+  const int64_t* n = volume->dimensions;
+  report->blocks = (uint64_t)((n[0] + 3) / 4) * (uint64_t)((n[1] + 3) / 4) * (uint64_t)((n[2] + 3) / 4);
+  memcpy(report->window, frame.window, sizeof report->window);
+  report->occupancy_builds = caster->occupancy_builds;
+  report->structure_builds = caster->structure_builds;
+  report->range_builds = caster->range_builds;
+  report->table_builds = caster->table_builds;
+  report->uploads = caster->uploads;
+  report->cast_ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}

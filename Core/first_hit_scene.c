@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What first-hit pictures are drawn from: data and opacity -> voxels -> tree, each kept until what it was built from changes. */
+#include "first_hit_picture.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+
+static void drop_tree(struct stratus_first_hit* kept)
+{
+  stratus_tree_destroy(kept->tree);
+  kept->tree = NULL;
+}
+
+void stratus_first_hit_release(stratus_ray_caster* caster)
+{
+  struct stratus_first_hit* kept = caster->first_hit;
+  if (kept) {
+    drop_tree(kept);
+    stratus_voxels_destroy(kept->voxels);
+    stratus_release(caster->context, kept->opacity);
+    kept->voxels = NULL;
+    kept->opacity = NULL;
+    kept->offered_serves = -1;
+  }
+}
+
+void stratus_first_hit_destroy(stratus_ray_caster* caster)
+{
+  if (caster->first_hit) {
+    stratus_first_hit_release(caster);
+    stratus_tree_destroy(caster->first_hit->offered);
+    stratus_release(caster->context, caster->first_hit);
+    caster->first_hit = NULL;
+  }
+}
+
+static stratus_status make_kept(stratus_ray_caster* caster)
+{
+  void* memory = NULL;
+  if (!caster->first_hit) {
+    TRY(stratus_allocate_zero(caster->context, 1, sizeof(struct stratus_first_hit), &memory));
+    caster->first_hit = memory;
+    caster->first_hit->offered_serves = -1;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const void* bytes, size_t size)
+{
+  stratus_tree* tree = NULL;
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  TRY(make_kept(caster));
+  stratus_tree_destroy(caster->first_hit->offered);
+  caster->first_hit->offered = NULL;
+  caster->first_hit->offered_serves = -1;
+  if (bytes) {
+    TRY(stratus_tree_load(caster->context, bytes, size, &tree));
+    /* rays come in index coordinates: where the volume was when the tree was made does not count */
+    memcpy(tree->index_to_world, identity, sizeof identity);
+    memcpy(tree->world_to_index, identity, sizeof identity);
+    caster->first_hit->offered = tree;
+  }
+  return STRATUS_OK;
+}
+
+/* ---- what changed */
+
+static bool same_data(const stratus_volume* old, const stratus_volume* volume)
+{
+  return old->values == volume->values && old->type == volume->type &&
+    memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
+    old->cell_centered == volume->cell_centered && old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts &&
+    old->revision == volume->revision;
+}
+
+static bool same_opacity(const struct stratus_first_hit* kept, const stratus_transfer* transfer)
+{
+  return kept->opacity && kept->opacity_count == transfer->opacity_count && kept->clamp == transfer->clamp &&
+    memcmp(kept->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0;
+}
+
+static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer)
+{
+  struct stratus_first_hit* kept = caster->first_hit;
+  void* memory = NULL;
+  if (same_data(&kept->volume, volume) && same_opacity(kept, transfer)) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(caster->context, 2 * transfer->opacity_count, sizeof(double), &memory));
+  memcpy(memory, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count);
+  stratus_first_hit_release(caster);
+  kept->opacity = memory;
+  kept->opacity_count = transfer->opacity_count;
+  kept->clamp = transfer->clamp;
+  kept->volume = *volume;
+  return STRATUS_OK;
+}
+
+/* The volume with its voxels at whole coordinates. */
+static stratus_volume in_index_coordinates(const stratus_volume* volume)
+{
+  stratus_volume plain = *volume;
+  const stratus_volume defaults = stratus_volume_default();
+  for (int axis = 0; axis < 3; ++axis) {
+    plain.origin[axis] = volume->cell_centered ? -0.5 : 0.0;
+    plain.spacing[axis] = 1.0;
+  }
+  memcpy(plain.direction, defaults.direction, sizeof plain.direction);
+  memcpy(plain.matrix, defaults.matrix, sizeof plain.matrix);
+  return plain;
+}
+
+/* ---- building */
+
+static stratus_status update_voxels(
+  stratus_ray_caster* caster, const stratus_volume* plain, const stratus_criterion* criterion, stratus_ray_cast_report* report)
+{
+  struct stratus_first_hit* kept = caster->first_hit;
+  if (!kept->voxels) {
+    const double start = stratus_now_ms();
+    TRY(stratus_voxels_create(caster->context, plain, criterion, &kept->voxels));
+    ++caster->occupancy_builds;
+    report->occupancy_ms = stratus_now_ms() - start;
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status update_tree(stratus_ray_caster* caster, stratus_tree_method method, stratus_ray_cast_report* report)
+{
+  struct stratus_first_hit* kept = caster->first_hit;
+  if (kept->tree && kept->method == method) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_tree* tree = NULL;
+  options.method = method;
+  TRY(stratus_tree_create(caster->context, kept->voxels, &options, &tree));
+  drop_tree(kept);
+  kept->tree = tree;
+  kept->method = method;
+  ++caster->structure_builds;
+  report->structure_ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+/* A tree that shows more than is asked for would do for ray casting, but its first hits are others: the intervals must be the same, and so
+ * few that none were merged. */
+static stratus_status ask_offered(
+  stratus_ray_caster* caster, const stratus_volume* plain, const stratus_criterion* criterion, stratus_ray_cast_report* report)
+{
+  struct stratus_first_hit* kept = caster->first_hit;
+  if (kept->offered_serves < 0) {
+    const double start = stratus_now_ms();
+    stratus_origin wanted;
+    int covers = 0;
+    TRY(stratus_tree_covers(caster->context, kept->offered, plain, criterion, 0, &covers));
+    if (covers) {
+      TRY(stratus_criterion_intervals(caster->context, plain, criterion, 0, &wanted));
+      covers = wanted.intervals < STRATUS_INTERVALS_MAX && wanted.intervals == kept->offered->origin.intervals &&
+        memcmp(wanted.interval, kept->offered->origin.interval, (size_t)wanted.intervals * sizeof *wanted.interval) == 0;
+    }
+    kept->offered_serves = covers;
+    report->structure_ms += stratus_now_ms() - start;
+  }
+  return STRATUS_OK;
+}
+
+static void bounds_of(const stratus_tree* tree, const stratus_voxels* voxels, stratus_first_hit_scene* scene)
+{
+  int64_t lo[3] = { 0, 0, 0 }, hi[3] = { 0, 0, 0 };
+  if (voxels) {
+    stratus_voxels_bounds(voxels, lo, hi);
+  } else if (tree->node_count > 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = tree->nodes[0].lo[axis];
+      hi[axis] = tree->nodes[0].hi[axis];
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) { /* with nothing in it the box is reversed */
+    scene->lo[axis] = (double)lo[axis] - 0.5;
+    scene->hi[axis] = lo[axis] < hi[axis] ? (double)hi[axis] - 0.5 : -1.0;
+  }
+}
+
+static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted, bool offered, stratus_ray_cast_report* report)
+{
+  stratus_tree_statistics statistics = { .why = "" };
+  report->structure = scene->used;
+  report->offered_tree = offered;
+  if (scene->tree) {
+    stratus_tree_get_statistics(scene->tree, &statistics);
+    report->structure_bytes = statistics.bytes;
+    report->occupied_blocks = (uint64_t)statistics.bricks;
+  } else {
+    report->occupied_blocks = (uint64_t)scene->voxels->brick_count;
+  }
+  snprintf(report->why, sizeof report->why, "first hits, %s %s%s%.150s", stratus_structure_name(scene->used),
+    offered                                ? "that comes with the data"
+      : wanted == STRATUS_STRUCTURE_AUTO ? "by default"
+                                           : "as asked",
+    statistics.why[0] ? ": " : "", statistics.why);
+}
+
+stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  stratus_structure structure, bool plain, stratus_first_hit_scene* scene, stratus_ray_cast_report* report)
+{
+  static const stratus_tree_method methods[] = { [STRATUS_STRUCTURE_AUTO] = STRATUS_TREE_HYBRID,
+    [STRATUS_STRUCTURE_BLOCK] = STRATUS_TREE_DISTANCE,
+    [STRATUS_STRUCTURE_DISTANCE] = STRATUS_TREE_DISTANCE,
+    [STRATUS_STRUCTURE_OCTANT] = STRATUS_TREE_OCTANT,
+    [STRATUS_STRUCTURE_HYBRID] = STRATUS_TREE_HYBRID };
+  const stratus_volume in_index = in_index_coordinates(volume);
+  stratus_criterion criterion = stratus_criterion_default();
+  bool offered = false;
+
+  TRY(make_kept(caster));
+  TRY(keep_source(caster, volume, transfer));
+  struct stratus_first_hit* kept = caster->first_hit;
+  criterion.transfer = transfer;
+  memset(scene, 0, sizeof *scene);
+  scene->used = structure == STRATUS_STRUCTURE_AUTO ? STRATUS_STRUCTURE_HYBRID : structure;
+  if (kept->offered && scene->used == STRATUS_STRUCTURE_HYBRID) {
+    TRY(ask_offered(caster, &in_index, &criterion, report));
+    offered = kept->offered_serves == 1;
+  }
+  if (!offered || plain) {
+    TRY(update_voxels(caster, &in_index, &criterion, report));
+  }
+  scene->voxels = kept->voxels;
+  if (offered) {
+    scene->tree = kept->offered;
+  } else if (scene->used != STRATUS_STRUCTURE_NONE) {
+    TRY(update_tree(caster, methods[structure], report));
+    scene->tree = kept->tree;
+  }
+  bounds_of(scene->tree, scene->voxels, scene);
+  tell(scene, structure, offered, report);
+  return STRATUS_OK;
+}

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The colour of a hit: the transfer function's at the voxel's value, in the light that falls on the face, the field or the cut. */
+#include "first_hit_picture.h"
+
+#include <string.h>
+
+static double dot3(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Length 1; false for a vector without length. Scaled first, so that no square over- or underflows. */
+static bool normalize(double v[3])
+{
+  const double largest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
+  if (!(largest > 0.0) || !isfinite(largest)) {
+    return false;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] /= largest;
+  }
+  const double length = sqrt(dot3(v, v));
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] /= length;
+  }
+  return true;
+}
+
+/* ---- set-up */
+
+static stratus_status check_light(stratus_context* context, const stratus_light* light, int number)
+{
+  for (int i = 0; i < 3; ++i) {
+    if (!isfinite(light->vector[i]) || !isfinite(light->color[i]) || light->color[i] < 0.0) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "light %d has vector (%g, %g, %g) and colour (%g, %g, %g), must be finite and colours at least 0", number, light->vector[0],
+        light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2]);
+    }
+  }
+  if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has the direction (0, 0, 0), must have a length", number);
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading)
+{
+  const double factors[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
+  static const char* const names[4] = { "ambient", "diffuse", "specular", "specular power" };
+  for (int i = 0; i < 4; ++i) {
+    if (!(factors[i] >= 0.0) || !isfinite(factors[i])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be finite and at least 0", names[i], factors[i]);
+    }
+  }
+  if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count,
+      STRATUS_LIGHTS_MAX);
+  }
+  for (int i = 0; i < shading->light_count; ++i) {
+    TRY(check_light(context, &shading->lights[i], i));
+  }
+  return STRATUS_OK;
+}
+
+static void set_lights(stratus_shader* shader, const stratus_camera* camera, const stratus_shading* shading)
+{
+  shader->light_count = shading->light_count;
+  for (int i = 0; i < shader->light_count; ++i) {
+    shader->lights[i] = shading->lights[i];
+  }
+  if (shading->light_count < 0) {
+    stratus_light* light = &shader->lights[0];
+    *light = (stratus_light){ .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
+    for (int axis = 0; axis < 3; ++axis) {
+      light->vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+    }
+    shader->light_count = 1;
+  }
+  for (int i = 0; i < shader->light_count; ++i) {
+    if (!shader->lights[i].positional) {
+      (void)normalize(shader->lights[i].vector);
+    }
+  }
+}
+
+void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16])
+{
+  memset(shader, 0, sizeof *shader);
+  shader->volume = volume;
+  shader->transfer = transfer;
+  shader->options = options;
+  shader->bias = stratus_volume_bias(volume);
+  memcpy(shader->index_to_world, index_to_world, sizeof shader->index_to_world);
+  memcpy(shader->world_to_index, world_to_index, sizeof shader->world_to_index);
+  for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's rows, shear or not */
+    memcpy(shader->face[axis], world_to_index + 4 * axis, sizeof shader->face[axis]);
+    (void)normalize(shader->face[axis]);
+  }
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      shader->plane[p][axis] = -options->clip_planes[p][axis];
+    }
+    (void)normalize(shader->plane[p]);
+  }
+  set_lights(shader, camera, &options->shading);
+}
+
+/* ---- colour */
+
+/* Last point with value <= x, or the first one. */
+static void color_at(const stratus_transfer* transfer, double x, double rgb[3])
+{
+  const double* points = transfer->color;
+  size_t below = 0, above = transfer->color_count; /* of points <= x: at least `below`, at most `above` */
+  while (below < above) {
+    const size_t middle = below + (above - below) / 2;
+    if (points[4 * middle] <= x) {
+      below = middle + 1;
+    } else {
+      above = middle;
+    }
+  }
+  const double* left = points + 4 * (below > 0 ? below - 1 : 0);
+  const bool inside = below > 0 && below < transfer->color_count;
+  const double t = inside ? (x - left[0]) / (left[4] - left[0]) : 0.0;
+  for (int c = 0; c < 3; ++c) {
+    rgb[c] = left[1 + c] + (inside ? t * (left[5 + c] - left[1 + c]) : 0.0);
+  }
+}
+
+static double value_at(const stratus_shader* shader, const int64_t at[3])
+{
+  const int64_t* n = shader->volume->dimensions;
+  return (double)stratus_volume_fetch(shader->volume, shader->bias, (size_t)((at[2] * n[1] + at[1]) * n[0] + at[0]));
+}
+
+/* ---- normals: outward, world, of length 1 */
+
+/* Central differences, one-sided where a neighbour is missing or no number. False where the field is flat. */
+static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3], const double direction[3], double normal[3])
+{
+  const int64_t here[3] = { voxel[0], voxel[1], voxel[2] };
+  const double value = value_at(shader, here);
+  double world[3] = { 0.0, 0.0, 0.0 };
+  for (int axis = 0; axis < 3; ++axis) {
+    double side[2] = { value, value };
+    int apart = 0;
+    for (int s = 0; s < 2; ++s) {
+      int64_t at[3] = { here[0], here[1], here[2] };
+      at[axis] += s ? 1 : -1;
+      const double there = at[axis] >= 0 && at[axis] < shader->volume->dimensions[axis] ? value_at(shader, at) : NAN;
+      if (isfinite(there)) {
+        side[s] = there;
+        ++apart;
+      }
+    }
+    const double slope = apart ? (side[1] - side[0]) / apart : 0.0;
+    for (int row = 0; row < 3; ++row) {
+      world[row] += slope * shader->world_to_index[4 * axis + row];
+    }
+  }
+  if (!normalize(world)) {
+    return false;
+  }
+  const double sign = dot3(world, direction) > 0.0 ? -1.0 : 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis] = sign * world[axis];
+  }
+  return true;
+}
+
+static void cut_normal(const stratus_shader* shader, uint32_t cut, const double direction[3], double normal[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis] = cut >= STRATUS_CUT_PLANE ? shader->plane[cut - STRATUS_CUT_PLANE][axis]
+      : cut >= STRATUS_CUT_CROP             ? ((cut - STRATUS_CUT_CROP) % 2 ? 1.0 : -1.0) * shader->face[(cut - STRATUS_CUT_CROP) / 2][axis]
+                                            : -direction[axis];
+  }
+}
+
+/* Where the ray enters the voxel; face 2*axis + upper, -1 where it begins inside. */
+static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
+{
+  double t = ray->t_min;
+  *face = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = ray->direction[axis];
+    if (d != 0.0) {
+      const double at = ((double)voxel[axis] + (d > 0.0 ? -0.5 : 0.5) - ray->origin[axis]) / d;
+      if (at > t) {
+        t = at;
+        *face = 2 * axis + (d < 0.0);
+      }
+    }
+  }
+  return fmin(t, ray->t_max);
+}
+
+/* ---- light */
+
+static void illuminate(const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
+{
+  const stratus_shading* shading = &shader->options->shading;
+  double light[3] = { shading->ambient, shading->ambient, shading->ambient }, gloss[3] = { 0.0, 0.0, 0.0 };
+  for (int i = 0; i < shader->light_count; ++i) {
+    double to[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      to[axis] = shader->lights[i].vector[axis] - (shader->lights[i].positional ? point[axis] : 0.0);
+    }
+    if (shader->lights[i].positional && !normalize(to)) {
+      memcpy(to, normal, sizeof to); /* the light stands on the hit */
+    }
+    const double cosine = dot3(normal, to);
+    if (!(cosine > 0.0)) {
+      continue;
+    }
+    const double mirrored = dot3(to, direction) - 2.0 * cosine * dot3(normal, direction); /* R V, with V against the direction */
+    const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
+    for (int c = 0; c < 3; ++c) {
+      light[c] += shading->diffuse * cosine * shader->lights[i].color[c];
+      gloss[c] += shine * shader->lights[i].color[c];
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    rgb[c] = rgb[c] * light[c] + gloss[c];
+  }
+}
+
+void stratus_shader_apply(
+  const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth)
+{
+  const int64_t at[3] = { voxel[0], voxel[1], voxel[2] };
+  double direction[3], rgb[3], index[3], point[3], normal[3];
+  int face;
+  const double t = entry(ray, voxel, &face);
+  stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
+  const double length = sqrt(dot3(direction, direction));
+  color_at(shader->transfer, value_at(shader, at) + shader->bias, rgb);
+  if (shader->options->shading.on) {
+    for (int axis = 0; axis < 3; ++axis) {
+      direction[axis] /= length;
+      index[axis] = ray->origin[axis] + t * ray->direction[axis];
+    }
+    stratus_matrix_point(shader->index_to_world, index, point);
+    if (face < 0) {
+      cut_normal(shader, cut, direction, normal);
+    } else if (shader->options->normals != STRATUS_NORMALS_GRADIENT || !gradient_normal(shader, voxel, direction, normal)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        normal[axis] = (face & 1 ? 1.0 : -1.0) * shader->face[face / 2][axis];
+      }
+    }
+    illuminate(shader, point, normal, direction, rgb);
+  }
+  for (int c = 0; c < 3; ++c) {
+    rgba[c] = (float)fmin(fmax(rgb[c], 0.0), 1.0);
+  }
+  rgba[3] = 1.0f;
+  *depth = (float)(t * length);
+}

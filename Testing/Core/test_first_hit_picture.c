@@ -1,0 +1,502 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First-hit pictures against brute force over all voxels, and their light against what geometry says of it. */
+#include "../picture_case.h"
+
+#include "internal.h"
+
+static picture first;
+static picture second;
+
+/* ---- the oracle: every effective voxel's slabs, one pixel after the other */
+
+typedef struct oracle {
+  const picture_case* c;
+  double world_to_index[16];
+  uint8_t* effective;
+} oracle;
+
+/* The transfer function as it is written, first point of value > x decides. */
+static double opacity_of(const stratus_transfer* transfer, double x)
+{
+  const double* p = transfer->opacity;
+  const size_t n = transfer->opacity_count;
+  if (x < p[0] || x > p[2 * n - 2]) {
+    return transfer->clamp ? (x < p[0] ? p[1] : p[2 * n - 1]) : 0.0;
+  }
+  for (size_t i = n - 1; i > 0; --i) {
+    if (p[2 * i - 2] <= x && p[2 * i - 2] < p[2 * i]) {
+      return p[2 * i - 1] + (x - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]) * (p[2 * i + 1] - p[2 * i - 1]);
+    }
+  }
+  return p[1];
+}
+
+static double case_value(const picture_case* c, size_t at)
+{
+  switch (c->volume.type) {
+    case STRATUS_INT32:
+      return ((const int32_t*)c->values)[at];
+    case STRATUS_UINT32:
+      return ((const uint32_t*)c->values)[at];
+    case STRATUS_INT64:
+      return (double)((const int64_t*)c->values)[at];
+    case STRATUS_UINT64:
+      return (double)((const uint64_t*)c->values)[at];
+    case STRATUS_FLOAT64:
+      return ((const double*)c->values)[at];
+    default: /* no digits are lost */
+      return (double)stratus_volume_fetch(&c->volume, 0.0, at);
+  }
+}
+
+static void oracle_begin(const picture_case* c, oracle* o)
+{
+  double index_to_world[16];
+  const int64_t* n = c->volume.dimensions;
+  stratus_volume_index_to_world(&c->volume, index_to_world);
+  assert_true(stratus_matrix_invert_affine(index_to_world, o->world_to_index));
+  o->c = c;
+  o->effective = calloc((size_t)(n[0] * n[1] * n[2]), 1);
+  for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
+    const double value = case_value(c, at);
+    o->effective[at] = isfinite(value) && opacity_of(&c->transfer, value) > 0.0;
+    if (c->cell_ghosts && c->volume.cell_centered) {
+      o->effective[at] &= !(c->cell_ghosts[at] & (STRATUS_GHOST_HIDDEN_CELL | STRATUS_GHOST_DUPLICATE));
+    }
+  }
+}
+
+/* The ray of a pixel in world coordinates, and the k between which it may hit. */
+static void oracle_ray(const oracle* o, int x, int y, double from[3], double along[3], double* begin, double* end)
+{
+  const stratus_camera* camera = &o->c->camera;
+  const double u = (2.0 * x + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * y + 1.0) / CASE_HEIGHT - 1.0;
+  *begin = camera->near_k;
+  *end = camera->far_k;
+  for (int a = 0; a < 3; ++a) {
+    const double sideways = u * camera->right[a] + v * camera->up[a];
+    from[a] = camera->eye[a] + (camera->parallel ? sideways : 0.0);
+    along[a] = camera->forward[a] + (camera->parallel ? 0.0 : sideways);
+  }
+  for (int p = 0; p < o->c->options.clip_plane_count; ++p) {
+    const double* plane = o->c->options.clip_planes[p];
+    const double height = plane[0] * from[0] + plane[1] * from[1] + plane[2] * from[2] + plane[3];
+    const double slope = plane[0] * along[0] + plane[1] * along[1] + plane[2] * along[2];
+    *begin = slope > 0.0 ? fmax(*begin, -height / slope) : *begin;
+    *end = slope < 0.0 ? fmin(*end, -height / slope) : *end;
+  }
+}
+
+/* Cuts begin..end to the box; false if nothing is left. */
+static bool slabs(const double from[3], const double along[3], const double lo[3], const double hi[3], double* begin, double* end)
+{
+  for (int a = 0; a < 3; ++a) {
+    const double t0 = (lo[a] - from[a]) / along[a], t1 = (hi[a] - from[a]) / along[a];
+    *begin = fmax(*begin, fmin(t0, t1));
+    *end = fmin(*end, fmax(t0, t1));
+  }
+  return *begin <= *end;
+}
+
+/* k of the first hit, INFINITY for none; *voxel its number. *doubtful: another voxel is entered at nearly the same place, or hardly met. */
+static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* doubtful)
+{
+  const int64_t* n = o->c->volume.dimensions;
+  const double half = o->c->volume.cell_centered ? 0.5 : 0.0, near = 1e-7;
+  double world[3], toward[3], from[3], along[3], begin, end, best = INFINITY, next = INFINITY;
+  oracle_ray(o, x, y, world, toward, &begin, &end);
+  stratus_matrix_point(o->world_to_index, world, from);
+  stratus_matrix_vector(o->world_to_index, toward, along);
+  *doubtful = false;
+  if (o->c->options.crop) {
+    double lo[3], hi[3];
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = (o->c->options.crop_bounds[2 * a] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
+      hi[a] = (o->c->options.crop_bounds[2 * a + 1] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
+    }
+    if (!slabs(from, along, lo, hi, &begin, &end)) {
+      return INFINITY;
+    }
+  }
+  for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
+    if (o->effective[at]) {
+      const double center[3] = { (double)((int64_t)at % n[0]), (double)((int64_t)at / n[0] % n[1]), (double)((int64_t)at / n[0] / n[1]) };
+      const double lo[3] = { center[0] - 0.5, center[1] - 0.5, center[2] - 0.5 };
+      const double hi[3] = { center[0] + 0.5, center[1] + 0.5, center[2] + 0.5 };
+      double t0 = begin, t1 = end;
+      const bool met = slabs(from, along, lo, hi, &t0, &t1);
+      *doubtful |= fabs(t1 - t0) < near * (1.0 + fabs(t0)) && t0 < best;
+      if (met && t0 < best) {
+        next = best;
+        best = t0;
+        *voxel = at;
+      } else if (met) {
+        next = fmin(next, t0);
+      }
+    }
+  }
+  *doubtful |= next - best < near * (1.0 + fabs(best));
+  return best;
+}
+
+static double length_of(const oracle* o, int x, int y)
+{
+  double from[3], along[3], begin, end;
+  oracle_ray(o, x, y, from, along, &begin, &end);
+  return sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+}
+
+static void color_of(const picture_case* c, double x, double rgb[3])
+{
+  const double* p = c->transfer.color;
+  const size_t n = c->transfer.color_count;
+  size_t i = 0;
+  while (i + 1 < n && p[4 * (i + 1)] <= x) {
+    ++i;
+  }
+  const double t = i + 1 < n && x > p[4 * i] ? (x - p[4 * i]) / (p[4 * i + 4] - p[4 * i]) : 0.0;
+  for (int channel = 1; channel < 4; ++channel) {
+    rgb[channel - 1] = p[4 * i + (size_t)channel] + (t > 0.0 ? t * (p[4 * i + 4 + (size_t)channel] - p[4 * i + (size_t)channel]) : 0.0);
+  }
+}
+
+/* A random case of few voxels, turned and sheared. */
+static void create_case(stratus_context* context, uint32_t seed, picture_case* c)
+{
+  uint32_t s = seed;
+  case_create_random(context, seed, c);
+  for (int a = 0; a < 3; ++a) {
+    c->volume.dimensions[a] = c->volume.dimensions[a] > 9 ? 3 + c->volume.dimensions[a] % 7 : c->volume.dimensions[a];
+    c->volume.spacing[a] = case_uniform(&s, 0.5, 2.0);
+    c->volume.origin[a] = case_uniform(&s, -5.0, 5.0);
+    for (int b = 0; b < 3; ++b) {
+      c->volume.matrix[4 * a + b] += case_uniform(&s, -0.3, 0.3) - (a == b && seed % 3 == 0 ? 1.9 : 0.0);
+    }
+  }
+  case_look(context, c, (int)(seed % 8), (int)(seed % 2));
+  c->camera.near_k = seed % 5 == 0 ? 12.0 : c->camera.near_k;
+  for (int a = 0; a < 6; ++a) {
+    const int axis = a / 2;
+    const double wide = c->volume.spacing[axis] * (double)c->volume.dimensions[axis];
+    c->options.crop_bounds[a] = c->volume.origin[axis] + wide * (a % 2 ? case_uniform(&s, 0.5, 1.1) : case_uniform(&s, -0.1, 0.4));
+  }
+  if (c->options.clip_plane_count) { /* through the middle */
+    double bounds[6];
+    assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
+    c->options.clip_planes[0][3] = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      c->options.clip_planes[0][3] -= c->options.clip_planes[0][a] * 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
+    }
+  }
+  c->options.mode = STRATUS_MODE_FIRST_HIT;
+  c->options.shading.on = 0;
+}
+
+static void compare(const picture_case* c, const picture* p, uint32_t seed, int* hits, int* doubts)
+{
+  oracle o;
+  oracle_begin(c, &o);
+  for (int at = 0; at < CASE_PIXELS; ++at) {
+    bool doubtful = false;
+    size_t voxel = 0;
+    double rgb[3];
+    const double k = oracle_hit(&o, at % CASE_WIDTH, at / CASE_WIDTH, &voxel, &doubtful);
+    if (doubtful) {
+      ++*doubts;
+      continue;
+    }
+    const double expected = k * length_of(&o, at % CASE_WIDTH, at / CASE_WIDTH);
+    const float* rgba = p->rgba + 4 * at;
+    if (!isfinite(k)) {
+      assert_true(isinf(p->depth[at]) && rgba[0] == 0.0f && rgba[1] == 0.0f && rgba[2] == 0.0f && rgba[3] == 0.0f);
+      continue;
+    }
+    ++*hits;
+    if (!(fabs(p->depth[at] - expected) <= 1e-6 * fabs(expected))) { /* a float's digits */
+      print_error("seed %u, pixel %d: depth %g instead of %g\n", seed, at, (double)p->depth[at], expected);
+      fail();
+    }
+    color_of(c, case_value(c, voxel), rgb);
+    assert_true(rgba[3] == 1.0f && p->samples[at] == 1);
+    for (int channel = 0; channel < 3; ++channel) {
+      assert_true(fabs((double)rgba[channel] - rgb[channel]) < 1e-5);
+    }
+  }
+  free(o.effective);
+}
+
+static void pixels_show_the_first_voxel_of_brute_force(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  int hits = 0, doubts = 0;
+  for (uint32_t seed = 1; seed <= 80; ++seed) {
+    picture_case c;
+    create_case(context, seed, &c);
+    c.options.structure = seed % 2 ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_HYBRID;
+    case_render(context, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    case_destroy(&c);
+  }
+  print_message("             %d hits, %d doubtful\n", hits, doubts);
+  assert_true(hits > 20000 && doubts < hits / 50);
+  stratus_context_destroy(context);
+}
+
+static void opaque_depth_ends_rays(void** state)
+{
+  (void)state;
+  static float depth[CASE_PIXELS];
+  stratus_context* context = case_context("host", 2);
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    picture_case c;
+    int before = 0, behind = 0;
+    case_create(context, &c, STRATUS_FLOAT32, 9, 8, 7, 3);
+    case_look(context, &c, 2, parallel);
+    c.options.mode = STRATUS_MODE_FIRST_HIT;
+    c.camera.near_k = 5.0;
+    c.camera.far_k = 80.0;
+    case_render(context, &c, &first);
+    for (int at = 0; at < CASE_PIXELS; ++at) { /* one half of the hits just behind, the other just before the opaque thing */
+      const double u = (2.0 * (at % CASE_WIDTH) + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * (at / CASE_WIDTH) + 1.0) / CASE_HEIGHT - 1.0;
+      double square = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        const double d = c.camera.forward[a] + (parallel ? 0.0 : u * c.camera.right[a] + v * c.camera.up[a]);
+        square += d * d;
+      }
+      const double k = (double)first.depth[at] / sqrt(square) + (at % 2 ? 0.01 : -0.01);
+      depth[at] = isfinite(k) ? (float)(parallel ? (k - 5.0) / 75.0 : (80.0 - 80.0 * 5.0 / k) / 75.0) : 1.0f;
+    }
+    c.opaque_depth = depth;
+    case_render(context, &c, &second);
+    for (int at = 0; at < CASE_PIXELS; ++at) {
+      const bool hit = isfinite(first.depth[at]);
+      before += hit && at % 2;
+      behind += hit && at % 2 == 0;
+      assert_true(at % 2 || !hit ? memcmp(first.rgba + 4 * at, second.rgba + 4 * at, 16) == 0 : second.rgba[4 * at + 3] == 0.0f);
+    }
+    assert_true(before > 100 && behind > 100);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
+/* ---- light */
+
+/* White, lit by a red light from +x, a green one from +y, a blue one from +z: the colour is the normal, where it is positive. */
+static void light_normals(picture_case* c)
+{
+  stratus_shading* shading = &c->options.shading;
+  static const double white[4] = { 0, 1, 1, 1 };
+  c->transfer.color = white;
+  c->transfer.color_count = 1;
+  *shading = (stratus_shading){ .on = 1, .diffuse = 1.0, .light_count = 3 };
+  for (int a = 0; a < 3; ++a) {
+    shading->lights[a].vector[a] = 7.0;
+    shading->lights[a].color[a] = 1.0;
+  }
+}
+
+/* The voxel in the middle of 3^3, seen from (1,1,1); all other values are below what shows. */
+static void create_single(stratus_context* context, picture_case* c)
+{
+  static const double opacity[4] = { 0.5, 0.0, 1.0, 1.0 };
+  case_create(context, c, STRATUS_FLOAT32, 3, 3, 3, 1);
+  memset(c->values, 0, 27 * sizeof(float));
+  ((float*)c->values)[13] = 1.0f;
+  c->transfer.opacity = opacity;
+  c->transfer.opacity_count = 2;
+  c->options.mode = STRATUS_MODE_FIRST_HIT;
+  light_normals(c);
+}
+
+static void look_from(stratus_context* context, picture_case* c, const double from[3], const double at[3], double scale)
+{
+  static const double up[3] = { 0.1, 0.2, 1.0 };
+  const double eye[3] = { at[0] + from[0], at[1] + from[1], at[2] + from[2] };
+  assert_int_equal(stratus_camera_parallel(context, eye, at, up, scale, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
+}
+
+static void faces_have_their_normals_under_any_matrix(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    picture_case c;
+    double edges[3][3], normals[3][3], middle[3];
+    uint32_t s = seed;
+    int seen[3] = { 0, 0, 0 };
+    create_single(context, &c);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        c.volume.matrix[4 * a + b] = (a == b ? (seed % 2 ? -1.0 : 1.0) : 0.0) + (seed ? case_uniform(&s, -0.4, 0.4) : 0.0);
+      }
+    }
+    for (int a = 0; a < 3; ++a) {
+      middle[a] = c.volume.matrix[4 * a] + c.volume.matrix[4 * a + 1] + c.volume.matrix[4 * a + 2];
+      for (int b = 0; b < 3; ++b) {
+        edges[b][a] = c.volume.matrix[4 * a + b];
+      }
+    }
+    const double from[3] = { 20, 17, 14 };
+    for (int a = 0; a < 3; ++a) { /* of the face spanned by the two other edges, towards the eye */
+      const double *e = edges[(a + 1) % 3], *f = edges[(a + 2) % 3];
+      double* n = normals[a];
+      double length = 0.0, toward = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        n[i] = e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3];
+        length += n[i] * n[i];
+        toward += n[i] * from[i];
+      }
+      for (int i = 0; i < 3; ++i) {
+        n[i] /= (toward < 0.0 ? -1.0 : 1.0) * sqrt(length);
+      }
+    }
+    look_from(context, &c, from, middle, 1.2);
+    case_render(context, &c, &first);
+    for (int at = 0; at < CASE_PIXELS; ++at) {
+      if (first.rgba[4 * at + 3] > 0.0f) {
+        int which = -1;
+        for (int a = 0; a < 3; ++a) {
+          bool same = true;
+          for (int i = 0; i < 3; ++i) {
+            same = same && fabs((double)first.rgba[4 * at + i] - fmax(0.0, normals[a][i])) < 1e-6;
+          }
+          which = same ? a : which;
+        }
+        assert_true(which >= 0);
+        ++seen[which];
+      }
+    }
+    assert_true(seen[0] > 10 && seen[1] > 10 && seen[2] > 10);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
+static void cuts_have_the_normal_of_what_cuts(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  const double from[3] = { 0, 0, 10 }, middle[3] = { 1, 1, 1 };
+  const float* center = first.rgba + 4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2);
+  create_single(context, &c);
+  look_from(context, &c, from, middle, 1.2);
+  case_render(context, &c, &first);
+  assert_true(center[2] > 0.999999f && center[0] == 0.0f && center[1] == 0.0f);
+  c.options.clip_plane_count = 1; /* keeps x + 2 y + 2 z <= 5, through the middle: normal (1, 2, 2)/3 */
+  const double plane[4] = { -1, -2, -2, 5 };
+  memcpy(c.options.clip_planes[0], plane, sizeof plane);
+  for (int normals = 0; normals < 2; ++normals) {
+    c.options.normals = (stratus_normals)normals;
+    case_render(context, &c, &first);
+    assert_true(fabs(center[0] - 1.0 / 3) < 1e-6 && fabs(center[1] - 2.0 / 3) < 1e-6 && fabs(center[2] - 2.0 / 3) < 1e-6);
+  }
+  c.options.clip_plane_count = 0;
+  c.options.crop = 1; /* the crop's upper z */
+  const double crop[6] = { 0, 2, 0, 2, 0, 1.1 };
+  memcpy(c.options.crop_bounds, crop, sizeof crop);
+  case_render(context, &c, &first);
+  assert_true(center[2] > 0.999999f && center[0] == 0.0f);
+  assert_true(fabs((double)first.depth[CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2] - 9.9) < 1e-5);
+  c.options.crop = 0;
+  const double slanted[3] = { 3, 0, 4 };
+  look_from(context, &c, slanted, middle, 0.1);
+  c.camera.near_k = 5.0; /* begins in the middle: against the ray, which has length 1 */
+  case_render(context, &c, &first);
+  assert_true(fabs(center[0] - 0.6) < 1e-6 && center[1] < 1e-6f && fabs(center[2] - 0.8) < 1e-6);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* A field that is linear in the world: its central differences are exact, whatever the spacing. */
+static void gradients_are_the_fields(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  static const double opacity[4] = { -1e9, 1.0, 1e9, 1.0 };
+  const double slope[3] = { 1.0, 2.0, 3.0 }, length = sqrt(14.0);
+  case_create(context, &c, STRATUS_FLOAT64, 8, 9, 10, 1);
+  c.volume.spacing[0] = 0.5;
+  c.volume.spacing[2] = 3.0;
+  for (int at = 0; at < 720; ++at) {
+    ((double*)c.values)[at] = slope[0] * 0.5 * (at % 8) + slope[1] * (at / 8 % 9) + slope[2] * 3.0 * (at / 72);
+  }
+  c.transfer.opacity = opacity;
+  c.transfer.opacity_count = 2;
+  c.options.mode = STRATUS_MODE_FIRST_HIT;
+  c.options.normals = STRATUS_NORMALS_GRADIENT;
+  light_normals(&c);
+  const double from[3] = { 50, 50, 50 }, middle[3] = { 2, 4, 13 };
+  look_from(context, &c, from, middle, 14.0);
+  case_render(context, &c, &first);
+  assert_true(case_lit(&first) > 200);
+  for (int at = 0; at < CASE_PIXELS; ++at) {
+    for (int a = 0; a < 3 && first.rgba[4 * at + 3] > 0.0f; ++a) {
+      assert_true(fabs((double)first.rgba[4 * at + a] - slope[a] / length) < 1e-6);
+    }
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void light_adds_up_as_phong_says(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  static const double color[4] = { 0, 0.5, 0.25, 0.125 };
+  const int pixel = CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2;
+  const float* center = first.rgba + 4 * pixel;
+  create_single(context, &c);
+  c.transfer.color = color;
+  const double from[3] = { 0, 0, 10 }, middle[3] = { 1, 1, 1 };
+  look_from(context, &c, from, middle, 0.001); /* all rays meet (1, 1, 1.5) */
+  c.options.shading = stratus_ray_cast_options_default().shading;
+  case_render(context, &c, &first); /* the light at the eye */
+  assert_true(fabs(center[0] - 0.5) < 1e-6 && fabs(center[1] - 0.25) < 1e-6 && fabs(center[2] - 0.125) < 1e-6);
+  stratus_shading* shading = &c.options.shading;
+  shading->light_count = 0;
+  case_render(context, &c, &first);
+  assert_true(fabs(center[0] - 0.05) < 1e-6);
+  /* a light whose cosine is .8, standing there or in that direction; mirrored, it passes the eye at the same angle */
+  shading->light_count = 1;
+  shading->specular = 0.3;
+  shading->specular_power = 3.0;
+  for (int positional = 0; positional < 2; ++positional) {
+    shading->lights[0] = (stratus_light){ .vector = { 3, 0, 4 }, .color = { 1, 0.5, 0 }, .positional = positional };
+    if (positional) {
+      shading->lights[0].vector[0] += 1.0;
+      shading->lights[0].vector[1] += 1.0;
+      shading->lights[0].vector[2] += 1.5;
+    }
+    case_render(context, &c, &first);
+    const double gloss = 0.3 * 0.8 * 0.8 * 0.8;
+    assert_true(fabs(center[0] - (0.5 * (0.1 + 0.9 * 0.8) + gloss)) < 1e-4);
+    assert_true(fabs(center[1] - (0.25 * (0.1 + 0.9 * 0.8 * 0.5) + 0.5 * gloss)) < 1e-4);
+    assert_true(fabs(center[2] - 0.125 * 0.1) < 1e-6);
+  }
+  shading->lights[0].vector[2] = -50.0; /* from behind: nothing but ambient */
+  case_render(context, &c, &first);
+  assert_true(fabs(center[0] - 0.05) < 1e-6);
+  shading->lights[0] = (stratus_light){ .vector = { 0, 0, 1 }, .color = { 9, 9, 9 } };
+  case_render(context, &c, &first);
+  assert_true(center[0] == 1.0f && center[3] == 1.0f); /* never more than white */
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(pixels_show_the_first_voxel_of_brute_force),
+    cmocka_unit_test(opaque_depth_ends_rays),
+    cmocka_unit_test(faces_have_their_normals_under_any_matrix),
+    cmocka_unit_test(cuts_have_the_normal_of_what_cuts),
+    cmocka_unit_test(gradients_are_the_fields),
+    cmocka_unit_test(light_adds_up_as_phong_says),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
