@@ -399,6 +399,8 @@ STRATUS_API stratus_status stratus_tree_check(stratus_context* context, const st
 
 /* A tree as bytes, for files and messages: little-endian, versioned, with a checksum. */
 STRATUS_API size_t stratus_tree_bytes(const stratus_tree* tree);
+/* Of the volume's values, type, dimensions and hidden parts that it was built from; 0: a list. */
+STRATUS_API uint64_t stratus_tree_hash(const stratus_tree* tree);
 STRATUS_API void stratus_tree_save(const stratus_tree* tree, void* bytes);
 /* STRATUS_INVALID_ARGUMENT for bytes that are cut short, of another version or byte order, or changed. */
 STRATUS_API stratus_status stratus_tree_load(stratus_context* context, const void* bytes, size_t size, stratus_tree** tree);

@@ -88,6 +88,11 @@ static header header_of(const stratus_tree* tree)
   return h;
 }
 
+uint64_t stratus_tree_hash(const stratus_tree* tree)
+{
+  return tree->origin.hash;
+}
+
 size_t stratus_tree_bytes(const stratus_tree* tree)
 {
   const header h = header_of(tree);
