@@ -96,8 +96,17 @@ struct row {
 };
 void add_rows(const result& r, std::vector<row>& rows);
 void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
-void write_csv(const std::string& path, const std::vector<row>& rows); // "-": the standard output
+// "-": the standard output; benchmark: the first column
+void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark = "volume");
 void print_table(const std::vector<row>& rows);
 // Frame time against error, both logarithmic, one mark a method, one chart a scene.
 void write_chart(const std::string& path, const std::vector<row>& rows);
+struct chart_mark {
+  std::string scene, method;
+  double x, y; // > 0
+};
+void write_chart(const std::string& path, const std::vector<chart_mark>& marks, const char* x_title, const char* y_title);
+
+// ---- main.cxx: starts the program again under xvfb-run where there is no display
+void ensure_display(char* argv[]);
 } // namespace bench

@@ -27,11 +27,6 @@ namespace {
 constexpr int width = 720;
 constexpr int height = 460;
 
-struct mark {
-  std::string method;
-  double ms, error;
-};
-
 void style(const std::string& method, vtkPlotPoints* plot)
 {
   static const unsigned char colors[][3] = { { 31, 119, 180 }, { 214, 39, 40 }, { 44, 160, 44 }, { 148, 103, 189 }, { 255, 127, 14 },
@@ -64,33 +59,35 @@ void decades(std::vector<double> values, double& low, double& high)
   high = std::pow(10.0, std::ceil(std::log10(*std::max_element(values.begin(), values.end())) + 0.05));
 }
 
-void add_chart(vtkContextScene* all, const std::string& title, const std::vector<mark>& marks, int column, int line)
+// titles: of the axes x and y.
+void add_chart(vtkContextScene* all, const std::string& title, const std::vector<chart_mark>& marks, const char* const titles[2],
+  int column, int line)
 {
   vtkNew<vtkChartXY> chart;
   std::vector<double> times;
   std::vector<double> errors;
-  for (const mark& m : marks) {
+  for (const chart_mark& m : marks) {
     vtkNew<vtkTable> table;
     vtkNew<vtkFloatArray> x;
     vtkNew<vtkFloatArray> y;
-    x->SetName("frame, ms");
+    x->SetName(titles[0]);
     y->SetName(m.method.c_str());
-    x->InsertNextValue(static_cast<float>(m.ms));
-    y->InsertNextValue(static_cast<float>(m.error));
+    x->InsertNextValue(static_cast<float>(m.x));
+    y->InsertNextValue(static_cast<float>(m.y));
     table->AddColumn(x);
     table->AddColumn(y);
     auto* plot = vtkPlotPoints::SafeDownCast(chart->AddPlot(vtkChart::POINTS));
     plot->SetInputData(table, 0, 1);
     style(m.method, plot);
-    times.push_back(m.ms);
-    errors.push_back(m.error);
+    times.push_back(m.x);
+    errors.push_back(m.y);
   }
   double low;
   double high;
   decades(times, low, high);
-  range(chart->GetAxis(vtkAxis::BOTTOM), low, high, "whole frame, ms");
+  range(chart->GetAxis(vtkAxis::BOTTOM), low, high, titles[0]);
   decades(errors, low, high);
-  range(chart->GetAxis(vtkAxis::LEFT), low, high, "root mean square error of the window's pixels");
+  range(chart->GetAxis(vtkAxis::LEFT), low, high, titles[1]);
   chart->SetTitle(title);
   chart->SetShowLegend(true);
   chart->GetLegend()->SetInline(false); // beside the plot, where it hides no mark
@@ -104,18 +101,28 @@ void add_chart(vtkContextScene* all, const std::string& title, const std::vector
 
 void write_chart(const std::string& path, const std::vector<row>& rows)
 {
-  std::vector<std::string> scenes;
-  std::map<std::string, std::vector<mark>> marks;
+  std::vector<chart_mark> marks;
   std::map<std::string, double> frames;
   for (const row& r : rows) {
     if (r.metric == "frame_ms") {
       frames[r.scene + '\n' + r.method] = r.value;
     } else if (r.metric == "psnr8_db") {
-      if (marks[r.scene].empty()) {
-        scenes.push_back(r.scene);
-      }
-      marks[r.scene].push_back({ r.method, frames[r.scene + '\n' + r.method], std::pow(10.0, -r.value / 20.0) });
+      marks.push_back({ r.scene, r.method, frames[r.scene + '\n' + r.method], std::pow(10.0, -r.value / 20.0) });
     }
+  }
+  write_chart(path, marks, "whole frame, ms", "root mean square error of the window's pixels");
+}
+
+void write_chart(const std::string& path, const std::vector<chart_mark>& all, const char* x_title, const char* y_title)
+{
+  const char* const titles[2] = { x_title, y_title };
+  std::vector<std::string> scenes;
+  std::map<std::string, std::vector<chart_mark>> marks;
+  for (const chart_mark& m : all) {
+    if (marks[m.scene].empty()) {
+      scenes.push_back(m.scene);
+    }
+    marks[m.scene].push_back(m);
   }
   if (scenes.empty()) {
     throw failure("nothing to chart: no method has both a time and an error");
@@ -128,7 +135,9 @@ void write_chart(const std::string& path, const std::vector<row>& rows)
   view->GetRenderWindow()->SetSize(columns * width, lines * height);
   view->GetRenderer()->SetBackground(1, 1, 1);
   for (size_t i = 0; i < scenes.size(); ++i) {
-    add_chart(view->GetScene(), scenes[i], marks[scenes[i]], static_cast<int>(i) % columns, lines - 1 - static_cast<int>(i) / columns);
+    const int column = static_cast<int>(i) % columns;
+    const int line = lines - 1 - static_cast<int>(i) / columns;
+    add_chart(view->GetScene(), scenes[i], marks[scenes[i]], titles, column, line);
   }
   view->GetRenderWindow()->Render();
   vtkNew<vtkWindowToImageFilter> grab;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // stratus-bench volume: this project's pictures and times beside those of what users have today, in one process.
 #include "bench.h"
+#include "distance.h"
 #include "rate.h"
 
 #include <cstdio>
@@ -28,6 +29,8 @@ Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median
 update_ms: from a change of the transfer function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
+
+stratus-bench distance --help tells of distance fields.
 )";
 
 struct options {
@@ -146,9 +149,10 @@ void run(const options& o)
   }
   stratus_context_destroy(context);
 }
+} // namespace
 
 // VTK without a display ends the process; so start again with one.
-void ensure_display(char* argv[])
+void bench::ensure_display(char* argv[])
 {
   if (std::getenv("DISPLAY")) {
     return;
@@ -165,10 +169,17 @@ void ensure_display(char* argv[])
   execvp(pointers[0], pointers.data());
   throw bench::failure("no display, and xvfb-run cannot be started (Debian: xvfb)");
 }
-} // namespace
 
 int main(int argc, char* argv[])
 {
+  try {
+    if (argc > 1 && std::strcmp(argv[1], "distance") == 0) {
+      return bench::distance_main(argc, argv);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stratus-bench: %s\n", error.what());
+    return 1;
+  }
   if (argc < 2 || std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "volume") != 0 ||
     (argc > 2 && std::strcmp(argv[2], "--help") == 0)) {
     const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0));
@@ -177,7 +188,7 @@ int main(int argc, char* argv[])
   }
   try {
     const options o = parse(argc, argv);
-    ensure_display(argv);
+    bench::ensure_display(argv);
     run(o);
     return 0;
   } catch (const std::exception& error) {

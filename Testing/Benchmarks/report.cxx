@@ -37,7 +37,7 @@ void add_rows(const std::string& scene, const floor_result& f, std::vector<row>&
   rows.push_back({ scene, "floor", "rate", "1/s", f.rate });
 }
 
-void write_csv(const std::string& path, const std::vector<row>& rows)
+void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark)
 {
   std::FILE* file = path == "-" ? stdout : std::fopen(path.c_str(), "w");
   if (!file) {
@@ -45,7 +45,7 @@ void write_csv(const std::string& path, const std::vector<row>& rows)
   }
   std::fprintf(file, "benchmark,scene,method,metric,value,unit\n");
   for (const row& r : rows) {
-    std::fprintf(file, "volume,%s,%s,%s,%.9g,%s\n", r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
+    std::fprintf(file, "%s,%s,%s,%s,%.9g,%s\n", benchmark, r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
   }
   const bool bad = std::ferror(file) != 0;
   if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad) {

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// stratus-bench distance: exact distance fields and floodings, their times and errors, beside ITK's in one process.
+#include "distance.h"
+#include "bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <sstream>
+
+namespace bench {
+
+namespace {
+
+const char* const help = R"(stratus-bench distance [options]
+
+  --case NAME,...     sparse, clustered, dense, single, none, all, plate, shell (default: all of them)
+  --size N,...        voxels along each axis (default 64,128,256)
+  --method M,...      stratus:exact|zigzag|envelope|jfa|jfa+1|jfa+2|1+jfa|jfa2|ajfa|ajfa-fig5, with -signed and then @host or @device (the first
+                      OpenCL device; where that is a CPU, the host builds) behind it; itk (signed). Default: all on the host, exact signed too
+  --threads N         of the host and of ITK (default 2)
+  --csv FILE          tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+  --chart FILE.png    build time against error, of the largest size
+
+build_ms: from the set of voxels to the field, median of 5 (floodings: 3). array_ms: the same, and all distances as floats in new memory, which
+is what ITK's build_ms holds. wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are
+wrong, but in no other error. ITK is judged by what it measures from: the contour.
+)";
+
+struct options {
+  std::vector<std::string> cases, methods;
+  std::vector<int64_t> sizes;
+  std::string csv = "-", chart;
+  int threads = 2;
+};
+
+struct closer {
+  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
+  void operator()(stratus_voxels* v) const { stratus_voxels_destroy(v); }
+  void operator()(stratus_field* f) const { stratus_field_destroy(f); }
+};
+using context_pointer = std::unique_ptr<stratus_context, closer>;
+using voxels_pointer = std::unique_ptr<stratus_voxels, closer>;
+using field_pointer = std::unique_ptr<stratus_field, closer>;
+
+struct method {
+  stratus_field_options field;
+  bool on_device = false, is_itk = false;
+};
+
+bool cut(std::string& text, const std::string& end)
+{
+  const bool has = text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+  text.resize(text.size() - (has ? end.size() : 0));
+  return has;
+}
+
+method parse_method(const std::string& name)
+{
+  method m;
+  m.field = stratus_field_options_default();
+  m.is_itk = name == "itk";
+  std::string rest = name;
+  m.on_device = cut(rest, "@device");
+  cut(rest, "@host");
+  m.field.is_signed = cut(rest, "-signed");
+  for (int i = 0; i <= STRATUS_FIELD_AJFA_FIG5; ++i) {
+    m.field.method = static_cast<stratus_field_method>(i);
+    if (m.is_itk || rest == std::string("stratus:") + stratus_field_method_name(m.field.method)) {
+      return m;
+    }
+  }
+  throw failure("unknown method " + name + "; --help tells more");
+}
+
+std::vector<std::string> parts_of(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+options parse(int argc, char* argv[])
+{
+  options o;
+  for (int i = 2; i < argc; i += 2) {
+    const std::string word = argv[i];
+    if (i + 1 == argc) {
+      throw failure(word + " is unknown or lacks its value; --help tells more");
+    }
+    const std::string value = argv[i + 1];
+    if (word == "--case") {
+      o.cases = parts_of(value);
+    } else if (word == "--method") {
+      o.methods = parts_of(value);
+    } else if (word == "--size") {
+      for (const std::string& size : parts_of(value)) {
+        o.sizes.push_back(std::atoi(size.c_str()));
+      }
+    } else if (word == "--threads") {
+      o.threads = std::atoi(value.c_str());
+    } else if (word == "--csv") {
+      o.csv = value;
+    } else if (word == "--chart") {
+      o.chart = value;
+    } else {
+      throw failure("unknown option " + word + "; --help tells more");
+    }
+  }
+  o.sizes = o.sizes.empty() ? std::vector<int64_t>{ 64, 128, 256 } : o.sizes;
+  o.cases = o.cases.empty() ? distance_case_names() : o.cases;
+  if (o.methods.empty()) {
+    o.methods = { "stratus:exact-signed", "stratus:exact", "stratus:zigzag", "stratus:envelope", "stratus:jfa", "stratus:jfa+1",
+      "stratus:jfa+2", "stratus:1+jfa", "stratus:jfa2", "stratus:ajfa", "stratus:ajfa-fig5", "itk" };
+  }
+  for (const std::string& name : o.methods) {
+    parse_method(name);
+  }
+  for (const int64_t size : o.sizes) {
+    if (size < 8 || size > 1024) {
+      throw failure("--size must be within 8..1024");
+    }
+  }
+  if (o.threads < 1 || o.threads > 1024) {
+    throw failure("--threads must be within 1..1024");
+  }
+  return o;
+}
+
+void check(const stratus_context* context, stratus_status status)
+{
+  if (status != STRATUS_OK) {
+    throw failure(stratus_context_message(context));
+  }
+}
+
+context_pointer open_context(const char* device, int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = nullptr;
+  char message[512];
+  options.device = device;
+  options.threads = threads;
+  if (stratus_context_create(&options, &context, message, sizeof message) != STRATUS_OK) {
+    throw failure(message);
+  }
+  return context_pointer(context);
+}
+
+voxels_pointer make_voxels(stratus_context* context, int64_t size, const std::vector<uint8_t>& effective)
+{
+  stratus_volume volume = stratus_volume_default();
+  stratus_criterion criterion = stratus_criterion_default();
+  stratus_voxels* voxels = nullptr;
+  volume.values = effective.data();
+  volume.type = STRATUS_UINT8;
+  for (int a = 0; a < 3; ++a) {
+    volume.dimensions[a] = size;
+    volume.origin[a] = 0.0;
+    volume.spacing[a] = 1.0;
+  }
+  criterion.lower = 1.0;
+  criterion.upper = 1.0;
+  check(context, stratus_voxels_create(context, &volume, &criterion, &voxels));
+  return voxels_pointer(voxels);
+}
+
+std::vector<float> read_field(const stratus_field* field, size_t count)
+{
+  std::vector<float> distances(count);
+  stratus_field_distances(field, distances.data());
+  return distances;
+}
+
+std::vector<float> exact_distances(stratus_context* context, const stratus_voxels* voxels, int is_signed, size_t count)
+{
+  stratus_field_options options = stratus_field_options_default();
+  stratus_field* field = nullptr;
+  options.method = STRATUS_FIELD_ZIGZAG;
+  options.is_signed = is_signed;
+  check(context, stratus_field_create(context, voxels, &options, &field, nullptr));
+  return read_field(field_pointer(field).get(), count);
+}
+
+struct judgement {
+  double wrong_percent = 0.0, unfilled_percent = 0.0, max_error = 0.0, rms_error = 0.0;
+};
+
+judgement judge(const std::vector<float>& distances, const std::vector<float>& right, double tolerance)
+{
+  judgement j;
+  size_t wrong = 0;
+  size_t unfilled = 0;
+  double squares = 0.0;
+  for (size_t v = 0; v < right.size(); ++v) {
+    if (std::isinf(right[v])) {
+      wrong += std::fabs(distances[v]) < 1e3f; // ITK says "none" by a large number
+    } else if (std::isinf(distances[v])) {
+      ++unfilled;
+    } else {
+      const double error = std::fabs(static_cast<double>(distances[v]) - static_cast<double>(right[v]));
+      wrong += error > tolerance;
+      squares += error > tolerance ? error * error : 0.0;
+      j.max_error = std::max(j.max_error, error > tolerance ? error : 0.0);
+    }
+  }
+  const auto count = static_cast<double>(right.size());
+  j.wrong_percent = 100.0 * static_cast<double>(wrong + unfilled) / count;
+  j.unfilled_percent = 100.0 * static_cast<double>(unfilled) / count;
+  j.rms_error = std::sqrt(squares / std::max(1.0, count - static_cast<double>(unfilled)));
+  return j;
+}
+
+// The field as users of floats get it; memory is touched for the first time within, as in ITK.
+struct timed {
+  std::vector<double> build_ms, array_ms;
+  std::vector<float> distances;
+  int passes = 0;
+};
+
+timed time_method(stratus_context* context, const stratus_voxels* voxels, const method& m, size_t count)
+{
+  timed t;
+  const int repeats = m.field.method >= STRATUS_FIELD_JFA ? 3 : 5;
+  for (int i = 0; i < repeats; ++i) {
+    stratus_field_report report;
+    stratus_field* made = nullptr;
+    const double start = now_ms();
+    check(context, stratus_field_create(context, voxels, &m.field, &made, &report));
+    const double built = now_ms();
+    const field_pointer field(made);
+    std::unique_ptr<float[]> array(new float[count]);
+    stratus_field_distances(field.get(), array.get());
+    t.array_ms.push_back(now_ms() - start);
+    t.build_ms.push_back(built - start);
+    t.passes = report.passes;
+    if (i == 0) {
+      t.distances.assign(array.get(), array.get() + count);
+    }
+  }
+  return t;
+}
+
+class runner {
+public:
+  runner(const options& o)
+    : o_(o)
+    , host_(open_context("host", o.threads))
+  {
+  }
+
+  void run_case(const distance_case& c)
+  {
+    std::fprintf(stderr, "%s\n", c.name.c_str());
+    const size_t count = c.effective.size();
+    const voxels_pointer voxels = make_voxels(host_.get(), c.size, c.effective);
+    std::vector<float> right[2];
+    for (const std::string& name : o_.methods) {
+      const method m = parse_method(name);
+      if (m.is_itk) {
+        run_itk_rows(c);
+        continue;
+      }
+      stratus_context* context = m.on_device ? device() : host_.get();
+      const timed t = time_method(context, voxels.get(), m, count);
+      std::vector<float>& exact = right[m.field.is_signed];
+      if (exact.empty()) {
+        exact = exact_distances(host_.get(), voxels.get(), m.field.is_signed, count);
+      }
+      const judgement j = judge(t.distances, exact, 0.0);
+      add(c.name, name, median(t.build_ms), median(t.array_ms), j);
+      rows_.push_back({ c.name, name, "passes", "1", static_cast<double>(t.passes) });
+    }
+  }
+
+  const std::vector<row>& rows() const { return rows_; }
+
+private:
+  stratus_context* device()
+  {
+    if (!device_) {
+      device_ = open_context("0", o_.threads);
+    }
+    return device_.get();
+  }
+
+  void run_itk_rows(const distance_case& c)
+  {
+    std::vector<double> ms;
+    std::vector<float> distances;
+    for (int i = 0; i < 3; ++i) {
+      ms.push_back(run_itk(c, o_.threads, i == 0 ? &distances : nullptr));
+    }
+    const voxels_pointer contour = make_voxels(host_.get(), c.size, itk_contour(c));
+    std::vector<float> right = exact_distances(host_.get(), contour.get(), 0, c.effective.size());
+    for (size_t v = 0; v < right.size(); ++v) {
+      right[v] = c.effective[v] ? -right[v] : right[v];
+    }
+    add(c.name, "itk", median(ms), median(ms), judge(distances, right, 1e-3));
+  }
+
+  void add(const std::string& scene, const std::string& name, double build_ms, double array_ms, const judgement& j)
+  {
+    rows_.push_back({ scene, name, "build_ms", "ms", build_ms });
+    rows_.push_back({ scene, name, "array_ms", "ms", array_ms });
+    rows_.push_back({ scene, name, "wrong_percent", "%", j.wrong_percent });
+    rows_.push_back({ scene, name, "unfilled_percent", "%", j.unfilled_percent });
+    rows_.push_back({ scene, name, "max_error", "voxel", j.max_error });
+    rows_.push_back({ scene, name, "rms_error", "voxel", j.rms_error });
+    std::fprintf(stderr, "  %-22s build %8.2f ms, with floats %8.2f ms, wrong %8.4f %%, unfilled %8.4f %%, max %7.3f, rms %9.6f\n", name.c_str(),
+      build_ms, array_ms, j.wrong_percent, j.unfilled_percent, j.max_error, j.rms_error);
+  }
+
+  const options& o_;
+  context_pointer host_, device_;
+  std::vector<row> rows_;
+};
+
+// Only what is of the largest size; no error at all is drawn at the lower edge, for the axes are logarithmic.
+void chart(const std::string& path, int64_t size, const std::vector<row>& rows)
+{
+  constexpr double least = 1e-6;
+  const std::string ending = "-" + std::to_string(size);
+  std::vector<chart_mark> marks;
+  double ms = 0.0;
+  for (const row& r : rows) {
+    std::string scene = r.scene;
+    if (r.metric == "build_ms") {
+      ms = r.value;
+    } else if (r.metric == "rms_error" && cut(scene, ending) && scene != "none" && scene != "all") {
+      marks.push_back({ r.scene, r.method, ms, std::max(r.value, least) });
+    }
+  }
+  write_chart(path, marks, "build, ms", "root mean square error, voxels (none: 1e-6)");
+}
+
+void run(const options& o)
+{
+  runner r(o);
+  for (const int64_t size : o.sizes) {
+    for (const std::string& name : o.cases) {
+      r.run_case(make_distance_case(name, size));
+    }
+  }
+  write_csv(o.csv, r.rows(), "distance");
+  if (!o.chart.empty()) {
+    chart(o.chart, *std::max_element(o.sizes.begin(), o.sizes.end()), r.rows());
+  }
+}
+} // namespace
+
+int distance_main(int argc, char* argv[])
+{
+  if (argc > 2 && std::strcmp(argv[2], "--help") == 0) {
+    std::fputs(help, stdout);
+    return 0;
+  }
+  const options o = parse(argc, argv);
+  if (!o.chart.empty()) {
+    ensure_display(argv);
+  }
+  run(o);
+  return 0;
+}
+} // namespace bench
