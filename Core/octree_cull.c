@@ -260,11 +260,11 @@ static stratus_status look(stratus_octree_view* view, const stratus_frustum_plan
   walk.budget = tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;
   uint64_t splits = 0, handed_down = 0;
   tree->clock++;
+  stratus_octree_make_root(tree);
   if (tree->options.stop == STRATUS_OCTREE_STOP_STATIC && tree->changed) {
     TRY(stratus_octree_split_all(view, &splits, &handed_down));
     tree->changed = false;
   }
-  stratus_octree_make_root(tree);
   stratus_octree_planes_prepare(tree, plan, &look.planes);
   if (!plan->empty) {
     TRY(stratus_octree_walk_nodes(view, &walk));
