@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the files of the hybrid tree's builder share: the node at hand, and planes to split it by. Planes lie between bricks, so none is cut. */
+#ifndef STRATUS_HYBRID_TREE_H
+#define STRATUS_HYBRID_TREE_H
+
+#include "tree.h"
+
+/* A node to be decided: bricks order[first .. first+count-1], ascending. */
+typedef struct hybrid_node {
+  uint32_t number;
+  uint32_t first, count;
+  int32_t depth;
+  int sparse;           /* paper: the side of a split without the peak, divided by surface area into leaves of bricks */
+  int32_t lo[3], hi[3]; /* tight box of its bricks, [lo, hi) in bricks */
+} hybrid_node;
+
+typedef struct hybrid_build {
+  stratus_context* context;
+  const stratus_voxels* voxels;
+  const stratus_tree_options* options;
+  stratus_tree_statistics* statistics;
+  stratus_tree_shape* shape;
+  uint32_t node_max;        /* that shape->nodes has room for */
+  uint32_t* scratch;        /* of all bricks: of a partition */
+  int64_t* counts;          /* along the longest axis, made with the first density */
+  stratus_density* density; /* of all bricks, or of `gathered` */
+  stratus_brick* gathered;  /* a node's own, if it gets a density of its own */
+  double bandwidth;
+  double volume; /* of the root, bricks */
+  int paper;
+} hybrid_build;
+
+typedef struct hybrid_plane {
+  int axis;      /* -1: none */
+  int32_t brick; /* bricks with at[axis] < brick are on the lower side */
+  double cost;   /* surface area heuristic, in faces of bricks */
+} hybrid_plane;
+
+/* hybrid_planes.c */
+double hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick);
+hybrid_plane hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node);
+hybrid_plane hybrid_plane_median(const hybrid_build* build, const hybrid_node* node);
+/* How many of the node's bricks are below. */
+uint32_t hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane);
+/* Moves the bricks below the plane to the front, each side in its order; fills both sides' first, count and boxes, and their nodes' boxes. */
+void hybrid_partition(hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2]);
+/* The box of `count` bricks in order[first ..], tight in bricks and in voxels. */
+void hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box);
+
+/* hybrid_density.c: what density says of a node. */
+typedef struct hybrid_view {
+  int32_t peak[3];
+  double deviation[3]; /* eq. 8, voxels */
+} hybrid_view;
+
+stratus_status hybrid_look(hybrid_build* build, const hybrid_node* node, hybrid_view* view);
+/* Greatest difference between two axes' deviations: over the node's extents, or in voxels as the paper has it. */
+double hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper);
+/* The plane by density: *clustered is 1 if it is the border of the peak's cluster. */
+stratus_status hybrid_plane_density(
+  hybrid_build* build, const hybrid_node* node, const hybrid_view* view, hybrid_plane* plane, int* clustered);
+
+#endif
