@@ -3,8 +3,8 @@
  * and write the other, so no order shows.
  *
  * Steps of JFA are n/2, n/4 .. 1, rounded up: then they add up to n - 1 at least, and one that is at most twice the next leaves nothing
- * unfilled on the way (any offset is a sum of them). The paper's figure 5 falls from 15 to 10 to 3 to 1, by more: offsets of 5 or of 8 are
- * no sum of what is left.
+ * unfilled on the way (any offset is a sum of them). The paper's figure 5 falls by more, from 48 to 15 and from 10 to 3: on a line of 128 a
+ * voxel at 42 never gets to 16 of the places.
  *
  * The paper gives AJFA's rule without a threshold: after a good pass the step falls more slowly, after a poor one faster. Here a pass is good
  * where it took GOOD of the distance away on the mean over all that searched, E1 (1 - E2); then the next step is 3/4 of this one, else 1/2,

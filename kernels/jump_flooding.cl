@@ -7,24 +7,24 @@
 #define WIDE 0
 #endif
 #if WIDE
-typedef long length;
+typedef long squared_length;
 #define LENGTH_MAX LONG_MAX
 #else
-typedef int length;
+typedef int squared_length;
 #define LENGTH_MAX INT_MAX
 #endif
 #ifndef GROUP
 #define GROUP 64
 #endif
 
-static length squared_distance(uint position, const int at[3], int shift_y, int shift_z)
+static squared_length squared_distance(uint position, const int at[3], int shift_y, int shift_z)
 {
   if (position == FLOOD_UNKNOWN) {
     return LENGTH_MAX;
   }
-  const length x = (int)(position & ((1u << shift_y) - 1)) - at[0];
-  const length y = (int)(position >> shift_y & ((1u << (shift_z - shift_y)) - 1)) - at[1];
-  const length z = (int)(position >> shift_z) - at[2];
+  const squared_length x = (int)(position & ((1u << shift_y) - 1)) - at[0];
+  const squared_length y = (int)(position >> shift_y & ((1u << (shift_z - shift_y)) - 1)) - at[1];
+  const squared_length z = (int)(position >> shift_z) - at[2];
   return x * x + y * y + z * z;
 }
 
@@ -39,15 +39,15 @@ __kernel void flood(__global const uint* from, long nx, long ny, long nz, int st
   if (at[0] < nx) {
     const long here = ((long)at[2] * ny + at[1]) * nx + at[0];
     uint nearest = from[here];
-    const length before = squared_distance(nearest, at, shift_y, shift_z);
-    length now = before;
+    const squared_length before = squared_distance(nearest, at, shift_y, shift_z);
+    squared_length now = before;
     for (int n = 0; n < 27; n++) {
       const long x = at[0] + (long)step * (n % 3 - 1), y = at[1] + (long)step * (n / 3 % 3 - 1), z = at[2] + (long)step * (n / 9 - 1);
       if (x < 0 || x >= nx || y < 0 || y >= ny || z < 0 || z >= nz) {
         continue;
       }
       const uint position = from[(z * ny + y) * nx + x];
-      const length distance = squared_distance(position, at, shift_y, shift_z);
+      const squared_length distance = squared_distance(position, at, shift_y, shift_z);
       if (distance < now || (distance == now && position < nearest)) {
         now = distance;
         nearest = position;
