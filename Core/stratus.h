@@ -284,8 +284,8 @@ typedef enum stratus_field_method {
   STRATUS_FIELD_JFA_2,      /* JFA+2: passes of steps 2 and 1 more */
   STRATUS_FIELD_1_JFA,      /* 1+JFA: a pass of step 1 first */
   STRATUS_FIELD_JFA_SQUARED, /* JFA^2: all passes twice */
-  STRATUS_FIELD_AJFA,       /* adaptive (eq. 6 and 7): E1 and E2 of a pass decide how far the next step falls */
-  STRATUS_FIELD_AJFA_FIG5   /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid */
+  STRATUS_FIELD_AJFA,       /* adaptive: E1 (1 - E2) of a pass (eq. 6 and 7) of .05 or more lets the step fall to 3/4, else to 1/2 */
+  STRATUS_FIELD_AJFA_FIG5   /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid; leaves voxels unfilled */
 } stratus_field_method;
 
 STRATUS_API const char* stratus_field_method_name(stratus_field_method method);
@@ -299,16 +299,18 @@ typedef struct stratus_field_options {
 STRATUS_API stratus_field_options stratus_field_options_default(void);
 
 typedef struct stratus_field_report {
-  int passes;              /* floodings: over the grid; exact: 3, signed 6 */
+  int passes;              /* over the grid; exact: 3, signed too, for both halves share them; signed floodings: both of them */
   uint64_t updated;        /* voxels that a flooding pass brought nearer, all passes */
-  int steps[64];           /* floodings: step of each pass */
-  double e1[64], e2[64];   /* floodings: eq. 6 and 7 of each pass */
+  int steps[64];           /* floodings: step of each of the first 64 passes */
+  double e1[64], e2[64];   /* floodings: eq. 6 and 7 of each, over the voxels that are not sought; e2 is 1 where none came nearer */
   double build_ms;
 } stratus_field_report;
 
 typedef struct stratus_field stratus_field;
 
-/* Over all of the voxels' dimensions. report: may be NULL. STRATUS_OVERFLOW where 4 bytes a voxel do not fit. */
+/* Over all of the voxels' dimensions. report: may be NULL. Exact fields take 2 bytes a voxel where all distances are below 176, 8 where the
+ * grid's diagonal is 46339 or longer, else 4; none where no voxel or every one is effective. STRATUS_OVERFLOW where 4 bytes a voxel do not
+ * fit the address space, or where a flooding would need more than 31 bits to name a voxel. Floodings err on the long side only. */
 STRATUS_API stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels, const stratus_field_options* options,
   stratus_field** field, stratus_field_report* report);
 STRATUS_API void stratus_field_destroy(stratus_field* field);
@@ -318,7 +320,8 @@ STRATUS_API double stratus_field_get(const stratus_field* field, int64_t i, int6
 /* dimensions[0]*[1]*[2] distances, x fastest. */
 STRATUS_API void stratus_field_distances(const stratus_field* field, float* distances);
 /* The paper's layout (2.3): four floats a voxel, the nearest effective voxel's position and the distance; -1, -1, -1, INFINITY where unknown.
- * A signed field names the voxel that its distance goes to. */
+ * A signed field names the voxel that its distance goes to; of several equally near ones, the one of the smallest index (a flooding: of those
+ * that it found). voxels: those of the field; others of another size or count are STRATUS_INVALID_ARGUMENT. */
 STRATUS_API stratus_status stratus_field_rgba(const stratus_field* field, const stratus_voxels* voxels, float* rgba);
 
 /* ---------------------------------------------------------------- trees for first hits */
