@@ -18,8 +18,10 @@
 #define MIDPOINT_LONGEST 1.15
 #define MIDPOINT_USUAL 0.9
 #define MIDPOINT_SHORTEST 0.25
-/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear. */
-#define PREINTEGRATED_STEP 0.55
+/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear, which narrow peaks over rough fields feel most. Scene peak:
+ * 40.1, 38.8, 37.6, 36.5, 35.5 dB at steps of .5, .55, .6, .65, .7, its edited function 1 dB less each: of these the
+ * longest that keeps both above 36. */
+#define PREINTEGRATED_STEP 0.6
 
 double stratus_ray_voxel_length(const stratus_volume* volume)
 {
