@@ -57,6 +57,7 @@ stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const v
   stratus_tree_destroy(caster->first_hit->offered);
   caster->first_hit->offered = NULL;
   caster->first_hit->offered_serves = -1;
+  stratus_ray_tree_dropped(caster);
   if (bytes) {
     TRY(stratus_tree_load(caster->context, bytes, size, &tree));
     /* rays come in index coordinates: where the volume was when the tree was made does not count */

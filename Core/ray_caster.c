@@ -55,9 +55,18 @@ static void drop_map(stratus_ray_caster* caster)
   ++caster->map_serial; /* a device may still borrow it */
 }
 
+void stratus_ray_tree_dropped(stratus_ray_caster* caster)
+{
+  caster->tree_serves = -1;
+  if (caster->map && caster->map->tree_nodes > 0) {
+    drop_map(caster);
+  }
+}
+
 static void drop_occupancy(stratus_ray_caster* caster)
 {
   drop_map(caster);
+  caster->tree_serves = -1;
   stratus_occupancy_destroy(caster->occupancy);
   caster->occupancy = NULL;
 }
@@ -320,17 +329,22 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
 }
 
 /* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit. */
-static stratus_structure choose_structure(const stratus_ray_caster* caster, stratus_structure wanted, char* why, size_t capacity)
+static stratus_structure choose_structure(
+  const stratus_ray_caster* caster, stratus_structure wanted, bool offered, char* why, size_t capacity)
 {
   const int64_t* n = caster->occupancy->blocks;
   const double blocks = (double)n[0] * (double)n[1] * (double)n[2], share = (double)caster->occupancy->count / blocks;
   if (wanted != STRATUS_STRUCTURE_AUTO) {
-    snprintf(why, capacity, "%s as asked", stratus_structure_name(wanted));
+    snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
     return wanted;
   }
   if (share > OCCUPIED_LARGEST) {
     snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
     return STRATUS_STRUCTURE_NONE;
+  }
+  if (offered) {
+    snprintf(why, capacity, "hybrid: %.3g %% occupied, and a tree came with the data", 100.0 * share);
+    return STRATUS_STRUCTURE_HYBRID;
   }
   if ((double)caster->lookups_since_edit > OCTANT_LOOKUPS_A_BLOCK * blocks) {
     snprintf(why, capacity, "octant: %.3g %% occupied, and rays have paid for eight maps since the last edit", 100.0 * share);
@@ -340,20 +354,33 @@ static stratus_structure choose_structure(const stratus_ray_caster* caster, stra
   return STRATUS_STRUCTURE_DISTANCE;
 }
 
-static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, double* ms)
+static bool is_map_of(const stratus_distance_map* map, stratus_structure structure, stratus_distance_kind kind)
+{
+  return map && (structure == STRATUS_STRUCTURE_HYBRID ? map->tree_nodes > 0 : map->tree_nodes == 0 && map->kind == kind);
+}
+
+static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, double* ms)
 {
   static const stratus_distance_kind kinds[] = { [STRATUS_STRUCTURE_BLOCK] = STRATUS_DISTANCE_BLOCK,
     [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL,
-    [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT };
-  if (structure == STRATUS_STRUCTURE_NONE || (caster->map && caster->map->kind == kinds[structure])) {
+    [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT,
+    [STRATUS_STRUCTURE_HYBRID] = STRATUS_DISTANCE_FULL };
+  if (structure == STRATUS_STRUCTURE_NONE || is_map_of(caster->map, structure, kinds[structure])) {
     return STRATUS_OK;
   }
   const double start = stratus_now_ms();
   stratus_distance_map* map = NULL;
-  TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+  if (structure == STRATUS_STRUCTURE_HYBRID && caster->occupancy->count == 0) {
+    return STRATUS_OK; /* nobody will ask */
+  }
+  if (structure == STRATUS_STRUCTURE_HYBRID) {
+    TRY(stratus_ray_tree_map(caster, offered, &map));
+  } else {
+    TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+  }
   drop_map(caster);
   caster->map = map;
-  ++caster->structure_builds;
+  caster->structure_builds += structure != STRATUS_STRUCTURE_HYBRID || !offered;
   ++caster->map_serial;
   *ms = stratus_now_ms() - start;
   return STRATUS_OK;
@@ -362,6 +389,7 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report)
 {
+  bool offered = false;
   if (wanted == STRATUS_STRUCTURE_NONE) {
     *used = wanted;
     snprintf(why, capacity, "none as asked");
@@ -373,6 +401,10 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }
-  *used = choose_structure(caster, wanted, why, capacity);
-  return update_map(caster, *used, &report->structure_ms);
+  if (wanted == STRATUS_STRUCTURE_HYBRID || wanted == STRATUS_STRUCTURE_AUTO) {
+    TRY(stratus_ray_tree_serves(caster, &offered));
+  }
+  *used = choose_structure(caster, wanted, offered, why, capacity);
+  report->offered_tree = offered && *used == STRATUS_STRUCTURE_HYBRID;
+  return update_map(caster, *used, offered, &report->structure_ms);
 }

@@ -39,6 +39,9 @@ struct stratus_ray_caster {
   double table_distance; /* the sample distance that the table is for */
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
+  int tree_serves;      /* whether an offered tree may stand in for a map: 1, 0, or -1 where that is to be asked */
+  uint64_t hash;        /* of the volume's values and shape, .. */
+  uint64_t hash_ranges; /* .. if this is range_builds */
   uint64_t lookups_since_edit;
 
   stratus_first_hit* first_hit; /* NULL until asked for: first_hit_picture.h */
@@ -60,6 +63,12 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 void stratus_first_hit_release(stratus_ray_caster* caster);
 void stratus_first_hit_destroy(stratus_ray_caster* caster);
+
+/* ray_tree.c: structure HYBRID. Whether a tree was offered that shows all that the transfer function does, of this very volume. */
+stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves);
+/* That tree, or a new one, as the march asks it; caster->occupancy is there. */
+stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);
+void stratus_ray_tree_dropped(stratus_ray_caster* caster); /* another tree is offered, or none: ray_caster.c */
 
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,

@@ -252,13 +252,14 @@ static void set_map(const stratus_occupancy* occupancy, const stratus_distance_m
   a->blocks_pitch = (int)map->pitch;
   a->blocks_rows = (int)map->blocks[1];
   a->octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
+  a->tree = map->tree_nodes;
   a->block_log2 = 0;
   while (1 << a->block_log2 < map->block_size) {
     ++a->block_log2;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    a->occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * map->block_size) : -UNBOUNDED;
-    a->occupied[1][axis] = occupancy->hi[axis] < map->blocks[axis] ? (float)(occupancy->hi[axis] * map->block_size) : UNBOUNDED;
+    a->occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * occupancy->block_size) : -UNBOUNDED;
+    a->occupied[1][axis] = occupancy->hi[axis] < occupancy->blocks[axis] ? (float)(occupancy->hi[axis] * occupancy->block_size) : UNBOUNDED;
   }
 }
 

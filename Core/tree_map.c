@@ -83,7 +83,7 @@ static stratus_status fill_leaf(stratus_context* context, const extent* e, uint8
   return STRATUS_OK;
 }
 
-static stratus_status fill(stratus_context* context, const stratus_tree* tree, stratus_tree_map* map)
+static stratus_status fill(stratus_context* context, const stratus_tree* tree, stratus_distance_map* map)
 {
   int32_t* const records = (int32_t*)(void*)map->bytes;
   size_t place = (tree->node_count + (size_t)tree->statistics.leaves) * 8 * sizeof(int32_t);
@@ -116,7 +116,7 @@ static stratus_status fill(stratus_context* context, const stratus_tree* tree, s
   return STRATUS_OK;
 }
 
-stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, stratus_tree_map** out)
+stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, int block_size, stratus_distance_map** out)
 {
   double size = ((double)tree->node_count + (double)tree->statistics.leaves) * 8 * sizeof(int32_t) + PADDING;
   void* memory;
@@ -129,30 +129,26 @@ stratus_status stratus_tree_map_create(stratus_context* context, const stratus_t
   if (size > (double)INT32_MAX) {
     return stratus_fail(context, STRATUS_OVERFLOW, "a tree of %.3g bytes of blocks: at most %d", size, INT32_MAX);
   }
-  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tree_map), &memory));
-  stratus_tree_map* map = memory;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_distance_map), &memory));
+  stratus_distance_map* map = memory;
   map->context = context;
-  map->nodes = (int)tree->node_count;
+  map->tree_nodes = (int)tree->node_count;
+  map->block_size = block_size;
   map->bytes_size = (size_t)size;
+  for (int a = 0; a < 3; a++) {
+    map->blocks[a] = (tree->dimensions[a] + STRATUS_BRICK - 1) / STRATUS_BRICK;
+  }
   stratus_status status = stratus_allocate(context, map->bytes_size, 1, &memory);
   if (status == STRATUS_OK) {
     map->bytes = memory;
     status = fill(context, tree, map);
   }
   if (status != STRATUS_OK) {
-    stratus_tree_map_destroy(map);
+    stratus_distance_map_destroy(map);
     return status;
   }
   *out = map;
   return STRATUS_OK;
-}
-
-void stratus_tree_map_destroy(stratus_tree_map* map)
-{
-  if (map) {
-    stratus_release(map->context, map->bytes);
-    stratus_release(map->context, map);
-  }
 }
 
 stratus_status stratus_tree_of_occupancy(stratus_context* context, const stratus_occupancy* occupancy, stratus_tree** tree)

@@ -9,6 +9,7 @@
 #endif
 
 #include "ray_segment.h"
+#include "tree_map.h"
 
 #define fetch_pair RAY_NAME(fetch_pair)
 #define fetch_cell RAY_NAME(fetch_cell)
@@ -77,7 +78,12 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
       block[axis] = v_to_int(x) >> vi_set(a->block_log2);
     }
     const vint index = block[0] + (block[1] + block[2] * vi_set(a->blocks_rows)) * vi_set(a->blocks_pitch) + k->octant;
-    const vint byte = gather_map(map, index, need);
+    vint byte;
+    if (a->tree) {
+      byte = tree_bytes(a, map, block, need);
+    } else {
+      byte = gather_map(map, index, need);
+    }
     const vmask occupied = need & vi_ge(byte, vi_set(128));
     const vfloat leave = cube_exit(a, k, block, byte & vi_set(127));
     k->lookups -= mask_int(need);

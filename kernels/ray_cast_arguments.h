@@ -43,6 +43,7 @@ typedef struct stratus_ray_cast_arguments {
   int blocks_pitch, blocks_rows; /* of the map: a row, rows in a slice */
   int block_log2;
   int octant_stride; /* bytes between the eight maps, 0 if there is one */
+  int tree;          /* > 0: the map is a tree of so many nodes (tree_map.h) */
   int has_hidden;
   int type, stride;         /* of the generic fetch */
   int row_high, slice_high; /* upper 32 bits of row and slice for the generic fetch */
@@ -50,6 +51,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 33)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 34)
 
 #endif

@@ -291,7 +291,7 @@ static void indices_beyond_32_bits_do_not_overflow(void** state)
   }
   c.volume.values = values;
   c.options.block_size = 32;
-  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_OCTANT; ++structure) {
+  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
     c.options.structure = (stratus_structure)structure;
     case_render(*state, &c, &drawn);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);

@@ -34,7 +34,7 @@ static void structures_change_no_bit(void** state)
     lit += case_lit(&first) > 0;
     assert_int_equal(first.report.skipped, 0);
     c.options.audit = 1;
-    for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_OCTANT; ++structure) {
+    for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
       c.options.structure = (stratus_structure)structure;
       c.options.block_size = 2 << (seed + (uint32_t)structure) % 5;
       case_render(context, &c, &second);
@@ -48,6 +48,56 @@ static void structures_change_no_bit(void** state)
   }
   assert_true(lit > 60); /* else the cases show too little to tell anything */
   assert_true(skipped > 0);
+  stratus_context_destroy(context);
+}
+
+/* A tree of the cells that the transfer function shows, in many leaves, boxes of hierarchies that overlap among them. */
+static void offer_tree(stratus_context* context, stratus_ray_caster* caster, const picture_case* c, stratus_tree_method method, int emptiness)
+{
+  stratus_criterion criterion = stratus_criterion_default();
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_voxels* cells = NULL;
+  stratus_tree* tree = NULL;
+  criterion.transfer = &c->transfer;
+  options.method = method;
+  options.field_emptiness = emptiness;
+  options.leaf_bricks = 1 + emptiness % 3;
+  options.leaf_voxels = 8;
+  assert_int_equal(stratus_voxels_create_cells(context, &c->volume, &criterion, &cells), STRATUS_OK);
+  assert_int_equal(stratus_tree_create(context, cells, &options, &tree), STRATUS_OK);
+  void* bytes = malloc(stratus_tree_bytes(tree));
+  stratus_tree_save(tree, bytes);
+  assert_int_equal(stratus_ray_caster_offer_tree(caster, bytes, stratus_tree_bytes(tree)), STRATUS_OK);
+  free(bytes);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(cells);
+}
+
+static void trees_that_come_with_the_data_change_no_bit(void** state)
+{
+  (void)state;
+  static const stratus_tree_method methods[] = { STRATUS_TREE_HYBRID, STRATUS_TREE_SAH, STRATUS_TREE_HYBRID_PAPER, STRATUS_TREE_LBVH };
+  stratus_context* context = case_context("host", 2);
+  int used = 0;
+  for (uint32_t seed = 1; seed <= 80; ++seed) {
+    picture_case c;
+    char what[128];
+    stratus_ray_caster* caster = NULL;
+    case_create_random(context, seed, &c);
+    c.options.structure = STRATUS_STRUCTURE_NONE;
+    case_render(context, &c, &first);
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    offer_tree(context, caster, &c, methods[seed % 4], 1 + (int)(seed % 5));
+    c.options.structure = STRATUS_STRUCTURE_HYBRID;
+    case_render_with(context, caster, &c, &second);
+    snprintf(what, sizeof what, "seed %u, %s tree, %s", seed, stratus_tree_method_name(methods[seed % 4]), case_type_names[c.volume.type]);
+    expect_same(what, &first, &second);
+    assert_int_equal(second.report.structure_builds, !second.report.offered_tree && second.report.occupied_blocks > 0);
+    used += second.report.offered_tree;
+    case_destroy(&c);
+    stratus_ray_caster_destroy(caster);
+  }
+  assert_true(used > 40);
   stratus_context_destroy(context);
 }
 
@@ -149,6 +199,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(structures_change_no_bit),
+    cmocka_unit_test(trees_that_come_with_the_data_change_no_bit),
     cmocka_unit_test(threads_change_no_bit),
     cmocka_unit_test(tiles_change_no_bit),
     cmocka_unit_test(a_caster_that_was_used_before_draws_the_same),

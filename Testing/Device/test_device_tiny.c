@@ -153,7 +153,7 @@ static int same_pictures(stratus_context* context, const stratus_volume* volume,
     stratus_ray_caster_create(context, &caster) != STRATUS_OK) {
     return failed(context, "camera and ray caster", name);
   }
-  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_OCTANT && !bad; ++structure) {
+  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID && !bad; ++structure) {
     picture* p = structure == STRATUS_STRUCTURE_NONE ? &plain : &other;
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     const stratus_image image = { .width = SIDE, .height = SIDE, .rgba = p->rgba, .depth = p->depth, .samples = p->samples };
