@@ -721,6 +721,27 @@ STRATUS_API stratus_status stratus_octree_nodes(const stratus_octree* octree, co
 /* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message. */
 STRATUS_API stratus_status stratus_octree_check(const stratus_octree* octree);
 
+/* ---------------------------------------------------------------- tetrahedra */
+
+/* A view of a mesh of linear tetrahedra. */
+typedef struct stratus_mesh {
+  const double* points;     /* point_count triples, local coordinates, finite */
+  int64_t point_count;      /* 0..2^31-1; points that no cell uses are allowed */
+  const int32_t* vertices;  /* cell_count quadruples of point numbers; any orientation */
+  int64_t cell_count;       /* 0..2^30-1 */
+  const void* values;       /* a value a point, or a cell, value_stride apart; NULL where only geometry counts */
+  stratus_type type;
+  int64_t value_stride;     /* in values, >= 1. Default 1. */
+  int cell_values;          /* 1: a value belongs to a cell, constant in it. Default 0. */
+  const uint8_t* hidden;    /* a flag a cell, not 0: transparent; NULL: none. Values that are not finite hide their cells, too. */
+  double matrix[16];        /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
+  uint64_t revision;        /* the caller raises it when anything changes under the same pointers. Default 0. */
+} stratus_mesh;
+
+STRATUS_API stratus_mesh stratus_mesh_default(void);
+/* Checks a view: pointers, counts, point numbers, finite points, invertible matrix. */
+STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* mesh);
+
 /* ---------------------------------------------------------------- scenes of record
  * The volumes that tests, benchmarks, examples and the command line share. */
 
