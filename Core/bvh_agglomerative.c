@@ -191,9 +191,9 @@ static stratus_status make_reaches(agglomeration* g, const stratus_box* boxes, v
   }
   for (int level = 1; level < g->levels; level++) {
     for (uint32_t node = 0; node < level_size(g->count, level); node++) {
-      reach r = g->level[level - 1][2 * node];
+      reach r = g->level[level - 1][2 * (size_t)node];
       if (2 * node + 1 < level_size(g->count, level - 1)) {
-        reach_add(&r, g->level[level - 1] + 2 * node + 1);
+        reach_add(&r, g->level[level - 1] + 2 * (size_t)node + 1);
       }
       g->level[level][node] = r;
     }

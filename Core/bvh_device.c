@@ -37,8 +37,8 @@ stratus_status stratus_device_morton_codes(
 
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)count * sizeof *boxes, boxes, true, &input));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, (size_t)count * sizeof *codes, NULL, false, &output));
-  const argument arguments[] = { { sizeof input, &input }, { sizeof items, &items }, { sizeof(cl_int), least },
-    { sizeof(cl_int), least + 1 }, { sizeof(cl_int), least + 2 }, { sizeof bits, &bits }, { sizeof output, &output } };
+  const argument arguments[] = { { sizeof(cl_mem), &input }, { sizeof items, &items }, { sizeof(cl_int), least },
+    { sizeof(cl_int), least + 1 }, { sizeof(cl_int), least + 2 }, { sizeof bits, &bits }, { sizeof(cl_mem), &output } };
   TRY_CLEANUP(run_kernel(context, "codes", arguments, sizeof arguments / sizeof *arguments, count));
   TRY_CLEANUP(stratus_device_read(context, output, 0, (size_t)count * sizeof *codes, codes));
 
@@ -57,7 +57,7 @@ stratus_status stratus_device_morton_hierarchy(stratus_context* context, const u
 
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)count * sizeof *codes, codes, true, &input));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, bytes, NULL, false, &output));
-  const argument arguments[] = { { sizeof input, &input }, { sizeof items, &items }, { sizeof output, &output } };
+  const argument arguments[] = { { sizeof(cl_mem), &input }, { sizeof items, &items }, { sizeof(cl_mem), &output } };
   TRY_CLEANUP(run_kernel(context, "hierarchy", arguments, sizeof arguments / sizeof *arguments, count - 1));
   TRY_CLEANUP(stratus_device_read(context, output, 0, bytes, pairs));
 

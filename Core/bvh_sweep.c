@@ -83,7 +83,7 @@ static stratus_status sort_axis(const stratus_bvh_build* build, int axis, uint64
 {
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
   for (uint32_t i = 0; i < build->count; i++) {
-    keys[i] = (uint64_t)(stratus_box_middle(build->boxes + i, axis) + 2 * STRATUS_BVH_COORDINATE_MAX);
+    keys[i] = (uint64_t)((int64_t)stratus_box_middle(build->boxes + i, axis) + 2 * STRATUS_BVH_COORDINATE_MAX);
     order[i] = i;
   }
   return stratus_radix_sort(build->context, keys, order, build->count, 31);
