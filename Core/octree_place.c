@@ -3,12 +3,23 @@
  * exact in double (widths are powers of two), and the same before and after the root has grown. */
 #include "octree.h"
 
+/* nextafterf() by a step of the bits: it is asked for every bound of every object. */
+static float next_above(float value)
+{
+  union {
+    float value;
+    int32_t bits;
+  } u = { value + 0.0f }; /* no zero is negative then */
+  u.bits += 1 | u.bits >> 31;
+  return u.value;
+}
+
 void stratus_octree_relative(const stratus_octree* tree, const double bounds[6], float box[6])
 {
   for (int a = 0; a < 3; a++) {
     /* One step beyond the nearest float also covers the rounding of the difference. */
-    box[a] = nextafterf((float)(bounds[2 * a] - tree->origin[a]), -INFINITY);
-    box[a + 3] = nextafterf((float)(bounds[2 * a + 1] - tree->origin[a]), INFINITY);
+    box[a] = -next_above((float)(tree->origin[a] - bounds[2 * a]));
+    box[a + 3] = next_above((float)(bounds[2 * a + 1] - tree->origin[a]));
   }
 }
 

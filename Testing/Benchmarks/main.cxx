@@ -2,6 +2,7 @@
 // stratus-bench volume: this project's pictures and times beside those of what users have today, in one process.
 #include "bench.h"
 #include "distance.h"
+#include "octree_bench.h"
 #include "rate.h"
 
 #include <cstdio>
@@ -30,7 +31,7 @@ update_ms: from a change of the transfer function to the next picture, median ov
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
-stratus-bench distance --help tells of distance fields.
+stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling.
 )";
 
 struct options {
@@ -175,6 +176,9 @@ int main(int argc, char* argv[])
   try {
     if (argc > 1 && std::strcmp(argv[1], "distance") == 0) {
       return bench::distance_main(argc, argv);
+    }
+    if (argc > 1 && std::strcmp(argv[1], "octree") == 0) {
+      return bench::octree_main(argc, argv);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stratus-bench: %s\n", error.what());

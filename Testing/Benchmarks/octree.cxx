@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// stratus-bench octree: which of many boxes a camera sees, by view-adaptive octrees, a static one and a plain list.
+#include "octree_bench.h"
+#include "bench.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <sstream>
+
+namespace bench {
+
+namespace {
+
+const char* const help = R"(stratus-bench octree [options]
+
+  --scene NAME,...     boxes-N (default: boxes-1000,boxes-9454,boxes-100000,boxes-1000000)
+  --path NAME,...      far, near, inside, turn (default: all of them)
+  --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static with
+                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 128).
+                       (default: all)
+  --sweep C,...        stratus:octree-paper at these C too
+  --frames N           of each path (default 120)
+  --threads N          of the host (default 1)
+  --csv FILE           tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); a scene is NAME/PATH
+  --chart FILE.png     cull_ms against the tree's bytes
+
+cull_ms: median over a path's frames, from a tree that has not been looked at; cull_worst_ms: the slowest. With one thread both are its processor time,
+else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own size. nodes, bytes, depth: at the
+path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to
+the depth that the pixel one reached. visible: mean of the frames.
+wrong_culls, false_keeps (percent of what was kept): against faces cut by the planes, at 5 frames.
+)";
+
+struct options {
+  std::vector<std::string> scenes, paths, methods;
+  std::string csv = "-", chart;
+  int frames = 120, threads = 1;
+};
+
+struct closer {
+  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
+  void operator()(stratus_octree* t) const { stratus_octree_destroy(t); }
+  void operator()(stratus_octree_view* v) const { stratus_octree_view_destroy(v); }
+};
+using context_pointer = std::unique_ptr<stratus_context, closer>;
+using tree_pointer = std::unique_ptr<stratus_octree, closer>;
+using view_pointer = std::unique_ptr<stratus_octree_view, closer>;
+
+void need(stratus_context* context, stratus_status status)
+{
+  if (status != STRATUS_OK) {
+    throw failure(stratus_context_message(context));
+  }
+}
+
+double clock_ms(int threads)
+{
+  if (threads > 1) {
+    return now_ms();
+  }
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+stratus_octree_options method_options(const std::string& method)
+{
+  stratus_octree_options o = stratus_octree_options_default();
+  const size_t number = method.find(':', 8);
+  const std::string name = method.substr(0, number);
+  if (name == "stratus:octree-paper" || name == "stratus:octree-euclid") {
+    o.placement = STRATUS_OCTREE_TOUCHING;
+    o.stop = name == "stratus:octree-paper" ? STRATUS_OCTREE_STOP_MANHATTAN : STRATUS_OCTREE_STOP_EUCLID;
+    o.c = number == std::string::npos ? o.c : std::atof(method.c_str() + number + 1);
+  } else if (name == "stratus:static") {
+    o.stop = STRATUS_OCTREE_STOP_STATIC;
+    o.leaf_objects = number == std::string::npos ? 16 : std::atoi(method.c_str() + number + 1);
+  } else if (name == "stratus:linear") {
+    o.levels = 0;
+  } else if (name != "stratus:octree-pixel") {
+    throw failure("unknown method " + method + "; --help tells more");
+  }
+  return o;
+}
+
+// ---- one method on one path
+
+struct run_state {
+  stratus_context* context;
+  const std::vector<box_bounds>& boxes;
+  const std::vector<stratus_camera>& cameras;
+  int threads;
+  tree_pointer tree; // outlives its view
+  view_pointer view;
+  std::vector<uint32_t> ids;
+};
+
+void open_tree(run_state& run, const stratus_octree_options& o)
+{
+  stratus_octree* tree = nullptr;
+  stratus_octree_view* view = nullptr;
+  need(run.context, stratus_octree_create(run.context, &o, &tree));
+  run.view.reset();
+  run.tree.reset(tree);
+  run.ids.resize(run.boxes.size());
+  need(run.context, stratus_octree_insert(tree, run.boxes[0].data(), run.boxes.size(), run.ids.data()));
+  need(run.context, stratus_octree_view_create(tree, &view));
+  run.view.reset(view);
+}
+
+struct walked {
+  std::vector<double> ms;
+  double visible = 0.0;
+  verdict judged;
+};
+
+walked walk_path(run_state& run, bool exact, bool judge)
+{
+  walked w;
+  stratus_octree_cull_options cull = {};
+  cull.exact = exact;
+  const size_t frames = run.cameras.size(), every = std::max<size_t>(frames / 5, 1);
+  for (size_t f = 0; f < frames; ++f) {
+    stratus_frustum frustum;
+    stratus_octree_visible visible;
+    need(run.context, stratus_frustum_from_camera(run.context, &run.cameras[f], &frustum));
+    const double start = clock_ms(run.threads);
+    need(run.context, stratus_octree_cull(run.view.get(), &frustum, &cull, &visible));
+    w.ms.push_back(clock_ms(run.threads) - start);
+    w.visible += static_cast<double>(visible.count) / static_cast<double>(frames);
+    if (judge && f % every == every - 1) {
+      const verdict v = judge_culling(run.boxes, frustum, run.cameras[f], visible.ids, visible.count);
+      w.judged.kept += v.kept;
+      w.judged.wrong_culls += v.wrong_culls;
+      w.judged.false_keeps += v.false_keeps;
+    }
+  }
+  return w;
+}
+
+double false_percent(const verdict& v)
+{
+  return v.kept > 0 ? 100.0 * static_cast<double>(v.false_keeps) / static_cast<double>(v.kept) : 0.0;
+}
+
+// 1 % of the boxes, here and there, moved by their own size, five times.
+double update_ms(run_state& run)
+{
+  std::vector<double> times;
+  const size_t count = std::max<size_t>(run.boxes.size() / 100, 1);
+  for (size_t repeat = 0; repeat < 5; ++repeat) {
+    std::vector<uint32_t> moved;
+    std::vector<box_bounds> bounds;
+    for (size_t i = 0; i < count; ++i) {
+      const size_t which = (i * 100 + repeat * 17) % run.boxes.size();
+      box_bounds box = run.boxes[which];
+      for (size_t a = 0; a < 3; ++a) {
+        const double size = box[2 * a + 1] - box[2 * a];
+        box[2 * a] += size;
+        box[2 * a + 1] += size;
+      }
+      moved.push_back(run.ids[which]);
+      bounds.push_back(box);
+    }
+    const double start = clock_ms(run.threads);
+    need(run.context, stratus_octree_move(run.tree.get(), moved.data(), bounds[0].data(), count));
+    times.push_back(clock_ms(run.threads) - start);
+  }
+  return median(times);
+}
+
+void run_method(run_state& run, const std::string& scene, const std::string& method, int depth, std::vector<row>& rows)
+{
+  stratus_octree_options o = method_options(method);
+  o.levels = o.stop == STRATUS_OCTREE_STOP_STATIC ? depth : o.levels;
+  open_tree(run, o);
+  const walked plain = walk_path(run, false, false);
+  stratus_octree_statistics statistics;
+  stratus_octree_get_statistics(run.tree.get(), &statistics);
+  const walked judged = walk_path(run, false, true), exact = walk_path(run, true, true);
+  const size_t wrong = judged.judged.wrong_culls + exact.judged.wrong_culls;
+  const auto add = [&](const char* metric, double value, const char* unit) { rows.push_back({ scene, method, metric, unit, value }); };
+  add("cull_ms", median(plain.ms), "ms");
+  add("cull_worst_ms", *std::max_element(plain.ms.begin(), plain.ms.end()), "ms");
+  add("exact_cull_ms", median(exact.ms), "ms");
+  add("update_ms", update_ms(run), "ms");
+  add("nodes", static_cast<double>(statistics.nodes), "1");
+  add("depth", statistics.depth, "1");
+  add("bytes", static_cast<double>(statistics.bytes), "B");
+  add("visible", plain.visible, "1");
+  add("false_keeps", false_percent(judged.judged), "%");
+  add("exact_false_keeps", false_percent(exact.judged), "%");
+  add("wrong_culls", static_cast<double>(wrong), "1");
+  std::fprintf(stderr, "  %-26s cull %.3f worst %.2f exact %.3f update %.2f ms, %zu nodes, depth %d, %.3g bytes, visible %.0f, false %.3f %% exact %.3f %%, wrong %zu\n",
+    method.c_str(), median(plain.ms), *std::max_element(plain.ms.begin(), plain.ms.end()), median(exact.ms), rows[rows.size() - 8].value,
+    statistics.nodes, statistics.depth, static_cast<double>(statistics.bytes), plain.visible, false_percent(judged.judged),
+    false_percent(exact.judged), wrong);
+}
+
+// How deep the pixel octree becomes on the path: the static one's depth.
+int pixel_depth(run_state& run)
+{
+  stratus_octree_statistics statistics;
+  open_tree(run, method_options("stratus:octree-pixel"));
+  walk_path(run, false, false);
+  stratus_octree_get_statistics(run.tree.get(), &statistics);
+  return std::max(statistics.depth, 1);
+}
+
+// ---- options
+
+std::vector<std::string> parts_of(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+void check(options& o, const std::vector<std::string>& sweep)
+{
+  if (o.scenes.empty()) {
+    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000" };
+  }
+  if (o.methods.empty()) {
+    o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:128",
+      "stratus:linear" };
+  }
+  for (const std::string& c : sweep) {
+    o.methods.push_back("stratus:octree-paper:" + c);
+  }
+  for (const std::string& method : o.methods) {
+    method_options(method);
+  }
+  o.paths = o.paths.empty() ? path_names() : o.paths;
+  for (const std::string& path : o.paths) {
+    if (std::count(path_names().begin(), path_names().end(), path) == 0) {
+      throw failure("unknown path " + path + "; --help tells more");
+    }
+  }
+  if (o.frames < 1 || o.frames > 100000) {
+    throw failure("--frames must be within 1..100000");
+  }
+}
+
+options parse(int argc, char* argv[])
+{
+  options o;
+  std::vector<std::string> sweep;
+  for (int i = 2; i < argc; i += 2) {
+    const std::string word = argv[i];
+    if (i + 1 == argc) {
+      throw failure(word + " is unknown or lacks its value; --help tells more");
+    }
+    const std::string value = argv[i + 1];
+    std::map<std::string, std::vector<std::string>*> lists = { { "--scene", &o.scenes }, { "--path", &o.paths }, { "--method", &o.methods },
+      { "--sweep", &sweep } };
+    std::map<std::string, int*> numbers = { { "--frames", &o.frames }, { "--threads", &o.threads } };
+    std::map<std::string, std::string*> files = { { "--csv", &o.csv }, { "--chart", &o.chart } };
+    if (lists.count(word) > 0) {
+      *lists[word] = parts_of(value);
+    } else if (numbers.count(word) > 0) {
+      *numbers[word] = std::atoi(value.c_str());
+    } else if (files.count(word) > 0) {
+      *files[word] = value;
+    } else {
+      throw failure("unknown option " + word + "; --help tells more");
+    }
+  }
+  check(o, sweep);
+  return o;
+}
+
+std::vector<chart_mark> marks_of(const std::vector<row>& rows)
+{
+  std::map<std::string, chart_mark> found;
+  for (const row& r : rows) {
+    chart_mark& mark = found[r.scene + '\n' + r.method];
+    mark.scene = r.scene;
+    mark.method = r.method;
+    mark.x = r.metric == "cull_ms" ? r.value : mark.x;
+    mark.y = r.metric == "bytes" ? r.value : mark.y;
+  }
+  std::vector<chart_mark> marks;
+  for (const auto& entry : found) {
+    marks.push_back(entry.second);
+  }
+  return marks;
+}
+} // namespace
+
+int octree_main(int argc, char* argv[])
+{
+  if (argc > 2 && std::strcmp(argv[2], "--help") == 0) {
+    std::fputs(help, stdout);
+    return 0;
+  }
+  const options o = parse(argc, argv);
+  if (!o.chart.empty()) {
+    ensure_display(argv);
+  }
+  stratus_context_options host = stratus_context_options_default();
+  stratus_context* made = nullptr;
+  char message[512];
+  host.device = "host";
+  host.threads = o.threads;
+  if (stratus_context_create(&host, &made, message, sizeof message) != STRATUS_OK) {
+    throw failure(message);
+  }
+  const context_pointer context(made);
+  std::vector<row> rows;
+  for (const std::string& scene : o.scenes) {
+    const std::vector<box_bounds> boxes = make_boxes(scene);
+    for (const std::string& path : o.paths) {
+      std::fprintf(stderr, "%s/%s\n", scene.c_str(), path.c_str());
+      const std::vector<stratus_camera> cameras = camera_path(made, path, o.frames);
+      run_state run = { made, boxes, cameras, o.threads, nullptr, nullptr, {} };
+      const int depth = pixel_depth(run);
+      for (const std::string& method : o.methods) {
+        run_method(run, scene + '/' + path, method, depth, rows);
+      }
+    }
+  }
+  write_csv(o.csv, rows, "octree");
+  if (!o.chart.empty()) {
+    write_chart(o.chart, marks_of(rows), "cull, ms", "bytes of the tree");
+  }
+  return 0;
+}
+} // namespace bench

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the parts of stratus-bench octree share: scenes of boxes, paths of cameras, and the judge.
+#pragma once
+
+#include "stratus.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+int octree_main(int argc, char* argv[]);
+
+// ---- octree_scenes.cxx
+
+using box_bounds = std::array<double, 6>;
+
+// boxes-N: N boxes, unevenly spread over a cube of edge 100, edges 100 to 1; the same at each call.
+std::vector<box_bounds> make_boxes(const std::string& name);
+const std::vector<std::string>& path_names(); // far, near, inside, turn
+std::vector<stratus_camera> camera_path(stratus_context* context, const std::string& name, int frames);
+
+// ---- octree_judge.cxx
+
+struct verdict {
+  size_t kept = 0, wrong_culls = 0, false_keeps = 0;
+};
+// Every box cut out against the frustum, face by face; ids: what a method kept.
+verdict judge_culling(const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
+} // namespace bench
