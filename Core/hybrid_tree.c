@@ -2,10 +2,11 @@
  * The shape of the hybrid tree (Guo et al. 2025): where one distance field stands for many voxels, and where nodes divide.
  *
  * HYBRID models no more than the scene needs. A node becomes one distance field as soon as that is affordable: neither too large nor too empty.
- * No density is computed for it, since a field is as good over uneven voxels as over even ones. Otherwise the node is split. Where
+ * No density is computed for it, since a field is as good over uneven voxels as over even ones. Otherwise the node is split: one that is merely
+ * too large by surface area, since any cut serves; one that is too empty where its emptiness can be cut off. If its
  * voxels lie unevenly about their peak (eq. 8 over the extents, above `uniform`), the border of the peak's cluster is where to; it is taken unless
  * the surface area heuristic knows a plane that is a quarter cheaper, which is what becomes of clusters that are not any. Even nodes and
- * small ones are split by surface area at once, and the sparse end as leaves of a few bricks.
+ * small ones are split by surface area at once too, and the sparse end as leaves of a few bricks.
  *
  * HYBRID_PAPER does as the paper says: density anew at each node, the raw test in voxels, the side with the peak tested again, the other
  * divided by surface area. It keeps the defaults' cap on a field's bricks, and cuts between bricks. */
@@ -33,9 +34,14 @@ static bool field_fits(const hybrid_build* build, const hybrid_node* node)
   return fits;
 }
 
+static bool too_empty(const hybrid_build* build, const hybrid_node* node)
+{
+  return volume_of(node) > build->options->field_emptiness * (double)node->count;
+}
+
 static bool field_pays(const hybrid_build* build, const hybrid_node* node)
 {
-  return field_fits(build, node) && volume_of(node) <= build->options->field_emptiness * (double)node->count;
+  return field_fits(build, node) && !too_empty(build, node);
 }
 
 /* ---- where to split */
@@ -62,7 +68,7 @@ static stratus_status choose_plane(hybrid_build* build, const hybrid_node* node,
   hybrid_plane dense = { .axis = -1, .cost = INFINITY };
   int clustered = 0;
   *even = 1;
-  if (build->paper ? !node->sparse : node->count >= DENSITY_LEAST) {
+  if (build->paper ? !node->sparse : node->count >= DENSITY_LEAST && too_empty(build, node)) {
     TRY(hybrid_look(build, node, view));
     const double uneven = hybrid_unevenness(node, view, build->paper);
     *even = build->paper ? uneven < build->options->paper_threshold : uneven <= build->options->uniform;

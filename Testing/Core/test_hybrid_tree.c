@@ -154,6 +154,25 @@ static void the_papers_field_is_on_the_peaks_side(void** state)
   stratus_voxels_destroy(voxels);
 }
 
+/* Full of voxels, but more than a field may cover: any cut serves, and density is not asked. */
+static void what_is_only_too_large_is_cut_without_density(void** state)
+{
+  uint32_t random = 6;
+  (void)state;
+  set_begin(&set, 100, 100, 100);
+  set_add_noise(&set, 6000, &random);
+  set_add_box(&set, 10, 20, 30, 40, 50, 60);
+  stratus_voxels* voxels = make_voxels(context, &set);
+  stratus_tree_options options = hybrid_options(STRATUS_TREE_HYBRID);
+  options.field_bricks = 2000;
+  hybrid_shape s = make_shape(context, voxels, &options);
+  assert_true(s.fields >= 8 && s.leaves == 0);
+  assert_int_equal(s.statistics.sah_splits, s.inner);
+  assert_true(s.statistics.bandwidth == 0.0);
+  free_shape(context, &s);
+  stratus_voxels_destroy(voxels);
+}
+
 /* Options of density reach it: bandwidth, voxel by voxel, node by node. */
 static void a_given_bandwidth_is_the_one_used(void** state)
 {
@@ -164,7 +183,8 @@ static void a_given_bandwidth_is_the_one_used(void** state)
   stratus_voxels* voxels = make_voxels(context, &set);
   for (int way = 0; way < 4; way++) {
     stratus_tree_options options = hybrid_options(STRATUS_TREE_HYBRID);
-    options.field_bricks = 500;
+    options.field_emptiness = 2.0;
+    options.uniform = 0.0;
     options.exact_density = way & 1;
     options.density_per_node = way >> 1;
     double expected;
@@ -202,6 +222,7 @@ int main(void)
     cmocka_unit_test(one_field_is_enough_where_it_is_affordable),
     cmocka_unit_test(a_cluster_in_thin_noise_gets_a_field_of_its_own),
     cmocka_unit_test(the_papers_field_is_on_the_peaks_side),
+    cmocka_unit_test(what_is_only_too_large_is_cut_without_density),
     cmocka_unit_test(a_given_bandwidth_is_the_one_used),
   };
   return cmocka_run_group_tests(tests, open_context, close_context);
