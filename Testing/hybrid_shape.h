@@ -48,14 +48,13 @@ static inline void plain_box(const stratus_voxels* voxels, const uint32_t* order
   }
 }
 
-static inline void check_leaf(const stratus_voxels* voxels, const stratus_tree_options* options, const stratus_tree_node* node, int depth, hybrid_shape* s)
+static inline void check_leaf(const stratus_tree_options* options, const stratus_tree_node* node, int depth, hybrid_shape* s)
 {
   const uint32_t count = stratus_tree_node_count(node);
   double volume = 1.0;
   for (int a = 0; a < 3; a++) {
     volume *= count ? (node->hi[a] - 1) / 4 - node->lo[a] / 4 + 1 : 0;
   }
-  (void)voxels;
   if (stratus_tree_node_kind(node) == STRATUS_NODE_FIELD) {
     assert_true(volume <= (double)options->field_bricks);
     s->most_empty = fmax(s->most_empty, volume / count);
@@ -91,7 +90,7 @@ static inline uint32_t check_node(
   } else {
     count = stratus_tree_node_count(node);
     assert_int_equal(node->first, first);
-    check_leaf(voxels, options, node, depth, s);
+    check_leaf(options, node, depth, s);
   }
   plain_box(voxels, s->shape.order + first, count, lo, hi);
   if (count) {

@@ -143,8 +143,8 @@ static void one_plane_is_one_field_but_not_by_the_paper(void** state)
   }
 }
 
-/* On an even spread, clusters on an axis are chance: one with half the mean as the least, none or dozens above. Whatever that finds, both methods end;
- * the default with one field. */
+/* On an even spread, clusters on an axis are chance: one with half the mean as the least, none or dozens above. Whatever that finds, both
+ * methods end; the default with one field. */
 static void uniform_noise_is_one_field_but_not_by_the_paper(void** state)
 {
   uint32_t random = 9;
