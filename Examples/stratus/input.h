@@ -23,6 +23,8 @@ stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells);
 // STRATUS_..., and false for what the core has no type for (bits, strings).
 bool stratus_type_of(vtkDataArray* array, stratus_type& type);
 const char* name_of(stratus_type type);
+// Size, type and spacing in one line.
+std::string describe(const stratus_volume& volume);
 
 class input
 {

@@ -5,6 +5,7 @@
 #include "options.h"
 #include "picture.h"
 #include "transfer.h"
+#include "tree.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -19,17 +20,7 @@
 
 namespace {
 
-void row(const char* name, const std::string& value)
-{
-  std::printf("  %-11s %s\n", name, value.c_str());
-}
-
-std::string describe(const stratus_volume& v)
-{
-  return cli::format("%lld x %lld x %lld %s on %s, spacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
-    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), cli::name_of(v.type),
-    v.cell_centered ? "cells" : "points", v.spacing[0], v.spacing[1], v.spacing[2]);
-}
+using cli::row;
 
 void print_report(const cli::context& core, const cli::options& o, const stratus_ray_cast_report& r, const std::string& opacity)
 {
@@ -39,7 +30,10 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   row("device", stratus_context_device(core));
   row(
     "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
-  row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
+  row("mode", stratus_mode_name(o.mode));
+  if (o.mode == STRATUS_MODE_COMPOSITE) {
+    row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
+  }
   row("why", r.why);
   row("build",
     cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
@@ -47,9 +41,13 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   row(
     "frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
   row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
-  row("samples",
-    cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
-      (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
+  if (o.mode == STRATUS_MODE_FIRST_HIT) {
+    row("hits", cli::grouped(r.samples) + ", " + cli::grouped(r.lookups) + " nodes and steps visited");
+  } else {
+    row("samples",
+      cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
+        (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
+  }
   if (o.audit) {
     row("audit", cli::grouped(r.differing_pixels) + " pixels differ from the march without skipping");
   }
@@ -72,6 +70,8 @@ void render(const cli::options& o)
   image.height = o.height;
   image.rgba = rgba.data();
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
+  cast.mode = o.mode;
+  cast.normals = o.normals;
   cast.structure = o.structure;
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
@@ -85,7 +85,7 @@ void render(const cli::options& o)
   core.check(status, "render");
 
   std::printf("%s\n", o.source.c_str());
-  row("volume", describe(in.volume) + ", array '" + in.array_name + "'");
+  row("volume", cli::describe(in.volume) + ", array '" + in.array_name + "'");
   print_report(core, o, report, transfer.origin);
   out.write(cli::encode_png(cli::to_bytes(rgba, o.width, o.height, behind), o.width, o.height));
   out.commit();
@@ -116,7 +116,7 @@ void info(const cli::options& o)
   double bounds[6];
   core.check(stratus_volume_bounds(core, &in.volume, bounds), "bounds");
   std::printf("%s\n", o.source.c_str());
-  row("volume", describe(in.volume));
+  row("volume", cli::describe(in.volume));
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
   row("bounds",
     cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
@@ -152,6 +152,8 @@ void run(const cli::options& o)
     render(o);
   } else if (o.command == "info") {
     info(o);
+  } else if (o.command == "tree") {
+    cli::print_tree(o);
   } else if (o.command == "devices") {
     devices();
   } else {

@@ -8,12 +8,22 @@
 
 namespace cli {
 
+static std::string method_names()
+{
+  std::string names;
+  for (int i = 0; i < STRATUS_TREE_METHODS; ++i) {
+    names += std::string(i ? ", " : "") + stratus_tree_method_name(static_cast<stratus_tree_method>(i));
+  }
+  return names;
+}
+
 std::string help()
 {
   return R"(stratus - draws volumes
 
   stratus render INPUT -o OUT.png [options]   draw a picture
   stratus info INPUT [--array NAME]           tell what is in a file or scene
+  stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus devices                             list the OpenCL devices
   stratus --help
 
@@ -42,10 +52,18 @@ From where
 How
   --sample-distance D     world length between samples (default: from the data and the opacity)
   --sampling S            auto, midpoint, preintegrated (default auto)
-  --structure S           auto, none, block, distance, octant: how empty space is skipped; never changes the picture
+  --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
+  --mode M                composite, or first-hit: what shows at all as solid voxels, lit from the eye (default composite)
+  --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
+
+Trees
+  --lower V, --upper V    the values that count (default: what the opacity shows)
+  --method M              )" +
+    method_names() + R"( (default hybrid)
+  --mode M                composite: blocks of cells for ray casting; first-hit: voxels (default composite)
 
 The exit status is 0 only if the picture was written whole; 1 if something failed, 2 if the command was not understood.
 
@@ -86,12 +104,40 @@ double positive(const std::string& text, const std::string& what)
 
 stratus_structure structure_named(const std::string& text)
 {
-  for (int i = STRATUS_STRUCTURE_AUTO; i <= STRATUS_STRUCTURE_OCTANT; ++i) {
+  for (int i = STRATUS_STRUCTURE_AUTO; i <= STRATUS_STRUCTURE_HYBRID; ++i) {
     if (text == stratus_structure_name(static_cast<stratus_structure>(i))) {
       return static_cast<stratus_structure>(i);
     }
   }
-  throw usage("--structure: '" + text + "' is none of auto, none, block, distance, octant");
+  throw usage("--structure: '" + text + "' is none of auto, none, block, distance, octant, hybrid");
+}
+
+stratus_tree_method method_named(const std::string& text)
+{
+  for (int i = 0; i < STRATUS_TREE_METHODS; ++i) {
+    if (text == stratus_tree_method_name(static_cast<stratus_tree_method>(i))) {
+      return static_cast<stratus_tree_method>(i);
+    }
+  }
+  throw usage("--method: '" + text + "' is none of " + method_names());
+}
+
+stratus_mode mode_named(const std::string& text)
+{
+  for (stratus_mode mode : { STRATUS_MODE_COMPOSITE, STRATUS_MODE_FIRST_HIT }) {
+    if (text == stratus_mode_name(mode)) {
+      return mode;
+    }
+  }
+  throw usage("--mode: '" + text + "' is none of composite, first-hit");
+}
+
+stratus_normals normals_named(const std::string& text)
+{
+  if (text != "faces" && text != "gradient") {
+    throw usage("--normals: '" + text + "' is none of faces, gradient");
+  }
+  return text == "faces" ? STRATUS_NORMALS_FACES : STRATUS_NORMALS_GRADIENT;
 }
 
 stratus_sampling sampling_named(const std::string& text)
@@ -110,12 +156,15 @@ stratus_sampling sampling_named(const std::string& text)
 
 void check_complete(const options& o)
 {
-  if (o.command == "render" || o.command == "info") {
+  if (o.command == "render" || o.command == "info" || o.command == "tree") {
     if (o.source.empty()) {
       throw usage(o.command + ": which INPUT?");
     }
     if (o.command == "render" && o.output.empty()) {
       throw usage("render: where to? Give -o OUT.png");
+    }
+    if (o.lower > o.upper) {
+      throw usage(format("--lower: %g is above --upper %g", o.lower, o.upper));
     }
   } else if (o.command != "devices" && o.command != "help") {
     throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'");
@@ -141,6 +190,19 @@ options parse(int argc, char* argv[])
     { "--zoom", [&](const std::string& v) { o.zoom = within(v, "--zoom", 0.15, 1e6); } },
     { "--sample-distance", [&](const std::string& v) { o.sample_distance = positive(v, "--sample-distance"); } },
     { "--sampling", [&](const std::string& v) { o.sampling = sampling_named(v); } },
+    { "--mode", [&](const std::string& v) { o.mode = mode_named(v); } },
+    { "--normals", [&](const std::string& v) { o.normals = normals_named(v); } },
+    { "--method", [&](const std::string& v) { o.method = method_named(v); } },
+    { "--lower",
+      [&](const std::string& v) {
+        o.lower = number(v, "--lower");
+        o.has_range = true;
+      } },
+    { "--upper",
+      [&](const std::string& v) {
+        o.upper = number(v, "--upper");
+        o.has_range = true;
+      } },
     { "--structure", [&](const std::string& v) { o.structure = structure_named(v); } },
     { "--threads", [&](const std::string& v) { o.threads = whole_number(v, "--threads", 1, 1024); } },
     { "--up",

@@ -3,12 +3,13 @@
 
 #include "stratus.h"
 
+#include <limits>
 #include <string>
 
 namespace cli {
 
 struct options {
-  std::string command; // render, info, devices, help
+  std::string command; // render, info, tree, devices, help
   std::string source;
   std::string output;
   std::string array;
@@ -28,6 +29,12 @@ struct options {
   bool parallel = false;
   bool nearest = false;
   bool audit = false;
+  bool has_range = false; // tree: of values, lower..upper
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  stratus_tree_method method = STRATUS_TREE_HYBRID;
+  stratus_mode mode = STRATUS_MODE_COMPOSITE;
+  stratus_normals normals = STRATUS_NORMALS_FACES;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
 };

@@ -104,6 +104,11 @@ std::string grouped(unsigned long long value)
   return text;
 }
 
+void row(const char* name, const std::string& value)
+{
+  std::printf("  %-11s %s\n", name, value.c_str());
+}
+
 std::string format(const char* pattern, ...)
 {
   char text[1024];

@@ -48,5 +48,7 @@ double number(const std::string& text, const std::string& what);
 int whole_number(const std::string& text, const std::string& what, int low, int high);
 // 1234567 -> "1,234,567"
 std::string grouped(unsigned long long value);
+// A line of what a command prints: what it is, and its value.
+void row(const char* name, const std::string& value);
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 } // namespace cli
