@@ -192,7 +192,7 @@ void stratus_field_destroy(stratus_field* field)
 /* ---- reading */
 
 /* From the voxel to the one that a flooding left as the nearest. */
-static double flooded_distance(const stratus_field* field, int64_t i, int64_t j, int64_t k)
+static double flooded_distance(const stratus_field* field, flood_layout layout, int64_t i, int64_t j, int64_t k)
 {
   const uint32_t nearest = field->nearest[(k * field->n[1] + j) * field->n[0] + i];
   const double sign = field->is_signed && stratus_bits_get(&field->set, i, j, k) ? -1.0 : 1.0;
@@ -200,7 +200,7 @@ static double flooded_distance(const stratus_field* field, int64_t i, int64_t j,
     return sign * INFINITY;
   }
   int64_t at[3];
-  flood_unpack(nearest, flood_shifts(field->n), at);
+  flood_unpack(nearest, layout, at);
   const double x = (double)(at[0] - i), y = (double)(at[1] - j), z = (double)(at[2] - k);
   return sign * sqrt(x * x + y * y + z * z);
 }
@@ -214,7 +214,7 @@ double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64
 {
   const int64_t at = (k * field->n[1] + j) * field->n[0] + i;
   if (field->nearest) {
-    return flooded_distance(field, i, j, k);
+    return flooded_distance(field, flood_shifts(field->n), i, j, k);
   }
   switch (field->bytes) {
     case 2:
@@ -245,21 +245,32 @@ static void roots_4(const int32_t* restrict squared, int64_t n, float* restrict 
   }
 }
 
+/* Row (j, k) as floats. */
+static void read_row(const stratus_field* field, int64_t j, int64_t k, float* distances)
+{
+  const int64_t nx = field->n[0], first = (k * field->n[1] + j) * nx;
+  if (field->nearest) {
+    const flood_layout layout = flood_shifts(field->n);
+    for (int64_t i = 0; i < nx; i++) {
+      distances[i] = (float)flooded_distance(field, layout, i, j, k);
+    }
+  } else if (field->bytes == 2) {
+    roots_2((const int16_t*)field->values + first, nx, distances);
+  } else if (field->bytes == 4) {
+    roots_4((const int32_t*)field->values + first, nx, distances);
+  } else {
+    for (int64_t i = 0; i < nx; i++) {
+      distances[i] = (float)stratus_field_get(field, i, j, k);
+    }
+  }
+}
+
 void stratus_field_distances(const stratus_field* field, float* distances)
 {
-  const int64_t nx = field->n[0], rows = field->n[1] * field->n[2];
+  const int64_t nx = field->n[0], ny = field->n[1], rows = ny * field->n[2];
 #pragma omp parallel for schedule(static) num_threads(field->context->threads)
   for (int64_t row = 0; row < rows; row++) {
-    float* to = distances + row * nx;
-    if (field->values && field->bytes == 2) {
-      roots_2((const int16_t*)field->values + row * nx, nx, to);
-    } else if (field->values && field->bytes == 4) {
-      roots_4((const int32_t*)field->values + row * nx, nx, to);
-    } else {
-      for (int64_t i = 0; i < nx; i++) {
-        to[i] = (float)stratus_field_get(field, i, row % field->n[1], row / field->n[1]);
-      }
-    }
+    read_row(field, row % ny, row / ny, distances + row * nx);
   }
 }
 

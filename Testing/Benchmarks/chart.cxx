@@ -38,7 +38,7 @@ void style(const std::string& method, vtkPlotPoints* plot)
   }
   const size_t number = static_cast<size_t>(found - seen.begin());
   const unsigned char* c = colors[number % 10];
-  const bool ours = method.rfind("stratus", 0) == 0;
+  const bool ours = method.rfind("stratus", 0) == 0 && number < 10; // colours come again then
   plot->SetColor(c[0], c[1], c[2], 255);
   plot->SetMarkerStyle(ours ? vtkPlotPoints::CIRCLE : number % 2 ? vtkPlotPoints::DIAMOND : vtkPlotPoints::SQUARE);
   plot->SetMarkerSize(12.0f);
