@@ -322,6 +322,13 @@ static void set_direction(stratus_ray* ray, const double d[3], double length)
   }
 }
 
+/* To a float's digits. volatile: gcc 12 folds the conversion there and back of neighbouring numbers into none. */
+static double round_to_float(double x)
+{
+  const volatile float rounded = (float)x;
+  return (double)rounded;
+}
+
 /* From an eye outside, one ray somewhere in each pixel. */
 static void primary_rays(const int64_t n[3], stratus_ray* rays)
 {
@@ -340,7 +347,7 @@ static void primary_rays(const int64_t n[3], stratus_ray* rays)
     const double a = (p % RAYS_ACROSS + random_unit(&state)) / RAYS_ACROSS - .5;
     const double b = (p / RAYS_ACROSS + random_unit(&state)) / RAYS_ACROSS - .5;
     const double d[3] = { f[0] + a * right[0] + b * up[0], f[1] + a * right[1] + b * up[1], f[2] + a * right[2] + b * up[2] };
-    rays[p] = (stratus_ray){ .origin = { (double)(float)eye[0], (double)(float)eye[1], (double)(float)eye[2] }, .t_max = INFINITY };
+    rays[p] = (stratus_ray){ .origin = { round_to_float(eye[0]), round_to_float(eye[1]), round_to_float(eye[2]) }, .t_max = INFINITY };
     set_direction(rays + p, d, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
   }
 }
@@ -355,7 +362,7 @@ static void random_rays(const stratus_voxels* voxels, stratus_ray* rays)
     rays[p] = (stratus_ray){ .t_max = INFINITY };
     do {
       for (int a = 0; a < 3; a++) {
-        rays[p].origin[a] = (double)(float)(random_unit(&state) * (double)n[a]);
+        rays[p].origin[a] = round_to_float(random_unit(&state) * (double)n[a]);
         at[a] = (int64_t)rays[p].origin[a]; /* rounding may put it on the far border */
       }
     } while (at[0] >= n[0] || at[1] >= n[1] || at[2] >= n[2] || stratus_voxels_get(voxels, at[0], at[1], at[2]));
