@@ -94,7 +94,7 @@ static stratus_status begin(launch* l, size_t most)
   const stratus_tree* tree = l->batch->tree;
   const stratus_tree_field* field = &tree->fields[0];
   const stratus_device* device = l->context->device;
-  char defines[64];
+  char defines[160];
   void* memory;
   l->packets = stratus_device_is_cpu(device);
   l->arguments = (stratus_hit_arguments){ .at = { field->at[0], field->at[1], field->at[2] },
@@ -104,7 +104,8 @@ static stratus_status begin(launch* l, size_t most)
     .entry_bytes = tree->entry_bytes,
     .cell_log2 = tree->cell_log2,
     .slack = l->batch->slack };
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d", l->packets ? 16 : 1);
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d",
+    l->packets ? 16 : 1, tree->octants, tree->entry_bytes, tree->cell_log2);
   TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;

@@ -153,46 +153,66 @@ static inline vint expand_int(vint old, vmask mask, const int* lanes, int count,
 
 typedef struct stream {
   stratus_hit_chunk* chunk;
-  int next;                  /* ray of the chunk */
-  int id[STRATUS_WIDTH];     /* ray of each lane, -1: none */
+  int next; /* ray of the chunk */
+  vint id;  /* ray of each lane, -1: none */
 } stream;
+
+/* base[at[lane]] = value[lane] for lanes of the mask. */
+static inline void scatter(int* base, vint at, vint value, vmask mask)
+{
+#if STRATUS_ISA == 2
+  _mm512_mask_i32scatter_epi32(base, mask, (__m512i)at, (__m512i)value, 4);
+#else
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    if (mask[lane]) {
+      base[at[lane]] = value[lane];
+    }
+  }
+#endif
+}
+
+/* The first `count` lanes of a mask, and their numbers where expand() asks for those. */
+static inline vmask first_lanes(vmask mask, int count, int* lanes)
+{
+#if STRATUS_ISA == 2
+  (void)lanes;
+  unsigned left = mask;
+  for (int i = m_count(mask); i > count; --i) {
+    left &= ~(1u << (31 - __builtin_clz(left)));
+  }
+  return (vmask)left;
+#else
+  int n = 0;
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    if (mask[lane] && n < count) {
+      lanes[n++] = lane;
+    } else {
+      mask[lane] = 0;
+    }
+  }
+  return mask;
+#endif
+}
 
 /* Puts down the rays of lanes that have ended, and gives those lanes the next. */
 static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
 {
+  static const int numbers[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
   stratus_hit_chunk* const c = s->chunk;
-  int live[STRATUS_WIDTH], hit[STRATUS_WIDTH], doubtful[STRATUS_WIDTH], visited[STRATUS_WIDTH], cell[3][STRATUS_WIDTH], lanes[STRATUS_WIDTH];
-  const vint one = vi_set(1), zero = vi_set(0);
-  int count = 0;
-  vi_store(live, vi_select(k->live, one, zero));
-  vi_store(hit, vi_select(k->hit, one, zero));
-  vi_store(doubtful, vi_select(k->doubtful, one, zero));
-  vi_store(visited, k->visited);
+  const vint zero = vi_set(0);
+  const vmask free = m_andnot(vi_ge(zero, zero), k->live), ended = free & vi_ge(s->id, zero);
+  int lanes[STRATUS_WIDTH];
+  const vint state = vi_select(k->doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_select(k->hit, vi_set(STRATUS_HIT_VOXEL), zero));
+  scatter(c->state, s->id, state, ended);
+  scatter(c->visited, s->id, k->visited, ended);
   for (int axis = 0; axis < 3; ++axis) {
-    vi_store(cell[axis], k->cell[axis]);
+    scatter(c->cell[axis], s->id, k->cell[axis], ended);
   }
-  const int first = s->next;
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    if (live[lane]) {
-      continue;
-    }
-    const int id = s->id[lane];
-    if (id >= 0) {
-      c->state[id] = doubtful[lane] ? STRATUS_HIT_DOUBTFUL : hit[lane] ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
-      c->visited[id] = visited[lane];
-      for (int axis = 0; axis < 3; ++axis) {
-        c->cell[axis][id] = cell[axis][lane];
-      }
-      s->id[lane] = -1;
-    }
-    if (s->next < c->count) {
-      s->id[lane] = s->next++;
-      lanes[count++] = lane;
-      live[lane] = 2;
-    }
-  }
-  const vint now = vi_load(live);
-  const vmask fresh = vi_zero(now - vi_set(2));
+  const int first = s->next, left = c->count - first, places = m_count(free), count = left < places ? left : places;
+  const vmask fresh = first_lanes(free, count, lanes);
+  s->id = vi_select(free, vi_set(-1), s->id);
+  s->id = vi_select(fresh, expand_int(zero, fresh, lanes, count, numbers) + vi_set(first), s->id);
+  s->next += count;
   vint octant = zero;
   for (int axis = 0; axis < 3; ++axis) {
     k->o[axis] = expand(k->o[axis], fresh, lanes, count, c->o[axis] + first);
@@ -213,6 +233,30 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
 /* A lane that has ended costs as much as one that has not: so many may stand idle before they are given new rays. */
 #define IDLE (STRATUS_WIDTH / 4)
 
+static inline __attribute__((always_inline)) void walk_field(
+  const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, const int octants, const int entry_bytes, const int cell_log2)
+{
+  const stratus_tree* tree = batch->tree;
+  stream s = { .chunk = chunk, .id = vi_set(-1) };
+  stratus_hit_packet k;
+  memset(&k, 0, sizeof k);
+  refill(a, &s, &k);
+  for (;;) {
+    const int live = m_count(k.live);
+    if (live == 0 || (s.next < chunk->count && STRATUS_WIDTH - live >= IDLE)) {
+      if (live == 0 && s.next >= chunk->count) {
+        break;
+      }
+      refill(a, &s, &k);
+      if (!m_any(k.live)) {
+        continue;
+      }
+    }
+    hit_step(a, tree->entries, (const int*)tree->rows, batch->mask_words, &k, octants, entry_bytes, cell_log2);
+  }
+  refill(a, &s, &k);
+}
+
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
 {
   const stratus_tree* tree = batch->tree;
@@ -224,27 +268,15 @@ static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
     .entry_bytes = tree->entry_bytes,
     .cell_log2 = tree->cell_log2,
     .slack = batch->slack };
-  stream s = { .chunk = chunk };
-  stratus_hit_packet k;
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    s.id[lane] = -1;
+  if (!tree->octants && tree->cell_log2) {
+    walk_field(batch, &a, chunk, 0, 2, 2);
+  } else if (!tree->octants) {
+    walk_field(batch, &a, chunk, 0, 2, 0);
+  } else if (tree->entry_bytes == 2) {
+    walk_field(batch, &a, chunk, 1, 2, 2);
+  } else {
+    walk_field(batch, &a, chunk, 1, 3, 2);
   }
-  memset(&k, 0, sizeof k);
-  refill(&a, &s, &k);
-  for (;;) {
-    const int live = m_count(k.live);
-    if (live == 0 || (s.next < chunk->count && STRATUS_WIDTH - live >= IDLE)) {
-      if (live == 0 && s.next >= chunk->count) {
-        break;
-      }
-      refill(&a, &s, &k);
-      if (!m_any(k.live)) {
-        continue;
-      }
-    }
-    hit_step(&a, tree->entries, (const int*)tree->rows, batch->mask_words, &k);
-  }
-  refill(&a, &s, &k);
 }
 
 /* ---------------------------------------------------------------- out */

@@ -350,7 +350,7 @@ typedef struct stratus_tree_options {
   int leaf_bricks;            /* bricks (4^3 voxels and a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
   int leaf_voxels;            /* voxels in a leaf of the baselines, 1..64; default 1 */
   int64_t field_bricks;       /* most bricks that a distance-field leaf covers, 1..2^29; default 2^25 */
-  double field_emptiness;     /* most bricks that it covers an occupied one; default 64 */
+  double field_emptiness;     /* most bricks that it covers an occupied one, >= 1; default 512 */
   double uniform;             /* hybrid: greatest difference between the axes' deviations of eq. 8, over the node's extent; default .1 */
   double paper_threshold;     /* hybrid-paper: the same difference in voxels, as printed; default 8 */
   double bandwidth;           /* of density, voxels; 0 (default): eq. 3 with its floor */
@@ -619,7 +619,7 @@ typedef struct stratus_octree_options {
   int leaf_objects;      /* a node of so many or fewer is not split, 1..2^20; default 128 */
   double pixels;         /* > 0, of a window 1000 pixels high; default 32 */
   double c;              /* C of the rules by distance, > 0; default 35 */
-  double looseness;      /* enclosing: nodes count as this many times wider, 1..2; default 1 */
+  double looseness;      /* enclosing: nodes count as this many times wider, 1..2, so that few objects straddle; default 1.25 */
   int collapse_after;    /* calls of stratus_octree_cull() that a node's children outlive unseen, 0: for ever; default 256 */
   int64_t split_budget;  /* objects that one call may hand down to children before it leaves the rest for the next one, 0: any; default 0 */
 } stratus_octree_options;

@@ -20,7 +20,7 @@ stratus_tree_options stratus_tree_options_default(void)
     .leaf_bricks = 4,
     .leaf_voxels = 1,
     .field_bricks = (int64_t)1 << 25,
-    .field_emptiness = 64.0,
+    .field_emptiness = 512.0,
     .uniform = 0.1,
     .paper_threshold = 8.0 };
 }

@@ -6,6 +6,15 @@
 #ifndef STRATUS_WIDTH
 #define STRATUS_WIDTH 1
 #endif
+#ifndef STRATUS_OCTANTS
+#define STRATUS_OCTANTS 1
+#endif
+#ifndef STRATUS_ENTRY_BYTES
+#define STRATUS_ENTRY_BYTES 2
+#endif
+#ifndef STRATUS_CELL_LOG2
+#define STRATUS_CELL_LOG2 2
+#endif
 
 #include "first_hit.h"
 
@@ -48,7 +57,7 @@ __kernel void first_hit(__constant stratus_hit_arguments* a, __global const ucha
   k.doubtful = m_none();
   k.visited = vi_set(0);
   while (m_any(k.live)) {
-    hit_step(a, entries, rows, masks, &k);
+    hit_step(a, entries, rows, masks, &k, STRATUS_OCTANTS, STRATUS_ENTRY_BYTES, STRATUS_CELL_LOG2);
   }
   int state[STRATUS_WIDTH], visited[STRATUS_WIDTH];
   vi_store(state, vi_select(k.hit, vi_set(STRATUS_HIT_VOXEL), vi_select(k.doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_set(STRATUS_HIT_NONE))));

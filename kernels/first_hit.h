@@ -63,25 +63,26 @@ INLINE int hit_doubt(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entr
   return 0;
 }
 
-/* Sets hit where a live ray's cell is an occupied voxel, else moves it on and ends it where it leaves. */
-INLINE void hit_step(
-  CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks, stratus_hit_packet* k)
+/* Sets hit where a live ray's cell is an occupied voxel, else moves it on and ends it where it leaves. The last three are the arguments' own,
+ * which the compiler should see as constants. */
+INLINE void hit_step(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks,
+  stratus_hit_packet* k, const int octants, const int entry_bytes, const int cell_log2)
 {
-  const vint low = vi_set((1 << a->entry_bytes) - 1), log2 = vi_set(a->cell_log2), one = vi_set(1);
+  const vint low = vi_set((1 << entry_bytes) - 1), one = vi_set(1);
   const vfloat half_one = v_set(0.5f), certain = v_set(0.5f - a->slack);
   vint block[3], far[3], near[3];
   for (int axis = 0; axis < 3; ++axis) {
-    block[axis] = k->cell[axis] >> log2;
+    block[axis] = k->cell[axis] >> vi_set(cell_log2);
   }
   const vint row = (block[1] - vi_set(a->at[1])) + (block[2] - vi_set(a->at[2])) * vi_set(a->cells[1]);
   const vint index = (block[0] - vi_set(a->at[0])) + row * vi_set(a->cells[0]);
-  const vint entry = v_gather_bytes(entries, index * vi_set(a->entry_bytes), k->live);
+  const vint entry = v_gather_bytes(entries, entry_bytes == 2 ? index + index : (index + index) + index, k->live);
   const vmask occupied = k->live & vi_zero(entry & low);
   k->visited = vi_select(k->live, k->visited + one, k->visited);
   vint leap;
-  if (a->octants) {
+  if (octants) {
     const vint code = (entry >> k->octant_shift) & low;
-    if (a->entry_bytes == 2) {
+    if (entry_bytes == 2) {
       leap = (one << code) >> one;
     } else {
       leap = ((vi_set(2) + (code & one)) << (code >> one)) >> one;
@@ -90,14 +91,14 @@ INLINE void hit_step(
     leap = (entry & vi_set(0xffff)) >> vi_set(2);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    far[axis] = vi_select(k->up[axis], block[axis] + leap, block[axis] + one - leap) << log2;
-    near[axis] = vi_select(k->up[axis], block[axis] << log2, ((block[axis] + one) << log2) - one);
+    far[axis] = vi_select(k->up[axis], block[axis] + leap, block[axis] + one - leap) << vi_set(cell_log2);
+    near[axis] = vi_select(k->up[axis], block[axis] << vi_set(cell_log2), ((block[axis] + one) << vi_set(cell_log2)) - one);
   }
   if (m_any(occupied)) {
     vmask found = occupied;
-    if (a->cell_log2) {
+    if (cell_log2) {
       const vint number = v_gather_ints(rows, row + vi_set(a->row_start), occupied) +
-        ((entry & vi_set(a->entry_bytes == 2 ? 0xffff : 0xffffff)) >> vi_set(a->entry_bytes));
+        ((entry & vi_set(entry_bytes == 2 ? 0xffff : 0xffffff)) >> vi_set(entry_bytes));
       const vint three = vi_set(3);
       const vint bit = (k->cell[0] & three) | (k->cell[1] & three) << vi_set(2) | (k->cell[2] & three) << vi_set(4);
       const vint word = v_gather_ints(masks, number + number + (bit >> vi_set(5)), occupied);
@@ -125,7 +126,7 @@ INLINE void hit_step(
     const vint cell = vi_select(v_le(leave[axis], next), beyond, in);
     k->cell[axis] = vi_select(k->live, cell, k->cell[axis]);
     edge[axis] = v_lt(certain, v_abs((position[axis] - v_from_int(cell)) - half_one));
-    left = left | vi_outside((cell >> log2) - vi_set(a->at[axis]), vi_set(a->cells[axis]));
+    left = left | vi_outside((cell >> vi_set(cell_log2)) - vi_set(a->at[axis]), vi_set(a->cells[axis]));
   }
   const vmask doubt = k->live & ((edge[0] & edge[1]) | (edge[2] & (edge[0] | edge[1])));
   k->live = m_andnot(k->live, left);
