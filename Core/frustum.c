@@ -91,8 +91,7 @@ stratus_status stratus_frustum_check(stratus_context* context, const stratus_fru
   for (int p = 0; p < STRATUS_PLANES; p++) {
     for (int i = 0; i < 4; i++) {
       if (!isfinite(frustum->planes[p][i])) {
-        return stratus_fail(
-          context, STRATUS_INVALID_ARGUMENT, "frustum planes[%d][%d] is %g, must be finite", p, i, frustum->planes[p][i]);
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "frustum planes[%d][%d] is %g, must be finite", p, i, frustum->planes[p][i]);
       }
     }
   }
@@ -204,7 +203,8 @@ stratus_side stratus_plan_side_turned(const stratus_frustum_plan* plan, unsigned
     if (value - sphere >= slack) {
       continue;
     }
-    const double reach = fabs(stratus_vector_dot(n, box->half[0])) + fabs(stratus_vector_dot(n, box->half[1])) + fabs(stratus_vector_dot(n, box->half[2]));
+    const double reach =
+      fabs(stratus_vector_dot(n, box->half[0])) + fabs(stratus_vector_dot(n, box->half[1])) + fabs(stratus_vector_dot(n, box->half[2]));
     if (value + reach < -slack) {
       return STRATUS_SIDE_OUTSIDE;
     }

@@ -47,7 +47,7 @@ typedef struct stratus_frustum_plan {
   unsigned used; /* bit p: plane p cuts */
   bool empty;    /* a plane lets nothing through */
   /* for separating axes */
-  bool solid;    /* the planes make eight corners; else six half-spaces are all that is known */
+  bool solid;           /* the planes make eight corners; else six half-spaces are all that is known */
   double corners[8][3]; /* bit 0: right, 1: top, 2: far */
   bool directions[8];   /* that corner lies at infinity, in this direction */
   double edges[12][3];
@@ -80,6 +80,5 @@ stratus_side stratus_plan_side_turned(const stratus_frustum_plan* plan, unsigned
 bool stratus_plan_find_corners(stratus_frustum_plan* plan);
 /* True if some axis surely separates the box from a solid plan. */
 bool stratus_plan_separated(const stratus_frustum_plan* plan, const stratus_solid_box* box);
-
 
 #endif

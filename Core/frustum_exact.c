@@ -116,7 +116,8 @@ double stratus_solid_box_radius(const stratus_solid_box* box)
 static bool axis_separates(
   const stratus_frustum_plan* plan, const stratus_solid_box* box, double corners[8][3], const double axis[3], double size)
 {
-  const double reach = fabs(stratus_vector_dot(axis, box->half[0])) + fabs(stratus_vector_dot(axis, box->half[1])) + fabs(stratus_vector_dot(axis, box->half[2]));
+  const double reach = fabs(stratus_vector_dot(axis, box->half[0])) + fabs(stratus_vector_dot(axis, box->half[1])) +
+    fabs(stratus_vector_dot(axis, box->half[2]));
   const double length = sqrt(stratus_vector_dot(axis, axis));
   if (!(length > STRATUS_DEPENDENT_BELOW)) {
     return false; /* edges that are parallel */

@@ -14,7 +14,7 @@ stratus_octree_options stratus_octree_options_default(void)
     .leaf_objects = 128,
     .pixels = 32.0,
     .c = 35.0,
-    .looseness = 1.0,
+    .looseness = 1.25,
     .collapse_after = 256,
     .split_budget = 0 };
 }

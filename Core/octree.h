@@ -63,7 +63,7 @@ struct stratus_octree {
   double corner[3]; /* of the root's cell, relative to origin, a multiple of edge / 1024 when it was made */
   double edge;      /* a power of two */
   double first_edge;
-  double reach;     /* no relative coordinate was ever larger */
+  double reach; /* no relative coordinate was ever larger */
   bool has_origin, changed;
   uint32_t clock;
   uint8_t* octants; /* scratch of splits */
@@ -134,8 +134,7 @@ uint32_t stratus_list_find(const stratus_octree_list* list, uint32_t id, uint32_
 void stratus_list_remove(stratus_octree_list* list, uint32_t slot, uint32_t* slots);
 size_t stratus_list_bytes(const stratus_octree_list* list);
 /* Room for `needed`, `used` kept; grows by half at least. */
-stratus_status stratus_octree_reserve(
-  stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
+stratus_status stratus_octree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
 
 /* ---- octree_levels.c */
 stratus_status stratus_octree_levels_create(stratus_octree* tree); /* an unsplit root */
@@ -219,9 +218,9 @@ typedef struct stratus_octree_walk {
   void (*children)(const stratus_octree* tree, const void* self, unsigned mask, const double center[3], double quarter, uint8_t masks[8]);
   /* The stop rule: true if a node that is seen in part is to be split. Its count, level and depth have been looked at. */
   bool (*divides)(const stratus_octree* tree, const void* self, int level, const stratus_octree_place* place);
-  bool boxes_stick_out; /* of nodes: what crosses a box is not what crosses its node */
-  bool test_whole;      /* boxes in a node that is seen whole may not be */
-  int64_t budget;  /* objects to hand down */
+  bool boxes_stick_out;                       /* of nodes: what crosses a box is not what crosses its node */
+  bool test_whole;                            /* boxes in a node that is seen whole may not be */
+  int64_t budget;                             /* objects to hand down */
   uint64_t nodes_tested, splits, handed_down; /* out */
 } stratus_octree_walk;
 

@@ -68,8 +68,7 @@ bool stratus_octree_object_seen(const stratus_octree* tree, const stratus_frustu
   const stratus_solid_box box = turned ? stratus_solid_box_of_turned(tree->turned[id]) : stratus_solid_box_of_bounds(tree->bounds[id]);
   const stratus_side side =
     turned ? stratus_plan_side_turned(plan, plan->used, &box) : stratus_plan_side(plan, plan->used, tree->bounds[id]);
-  return side == STRATUS_SIDE_INSIDE ||
-    (side == STRATUS_SIDE_CROSSING && !(exact && plan->solid && stratus_plan_separated(plan, &box)));
+  return side == STRATUS_SIDE_INSIDE || (side == STRATUS_SIDE_CROSSING && !(exact && plan->solid && stratus_plan_separated(plan, &box)));
 }
 
 /* Fills keep[] of the job's packs, counts what is kept, and returns how many boxes were asked in double precision. */
@@ -249,8 +248,8 @@ static stratus_status collapse_unseen(stratus_octree* tree, uint64_t* collapses)
   return STRATUS_OK;
 }
 
-static stratus_status look(stratus_octree_view* view, const stratus_frustum_plan* plan, const stratus_octree_cull_options* options,
-  stratus_octree_visible* result)
+static stratus_status look(
+  stratus_octree_view* view, const stratus_frustum_plan* plan, const stratus_octree_cull_options* options, stratus_octree_visible* result)
 {
   stratus_octree* tree = view->tree;
   looker look = { .plan = plan };
@@ -284,8 +283,8 @@ static stratus_status look(stratus_octree_view* view, const stratus_frustum_plan
   return collapse_unseen(tree, &result->collapses);
 }
 
-stratus_status stratus_octree_cull(stratus_octree_view* view, const stratus_frustum* frustum, const stratus_octree_cull_options* options,
-  stratus_octree_visible* visible)
+stratus_status stratus_octree_cull(
+  stratus_octree_view* view, const stratus_frustum* frustum, const stratus_octree_cull_options* options, stratus_octree_visible* visible)
 {
   if (!view) {
     return STRATUS_INVALID_ARGUMENT;

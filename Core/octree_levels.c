@@ -6,7 +6,7 @@
 #include <float.h>
 #include <string.h>
 
-#define FIRST_GRID 1024.0  /* the root's corner is a multiple of its width over this: all cells stay exact in double .. */
+#define FIRST_GRID 1024.0    /* the root's corner is a multiple of its width over this: all cells stay exact in double .. */
 #define FIRST_GROWTH 65536.0 /* .. while it has not grown by more than this */
 
 stratus_status stratus_octree_reserve_groups(stratus_context* context, stratus_octree_level* level, size_t needed)

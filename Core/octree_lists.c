@@ -109,8 +109,7 @@ size_t stratus_list_bytes(const stratus_octree_list* list)
   return list->packs * PACK_BYTES;
 }
 
-stratus_status stratus_octree_reserve(
-  stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size)
+stratus_status stratus_octree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size)
 {
   if (needed <= *capacity) {
     return STRATUS_OK;

@@ -186,8 +186,8 @@ static stratus_status check_objects(const stratus_octree* tree, const checker* c
     }
     used += tree->kind[id] != STRATUS_OBJECT_FREE;
     if (c->seen[id] != places) {
-      return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree: object %u is in %u lists, not %zu", (unsigned)id,
-        (unsigned)c->seen[id], places);
+      return stratus_fail(
+        tree->context, STRATUS_INVALID_ARGUMENT, "octree: object %u is in %u lists, not %zu", (unsigned)id, (unsigned)c->seen[id], places);
     }
   }
   if (used != tree->count || unbounded != tree->unbounded_count || unbounded != tree->unbounded.count) {

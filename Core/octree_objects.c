@@ -371,8 +371,8 @@ stratus_status stratus_octree_remove(stratus_octree* tree, const uint32_t* ids, 
   size_t marked = 0;
   for (; marked < count && status == STRATUS_OK; marked++) {
     if (tree->kind[ids[marked]] & 0x80) {
-      status = stratus_fail(
-        tree->context, STRATUS_INVALID_ARGUMENT, "octree object %u comes twice among those to remove", (unsigned)ids[marked]);
+      status =
+        stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree object %u comes twice among those to remove", (unsigned)ids[marked]);
       break;
     }
     tree->kind[ids[marked]] |= 0x80;

@@ -52,14 +52,16 @@ void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_fru
 /* ---- packs */
 
 /* Lanes of one pack that plane p rejects, and those (of the kept, too) that are near it. */
-static ALWAYS_INLINE void test_pack(const stratus_octree_planes* planes, int p, int turned, const float* restrict box,
-  unsigned* restrict rejected, unsigned* restrict near)
+static ALWAYS_INLINE void test_pack(
+  const stratus_octree_planes* planes, int p, int turned, const float* restrict box, unsigned* restrict rejected, unsigned* restrict near)
 {
   static const unsigned bit[STRATUS_PACK] = { 1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768 };
   const float a = planes->normal[p][0], b = planes->normal[p][1], c = planes->normal[p][2], d = planes->offset[p], band = planes->band[p];
   const int row = 3 * STRATUS_PACK;
-  const float *x = box + (a > 0.0f ? row : 0), *y = box + (b > 0.0f ? row : 0) + STRATUS_PACK, *z = box + (c > 0.0f ? row : 0) + 2 * STRATUS_PACK;
-  const float *u = box + (a > 0.0f ? 0 : row), *v = box + (b > 0.0f ? 0 : row) + STRATUS_PACK, *w = box + (c > 0.0f ? 0 : row) + 2 * STRATUS_PACK;
+  const float *x = box + (a > 0.0f ? row : 0), *y = box + (b > 0.0f ? row : 0) + STRATUS_PACK,
+              *z = box + (c > 0.0f ? row : 0) + 2 * STRATUS_PACK;
+  const float *u = box + (a > 0.0f ? 0 : row), *v = box + (b > 0.0f ? 0 : row) + STRATUS_PACK,
+              *w = box + (c > 0.0f ? 0 : row) + 2 * STRATUS_PACK;
   unsigned out = 0, close = 0;
   for (int i = 0; i < STRATUS_PACK; i++) {
     const float inner = a * x[i] + b * y[i] + c * z[i] + d;
@@ -102,8 +104,8 @@ static ALWAYS_INLINE void test_packs(const stratus_octree_planes* planes, unsign
 
 /* A cube's distance to a plane is its centre's less a constant: the same for all eight, whether of its sphere or of the cube. So the sphere, which comes
  * first in the paper, would save nothing. */
-static ALWAYS_INLINE void test_children(const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter,
-  double looseness, uint8_t* restrict masks)
+static ALWAYS_INLINE void test_children(
+  const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t* restrict masks)
 {
   static const double sign_x[8] = { -1, 1, -1, 1, -1, 1, -1, 1 }, sign_y[8] = { -1, -1, 1, 1, -1, -1, 1, 1 },
                       sign_z[8] = { -1, -1, -1, -1, 1, 1, 1, 1 };
@@ -128,7 +130,7 @@ static ALWAYS_INLINE void test_children(const stratus_octree_planes* planes, uns
 /* ---- one clone for each instruction set: comparisons and sums only, so all give the same bits */
 
 #define CLONE(name, attribute)                                                                                                             \
-  attribute static void packs_##name(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,    \
+  attribute static void packs_##name(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,   \
     size_t packs, uint16_t* keep, uint16_t* unsure)                                                                                        \
   {                                                                                                                                        \
     if (turned) {                                                                                                                          \
@@ -138,7 +140,7 @@ static ALWAYS_INLINE void test_children(const stratus_octree_planes* planes, uns
     }                                                                                                                                      \
   }                                                                                                                                        \
   attribute static void children_##name(                                                                                                   \
-    const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t masks[8])         \
+    const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t masks[8])        \
   {                                                                                                                                        \
     test_children(planes, mask, center, quarter, looseness, masks);                                                                        \
   }

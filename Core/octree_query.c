@@ -218,8 +218,8 @@ stratus_status stratus_octree_query_box(stratus_octree* tree, const double bound
   query q = { .kind = QUERY_BOX };
   for (int a = 0; a < 3; a++) {
     if (!(bounds[2 * a] <= bounds[2 * a + 1])) {
-      return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree query's bounds are %g..%g on axis %d, must not fall", bounds[2 * a],
-        bounds[2 * a + 1], a);
+      return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree query's bounds are %g..%g on axis %d, must not fall",
+        bounds[2 * a], bounds[2 * a + 1], a);
     }
   }
   memcpy(q.bounds, bounds, sizeof q.bounds);
@@ -263,8 +263,8 @@ stratus_status stratus_octree_query_sphere(
   return STRATUS_OK;
 }
 
-stratus_status stratus_octree_query_ray(stratus_octree* tree, const double origin[3], const double direction[3], double t_max, uint32_t* ids,
-  double* t, size_t capacity, size_t* count)
+stratus_status stratus_octree_query_ray(stratus_octree* tree, const double origin[3], const double direction[3], double t_max,
+  uint32_t* ids, double* t, size_t capacity, size_t* count)
 {
   TRY(check_numbers(tree, "origin", origin, 3));
   TRY(check_numbers(tree, "direction", direction, 3));

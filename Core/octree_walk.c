@@ -41,8 +41,7 @@ stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view)
 {
   void* stamps = view->stamps;
   const size_t before = view->stamps_capacity;
-  TRY(stratus_octree_reserve(
-    view->tree->context, &stamps, &view->stamps_capacity, view->tree->limit, before, sizeof *view->stamps));
+  TRY(stratus_octree_reserve(view->tree->context, &stamps, &view->stamps_capacity, view->tree->limit, before, sizeof *view->stamps));
   view->stamps = stamps;
   for (size_t i = before; i < view->stamps_capacity; i++) {
     view->stamps[i] = view->stamp;
@@ -69,8 +68,8 @@ static stratus_status add_jobs(stratus_octree_view* view, const stratus_octree_l
 {
   const uint32_t chunk = STRATUS_JOB_PACKS * STRATUS_PACK;
   void* memory = view->jobs;
-  TRY(stratus_octree_reserve(view->tree->context, &memory, &view->jobs_capacity, view->job_count + list->count / chunk + 1,
-    view->job_count, sizeof *view->jobs));
+  TRY(stratus_octree_reserve(
+    view->tree->context, &memory, &view->jobs_capacity, view->job_count + list->count / chunk + 1, view->job_count, sizeof *view->jobs));
   view->jobs = memory;
   for (uint32_t from = 0; from < list->count; from += chunk) {
     const uint32_t count = list->count - from < chunk ? list->count - from : chunk;
@@ -114,8 +113,8 @@ static stratus_status split_level(stratus_octree_view* view, stratus_octree_walk
 }
 
 /* Children of one split node to the other side's places; returns how many there are then. */
-static size_t enter_children(stratus_octree_view* view, stratus_octree_walk* walk, int level, const stratus_octree_place* place, int side,
-  size_t count)
+static size_t enter_children(
+  stratus_octree_view* view, stratus_octree_walk* walk, int level, const stratus_octree_place* place, int side, size_t count)
 {
   stratus_octree* tree = view->tree;
   stratus_octree_level* below = &tree->levels[level + 1];

@@ -34,7 +34,8 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
   }
   const double up[3] = { 0.1, 0.9, 0.2 };
   const int parallel = random_below(random, 3) == 0;
-  const double angle = 5.0 + 80.0 * random_unit(random), half = scale * (0.02 + 0.5 * random_unit(random)), aspect = 0.5 + random_unit(random);
+  const double angle = 5.0 + 80.0 * random_unit(random), half = scale * (0.02 + 0.5 * random_unit(random)),
+               aspect = 0.5 + random_unit(random);
   assert_int_equal(parallel ? stratus_camera_parallel(context, eye, focal, up, half, aspect, &camera)
                             : stratus_camera_perspective(context, eye, focal, up, angle, aspect, &camera),
     STRATUS_OK);

@@ -196,7 +196,9 @@ void run_method(run_state& run, const std::string& scene, const std::string& met
   add("false_keeps", false_percent(judged.judged), "%");
   add("exact_false_keeps", false_percent(exact.judged), "%");
   add("wrong_culls", static_cast<double>(wrong), "1");
-  std::fprintf(stderr, "  %-26s cull %.3f worst %.2f exact %.3f update %.2f ms, %zu nodes, depth %d, %.3g bytes, visible %.0f, false %.3f %% exact %.3f %%, wrong %zu\n",
+  std::fprintf(stderr,
+    "  %-26s cull %.3f worst %.2f exact %.3f update %.2f ms, %zu nodes, depth %d, %.3g bytes, visible %.0f, false %.3f %% exact %.3f %%, "
+    "wrong %zu\n",
     method.c_str(), median(plain.ms), *std::max_element(plain.ms.begin(), plain.ms.end()), median(exact.ms), rows[rows.size() - 8].value,
     statistics.nodes, statistics.depth, static_cast<double>(statistics.bytes), plain.visible, false_percent(judged.judged),
     false_percent(exact.judged), wrong);

@@ -28,5 +28,6 @@ struct verdict {
   size_t kept = 0, wrong_culls = 0, false_keeps = 0;
 };
 // Every box cut out against the frustum, face by face; ids: what a method kept.
-verdict judge_culling(const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
+verdict judge_culling(
+  const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
 } // namespace bench

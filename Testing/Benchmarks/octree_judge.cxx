@@ -42,7 +42,8 @@ point corner(const box_bounds& box, unsigned number)
 bool meets(const box_bounds& box, const stratus_frustum& frustum, const point& inside, double room)
 {
   bool all = true;
-  for (const double* plane : { frustum.planes[0], frustum.planes[1], frustum.planes[2], frustum.planes[3], frustum.planes[4], frustum.planes[5] }) {
+  for (const double* plane :
+    { frustum.planes[0], frustum.planes[1], frustum.planes[2], frustum.planes[3], frustum.planes[4], frustum.planes[5] }) {
     bool any = false;
     for (unsigned c = 0; c < 8; ++c) {
       const bool in = value_of(plane, corner(box, c)) + room >= 0.0;
@@ -74,7 +75,8 @@ bool meets(const box_bounds& box, const stratus_frustum& frustum, const point& i
 }
 } // namespace
 
-verdict judge_culling(const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count)
+verdict judge_culling(
+  const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count)
 {
   // Rounding of coordinates up to a thousand, and then some.
   constexpr double room = 1e-9;

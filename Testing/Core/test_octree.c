@@ -252,6 +252,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_octree_options options = stratus_octree_options_default(), fixed;
   options.leaf_objects = 8;
   options.collapse_after = 16;
+  options.looseness = 1.0; /* cells are what a border crosses */
   fixed = options;
   fixed.stop = STRATUS_OCTREE_STOP_STATIC;
   double(*boxes)[6] = make_boxes(OBJECTS, 1.0, 9);
@@ -264,7 +265,8 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_octree_visible visible;
   stratus_camera camera;
   stratus_frustum close, away;
-  const double eye[3] = { 0.3, 0.3, 0.3 }, focal[3] = { 1, 0.4, 0.3 }, up[3] = { 0, 0, 1 }, back[3] = { -40, 0, 0 }, behind[3] = { -41, 0, 0 };
+  const double eye[3] = { 0.3, 0.3, 0.3 }, focal[3] = { 1, 0.4, 0.3 }, up[3] = { 0, 0, 1 }, back[3] = { -40, 0, 0 },
+               behind[3] = { -41, 0, 0 };
   assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 20.0, 1.0, &camera), STRATUS_OK);
   assert_int_equal(stratus_frustum_from_camera(context, &camera, &close), STRATUS_OK);
   assert_int_equal(stratus_camera_perspective(context, back, behind, up, 20.0, 1.0, &camera), STRATUS_OK);
@@ -317,7 +319,9 @@ static void coverage_is_the_window_s_share(void** state)
   const double s = 1.0 / sqrt(3.0); /* of spheres of radius 1 */
   const double boxes[3][6] = { { -s, s, -s, s, -5 - s, -5 + s }, { 2 - s, 2 + s, -s, s, -6 - s, -6 + s }, { NAN, 1, 0, 1, 0, 1 } };
   uint32_t ids[3];
-  const stratus_camera camera = { .forward = { 0, 0, -1 }, .right = { 2, 0, 0 }, .up = { 0, 2, 0 }, .near_k = 1, .far_k = 100, .parallel = 1 };
+  const stratus_camera camera = {
+    .forward = { 0, 0, -1 }, .right = { 2, 0, 0 }, .up = { 0, 2, 0 }, .near_k = 1, .far_k = 100, .parallel = 1
+  };
   stratus_frustum frustum;
   stratus_octree_visible visible;
   const stratus_octree_cull_options options = { .coverage = 1 };

@@ -154,7 +154,8 @@ static bool ray_meets(const double bounds[6], const double origin[3], const doub
 {
   long double from = 0.0L, to = t_max;
   for (int a = 0; a < 3; a++) {
-    const long double s = ((long double)bounds[2 * a] - origin[a]) / direction[a], t = ((long double)bounds[2 * a + 1] - origin[a]) / direction[a];
+    const long double s = ((long double)bounds[2 * a] - origin[a]) / direction[a],
+                      t = ((long double)bounds[2 * a + 1] - origin[a]) / direction[a];
     from = fmaxl(from, fminl(s, t));
     to = fminl(to, fmaxl(s, t));
   }

@@ -143,7 +143,7 @@ static void bounds_of_no_size_infinite_or_not_a_number(void** state)
     assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 8, ids), STRATUS_OK);
     const double eye[3] = { -5, 0, 0 }, origin[3] = { 0, 0, 0 }, away[3] = { -10, 0, 0 }, far_box[6] = { 90, 91, 90, 91, 90, 91 };
     const stratus_frustum towards = look(&s, eye, origin, 0.1, 20.0), backwards = look(&s, eye, away, 0.1, 20.0);
-    assert_int_equal(seen(&s, &towards, 1), 7); /* all but the point at 50 */
+    assert_int_equal(seen(&s, &towards, 1), 7);   /* all but the point at 50 */
     assert_int_equal(seen(&s, &backwards, 1), 6); /* the five without bounds, and the one about everything */
     stratus_octree_statistics statistics;
     stratus_octree_get_statistics(s.tree, &statistics);
@@ -265,7 +265,8 @@ static void objects_on_a_cell_s_border(void** state)
     }
     assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 729, ids), STRATUS_OK);
     for (int x = -4; x <= 4; x++) {
-      const stratus_frustum frustum = { .planes = { { 1, 0, 0, -x }, { -1, 0, 0, x }, { 0, 1, 0, 4 }, { 0, -1, 0, 4 }, { 0, 0, 1, 4 }, { 0, 0, -1, 4 } } };
+      const stratus_frustum frustum = { .planes = { { 1, 0, 0, -x }, { -1, 0, 0, x }, { 0, 1, 0, 4 }, { 0, -1, 0, 4 }, { 0, 0, 1, 4 },
+                                          { 0, 0, -1, 4 } } };
       size_t right = 0;
       for (int i = 0; i < 729; i++) {
         right += boxes[i][0] <= x && x <= boxes[i][1];
