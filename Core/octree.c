@@ -11,7 +11,7 @@ stratus_octree_options stratus_octree_options_default(void)
   return (stratus_octree_options){ .placement = STRATUS_OCTREE_ENCLOSING,
     .stop = STRATUS_OCTREE_STOP_PIXELS,
     .levels = STRATUS_OCTREE_LEVELS_MAX,
-    .leaf_objects = 128,
+    .leaf_objects = 256,
     .pixels = 32.0,
     .c = 35.0,
     .looseness = 1.25,

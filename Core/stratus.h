@@ -616,7 +616,7 @@ typedef struct stratus_octree_options {
   stratus_octree_placement placement; /* default enclosing */
   stratus_octree_stop stop;           /* default pixels */
   int levels;            /* below the root, 0..21; default 21. 0 is the linear list: every object is tested, and nothing is built. */
-  int leaf_objects;      /* a node of so many or fewer is not split, 1..2^20; default 128 */
+  int leaf_objects;      /* a node of so many or fewer is not split, 1..2^20; default 256 */
   double pixels;         /* > 0, of a window 1000 pixels high; default 32 */
   double c;              /* C of the rules by distance, > 0; default 35 */
   double looseness;      /* enclosing: nodes count as this many times wider, 1..2, so that few objects straddle; default 1.25 */

@@ -21,7 +21,7 @@ const char* const help = R"(stratus-bench octree [options]
   --scene NAME,...     boxes-N (default: boxes-1000,boxes-9454,boxes-100000,boxes-1000000)
   --path NAME,...      far, near, inside, turn (default: all of them)
   --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static with
-                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 128).
+                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256).
                        (default: all)
   --sweep C,...        stratus:octree-paper at these C too
   --frames N           of each path (default 120)
@@ -232,7 +232,7 @@ void check(options& o, const std::vector<std::string>& sweep)
     o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000" };
   }
   if (o.methods.empty()) {
-    o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:128",
+    o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:256",
       "stratus:linear" };
   }
   for (const std::string& c : sweep) {
