@@ -52,6 +52,20 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preinteg
   return stratus_ray_cast_tile_isa0(type, preintegrated);
 }
 
+void stratus_ray_round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1)
+{
+  const size_t width = (size_t)frame->arguments->width, count = 4 * (size_t)(x1 - x0);
+  for (int y = y0; frame->rgba8 && y < y1; ++y) {
+    const size_t first = 4 * ((size_t)y * width + (size_t)x0);
+    const float* restrict rgba = frame->rgba + first;
+    uint8_t* restrict rgba8 = frame->rgba8 + first;
+    for (size_t i = 0; i < count; ++i) {
+      const float value = rgba[i] * 255.0f + 0.5f;
+      rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
+    }
+  }
+}
+
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
 {
@@ -66,8 +80,10 @@ stratus_status stratus_ray_cast_host(
   {
     stratus_ray_counts mine = { 0 };
     for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
-      const int x0 = tile % columns * TILE, y0 = tile / columns * TILE;
-      draw(frame, x0, y0, x0 + TILE < width ? x0 + TILE : width, y0 + TILE < height ? y0 + TILE : height, &mine);
+      const int x0 = tile % columns * TILE, x1 = x0 + TILE < width ? x0 + TILE : width;
+      const int y0 = tile / columns * TILE, y1 = y0 + TILE < height ? y0 + TILE : height;
+      draw(frame, x0, y0, x1, y1, &mine);
+      stratus_ray_round_pixels(frame, x0, y0, x1, y1); /* while the tile is in the cache */
       if (omp_get_thread_num() == 0 && context->options.progress) {
         status = stratus_progress(context, "ray cast", (double)(tile + 1) / tiles);
         if (status != STRATUS_OK) {

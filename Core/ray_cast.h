@@ -22,6 +22,7 @@ typedef struct stratus_ray_cast_frame {
   float* rgba;
   float* depth;      /* NULL: not wanted */
   uint32_t* samples; /* NULL: not wanted */
+  uint8_t* rgba8;    /* NULL: not wanted */
 } stratus_ray_cast_frame;
 
 /* Marches the rays of pixels [x0, x1) x [y0, y1); x0, y0 multiples of 8. */

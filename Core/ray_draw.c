@@ -50,12 +50,11 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
       STRATUS_MODE_FIRST_HIT, (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
-  const stratus_structure last = options->mode == STRATUS_MODE_FIRST_HIT ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_OCTANT;
-  if ((unsigned)options->structure > last || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
+  if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
-      last, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
+      STRATUS_STRUCTURE_HYBRID, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
       STRATUS_INTERPOLATION_NEAREST);
   }
   if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
@@ -84,6 +83,9 @@ static void clear_image(const stratus_image* image)
   if (image->samples) {
     memset(image->samples, 0, pixels * sizeof *image->samples);
   }
+  if (image->rgba8) {
+    memset(image->rgba8, 0, pixels * 4);
+  }
 }
 
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
@@ -98,12 +100,14 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
     .opaque_depth = image->opaque_depth,
     .rgba = image->rgba,
     .depth = image->depth,
-    .samples = image->samples };
+    .samples = image->samples,
+    .rgba8 = image->rgba8 };
   const int type = stratus_ray_fetch_type(&caster->traversed);
   if (caster->context->device) {
     bool drawn = false;
     TRY(stratus_ray_cast_device(caster, &frame, type, preintegrated, counts, upload_ms, &drawn));
     if (drawn) {
+      stratus_ray_round_pixels(&frame, 0, 0, image->width, image->height);
       return STRATUS_OK;
     }
   }
@@ -124,6 +128,7 @@ static stratus_status audit(
 
   stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
   march.samples = NULL;
+  march.rgba8 = NULL;
   TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
   march.rgba = rgba;
   if (image->depth) {
@@ -140,6 +145,14 @@ cleanup:
   stratus_release(caster->context, rgba);
   stratus_release(caster->context, depth);
   return status;
+}
+
+static void report_window(const int window[4], int reported[4])
+{
+  const bool any = window[0] < window[1] && window[2] < window[3];
+  for (int side = 0; side < 4; ++side) {
+    reported[side] = any ? window[side] : 0;
+  }
 }
 
 static void fill_report(
@@ -182,14 +195,17 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   const double start = stratus_now_ms();
   if (empty || caster->table->shown == 0) {
     clear_image(image);
+    memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->occupancy->count > 0;
     arguments.has_hidden = caster->hidden != NULL;
     stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+      report_window(arguments.window, report->window);
     } else {
       clear_image(image);
+      memset(report->window, 0, sizeof report->window);
     }
     if (options->audit) {
       TRY(audit(caster, &arguments, image, &report->differing_pixels));
@@ -217,6 +233,8 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(check_options(caster->context, options));
   TRY(check_image(caster->context, image));
+  mine.window[1] = image->width;
+  mine.window[3] = image->height;
   if (options->mode == STRATUS_MODE_FIRST_HIT) {
     TRY(stratus_first_hit_render(caster, volume, transfer, camera, options, image, &mine));
   } else {

@@ -40,14 +40,68 @@ void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
   this->Window = nullptr;
 }
 
+vtkStratusDisplay::Part vtkStratusDisplay::ChoosePart(const vtkStratusPicture& picture, const Pixels& pixels)
+{
+  Part part;
+  for (int a = 0; a < 2; ++a) {
+    // A coarse picture is interpolated, up to its borders: it stays whole.
+    const bool coarse = picture.Size[0] != picture.Rectangle[2] || picture.Size[1] != picture.Rectangle[3];
+    part.From[a] = coarse ? 0 : pixels.Window[2 * a];
+    part.Size[a] = coarse ? picture.Size[a] : pixels.Window[2 * a + 1] - pixels.Window[2 * a];
+    part.To[a] = picture.Viewport[a] + picture.Rectangle[a] + part.From[a];
+    part.ToSize[a] = coarse ? picture.Rectangle[2 + a] : part.Size[a];
+  }
+  return part;
+}
+
+// Into the texture that is bound, at (x, y).
+void vtkStratusDisplay::CopyPixels(
+  vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part, int x, int y)
+{
+  const size_t first = 4 * (static_cast<size_t>(part.From[1]) * picture.Size[0] + part.From[0]);
+  const void* from = pixels.Bytes ? static_cast<const void*>(pixels.Bytes + first) : pixels.Rgba + first;
+  vtkOpenGLState* state = window->GetState();
+  state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, picture.Size[0]);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, part.Size[0], part.Size[1], GL_RGBA, pixels.Bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, from);
+  state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+}
+
+// Where nothing is behind the picture, its bytes are those of the frame buffer. Software OpenGL takes about as long to draw them as we to cast
+// the rays of a small scene; a copy costs a tenth.
+bool vtkStratusDisplay::WriteInPlace(
+  vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
+{
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  if (!pixels.Bytes || !pixels.Alone || renderer->GetPass() || frame->GetMultiSamples() > 0 || window->GetUsingSRGBColorSpace() ||
+    part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
+    return false;
+  }
+  vtkTextureObject* target = frame->GetNumberOfColorAttachments() > 0 ? frame->GetColorAttachmentAsTextureObject(0) : nullptr;
+  if (!target || target->GetTarget() != GL_TEXTURE_2D || target->GetVTKDataType() != VTK_UNSIGNED_CHAR || target->GetComponents() != 4 ||
+    part.To[0] < 0 || part.To[1] < 0 || part.To[0] + part.Size[0] > static_cast<int>(target->GetWidth()) ||
+    part.To[1] + part.Size[1] > static_cast<int>(target->GetHeight())) {
+    return false;
+  }
+  GLint bound = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  if (static_cast<unsigned int>(bound) != frame->GetFBOIndex()) {
+    return false;
+  }
+  target->Activate();
+  CopyPixels(window, picture, pixels, part, part.To[0], part.To[1]);
+  target->Deactivate();
+  return true;
+}
+
 // Software OpenGL rounds three times when it blends, which costs up to 1.3 of 255; a copy of what is behind lets the shader round once. Where
 // several samples a pixel or a render pass lie between us and the frame buffer, its own blending has to do.
-bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, int x, int y, const vtkStratusPicture& picture)
+bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part)
 {
   if (renderer->GetPass() || window->GetRenderFramebuffer()->GetMultiSamples() > 0) {
     return false;
   }
-  const unsigned int width = static_cast<unsigned int>(picture.Rectangle[2]), height = static_cast<unsigned int>(picture.Rectangle[3]);
+  const unsigned int width = static_cast<unsigned int>(part.ToSize[0]), height = static_cast<unsigned int>(part.ToSize[1]);
   this->Behind->SetContext(window);
   if (this->Behind->GetWidth() != width || this->Behind->GetHeight() != height) {
     if (!this->Behind->Create2D(width, height, 4, VTK_UNSIGNED_CHAR, false)) {
@@ -55,68 +109,54 @@ bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow*
     }
   }
   this->Behind->Activate();
-  this->Behind->CopyFromFrameBuffer(x, y, 0, 0, picture.Rectangle[2], picture.Rectangle[3]);
+  this->Behind->CopyFromFrameBuffer(part.To[0], part.To[1], 0, 0, part.ToSize[0], part.ToSize[1]);
   return true;
 }
 
-// A quarter of the bytes to move and to sample.
-const void* vtkStratusDisplay::RoundToBytes(const float* rgba, size_t count)
+bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
-  this->Bytes.resize(count);
-  unsigned char* bytes = this->Bytes.data();
-  for (size_t i = 0; i < count; ++i) {
-    const float value = rgba[i] * 255.0f + 0.5f;
-    bytes[i] = static_cast<unsigned char>(static_cast<int>(value < 255.0f ? value : 255.0f)); // premultiplied light is never below 0
-  }
-  return bytes;
-}
-
-bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba, bool bytes)
-{
-  if (this->Window && this->Window != window) {
-    this->ReleaseGraphicsResources(this->Window);
-  }
-  this->Window = window;
-  const unsigned int width = static_cast<unsigned int>(picture.Size[0]), height = static_cast<unsigned int>(picture.Size[1]);
+  const unsigned int width = static_cast<unsigned int>(part.Size[0]), height = static_cast<unsigned int>(part.Size[1]);
+  const int type = pixels.Bytes ? VTK_UNSIGNED_CHAR : VTK_FLOAT;
   this->Texture->SetContext(window);
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
-  const bool coarse = picture.Size[0] != picture.Rectangle[2] || picture.Size[1] != picture.Rectangle[3];
+  const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
   this->Texture->SetMinificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
   this->Texture->SetMagnificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
-  const void* texels = bytes ? this->RoundToBytes(rgba, static_cast<size_t>(4) * width * height) : rgba;
-  if (!this->Texture->Create2DFromRaw(width, height, 4, bytes ? VTK_UNSIGNED_CHAR : VTK_FLOAT, const_cast<void*>(texels))) {
-    return false;
+  if (!this->Texture->GetHandle() || this->Texture->GetWidth() != width || this->Texture->GetHeight() != height ||
+    this->Texture->GetVTKDataType() != type) {
+    if (!this->Texture->Create2D(width, height, 4, type, false)) {
+      return false;
+    }
   }
+  this->Texture->Activate();
+  CopyPixels(window, picture, pixels, part, 0, 0);
   if (!this->Quad) {
     this->Quad.reset(new vtkOpenGLQuadHelper(window, nullptr, FragmentShader, ""));
   } else {
     window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
   }
-  return this->Quad->Program && this->Quad->Program->GetCompiled();
-}
-
-bool vtkStratusDisplay::Draw(
-  vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias, bool onBlack)
-{
-  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  if (!window || !this->Upload(window, picture, rgba, onBlack && scale == 1.0f && bias == 0.0f)) {
+  if (!this->Quad->Program || !this->Quad->Program->GetCompiled()) {
+    this->Texture->Deactivate();
     return false;
   }
+  return true;
+}
+
+void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part)
+{
   vtkOpenGLState* state = window->GetState();
-  const int x = picture.Viewport[0] + picture.Rectangle[0], y = picture.Viewport[1] + picture.Rectangle[1];
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglScissor scissor(state);
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
   vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
-  state->vtkglViewport(x, y, picture.Rectangle[2], picture.Rectangle[3]);
-  state->vtkglScissor(x, y, picture.Rectangle[2], picture.Rectangle[3]);
+  state->vtkglViewport(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
+  state->vtkglScissor(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   state->vtkglDisable(GL_DEPTH_TEST); // the rays have ended at the opaque depth already
   state->vtkglDepthMask(GL_FALSE);
-  this->Texture->Activate();
-  const bool blends = onBlack || !this->CopyBehind(renderer, window, x, y, picture);
+  const bool blends = pixels.Bytes || !this->CopyBehind(renderer, window, part);
   if (blends) {
     state->vtkglEnable(GL_BLEND);
     state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -125,13 +165,33 @@ bool vtkStratusDisplay::Draw(
   }
   this->Quad->Program->SetUniformi("blends", blends ? 1 : 0);
   this->Quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
-  const float scaleBias[2] = { scale, bias };
+  const float scaleBias[2] = { pixels.Scale, pixels.Bias };
   this->Quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
   this->Quad->Program->SetUniform2f("scaleBias", scaleBias);
   this->Quad->Render();
-  this->Texture->Deactivate();
   if (!blends) {
     this->Behind->Deactivate();
   }
+}
+
+bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels)
+{
+  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window) {
+    return false;
+  }
+  const Part part = ChoosePart(picture, pixels);
+  if (part.Size[0] <= 0 || part.Size[1] <= 0 || this->WriteInPlace(renderer, window, picture, pixels, part)) {
+    return true;
+  }
+  if (this->Window && this->Window != window) {
+    this->ReleaseGraphicsResources(this->Window);
+  }
+  this->Window = window;
+  if (!this->Upload(window, picture, pixels, part)) {
+    return false;
+  }
+  this->Blend(renderer, window, pixels, part);
+  this->Texture->Deactivate();
   return true;
 }

@@ -11,7 +11,6 @@
 #include "vtkNew.h"
 
 #include <memory>
-#include <vector>
 
 class vtkOpenGLQuadHelper;
 class vtkOpenGLRenderWindow;
@@ -21,22 +20,43 @@ class vtkWindow;
 class VTK_STRATUS_PRIVATE vtkStratusDisplay
 {
 public:
+  // What is to be shown: picture.Size pixels, premultiplied. Shown is rgb * Scale + alpha * Bias.
+  struct Pixels {
+    const float* Rgba = nullptr;
+    const unsigned char* Bytes = nullptr; // the same rounded, or nullptr; taken if given: Scale and Bias are 1 and 0, and black is behind
+    int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
+    float Scale = 1.0f;
+    float Bias = 0.0f;
+    bool Alone = false; // nothing has been drawn before: the bytes are what the window has to hold
+  };
+
   vtkStratusDisplay();
   ~vtkStratusDisplay();
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // rgba: premultiplied, picture.Size pixels. Shown is rgb * scale + alpha * bias. onBlack: nothing is behind. False if the window is not
-  // an OpenGL one.
-  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const float* rgba, float scale, float bias, bool onBlack);
+  // False if the window is not an OpenGL one.
+  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
-  bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const float* rgba, bool bytes);
-  const void* RoundToBytes(const float* rgba, size_t count);
-  bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, int x, int y, const vtkStratusPicture& picture);
+  // A part of the picture, and where it goes.
+  struct Part {
+    int From[2]; // of the picture
+    int Size[2];
+    int To[2]; // of the window, and how large there
+    int ToSize[2];
+  };
 
-  std::vector<unsigned char> Bytes;
+  static Part ChoosePart(const vtkStratusPicture& picture, const Pixels& pixels);
+  static void CopyPixels(
+    vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part, int x, int y);
+  bool WriteInPlace(
+    vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
+  bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
+  bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
+  void Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
+
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;

@@ -56,15 +56,24 @@ private:
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
-  bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error);
-  const float* ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop);
+  // What else the renderer draws: geometry that may end rays, or volumes beside this one.
+  struct Others {
+    bool Geometry = false;
+    bool Any = false;
+  };
+
+  bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
+  Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
+  const float* ReadOpaqueDepth(vtkRenderer* renderer);
+  vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const Others& others) const;
 
   vtkRenderer* Renderer = nullptr; // while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
   std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth;
+  std::vector<unsigned char> Bytes;
   std::array<double, 17> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to
-  double FullMilliseconds = 0.0; // estimate of an exact picture's cast; 0: unknown
+  double FullMilliseconds = 0.0;       // estimate of an exact picture's cast; 0: unknown
   double FullSampleDistance = 0.0;
   vtkSmartPointer<vtkImageData> LastImage;
 };

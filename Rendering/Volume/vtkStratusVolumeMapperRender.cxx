@@ -25,8 +25,7 @@ double Now() // milliseconds
 
 // ---------------------------------------------------------------- how coarse
 
-vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(
-  vtkRenderer* renderer, vtkVolume* prop)
+vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop)
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   Coarseness coarseness;
@@ -72,21 +71,25 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 // ---------------------------------------------------------------- a picture
 
-// The opaque depth at each ray, or nullptr where nothing can have been drawn before: a read-back costs as much as a simple scene.
-const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer, vtkVolume* prop)
+vtkStratusVolumeMapper::Internals::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
 {
-  bool needed = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
+  Others others;
+  others.Geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
   vtkPropCollection* props = renderer->GetViewProps();
   vtkCollectionSimpleIterator iterator;
   props->InitTraversal(iterator);
   while (vtkProp* other = props->GetNextProp(iterator)) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
     const bool ours = other == prop || (volume && vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()));
-    needed = needed || (!ours && other->GetVisibility() && !other->IsA("vtkActor2D"));
+    others.Geometry = others.Geometry || (!ours && other->GetVisibility() && !other->IsA("vtkActor2D"));
+    others.Any = others.Any || (other != prop && other->GetVisibility());
   }
-  if (!needed) {
-    return nullptr;
-  }
+  return others;
+}
+
+// The opaque depth at each ray. Not asked for where nothing can have been drawn before: it costs as much as a simple scene.
+const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer)
+{
   const vtkStratusPicture& picture = this->Picture;
   const int* rectangle = picture.Rectangle;
   const int x = picture.Viewport[0] + rectangle[0], y = picture.Viewport[1] + rectangle[1];
@@ -106,11 +109,26 @@ const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* ren
   return this->OpaqueDepth.data();
 }
 
+// Bytes are enough where black is behind: nothing is left to round after them. Cast() fills in the rest.
+vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(vtkRenderer* renderer, const Others& others) const
+{
+  vtkStratusDisplay::Pixels pixels;
+  pixels.Scale = 1.0f / this->Mapper->FinalColorWindow;
+  pixels.Bias = 0.5f - this->Mapper->FinalColorLevel * pixels.Scale;
+  const double* background = renderer->GetBackground();
+  const bool onBlack = !others.Geometry && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() &&
+    background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
+  if (onBlack && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
+    pixels.Bytes = this->Bytes.data();
+  }
+  pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;
+  return pixels;
+}
+
 bool vtkStratusVolumeMapper::Internals::Cast(
-  vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, std::string& error)
+  vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error)
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
-  this->Rgba.resize(4 * pixels);
   this->Depth.resize(pixels);
   stratus_image image = stratus_image();
   image.width = this->Picture.Size[0];
@@ -118,6 +136,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   image.rgba = this->Rgba.data();
   image.depth = this->Depth.data();
   image.opaque_depth = opaqueDepth;
+  image.rgba8 = bytes ? this->Bytes.data() : nullptr;
   this->Renderer = renderer;
   const stratus_status status = stratus_ray_caster_render(
     this->Caster, &this->Image.GetVolume(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
@@ -155,20 +174,21 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return true;
   }
   const double start = Now();
-  const float* opaqueDepth = this->ReadOpaqueDepth(renderer, prop);
+  const Others others = this->FindOthers(renderer, prop);
+  const float* opaqueDepth = others.Geometry ? this->ReadOpaqueDepth(renderer) : nullptr;
   const double read = Now();
-  if (!this->Cast(renderer, options, opaqueDepth, error)) {
+  this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
+  this->Bytes.resize(this->Rgba.size());
+  vtkStratusDisplay::Pixels pixels = this->ChoosePixels(renderer, others);
+  if (!this->Cast(renderer, options, opaqueDepth, pixels.Bytes != nullptr, error)) {
     return false;
   }
   this->HasPicture = true;
   this->LearnTime(coarseness);
   const double cast = Now();
-  const double* background = renderer->GetBackground();
-  const bool onBlack = !opaqueDepth && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() && background[0] == 0.0 &&
-    background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
-  const float scale = 1.0f / this->Mapper->FinalColorWindow;
-  const float bias = 0.5f - this->Mapper->FinalColorLevel * scale;
-  if (!this->Display.Draw(renderer, this->Picture, this->Rgba.data(), scale, bias, onBlack)) {
+  pixels.Rgba = this->Rgba.data();
+  std::copy_n(this->Report.window, 4, pixels.Window);
+  if (!this->Display.Draw(renderer, this->Picture, pixels)) {
     error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
     return false;
   }
