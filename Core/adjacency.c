@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Neighbours through faces. Faces are dealt into buckets by their lowest point number, which keeps neighbours in memory together, and each
+ * bucket pairs its own in a hash table that fits a cache. Nothing depends on the order in which threads come. */
+#include "mesh.h"
+
+#include <string.h>
+
+#define FACES_PER_BUCKET 2048 /* records and table of a bucket: 64 KiB */
+#define BUCKETS_MAX 2048      /* more streams than this, and the pass that deals spends its time on pages */
+#define SIDE_BIT 0x80000000u  /* point numbers have 31 bits */
+#define NO_FACE UINT32_MAX
+
+/* b's high bit: the cell lies on the positive side of (a, b, c); c's: on the negative; neither: the cell is flat. */
+typedef struct face_record {
+  uint32_t a, b, c, face;
+} face_record;
+
+/* Records of one face: the first two. second is NO_FACE until there is one. */
+typedef struct face_slot {
+  uint32_t first, second;
+  uint32_t count; /* 0: the slot is free */
+} face_slot;
+
+typedef struct adjacency_build {
+  stratus_context* context;
+  const stratus_mesh* mesh;
+  stratus_adjacency* adjacency;
+  face_record* records;
+  size_t* places; /* a row of `buckets` a chunk, then each bucket's end */
+  face_slot* tables;
+  size_t largest; /* bucket, in records */
+  int shift, buckets, chunks, workers;
+} adjacency_build;
+
+static bool names_a_point_twice(const int32_t v[4])
+{
+  return v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3];
+}
+
+static int64_t chunk_begin(const adjacency_build* build, int chunk)
+{
+  return build->mesh->cell_count * chunk / build->chunks;
+}
+
+static void find_orientations(adjacency_build* build)
+{
+  const stratus_mesh* mesh = build->mesh;
+  int64_t flat = 0, inverted = 0;
+#pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : flat, inverted)
+  for (int64_t cell = 0; cell < mesh->cell_count; cell++) {
+    const int32_t* v = mesh->vertices + 4 * cell;
+    const int sign = names_a_point_twice(v) ? 0
+                                            : stratus_orientation(mesh->points + 3 * (int64_t)v[0], mesh->points + 3 * (int64_t)v[1],
+                                                mesh->points + 3 * (int64_t)v[2], mesh->points + 3 * (int64_t)v[3]);
+    build->adjacency->orientation[cell] = (int8_t)sign;
+    flat += sign == 0;
+    inverted += sign < 0;
+  }
+  build->adjacency->flat = flat;
+  build->adjacency->inverted = inverted;
+}
+
+static void count_faces(const adjacency_build* build, int chunk)
+{
+  size_t* counts = build->places + (size_t)chunk * (size_t)build->buckets;
+  memset(counts, 0, (size_t)build->buckets * sizeof *counts);
+  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
+    const int32_t* v = build->mesh->vertices + 4 * cell;
+    for (int f = 0; f < 4 && !names_a_point_twice(v); f++) {
+      int32_t point[3];
+      (void)stratus_face_points(v, f, point);
+      counts[point[0] >> build->shift]++;
+    }
+  }
+}
+
+static void place_buckets(adjacency_build* build)
+{
+  size_t* ends = build->places + (size_t)build->chunks * (size_t)build->buckets;
+  size_t place = 0;
+  build->largest = 0;
+  for (int bucket = 0; bucket < build->buckets; bucket++) {
+    const size_t begin = place;
+    for (int chunk = 0; chunk < build->chunks; chunk++) {
+      size_t* count = build->places + (size_t)chunk * (size_t)build->buckets + bucket;
+      const size_t here = *count;
+      *count = place;
+      place += here;
+    }
+    ends[bucket] = place;
+    build->largest = place - begin > build->largest ? place - begin : build->largest;
+  }
+}
+
+static void deal_faces(const adjacency_build* build, int chunk)
+{
+  size_t* places = build->places + (size_t)chunk * (size_t)build->buckets;
+  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
+    const int32_t* v = build->mesh->vertices + 4 * cell;
+    for (int f = 0; f < 4 && !names_a_point_twice(v); f++) {
+      int32_t point[3];
+      const int side = stratus_face_points(v, f, point) * build->adjacency->orientation[cell];
+      face_record* record = build->records + places[point[0] >> build->shift]++;
+      record->a = (uint32_t)point[0];
+      record->b = (uint32_t)point[1] | (side > 0 ? SIDE_BIT : 0);
+      record->c = (uint32_t)point[2] | (side < 0 ? SIDE_BIT : 0);
+      record->face = (uint32_t)(4 * cell + f);
+    }
+  }
+}
+
+static inline bool same_face(const face_record* p, const face_record* q)
+{
+  return p->a == q->a && ((p->b ^ q->b) & ~SIDE_BIT) == 0 && ((p->c ^ q->c) & ~SIDE_BIT) == 0;
+}
+
+static inline size_t slot_of(const face_record* record, size_t slots)
+{
+  uint64_t hash = record->a * UINT64_C(0x9e3779b97f4a7c15);
+  hash = (hash ^ (record->b & ~SIDE_BIT)) * UINT64_C(0xbf58476d1ce4e5b9);
+  hash = (hash ^ (record->c & ~SIDE_BIT)) * UINT64_C(0x94d049bb133111eb);
+  return (size_t)((hash >> 33) * slots >> 31); /* slots below 2^33 */
+}
+
+/* Slots are 32 bits of a bucket's records: no bucket has more, as there are at most 2^32 faces. */
+static void fill_table(const face_record* records, size_t count, face_slot* table, size_t slots)
+{
+  memset(table, 0, slots * sizeof *table);
+  for (size_t i = 0; i < count; i++) {
+    size_t s = slot_of(records + i, slots);
+    while (table[s].count > 0 && !same_face(records + table[s].first, records + i)) {
+      s = s + 1 == slots ? 0 : s + 1;
+    }
+    if (table[s].count == 0) {
+      table[s] = (face_slot){ (uint32_t)i, NO_FACE, 1 };
+    } else if (++table[s].count == 2) {
+      table[s].second = (uint32_t)i;
+    }
+  }
+}
+
+static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, int64_t* broken, int64_t* folded)
+{
+  const size_t* ends = build->places + (size_t)build->chunks * (size_t)build->buckets;
+  const size_t begin = bucket == 0 ? 0 : ends[bucket - 1], count = ends[bucket] - begin, slots = count + count / 2 + 1;
+  const face_record* records = build->records + begin;
+  fill_table(records, count, table, slots);
+  for (size_t s = 0; s < slots; s++) {
+    if (table[s].count > 2) {
+      *broken += table[s].count;
+    } else if (table[s].count == 2) {
+      const face_record *p = records + table[s].first, *q = records + table[s].second;
+      if ((p->b & q->b & SIDE_BIT) || (p->c & q->c & SIDE_BIT)) {
+        *folded += 2;
+        continue;
+      }
+      build->adjacency->neighbours[p->face] = (int32_t)(q->face / 4);
+      build->adjacency->neighbours[q->face] = (int32_t)(p->face / 4);
+    }
+  }
+}
+
+static void pair_faces(adjacency_build* build)
+{
+  stratus_adjacency* adjacency = build->adjacency;
+  int64_t broken = 0, folded = 0, border = 0;
+#pragma omp parallel for schedule(static) num_threads(build->context->threads)
+  for (int64_t i = 0; i < 4 * build->mesh->cell_count; i++) {
+    adjacency->neighbours[i] = -1;
+  }
+  const size_t slots = build->largest + build->largest / 2 + 1;
+#pragma omp parallel for schedule(static, 1) num_threads(build->workers) reduction(+ : broken, folded)
+  for (int worker = 0; worker < build->workers; worker++) {
+    for (int bucket = worker; bucket < build->buckets; bucket += build->workers) {
+      pair_bucket(build, bucket, build->tables + (size_t)worker * slots, &broken, &folded);
+    }
+  }
+#pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : border)
+  for (int64_t i = 0; i < 4 * build->mesh->cell_count; i++) {
+    border += adjacency->neighbours[i] < 0;
+  }
+  adjacency->broken_faces = broken;
+  adjacency->folded_faces = folded;
+  adjacency->border_faces = border;
+}
+
+static stratus_status build_adjacency(adjacency_build* build)
+{
+  stratus_context* context = build->context;
+  const int64_t faces = 4 * build->mesh->cell_count;
+  void* memory;
+  build->chunks = faces < 4 * FACES_PER_BUCKET ? 1 : context->threads;
+  const int64_t wanted = faces / FACES_PER_BUCKET < 1 ? 1 : faces / FACES_PER_BUCKET > BUCKETS_MAX ? BUCKETS_MAX : faces / FACES_PER_BUCKET;
+  while (build->mesh->point_count >> build->shift > wanted) {
+    build->shift++;
+  }
+  build->buckets = (int)(build->mesh->point_count >> build->shift) + 1;
+  TRY(stratus_allocate(context, (size_t)(build->chunks + 1) * (size_t)build->buckets, sizeof(size_t), &memory));
+  build->places = memory;
+  TRY(stratus_allocate(context, (size_t)faces, sizeof(face_record), &memory));
+  build->records = memory;
+  find_orientations(build);
+  TRY(stratus_progress(context, "adjacency", 0.3));
+#pragma omp parallel for schedule(static, 1) num_threads(build->chunks)
+  for (int chunk = 0; chunk < build->chunks; chunk++) {
+    count_faces(build, chunk);
+  }
+  place_buckets(build);
+#pragma omp parallel for schedule(static, 1) num_threads(build->chunks)
+  for (int chunk = 0; chunk < build->chunks; chunk++) {
+    deal_faces(build, chunk);
+  }
+  TRY(stratus_progress(context, "adjacency", 0.6));
+  /* A table for each thread, unless all cells hang on few points: then one table, lest memory grow with the threads. */
+  build->workers = build->largest > 16 * FACES_PER_BUCKET && build->largest > (size_t)faces / 64 ? 1 : build->chunks;
+  TRY(stratus_allocate(
+    context, (size_t)build->workers, (build->largest + build->largest / 2 + 1) * sizeof(face_slot), &memory));
+  build->tables = memory;
+  pair_faces(build);
+  return STRATUS_OK;
+}
+
+stratus_status stratus_adjacency_create(stratus_context* context, const stratus_mesh* mesh, stratus_adjacency** out)
+{
+  adjacency_build build = { .context = context, .mesh = mesh };
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_adjacency), &memory));
+  stratus_adjacency* adjacency = build.adjacency = memory;
+  *adjacency = (stratus_adjacency){ .context = context, .cell_count = mesh->cell_count };
+  stratus_status status = STRATUS_OK;
+  TRY_CLEANUP(stratus_allocate(context, (size_t)mesh->cell_count, 4 * sizeof(int32_t), &memory));
+  adjacency->neighbours = memory;
+  TRY_CLEANUP(stratus_allocate(context, (size_t)mesh->cell_count, sizeof(int8_t), &memory));
+  adjacency->orientation = memory;
+  TRY_CLEANUP(build_adjacency(&build));
+  *out = adjacency;
+  adjacency = NULL;
+
+cleanup:
+  stratus_release(context, build.tables);
+  stratus_release(context, build.records);
+  stratus_release(context, build.places);
+  stratus_adjacency_destroy(adjacency);
+  return status;
+}
+
+void stratus_adjacency_destroy(stratus_adjacency* adjacency)
+{
+  if (adjacency) {
+    stratus_release(adjacency->context, adjacency->neighbours);
+    stratus_release(adjacency->context, adjacency->orientation);
+    stratus_release(adjacency->context, adjacency);
+  }
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The view of a mesh of tetrahedra: what must hold before anything reads through its point numbers. */
+#include "mesh.h"
+
+#include <string.h>
+
+#define POINTS_MAX 2147483647LL
+#define CELLS_MAX ((1LL << 30) - 1)
+
+stratus_mesh stratus_mesh_default(void)
+{
+  static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+  stratus_mesh mesh = { .type = STRATUS_FLOAT32, .value_stride = 1 };
+  memcpy(mesh.matrix, identity, sizeof identity);
+  return mesh;
+}
+
+static stratus_status check_counts(stratus_context* context, const stratus_mesh* mesh)
+{
+  if (mesh->point_count < 0 || mesh->point_count > POINTS_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh point_count %lld outside 0..%lld", (long long)mesh->point_count, POINTS_MAX);
+  }
+  if (mesh->cell_count < 0 || mesh->cell_count > CELLS_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_count %lld outside 0..%lld", (long long)mesh->cell_count, CELLS_MAX);
+  }
+  if (!mesh->points && mesh->point_count > 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh points is NULL, with a point_count of %lld", (long long)mesh->point_count);
+  }
+  if (!mesh->vertices && mesh->cell_count > 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh vertices is NULL, with a cell_count of %lld", (long long)mesh->cell_count);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_values(stratus_context* context, const stratus_mesh* mesh)
+{
+  const size_t size = stratus_type_size(mesh->type);
+  size_t bytes = 0;
+  if (size == 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh type %d outside %d..%d", (int)mesh->type, STRATUS_INT8, STRATUS_FLOAT64);
+  }
+  if (mesh->value_stride < 1) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh value_stride %lld, must be at least 1", (long long)mesh->value_stride);
+  }
+  if (mesh->cell_values != 0 && mesh->cell_values != 1) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_values %d, must be 0 or 1", mesh->cell_values);
+  }
+  if (!mesh->values) {
+    return STRATUS_OK;
+  }
+  const int64_t count = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  return stratus_product(context, "mesh bytes (values, stride, size)", (size_t)count, (size_t)mesh->value_stride, size, &bytes);
+}
+
+/* The first that is wrong, so that the message is the same at any thread count. */
+static stratus_status check_points(stratus_context* context, const stratus_mesh* mesh)
+{
+  int64_t wrong = INT64_MAX;
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : wrong)
+  for (int64_t i = 0; i < mesh->point_count; i++) {
+    const double* p = mesh->points + 3 * i;
+    const int64_t here = isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) ? INT64_MAX : i;
+    wrong = here < wrong ? here : wrong;
+  }
+  if (wrong != INT64_MAX) {
+    const double* p = mesh->points + 3 * wrong;
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "mesh point %lld is (%g, %g, %g), must be finite", (long long)wrong, p[0], p[1], p[2]);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_vertices(stratus_context* context, const stratus_mesh* mesh)
+{
+  int64_t wrong = INT64_MAX;
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : wrong)
+  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+    const int64_t here = mesh->vertices[i] >= 0 && mesh->vertices[i] < mesh->point_count ? INT64_MAX : i;
+    wrong = here < wrong ? here : wrong;
+  }
+  if (wrong != INT64_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell %lld has vertex %d, outside 0..%lld", (long long)(wrong / 4),
+      (int)mesh->vertices[wrong], (long long)mesh->point_count - 1);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_matrix(stratus_context* context, const stratus_mesh* mesh)
+{
+  const double* m = mesh->matrix;
+  double inverse[16];
+  for (int i = 0; i < 16; i++) {
+    if (!isfinite(m[i])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix[%d] is %g, must be finite", i, m[i]);
+    }
+  }
+  if (m[12] != 0.0 || m[13] != 0.0 || m[14] != 0.0 || m[15] != 1.0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix has the last row %g %g %g %g, must be 0 0 0 1 (affine)", m[12], m[13],
+      m[14], m[15]);
+  }
+  if (!stratus_matrix_invert_affine(m, inverse)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix is singular, must be invertible");
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* mesh)
+{
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!mesh) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh is NULL");
+  }
+  TRY(check_counts(context, mesh));
+  TRY(check_values(context, mesh));
+  TRY(check_matrix(context, mesh));
+  TRY(check_points(context, mesh));
+  return check_vertices(context, mesh);
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * On which side of a plane a point lies, for sure. A determinant in double first, with a bound on what rounding did to it; where the bound
+ * does not decide, the same in expansions: sums of doubles that do not overlap, which are exact (Shewchuk 1997). */
+#include "mesh.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Of the sum of the six products' magnitudes: of three differences, two products and three sums each rounds by DBL_EPSILON/2 at most; twice that. */
+#define ERROR_BOUND (8.0 * DBL_EPSILON)
+/* Six products of three numbers, each a head and a tail: 8 terms a product, 4 components a term. */
+#define COMPONENTS_MAX (6 * 8 * 4)
+
+typedef struct expansion {
+  double part[COMPONENTS_MAX]; /* from the smallest, none of them 0 */
+  int count;
+} expansion;
+
+/* a + b = *sum + *rest, without error. */
+static inline void add_exactly(double a, double b, double* sum, double* rest)
+{
+  const double s = a + b, b_part = s - a, a_part = s - b_part;
+  *rest = (a - a_part) + (b - b_part);
+  *sum = s;
+}
+
+static void expansion_add(expansion* e, double value)
+{
+  int kept = 0;
+  for (int i = 0; i < e->count; i++) {
+    double rest;
+    add_exactly(value, e->part[i], &value, &rest);
+    if (rest != 0.0) {
+      e->part[kept++] = rest;
+    }
+  }
+  if (value != 0.0) {
+    e->part[kept++] = value;
+  }
+  e->count = kept;
+}
+
+static void expansion_add_product(expansion* e, double a, double b, double c)
+{
+  if (a == 0.0 || b == 0.0 || c == 0.0) {
+    return;
+  }
+  const double ab = a * b, ab_rest = fma(a, b, -ab);
+  const double high = ab * c, low = ab_rest * c;
+  expansion_add(e, fma(ab_rest, c, -low));
+  expansion_add(e, low);
+  expansion_add(e, fma(ab, c, -high));
+  expansion_add(e, high);
+}
+
+/* rows: three vectors, head[r][axis] + tail[r][axis]. */
+static int exact_sign(double head[3][3], double tail[3][3])
+{
+  static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } }; /* three even, three odd */
+  expansion sum = { .count = 0 };
+  for (int a = 0; a < 3; a++) {
+    /* An axis may be scaled without a change of sign: by a power of two, lest a product underflow. */
+    double largest = 0.0;
+    int exponent;
+    for (int r = 0; r < 3; r++) {
+      largest = fmax(largest, fabs(head[r][a]));
+    }
+    if (largest == 0.0) {
+      return 0;
+    }
+    (void)frexp(largest, &exponent);
+    for (int r = 0; r < 3; r++) {
+      head[r][a] = ldexp(head[r][a], -exponent);
+      tail[r][a] = ldexp(tail[r][a], -exponent);
+    }
+  }
+  for (int p = 0; p < 6; p++) {
+    const double sign = p < 3 ? 1.0 : -1.0;
+    for (int term = 0; term < 8; term++) {
+      double factor[3];
+      for (int a = 0; a < 3; a++) {
+        factor[a] = term >> a & 1 ? tail[order[p][a]][a] : head[order[p][a]][a];
+      }
+      expansion_add_product(&sum, sign * factor[0], factor[1], factor[2]);
+    }
+  }
+  return sum.count == 0 ? 0 : sum.part[sum.count - 1] > 0.0 ? 1 : -1;
+}
+
+/* The determinant of three rows and how large the terms are that it is made of. */
+static inline double determinant(const double u[3], const double v[3], const double w[3], double* size)
+{
+  const double yz = v[1] * w[2], zy = v[2] * w[1], zx = v[2] * w[0], xz = v[0] * w[2], xy = v[0] * w[1], yx = v[1] * w[0];
+  *size = (fabs(yz) + fabs(zy)) * fabs(u[0]) + (fabs(zx) + fabs(xz)) * fabs(u[1]) + (fabs(xy) + fabs(yx)) * fabs(u[2]);
+  return (yz - zy) * u[0] + (zx - xz) * u[1] + (xy - yx) * u[2];
+}
+
+/* 0 undecided. Below DBL_MIN's neighbourhood products lose digits without a bound on their share. */
+static inline int filtered_sign(double value, double size)
+{
+  const double bound = ERROR_BOUND * size + 1e-290;
+  return value > bound ? 1 : value < -bound ? -1 : 0;
+}
+
+static void difference(const double a[3], const double b[3], double head[3], double tail[3])
+{
+  for (int i = 0; i < 3; i++) {
+    add_exactly(a[i], -b[i], &head[i], &tail[i]);
+  }
+}
+
+int stratus_orientation(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+  double head[3][3], tail[3][3], size;
+  for (int i = 0; i < 3; i++) {
+    head[0][i] = b[i] - a[i];
+    head[1][i] = c[i] - a[i];
+    head[2][i] = d[i] - a[i];
+  }
+  const double value = determinant(head[0], head[1], head[2], &size);
+  const int sign = filtered_sign(value, size);
+  if (sign != 0) {
+    return sign;
+  }
+  difference(b, a, head[0], tail[0]);
+  difference(c, a, head[1], tail[1]);
+  difference(d, a, head[2], tail[2]);
+  return exact_sign(head, tail);
+}
+
+int stratus_orientation_along(const double a[3], const double b[3], const double c[3], const double direction[3])
+{
+  double head[3][3], tail[3][3], size;
+  for (int i = 0; i < 3; i++) {
+    head[0][i] = b[i] - a[i];
+    head[1][i] = c[i] - a[i];
+  }
+  const double value = determinant(head[0], head[1], direction, &size);
+  const int sign = filtered_sign(value, size);
+  if (sign != 0) {
+    return sign;
+  }
+  difference(b, a, head[0], tail[0]);
+  difference(c, a, head[1], tail[1]);
+  memcpy(head[2], direction, sizeof head[2]);
+  memset(tail[2], 0, sizeof tail[2]);
+  return exact_sign(head, tail);
+}
