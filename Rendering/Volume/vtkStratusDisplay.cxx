@@ -12,6 +12,8 @@
 
 #include "vtk_glew.h"
 
+#include <string>
+
 namespace {
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
@@ -20,9 +22,19 @@ uniform sampler2D source;
 uniform sampler2D behind;
 uniform int blends; // 1: the frame buffer does it
 uniform vec2 scaleBias; // final colour window and level
+#ifdef WRITES_DEPTH
+uniform sampler2D depths;
+#endif
 void main()
 {
   vec4 color = texture(source, texCoord);
+#ifdef WRITES_DEPTH
+  if (color.a == 0.0)
+  {
+    discard;
+  }
+  gl_FragDepth = texture(depths, texCoord).r;
+#endif
   color.rgb = clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0);
   gl_FragData[0] = blends == 1 ? color : color + (1.0 - color.a) * texture(behind, texCoord);
 }
@@ -36,7 +48,9 @@ void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Texture->ReleaseGraphicsResources(window);
   this->Behind->ReleaseGraphicsResources(window);
+  this->Depth->ReleaseGraphicsResources(window);
   this->Quad.reset();
+  this->DepthQuad.reset();
   this->Window = nullptr;
 }
 
@@ -73,7 +87,7 @@ bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
-  if (!pixels.Bytes || !pixels.Alone || renderer->GetPass() || frame->GetMultiSamples() > 0 || window->GetUsingSRGBColorSpace() ||
+  if (!pixels.Bytes || !pixels.Alone || pixels.Depth || renderer->GetPass() || frame->GetMultiSamples() > 0 || window->GetUsingSRGBColorSpace() ||
     part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
     return false;
   }
@@ -121,8 +135,9 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  this->Texture->SetMinificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
-  this->Texture->SetMagnificationFilter(coarse ? vtkTextureObject::Linear : vtkTextureObject::Nearest);
+  const int filter = coarse && !pixels.Depth ? vtkTextureObject::Linear : vtkTextureObject::Nearest; // an edge has one depth
+  this->Texture->SetMinificationFilter(filter);
+  this->Texture->SetMagnificationFilter(filter);
   if (!this->Texture->GetHandle() || this->Texture->GetWidth() != width || this->Texture->GetHeight() != height ||
     this->Texture->GetVTKDataType() != type) {
     if (!this->Texture->Create2D(width, height, 4, type, false)) {
@@ -131,15 +146,41 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   }
   this->Texture->Activate();
   CopyPixels(window, picture, pixels, part, 0, 0);
-  if (!this->Quad) {
-    this->Quad.reset(new vtkOpenGLQuadHelper(window, nullptr, FragmentShader, ""));
+  std::unique_ptr<vtkOpenGLQuadHelper>& quad = pixels.Depth ? this->DepthQuad : this->Quad;
+  if (!quad) {
+    const std::string shader = FragmentShader;
+    const size_t first = shader.find('\n') + 1; // the version comes before it
+    const std::string writer = shader.substr(0, first) + "#define WRITES_DEPTH\n" + shader.substr(first);
+    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, pixels.Depth ? writer.c_str() : FragmentShader, ""));
   } else {
-    window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+    window->GetShaderCache()->ReadyShaderProgram(quad->Program);
   }
-  if (!this->Quad->Program || !this->Quad->Program->GetCompiled()) {
+  if (!quad->Program || !quad->Program->GetCompiled() || (pixels.Depth && !this->UploadDepth(window, picture, pixels, part))) {
     this->Texture->Deactivate();
     return false;
   }
+  return true;
+}
+
+bool vtkStratusDisplay::UploadDepth(
+  vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
+{
+  const unsigned int width = static_cast<unsigned int>(part.Size[0]), height = static_cast<unsigned int>(part.Size[1]);
+  this->Depth->SetContext(window);
+  this->Depth->SetMinificationFilter(vtkTextureObject::Nearest);
+  this->Depth->SetMagnificationFilter(vtkTextureObject::Nearest);
+  if (!this->Depth->GetHandle() || this->Depth->GetWidth() != width || this->Depth->GetHeight() != height) {
+    if (!this->Depth->Create2D(width, height, 1, VTK_FLOAT, false)) {
+      return false;
+    }
+  }
+  this->Depth->Activate();
+  vtkOpenGLState* state = window->GetState();
+  state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, picture.Size[0]);
+  const float* from = pixels.Depth + static_cast<size_t>(part.From[1]) * picture.Size[0] + part.From[0];
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, part.Size[0], part.Size[1], GL_RED, GL_FLOAT, from);
+  state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   return true;
 }
 
@@ -154,8 +195,14 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   state->vtkglViewport(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   state->vtkglScissor(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
-  state->vtkglDisable(GL_DEPTH_TEST); // the rays have ended at the opaque depth already
-  state->vtkglDepthMask(GL_FALSE);
+  // The rays have ended at the opaque depth already. Depth is written by a test that nothing fails.
+  if (pixels.Depth) {
+    state->vtkglEnable(GL_DEPTH_TEST);
+    state->vtkglDepthFunc(GL_ALWAYS);
+  } else {
+    state->vtkglDisable(GL_DEPTH_TEST);
+  }
+  state->vtkglDepthMask(pixels.Depth ? GL_TRUE : GL_FALSE);
   const bool blends = pixels.Bytes || !this->CopyBehind(renderer, window, part);
   if (blends) {
     state->vtkglEnable(GL_BLEND);
@@ -163,12 +210,20 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   } else {
     state->vtkglDisable(GL_BLEND);
   }
-  this->Quad->Program->SetUniformi("blends", blends ? 1 : 0);
-  this->Quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
+  vtkOpenGLQuadHelper* quad = pixels.Depth ? this->DepthQuad.get() : this->Quad.get();
+  quad->Program->SetUniformi("blends", blends ? 1 : 0);
+  quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
   const float scaleBias[2] = { pixels.Scale, pixels.Bias };
-  this->Quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
-  this->Quad->Program->SetUniform2f("scaleBias", scaleBias);
-  this->Quad->Render();
+  quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
+  quad->Program->SetUniform2f("scaleBias", scaleBias);
+  if (pixels.Depth) {
+    quad->Program->SetUniformi("depths", this->Depth->GetTextureUnit());
+  }
+  quad->Render();
+  if (pixels.Depth) {
+    this->Depth->Deactivate();
+    state->vtkglDepthFunc(GL_LEQUAL); // VTK's own
+  }
   if (!blends) {
     this->Behind->Deactivate();
   }

@@ -27,6 +27,7 @@ public:
     int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
     float Scale = 1.0f;
     float Bias = 0.0f;
+    const float* Depth = nullptr; // of the window, to be written where alpha is; or nullptr: none is
     bool Alone = false; // nothing has been drawn before: the bytes are what the window has to hold
   };
 
@@ -55,11 +56,13 @@ private:
     vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
+  bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   void Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
 
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
-  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+  vtkNew<vtkTextureObject> Depth;
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad, DepthQuad; // the second writes depth, too
   vtkOpenGLRenderWindow* Window = nullptr; // only compared
 };
 

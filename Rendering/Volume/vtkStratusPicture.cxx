@@ -74,13 +74,13 @@ void PlaceRays(vtkMatrix4x4* view, const ViewRays& rays, const double center[2],
   camera.far_k = rays.Far;
 }
 
-// The corners of the drawn box along the grid's axes, as origin + spacing * index.
-void LocalBox(const stratus_volume& volume, const double* crop, double box[6])
+// The corners of the drawn box along the grid's axes, as origin + spacing * index; margin in voxels.
+void LocalBox(const stratus_volume& volume, const double* crop, double margin, double box[6])
 {
   for (int a = 0; a < 3; ++a) {
     const double cells = static_cast<double>(volume.dimensions[a] - (volume.cell_centered ? 0 : 1));
-    box[2 * a] = volume.origin[a];
-    box[2 * a + 1] = volume.origin[a] + volume.spacing[a] * cells;
+    box[2 * a] = volume.origin[a] - volume.spacing[a] * margin;
+    box[2 * a + 1] = volume.origin[a] + volume.spacing[a] * (cells + margin);
     if (crop) {
       box[2 * a] = std::max(box[2 * a], crop[2 * a]);
       box[2 * a + 1] = std::min(box[2 * a + 1], crop[2 * a + 1]);
@@ -103,10 +103,10 @@ void CornerToWorld(const stratus_volume& volume, const double box[6], int corner
 }
 } // namespace
 
-void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop)
+void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop, double margin)
 {
   double box[6];
-  LocalBox(volume, crop, box);
+  LocalBox(volume, crop, margin, box);
   double low[2] = { 1, 1 }, high[2] = { -1, -1 };
   for (int corner = 0; corner < 8; ++corner) {
     double world[4], clip[4];
@@ -133,7 +133,7 @@ void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus
   }
 }
 
-bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness)
+bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid)
 {
   renderer->GetTiledSizeAndOrigin(&this->Viewport[2], &this->Viewport[3], &this->Viewport[0], &this->Viewport[1]);
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -141,7 +141,7 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
   vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
   double worldToClip[16];
   vtkMatrix4x4::Multiply4x4(&projection->Element[0][0], &view->Element[0][0], worldToClip);
-  this->SetRectangle(worldToClip, volume, crop);
+  this->SetRectangle(worldToClip, volume, crop, solid && !volume.cell_centered ? 0.5 : 0.0);
   double center[2], half[2];
   for (int a = 0; a < 2; ++a) {
     const double pixels = this->Viewport[2 + a];

@@ -16,12 +16,13 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   stratus_camera Camera;
 
   bool IsEmpty() const { return this->Size[0] < 1 || this->Size[1] < 1; }
+  // solid: values on points are cubes about them, half a voxel beyond the volume's bounds.
   // crop: bounds along the grid's axes as stratus_ray_cast_options has them, or nullptr. coarseness: pixels a ray along each axis, >= 1.
   // False where the camera is degenerate.
-  bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness);
+  bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
 private:
-  void SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop);
+  void SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop, double margin);
 };
 
 #endif

@@ -76,6 +76,23 @@ const char* vtkStratusVolumeMapper::GetStructureAsString()
   return stratus_structure_name(static_cast<stratus_structure>(this->Structure));
 }
 
+const char* vtkStratusVolumeMapper::GetRenderModeAsString()
+{
+  return stratus_mode_name(static_cast<stratus_mode>(this->RenderMode));
+}
+
+bool vtkStratusVolumeMapper::GetCarriedTreeUsed()
+{
+  return this->Internal->Report.offered_tree != 0;
+}
+
+double* vtkStratusVolumeMapper::GetBounds()
+{
+  double* bounds = this->Superclass::GetBounds();
+  this->Internal->WidenBounds(bounds);
+  return bounds;
+}
+
 const char* vtkStratusVolumeMapper::GetSamplingAsString()
 {
   return stratus_sampling_name(static_cast<stratus_sampling>(this->Sampling));
@@ -147,6 +164,8 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumSampleDistanceFactor: " << this->MaximumSampleDistanceFactor << "\n";
   os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
   os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
+  os << indent << "RenderMode: " << this->GetRenderModeAsString() << "\n";
+  os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "gradient" : "faces") << "\n";
   os << indent << "Structure: " << this->GetStructureAsString() << "\n";
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
   os << indent << "Termination: " << this->Termination << "\n";

@@ -11,9 +11,15 @@
  * matrix, cropping to the subvolume, up to six clipping planes. All else (other blend modes, shading, gradient opacity, more components,
  * two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
  *
+ * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
+ * property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a cone below 90
+ * degrees is refused), and the mapper's bounds reach half a voxel farther, for a voxel of point data is a cube about its point.
+ *
+ * An image that comes with a tree (vtkStratusHybridTreeFilter) has it used where it serves.
+ *
  * What is built is kept: a new picture of the same data rebuilds nothing, a new transfer function rebuilds tables and structure only.
  *
- * @sa vtkStratusDistanceMapFilter vtkSmartVolumeMapper
+ * @sa vtkStratusHybridTreeFilter vtkStratusDistanceMapFilter vtkSmartVolumeMapper
  */
 #ifndef vtkStratusVolumeMapper_h
 #define vtkStratusVolumeMapper_h
@@ -31,6 +37,29 @@ public:
   static vtkStratusVolumeMapper* New();
   vtkTypeMacro(vtkStratusVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE };
+  ///@{
+  /**
+   * Light through the whole of each ray, or the first voxel of opacity > 0 as a lit, opaque solid. Default COMPOSITE_MODE.
+   */
+  vtkSetClampMacro(RenderMode, int, COMPOSITE_MODE, FIRST_HIT_MODE);
+  vtkGetMacro(RenderMode, int);
+  void SetRenderModeToComposite() { this->SetRenderMode(COMPOSITE_MODE); }
+  void SetRenderModeToFirstHit() { this->SetRenderMode(FIRST_HIT_MODE); }
+  const char* GetRenderModeAsString();
+  ///@}
+
+  enum NormalsType { FACE_NORMALS, GRADIENT_NORMALS };
+  ///@{
+  /**
+   * What light falls on in first hits: the voxels' faces, or the field's gradient by central differences. Default FACE_NORMALS.
+   */
+  vtkSetClampMacro(Normals, int, FACE_NORMALS, GRADIENT_NORMALS);
+  vtkGetMacro(Normals, int);
+  void SetNormalsToFaces() { this->SetNormals(FACE_NORMALS); }
+  void SetNormalsToGradient() { this->SetNormals(GRADIENT_NORMALS); }
+  ///@}
 
   ///@{
   /**
@@ -88,19 +117,20 @@ public:
   vtkGetMacro(FinalColorLevel, float);
   ///@}
 
-  enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE };
+  enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE, HYBRID_STRUCTURE };
   ///@{
   /**
-   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, or eight of them by the ray's octant. No
+   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, eight of them by the ray's octant, or a hybrid tree. No
    * choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
    */
-  vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, OCTANT_STRUCTURE);
+  vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, HYBRID_STRUCTURE);
   vtkGetMacro(Structure, int);
   void SetStructureToAuto() { this->SetStructure(AUTO_STRUCTURE); }
   void SetStructureToNone() { this->SetStructure(NO_STRUCTURE); }
   void SetStructureToBlock() { this->SetStructure(BLOCK_STRUCTURE); }
   void SetStructureToDistance() { this->SetStructure(DISTANCE_STRUCTURE); }
   void SetStructureToOctant() { this->SetStructure(OCTANT_STRUCTURE); }
+  void SetStructureToHybrid() { this->SetStructure(HYBRID_STRUCTURE); }
   const char* GetStructureAsString();
   ///@}
 
@@ -183,6 +213,10 @@ public:
   vtkTypeUInt64 GetOccupancyBuilds();
   vtkTypeUInt64 GetStructureBuilds();
   vtkTypeUInt64 GetUploads();
+  /**
+   * Whether the last picture was drawn by the tree that the input carries, so that none had to be built.
+   */
+  bool GetCarriedTreeUsed();
   ///@}
 
   ///@{
@@ -219,6 +253,12 @@ public:
   vtkImageData* GetLastImage();
 
   /**
+   * Of the input, half a voxel more on all sides for first hits of point data.
+   */
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+
+  /**
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
    */
   void Render(vtkRenderer* ren, vtkVolume* vol) override;
@@ -237,6 +277,8 @@ protected:
   double MaximumSampleDistanceFactor = 2.0;
   float FinalColorWindow = 1.0f;
   float FinalColorLevel = 0.5f;
+  int RenderMode = COMPOSITE_MODE;
+  int Normals = FACE_NORMALS;
   int Structure = AUTO_STRUCTURE;
   int Sampling = AUTO_SAMPLING;
   double Termination = 0.999;

@@ -75,8 +75,8 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
 
 bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
-  if (property->GetShade()) {
-    error = "shading is not supported, only ShadeOff is";
+  if (property->GetShade() && !this->IsFirstHit()) {
+    error = "shading is not supported, only ShadeOff is (first hits: both are)";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0) {
@@ -155,6 +155,8 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   options = stratus_ray_cast_options_default();
+  options.mode = static_cast<stratus_mode>(mapper->RenderMode);
+  options.normals = static_cast<stratus_normals>(mapper->Normals);
   options.structure = static_cast<stratus_structure>(mapper->Structure);
   options.sampling = static_cast<stratus_sampling>(mapper->Sampling);
   options.interpolation =

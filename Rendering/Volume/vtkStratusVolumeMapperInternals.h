@@ -10,6 +10,7 @@
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <array>
 #include <string>
@@ -29,6 +30,8 @@ public:
   // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   vtkImageData* GetLastImage();
+  // Half a voxel to all sides, in first hits of point data.
+  void WidenBounds(double bounds[6]) const;
 
   vtkStratusVolumeMapper* Mapper;
   stratus_ray_caster* Caster = nullptr;
@@ -53,6 +56,12 @@ private:
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  // First hits (vtkStratusVolumeMapperFirstHit.cxx).
+  bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  void OfferTree();
+  void SetShownDepth();
+
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
@@ -70,9 +79,12 @@ private:
   vtkRenderer* Renderer = nullptr; // while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
-  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth;
+  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth;
   std::vector<unsigned char> Bytes;
-  std::array<double, 17> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to
+  vtkSmartPointer<vtkUnsignedCharArray> Offered; // the tree that the caster was last given ..
+  vtkMTimeType OfferedTime = 0;
+  const stratus_ray_caster* OfferedTo = nullptr;
+  std::array<double, 18> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to
   double FullMilliseconds = 0.0;       // estimate of an exact picture's cast; 0: unknown
   double FullSampleDistance = 0.0;
   vtkSmartPointer<vtkImageData> LastImage;

@@ -33,11 +33,12 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // What was learned of a full picture holds for its settings and geometry only.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 17> learnedFor;
+  std::array<double, 18> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
   learnedFor[16] = static_cast<double>(prop->GetProperty()->GetMTime());
+  learnedFor[17] = mapper->RenderMode;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
@@ -51,7 +52,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    coarseness.Step = std::min(excess, mapper->MaximumSampleDistanceFactor);
+    coarseness.Step = this->IsFirstHit() ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));
   }
@@ -80,7 +81,9 @@ vtkStratusVolumeMapper::Internals::Others vtkStratusVolumeMapper::Internals::Fin
   props->InitTraversal(iterator);
   while (vtkProp* other = props->GetNextProp(iterator)) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
-    const bool ours = other == prop || (volume && vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()));
+    // Our other volumes end no rays, but those that write depth do.
+    vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    const bool ours = other == prop || (mapper && mapper->RenderMode == COMPOSITE_MODE);
     others.Geometry = others.Geometry || (!ours && other->GetVisibility() && !other->IsA("vtkActor2D"));
     others.Any = others.Any || (other != prop && other->GetVisibility());
   }
@@ -151,7 +154,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
 {
   stratus_ray_cast_options options;
   if (!this->CheckMapper(error) || !this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, error) ||
-    !this->SetOptions(prop->GetProperty(), options, error) || !this->PrepareContext(error)) {
+    !this->SetOptions(prop->GetProperty(), options, error) || !this->SetShading(renderer, prop->GetProperty(), options, error) ||
+    !this->PrepareContext(error)) {
     return false;
   }
   // Checked here too, because the picture's rectangle already relies on it.
@@ -159,12 +163,14 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     error = stratus_context_message(this->Context.Get());
     return false;
   }
+  this->OfferTree();
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
     options.sample_distance = coarseness.Step * this->FullSampleDistance;
   }
   this->HasPicture = false;
-  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop ? options.crop_bounds : nullptr, coarseness.Pixels)) {
+  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop ? options.crop_bounds : nullptr, coarseness.Pixels,
+        this->IsFirstHit())) {
     error = "the camera's projection has no inverse";
     return false;
   }
@@ -188,6 +194,10 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   const double cast = Now();
   pixels.Rgba = this->Rgba.data();
   std::copy_n(this->Report.window, 4, pixels.Window);
+  if (this->IsFirstHit()) {
+    this->SetShownDepth();
+    pixels.Depth = this->ShownDepth.data();
+  }
   if (!this->Display.Draw(renderer, this->Picture, pixels)) {
     error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
     return false;

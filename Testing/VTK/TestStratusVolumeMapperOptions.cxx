@@ -15,7 +15,8 @@ void Structures()
   const vtkTypeUInt64 all = scene.Mapper->GetSamplesTaken();
   CHECK(scene.Mapper->GetSamplesSkipped() == 0, "no structure, and samples skipped");
   const std::pair<int, const char*> structures[] = { { vtkStratusVolumeMapper::BLOCK_STRUCTURE, "block" },
-    { vtkStratusVolumeMapper::DISTANCE_STRUCTURE, "distance" }, { vtkStratusVolumeMapper::OCTANT_STRUCTURE, "octant" } };
+    { vtkStratusVolumeMapper::DISTANCE_STRUCTURE, "distance" }, { vtkStratusVolumeMapper::OCTANT_STRUCTURE, "octant" },
+    { vtkStratusVolumeMapper::HYBRID_STRUCTURE, "hybrid" } };
   for (const auto& structure : structures) {
     scene.Mapper->SetStructure(structure.first);
     CHECK(scene.Picture() == plain, "structure %s changes the picture", structure.second);
@@ -124,8 +125,7 @@ void ImageSampleDistance()
 void Depth()
 {
   Scene scene;
-  scene.Render();
-  const float* rgba = scene.Rgba();
+  const std::vector<float> rgba = scene.Picture(); // a copy: asking for the depth makes the image anew
   const float* depth = scene.Depth();
   const double distance = scene.Renderer->GetActiveCamera()->GetDistance();
   for (size_t p = 0; p < scene.Pixels(); ++p) {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What only first hits ask of vtkStratusVolumeMapper: light, bounds, depth for the window; and the tree that an image may carry.
+#include "vtkStratusVolumeMapperInternals.h"
+
+#include "vtkStratusTreeArrays.h"
+
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
+#include "vtkMatrix3x3.h"
+#include "vtkRenderer.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+// The renderer has brought lights that follow the camera to where it is.
+bool SetLight(vtkLight* light, stratus_light& result, std::string& error)
+{
+  double position[3], focal[3];
+  light->GetTransformedPosition(position);
+  light->GetTransformedFocalPoint(focal);
+  result.positional = light->GetPositional() ? 1 : 0;
+  const double* attenuation = light->GetAttenuationValues();
+  if (result.positional && (light->GetConeAngle() < 90.0 || attenuation[0] != 1.0 || attenuation[1] != 0.0 || attenuation[2] != 0.0)) {
+    error = "spot lights and attenuation are not supported, only positional lights of ConeAngle 90 and AttenuationValues 1 0 0 are";
+    return false;
+  }
+  for (int a = 0; a < 3; ++a) {
+    result.vector[a] = result.positional ? position[a] : position[a] - focal[a];
+    result.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
+  }
+  return true;
+}
+} // namespace
+
+bool vtkStratusVolumeMapper::Internals::SetShading(
+  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+{
+  if (!this->IsFirstHit()) {
+    return true;
+  }
+  stratus_shading& shading = options.shading;
+  shading.on = property->GetShade() ? 1 : 0;
+  shading.ambient = property->GetAmbient();
+  shading.diffuse = property->GetDiffuse();
+  shading.specular = property->GetSpecular();
+  shading.specular_power = property->GetSpecularPower();
+  shading.light_count = 0;
+  vtkLightCollection* lights = renderer->GetLights();
+  vtkCollectionSimpleIterator iterator;
+  lights->InitTraversal(iterator);
+  while (vtkLight* light = shading.on ? lights->GetNextLight(iterator) : nullptr) {
+    if (!light->GetSwitch()) {
+      continue;
+    }
+    if (shading.light_count == STRATUS_LIGHTS_MAX) {
+      error = "more than " + std::to_string(STRATUS_LIGHTS_MAX) + " lights that are on are not supported";
+      return false;
+    }
+    if (!SetLight(light, shading.lights[shading.light_count++], error)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
+{
+  vtkStratusVolumeMapper* mapper = this->Mapper;
+  vtkImageData* image = vtkImageData::SafeDownCast(mapper->GetInput());
+  if (!this->IsFirstHit() || !image || !(bounds[0] <= bounds[1])) {
+    return;
+  }
+  int cells = 0;
+  if (!vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells) || cells) {
+    return;
+  }
+  const double* direction = image->GetDirectionMatrix()->GetData();
+  const double* spacing = image->GetSpacing();
+  for (int a = 0; a < 3; ++a) {
+    double half = 0.0;
+    for (int b = 0; b < 3; ++b) {
+      half += 0.5 * std::fabs(direction[3 * a + b] * spacing[b]);
+    }
+    bounds[2 * a] -= half;
+    bounds[2 * a + 1] += half;
+  }
+}
+
+// Bytes that are no tree are told once, and do no harm: the caster builds its own.
+void vtkStratusVolumeMapper::Internals::OfferTree()
+{
+  vtkStratusVolumeMapper* self = this->Mapper;
+  vtkFieldData* fields = self->GetInput()->GetFieldData();
+  vtkUnsignedCharArray* tree =
+    fields ? vtkUnsignedCharArray::SafeDownCast(fields->GetAbstractArray(vtkStratusTreeArray)) : nullptr;
+  const vtkMTimeType time = tree ? tree->GetMTime() : 0;
+  if (tree == this->Offered && time == this->OfferedTime && this->Caster == this->OfferedTo) {
+    return;
+  }
+  this->Offered = tree;
+  this->OfferedTime = time;
+  this->OfferedTo = this->Caster;
+  const size_t size = tree ? static_cast<size_t>(tree->GetNumberOfValues()) : 0;
+  const void* bytes = size > 0 ? tree->GetPointer(0) : nullptr;
+  if (stratus_ray_caster_offer_tree(this->Caster, bytes, size) != STRATUS_OK) {
+    vtkWarningWithObjectMacro(
+      self, << "the input's tree is not used: " << stratus_context_message(this->Context.Get()) << "; one is built");
+  }
+}
+
+// From distances along the rays to what the depth buffer holds.
+void vtkStratusVolumeMapper::Internals::SetShownDepth()
+{
+  const stratus_camera& camera = this->Picture.Camera;
+  const int width = this->Picture.Size[0], height = this->Picture.Size[1];
+  this->ShownDepth.resize(this->Depth.size());
+  for (int j = 0; j < height; ++j) {
+    const double v = (2.0 * j + 1.0) / height - 1.0;
+    for (int i = 0; i < width; ++i) {
+      const double u = (2.0 * i + 1.0) / width - 1.0;
+      const size_t at = static_cast<size_t>(j) * width + i;
+      double square = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        const double along = camera.forward[a] + (camera.parallel ? 0.0 : u * camera.right[a] + v * camera.up[a]);
+        square += along * along;
+      }
+      const double k = this->Depth[at] / std::sqrt(square);
+      const double z = (k - camera.near_k) / (camera.far_k - camera.near_k) * (camera.parallel ? 1.0 : camera.far_k / k);
+      this->ShownDepth[at] = std::isfinite(k) && z < 1.0 ? static_cast<float>(std::max(0.0, z)) : 1.0f;
+    }
+  }
+}
