@@ -153,8 +153,8 @@ static inline vint expand_int(vint old, vmask mask, const int* lanes, int count,
 
 typedef struct stream {
   stratus_hit_chunk* chunk;
-  int next; /* ray of the chunk */
-  vint id;  /* ray of each lane, -1: none */
+  int* next; /* ray of the chunk */
+  vint id;   /* ray of each lane, -1: none */
 } stream;
 
 /* base[at[lane]] = value[lane] for lanes of the mask. */
@@ -208,11 +208,11 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
   for (int axis = 0; axis < 3; ++axis) {
     scatter(c->cell[axis], s->id, k->cell[axis], ended);
   }
-  const int first = s->next, left = c->count - first, places = m_count(free), count = left < places ? left : places;
+  const int first = *s->next, left = c->count - first, places = m_count(free), count = left < places ? left : places;
   const vmask fresh = first_lanes(free, count, lanes);
   s->id = vi_select(free, vi_set(-1), s->id);
   s->id = vi_select(fresh, expand_int(zero, fresh, lanes, count, numbers) + vi_set(first), s->id);
-  s->next += count;
+  *s->next += count;
   vint octant = zero;
   for (int axis = 0; axis < 3; ++axis) {
     k->o[axis] = expand(k->o[axis], fresh, lanes, count, c->o[axis] + first);
@@ -233,28 +233,45 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
 /* A lane that has ended costs as much as one that has not: so many may stand idle before they are given new rays. */
 #define IDLE (STRATUS_WIDTH / 4)
 
-static inline __attribute__((always_inline)) void walk_field(
-  const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, const int octants, const int entry_bytes, const int cell_log2)
+/* False once the packet's rays have ended and there are no more. */
+static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
+{
+  const int live = m_count(k->live);
+  if (live == STRATUS_WIDTH || (live > 0 && (*s->next >= s->chunk->count || STRATUS_WIDTH - live < IDLE))) {
+    return true;
+  }
+  do {
+    refill(a, s, k);
+  } while (!m_any(k->live) && *s->next < s->chunk->count);
+  return m_any(k->live);
+}
+
+/* Packets side by side: a step is a chain of loads and sums that wait for each other, and while one packet waits the next computes. */
+#define PACKETS 2
+
+static inline __attribute__((always_inline)) void walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
+  stratus_hit_chunk* chunk, const int octants, const int entry_bytes, const int cell_log2)
 {
   const stratus_tree* tree = batch->tree;
-  stream s = { .chunk = chunk, .id = vi_set(-1) };
-  stratus_hit_packet k;
-  memset(&k, 0, sizeof k);
-  refill(a, &s, &k);
-  for (;;) {
-    const int live = m_count(k.live);
-    if (live == 0 || (s.next < chunk->count && STRATUS_WIDTH - live >= IDLE)) {
-      if (live == 0 && s.next >= chunk->count) {
-        break;
-      }
-      refill(a, &s, &k);
-      if (!m_any(k.live)) {
-        continue;
-      }
-    }
-    hit_step(a, tree->entries, (const int*)tree->rows, batch->mask_words, &k, octants, entry_bytes, cell_log2);
+  stream s[PACKETS];
+  stratus_hit_packet k[PACKETS];
+  int next = 0;
+  memset(k, 0, sizeof k);
+  for (int p = 0; p < PACKETS; ++p) {
+    s[p] = (stream){ .chunk = chunk, .next = &next, .id = vi_set(-1) };
   }
-  refill(a, &s, &k);
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (int p = 0; p < PACKETS; ++p) {
+      busy |= keep_busy(a, &s[p], &k[p]);
+    }
+    for (int p = 0; p < PACKETS; ++p) {
+      hit_step(a, tree->entries, (const int*)tree->rows, batch->mask_words, &k[p], octants, entry_bytes, cell_log2);
+    }
+  }
+  for (int p = 0; p < PACKETS; ++p) {
+    refill(a, &s[p], &k[p]);
+  }
 }
 
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)

@@ -91,7 +91,8 @@ INLINE void hit_step(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entr
     leap = (entry & vi_set(0xffff)) >> vi_set(2);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    far[axis] = vi_select(k->up[axis], block[axis] + leap, block[axis] + one - leap) << vi_set(cell_log2);
+    const vint first = vi_set(a->at[axis]), beyond = vi_set(a->at[axis] + a->cells[axis]); /* nor farther than the field's border */
+    far[axis] = vi_select(k->up[axis], vi_min(block[axis] + leap, beyond), vi_max(block[axis] + one - leap, first)) << vi_set(cell_log2);
     near[axis] = vi_select(k->up[axis], block[axis] << vi_set(cell_log2), ((block[axis] + one) << vi_set(cell_log2)) - one);
   }
   if (m_any(occupied)) {
