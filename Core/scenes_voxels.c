@@ -145,8 +145,8 @@ static void fill_shells(bit_set* set, const ball* shells, int count, int64_t vox
     const ball* s = shells + random_below(state, count);
     const double a = random_normal(state), b = random_normal(state), c = random_normal(state), length = sqrt(a * a + b * b + c * c);
     const double here = radius * s->weight * (tries > voxels * 50 ? 1.0 + 0.5 * random_unit(state) : 1.0);
-    done += set_voxel(set, (int)floor(s->at[0] + here * a / length), (int)floor(s->at[1] + here * b / length),
-      (int)floor(s->at[2] + here * c / length));
+    done += set_voxel(
+      set, (int)floor(s->at[0] + here * a / length), (int)floor(s->at[1] + here * b / length), (int)floor(s->at[2] + here * c / length));
   }
 }
 
@@ -387,8 +387,8 @@ stratus_status stratus_voxel_scene_rays(stratus_context* context, const stratus_
     return STRATUS_OK;
   }
   if (voxels->count == voxels->dimensions[0] * voxels->dimensions[1] * voxels->dimensions[2]) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "random rays begin in empty voxels, and all %lld are effective",
-      (long long)voxels->count);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "random rays begin in empty voxels, and all %lld are effective", (long long)voxels->count);
   }
   random_rays(voxels, rays);
   return STRATUS_OK;

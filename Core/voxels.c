@@ -26,8 +26,8 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
     voxels->index_to_world[5 * a] = 1.0;
   }
   voxels->index_to_world[15] = 1.0;
-  const stratus_status status = stratus_product(context, "bricks", (size_t)voxels->bricks_along[0], (size_t)voxels->bricks_along[1],
-    (size_t)voxels->bricks_along[2], &bricks);
+  const stratus_status status = stratus_product(
+    context, "bricks", (size_t)voxels->bricks_along[0], (size_t)voxels->bricks_along[1], (size_t)voxels->bricks_along[2], &bricks);
   if (status != STRATUS_OK) {
     stratus_release(context, voxels);
     return status;

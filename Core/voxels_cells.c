@@ -62,8 +62,7 @@ stratus_status stratus_voxels_create_ranges(stratus_context* context, const stra
   place_cells(volume, voxels->index_to_world);
   TRY_CLEANUP(stratus_origin_take_cells(context, ranges, criterion, &voxels->origin));
   voxels->origin.hash = hash;
-  TRY_CLEANUP(
-    stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), sizeof(uint64_t), &masks));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), sizeof(uint64_t), &masks));
   mark_blocks(voxels, ranges, masks);
   TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
   *out = voxels;

@@ -109,8 +109,7 @@ static stratus_status take_by_sorting(stratus_voxels* voxels, const voxel_list* 
   voxels->bricks = bricks;
   for (int64_t v = 0, brick = -1; v < list->count; v++) {
     if (v == 0 || keys[v] >> 6 != keys[v - 1] >> 6) {
-      voxels->bricks[++brick] =
-        (stratus_brick){ .at = { (uint16_t)(keys[v] >> 6), (uint16_t)(keys[v] >> 22), (uint16_t)(keys[v] >> 38) } };
+      voxels->bricks[++brick] = (stratus_brick){ .at = { (uint16_t)(keys[v] >> 6), (uint16_t)(keys[v] >> 22), (uint16_t)(keys[v] >> 38) } };
     }
     voxels->bricks[brick].mask |= (uint64_t)1 << (keys[v] & 63);
   }

@@ -9,10 +9,9 @@
 
 #define WORD 64 /* values whose flags make a word, and bricks' rows times four */
 
-/* An interval in the values' own type, ends included. */
+/* An end of an interval as values are compared with it: in their own type, but for 64 bits in double, as everybody sees them. */
 typedef union bound {
   int64_t i;
-  uint64_t u;
   double d;
 } bound;
 
@@ -21,51 +20,61 @@ typedef struct bounds {
 } bounds;
 
 #define TYPE int8_t
+#define AS int8_t
 #define NAME(f) f##_int8
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE uint8_t
+#define AS uint8_t
 #define NAME(f) f##_uint8
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE int16_t
+#define AS int16_t
 #define NAME(f) f##_int16
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE uint16_t
+#define AS uint16_t
 #define NAME(f) f##_uint16
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE int32_t
+#define AS int32_t
 #define NAME(f) f##_int32
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE uint32_t
+#define AS uint32_t
 #define NAME(f) f##_uint32
 #define BOUND i
 #include "voxels_rows.h"
 
 #define TYPE int64_t
+#define AS double
 #define NAME(f) f##_int64
-#define BOUND i
+#define BOUND d
 #include "voxels_rows.h"
 
 #define TYPE uint64_t
+#define AS double
 #define NAME(f) f##_uint64
-#define BOUND u
+#define BOUND d
 #include "voxels_rows.h"
 
 #define TYPE float
+#define AS float
 #define NAME(f) f##_float32
 #define BOUND d
 #include "voxels_rows.h"
 
 #define TYPE double
+#define AS double
 #define NAME(f) f##_float64
 #define BOUND d
 #include "voxels_rows.h"
@@ -79,23 +88,17 @@ static mark_function mark_of(stratus_type type)
   return marks[type];
 }
 
-/* ---------------------------------------------------------------- intervals in the values' own type */
+/* ---------------------------------------------------------------- intervals as values are compared */
 
-/* Whole numbers within lo..hi and within least .. below-1, the type's; both are powers of two or 0, hence doubles. */
-static bool whole_bounds(double lo, double hi, double least, double below, bool is_unsigned64, bounds* result)
+/* Whole numbers within lo..hi and least..most. */
+static bool whole_bounds(double lo, double hi, double least, double most, bounds* result)
 {
-  const double first = ceil(lo), last = floor(hi);
-  if (!(first <= last) || first >= below || last < least) {
+  const double first = fmax(ceil(lo), least), last = fmin(floor(hi), most);
+  if (!(first <= last)) {
     return false;
   }
-  if (is_unsigned64) {
-    result->lo.u = first < least ? 0 : (uint64_t)first;
-    result->hi.u = last >= below ? UINT64_MAX : (uint64_t)last;
-  } else {
-    result->lo.i = (int64_t)(first < least ? least : first);
-    /* One less than `below` need not be a double. */
-    result->hi.i = last >= below ? (int64_t)(below / 2.0) - 1 + (int64_t)(below / 2.0) : (int64_t)last;
-  }
+  result->lo.i = (int64_t)first;
+  result->hi.i = (int64_t)last;
   return true;
 }
 
@@ -116,18 +119,18 @@ static bool float_bounds(double lo, double hi, bounds* result)
 static bool bounds_of(stratus_type type, const double interval[2], bounds* result)
 {
   static const struct {
-    double least, below;
-  } whole[] = { { -0x1p7, 0x1p7 }, { 0, 0x1p8 }, { -0x1p15, 0x1p15 }, { 0, 0x1p16 }, { -0x1p31, 0x1p31 }, { 0, 0x1p32 },
-    { -0x1p63, 0x1p63 }, { 0, 0x1p64 } };
+    double least, most;
+  } whole[] = { { INT8_MIN, INT8_MAX }, { 0, UINT8_MAX }, { INT16_MIN, INT16_MAX }, { 0, UINT16_MAX }, { INT32_MIN, INT32_MAX },
+    { 0, UINT32_MAX } };
   if (type == STRATUS_FLOAT32) {
     return float_bounds(interval[0], interval[1], result);
   }
-  if (type == STRATUS_FLOAT64) {
-    result->lo.d = fmax(interval[0], -DBL_MAX);
-    result->hi.d = fmin(interval[1], DBL_MAX);
-    return result->lo.d <= result->hi.d;
+  if (type < STRATUS_INT64) {
+    return whole_bounds(interval[0], interval[1], whole[type].least, whole[type].most, result);
   }
-  return whole_bounds(interval[0], interval[1], whole[type].least, whole[type].below, type == STRATUS_UINT64, result);
+  result->lo.d = fmax(interval[0], -DBL_MAX);
+  result->hi.d = fmin(interval[1], DBL_MAX);
+  return result->lo.d <= result->hi.d;
 }
 
 /* ---------------------------------------------------------------- rows */
@@ -213,7 +216,8 @@ static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* has
 }
 
 /* The intervals that any value of the type can lie in. */
-static stratus_status take_intervals(stratus_context* context, const stratus_criterion* criterion, scan* s, stratus_origin* origin, void** out)
+static stratus_status take_intervals(
+  stratus_context* context, const stratus_criterion* criterion, scan* s, stratus_origin* origin, void** out)
 {
   stratus_intervals list = { 0 };
   void* memory = NULL;
@@ -250,8 +254,7 @@ stratus_status stratus_voxels_create(
   s.ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
   s.hidden = STRATUS_GHOST_DUPLICATE | (volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
   TRY_CLEANUP(take_intervals(context, criterion, &s, &voxels->origin, &intervals));
-  TRY_CLEANUP(stratus_allocate(
-    context, (size_t)(s.bricks_along[0] * s.bricks_along[1] * s.bricks_along[2]), sizeof(uint64_t), &masks));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)(s.bricks_along[0] * s.bricks_along[1] * s.bricks_along[2]), sizeof(uint64_t), &masks));
   s.masks = masks;
   TRY_CLEANUP(scan_rows(context, &s, &voxels->origin.hash));
   TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));

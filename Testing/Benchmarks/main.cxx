@@ -4,6 +4,7 @@
 #include "distance.h"
 #include "octree_bench.h"
 #include "rate.h"
+#include "tree_methods.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -179,6 +180,9 @@ int main(int argc, char* argv[])
     }
     if (argc > 1 && std::strcmp(argv[1], "octree") == 0) {
       return bench::octree_main(argc, argv);
+    }
+    if (argc > 1 && std::strcmp(argv[1], "tree") == 0) {
+      return bench::tree_main(argc, argv);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stratus-bench: %s\n", error.what());

@@ -141,19 +141,18 @@ static void ties_are_settled_as_written_down(void** state)
     double t;
     int face;
   } cases[] = {
-    { { 0, 1.5, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 1, 0 },           /* square on */
-    { { 0, 1.5, 1.5 }, { 2, -0.0, 0 }, { 1, 1, 1 }, .5, 0 },       /* a longer direction */
-    { { 4, 2.5, 1.5 }, { -1, 0, 0 }, { 2, 2, 1 }, 1, 1 },          /* from above */
-    { { 1.5, 1.5, 1.5 }, { 0, 0, 1 }, { 1, 1, 1 }, 0, -1 },        /* inside */
-    { { 1, 1.5, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 0, -1 },          /* on a face, inward */
-    { { 2, 1.5, 1.5 }, { 1, 0, 0 }, { -1, -1, -1 }, INFINITY, -1 },/* on a face, outward */
-    { { 2, 1.5, 1.5 }, { -1, 0, 0 }, { 1, 1, 1 }, 0, -1 },
-    { { 0, 1, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 1, 0 },             /* along a lower face: in */
-    { { 0, 2, 1.5 }, { 1, 0, 0 }, { 2, 2, 1 }, 2, 0 },             /* along a plane between: the upper voxel */
-    { { 3, 3, 1.5 }, { -1, -1, 0 }, { 2, 2, 1 }, 0, -1 },          /* from the edge inward */
-    { { 0, 3, 1.5 }, { 1, -1, 0 }, { 1, 1, 1 }, 1, 3 },            /* through an edge: x first, then y into the voxel */
-    { { 0, 4, 1.5 }, { 1, -1, 0 }, { 2, 2, 1 }, 2, 0 },            /* through the edge that the two share: into the one that x leads to */
-    { { 0, 0, 0 }, { 1, 1, 1 }, { 1, 1, 1 }, 1, 4 },               /* through a corner: z is crossed last */
+    { { 0, 1.5, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 1, 0 },                                                      /* square on */
+    { { 0, 1.5, 1.5 }, { 2, -0.0, 0 }, { 1, 1, 1 }, .5, 0 },                                                  /* a longer direction */
+    { { 4, 2.5, 1.5 }, { -1, 0, 0 }, { 2, 2, 1 }, 1, 1 },                                                     /* from above */
+    { { 1.5, 1.5, 1.5 }, { 0, 0, 1 }, { 1, 1, 1 }, 0, -1 },                                                   /* inside */
+    { { 1, 1.5, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 0, -1 },                                                     /* on a face, inward */
+    { { 2, 1.5, 1.5 }, { 1, 0, 0 }, { -1, -1, -1 }, INFINITY, -1 },                                           /* on a face, outward */
+    { { 2, 1.5, 1.5 }, { -1, 0, 0 }, { 1, 1, 1 }, 0, -1 }, { { 0, 1, 1.5 }, { 1, 0, 0 }, { 1, 1, 1 }, 1, 0 }, /* along a lower face: in */
+    { { 0, 2, 1.5 }, { 1, 0, 0 }, { 2, 2, 1 }, 2, 0 },    /* along a plane between: the upper voxel */
+    { { 3, 3, 1.5 }, { -1, -1, 0 }, { 2, 2, 1 }, 0, -1 }, /* from the edge inward */
+    { { 0, 3, 1.5 }, { 1, -1, 0 }, { 1, 1, 1 }, 1, 3 },   /* through an edge: x first, then y into the voxel */
+    { { 0, 4, 1.5 }, { 1, -1, 0 }, { 2, 2, 1 }, 2, 0 },   /* through the edge that the two share: into the one that x leads to */
+    { { 0, 0, 0 }, { 1, 1, 1 }, { 1, 1, 1 }, 1, 4 },      /* through a corner: z is crossed last */
   };
   static const int32_t positions[] = { 1, 1, 1, 2, 2, 1 };
   static const int64_t n[3] = { 4, 4, 4 };

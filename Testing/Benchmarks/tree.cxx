@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// stratus-bench tree: how long trees over effective voxels take to build and to trace, beside Embree and OpenVDB, in one process.
+#include "tree_methods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <sstream>
+#include <time.h>
+
+namespace bench {
+
+namespace {
+
+const char* const help = R"(stratus-bench tree [options]
+
+  --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
+  --method M,...     stratus:hybrid|hybrid-paper|distance|octant|sah|sweep|lbvh|ploc|ac|dpc|kmeans,
+                     embree:low|medium|high|packet|bricks, openvdb (default: all; stratus:hybrid-paper, ac, dpc and kmeans grow faster
+                     than n log n and take sets of up to 35,000 voxels)
+  --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
+  --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+  --chart FILE.png   tracing against building
+
+build_ms: from the list of voxels to what can be traced, by the wall clock, 2 threads, median. primary_ns, random_ns: a ray, one thread, its
+processor time, median; 512 x 512 rays of record each. bytes: what the tree holds of memory (Embree: as its monitor tells after the build,
+without the list of voxels that its callbacks read). wrong_hits: among both kinds of rays, against a walk from voxel to voxel in double
+precision; grazing_hits: those that differ where a voxel is met for less than 1e-9 of the numbers around, or two at once.
+)";
+
+constexpr int width = 512;
+constexpr size_t slow_most = 35000;
+constexpr double build_budget_ms = 20.0; // short builds are repeated within a round
+
+struct options {
+  std::vector<std::string> scenes, methods;
+  std::string csv = "-", chart;
+  int rounds = 0;
+};
+
+struct context_deleter {
+  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
+};
+using context_pointer = std::unique_ptr<stratus_context, context_deleter>;
+
+context_pointer host(int threads)
+{
+  stratus_context_options o = stratus_context_options_default();
+  stratus_context* context = nullptr;
+  char message[512];
+  o.device = "host";
+  o.threads = threads;
+  if (stratus_context_create(&o, &context, message, sizeof message) != STRATUS_OK) {
+    throw failure(message);
+  }
+  return context_pointer(context);
+}
+
+void check(stratus_context* context, stratus_status status)
+{
+  if (status != STRATUS_OK) {
+    throw failure(std::string(stratus_status_name(status)) + ": " + stratus_context_message(context));
+  }
+}
+
+double thread_ms()
+{
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+class stratus_hits : public first_hits
+{
+public:
+  stratus_hits(const voxel_set& s, stratus_tree_method m) : set(s), builder(host(2)), tracer(host(1)) { this->tree_options.method = m; }
+  ~stratus_hits() override { stratus_tree_destroy(this->tree); }
+  void build() override
+  {
+    stratus_tree_destroy(this->tree);
+    this->tree = nullptr;
+    stratus_voxels* voxels = nullptr;
+    stratus_context* c = this->builder.get();
+    check(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &voxels));
+    const stratus_status status = stratus_tree_create(c, voxels, &this->tree_options, &this->tree);
+    stratus_voxels_destroy(voxels);
+    check(c, status);
+  }
+  tree_numbers numbers() const override
+  {
+    stratus_tree_statistics s;
+    stratus_tree_get_statistics(this->tree, &s);
+    tree_numbers n;
+    n.bytes = static_cast<double>(s.bytes);
+    n.nodes = static_cast<double>(s.nodes);
+    n.depth = s.depth;
+    n.sah = s.sah;
+    return n;
+  }
+  void prepare(const voxel_rays& r) override
+  {
+    this->rays = &r.rays;
+    this->found.resize(r.rays.size());
+  }
+  void trace() override
+  {
+    check(this->tracer.get(),
+      stratus_tree_first_hit(this->tracer.get(), this->tree, this->rays->data(), this->rays->size(), this->found.data()));
+  }
+  std::vector<voxel_hit> hits() const override
+  {
+    std::vector<voxel_hit> result(this->found.size());
+    for (size_t i = 0; i < result.size(); ++i) {
+      if (this->found[i].voxel[0] >= 0) {
+        result[i].t = this->found[i].t;
+        std::copy(this->found[i].voxel, this->found[i].voxel + 3, result[i].voxel);
+      }
+    }
+    return result;
+  }
+
+private:
+  const voxel_set& set;
+  context_pointer builder, tracer;
+  stratus_tree_options tree_options = stratus_tree_options_default();
+  stratus_tree* tree = nullptr;
+  const std::vector<stratus_ray>* rays = nullptr;
+  std::vector<stratus_hit> found;
+};
+
+// ---------------------------------------------------------------- methods
+
+const char* const peers[] = { "embree:low", "embree:medium", "embree:high", "embree:packet", "embree:bricks", "openvdb" };
+
+std::vector<std::string> all_tree_methods()
+{
+  std::vector<std::string> names;
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    names.push_back(std::string("stratus:") + stratus_tree_method_name(static_cast<stratus_tree_method>(m)));
+  }
+  names.insert(names.end(), std::begin(peers), std::end(peers));
+  return names;
+}
+
+bool is_slow(const std::string& method)
+{
+  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", "stratus:dpc", "stratus:kmeans" };
+  return std::any_of(std::begin(slow), std::end(slow), [&](const char* name) { return method == name; });
+}
+
+std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method)
+{
+  if (method == "openvdb") {
+    return make_openvdb_hits(set);
+  }
+  if (method.rfind("embree:", 0) == 0) {
+    return make_embree_hits(set, method.substr(7));
+  }
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    if (method.substr(8) == stratus_tree_method_name(static_cast<stratus_tree_method>(m))) {
+      return std::make_unique<stratus_hits>(set, static_cast<stratus_tree_method>(m));
+    }
+  }
+  throw failure("unknown method " + method);
+}
+
+// ---------------------------------------------------------------- one scene
+
+// A set of record or the cloud's, its rays, and where they hit.
+struct tree_scene {
+  context_pointer context = host(0);
+  voxel_set set;
+  std::vector<int32_t> own; // positions of what is no set of record
+  int32_t* listed = nullptr;
+  stratus_voxels* voxels = nullptr;
+  voxel_rays rays[2];
+  std::vector<stratus_hit> walk[2];
+
+  explicit tree_scene(const std::string& name);
+  ~tree_scene()
+  {
+    stratus_voxels_destroy(this->voxels);
+    stratus_voxel_scene_release(this->context.get(), this->listed);
+  }
+  void list_volume(const std::string& name);
+};
+
+void tree_scene::list_volume(const std::string& name)
+{
+  stratus_scene* scene = nullptr;
+  check(this->context.get(), stratus_scene_create(this->context.get(), name.c_str(), &scene));
+  const int64_t* n = scene->volume.dimensions;
+  const float* values = static_cast<const float*>(scene->volume.values);
+  for (int64_t v = 0; v < n[0] * n[1] * n[2]; ++v) {
+    if (values[v] > 0.0f) {
+      this->own.insert(
+        this->own.end(), { static_cast<int32_t>(v % n[0]), static_cast<int32_t>(v / n[0] % n[1]), static_cast<int32_t>(v / n[0] / n[1]) });
+    }
+  }
+  std::copy(n, n + 3, this->set.dimensions);
+  this->set.positions = this->own.data();
+  this->set.count = this->own.size() / 3;
+  stratus_scene_destroy(this->context.get(), scene);
+}
+
+tree_scene::tree_scene(const std::string& name)
+{
+  stratus_context* c = this->context.get();
+  this->set.name = name;
+  if (name == "cloud") {
+    this->list_volume(name);
+  } else {
+    check(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
+    this->set.positions = this->listed;
+  }
+  check(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &this->voxels));
+  for (int kind = 0; kind < 2; ++kind) {
+    this->rays[kind].coherent = kind == 0;
+    this->rays[kind].rays.resize(width * width);
+    this->walk[kind].resize(width * width);
+    check(c, stratus_voxel_scene_rays(c, this->voxels, kind, this->rays[kind].rays.data()));
+    check(c, stratus_voxels_first_hit(c, this->voxels, this->rays[kind].rays.data(), width * width, this->walk[kind].data()));
+  }
+}
+
+struct measured {
+  std::vector<double> build_ms, trace_ns[2];
+  tree_numbers numbers;
+  wrong_count count;
+};
+
+void run_round(const tree_scene& scene, const std::string& method, bool first, measured& m)
+{
+  const std::unique_ptr<first_hits> hits = make_hits(scene.set, method);
+  double spent = 0.0;
+  do {
+    const double start = now_ms();
+    hits->build();
+    m.build_ms.push_back(now_ms() - start);
+    spent += m.build_ms.back();
+  } while (spent < build_budget_ms);
+  m.numbers = hits->numbers();
+  for (int kind = 0; kind < 2; ++kind) {
+    hits->prepare(scene.rays[kind]);
+    const double start = thread_ms();
+    hits->trace();
+    m.trace_ns[kind].push_back((thread_ms() - start) * 1e6 / static_cast<double>(scene.rays[kind].rays.size()));
+    if (first) {
+      const wrong_count count = count_wrong(scene.voxels, scene.rays[kind], scene.walk[kind], hits->hits());
+      m.count.wrong += count.wrong;
+      m.count.grazing += count.grazing;
+    }
+  }
+}
+
+void add_rows(const std::string& scene, const std::string& method, const measured& m, std::vector<row>& rows)
+{
+  const auto add = [&](const char* metric, double value, const char* unit) {
+    if (value >= 0.0) {
+      rows.push_back({ scene, method, metric, unit, value });
+    }
+  };
+  add("build_ms", median(m.build_ms), "ms");
+  add("primary_ns", median(m.trace_ns[0]), "ns");
+  add("random_ns", median(m.trace_ns[1]), "ns");
+  add("bytes", m.numbers.bytes, "B");
+  add("nodes", m.numbers.nodes, "1");
+  add("depth", m.numbers.depth, "1");
+  add("sah", m.numbers.sah, "1");
+  add("wrong_hits", static_cast<double>(m.count.wrong), "1");
+  add("grazing_hits", static_cast<double>(m.count.grazing), "1");
+}
+
+void run_scene(const std::string& name, const options& o, std::vector<row>& rows)
+{
+  const tree_scene scene(name);
+  std::fprintf(stderr, "%s: %zu voxels\n%-22s %10s %10s %10s %12s %9s %5s %9s %6s %8s\n", name.c_str(), scene.set.count, "", "build_ms",
+    "primary_ns", "random_ns", "bytes", "nodes", "depth", "sah", "wrong", "grazing");
+  const int rounds = o.rounds ? o.rounds : scene.set.count > 5000000 ? 2 : 5;
+  std::vector<std::string> methods;
+  std::copy_if(o.methods.begin(), o.methods.end(), std::back_inserter(methods),
+    [&](const std::string& m) { return scene.set.count <= slow_most || !is_slow(m); });
+  std::map<std::string, measured> all;
+  for (int round = 0; round < rounds; ++round) {
+    for (const std::string& method : methods) {
+      run_round(scene, method, round == 0, all[method]);
+    }
+  }
+  for (const std::string& method : methods) {
+    const measured& m = all[method];
+    std::fprintf(stderr, "%-22s %10.3f %10.1f %10.1f %12.0f %9.0f %5.0f %9.1f %6lld %8lld\n", method.c_str(), median(m.build_ms),
+      median(m.trace_ns[0]), median(m.trace_ns[1]), m.numbers.bytes, m.numbers.nodes, m.numbers.depth, m.numbers.sah,
+      static_cast<long long>(m.count.wrong), static_cast<long long>(m.count.grazing));
+    add_rows(name, method, m, rows);
+  }
+}
+
+// ---------------------------------------------------------------- the command line
+
+std::vector<std::string> split(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+void check_names(const std::vector<std::string>& names, const std::vector<std::string>& known, const char* what)
+{
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw failure(std::string("unknown ") + what + " " + name + "; --help tells which there are");
+    }
+  }
+}
+
+options parse(int argc, char* argv[])
+{
+  options o;
+  for (int i = 2; i < argc; i += 2) {
+    const std::string word = argv[i];
+    if (i + 1 == argc) {
+      throw failure(word + " is unknown or lacks its value; --help tells more");
+    }
+    const std::string value = argv[i + 1];
+    if (word == "--scene") {
+      o.scenes = split(value);
+    } else if (word == "--method") {
+      o.methods = split(value);
+    } else if (word == "--rounds") {
+      o.rounds = std::atoi(value.c_str());
+      if (o.rounds < 1 || o.rounds > 1000) {
+        throw failure("--rounds must be within 1..1000");
+      }
+    } else if (word == "--csv") {
+      o.csv = value;
+    } else if (word == "--chart") {
+      o.chart = value;
+    } else {
+      throw failure("unknown option " + word + "; --help tells more");
+    }
+  }
+  std::vector<std::string> scenes;
+  for (int s = 0; s < stratus_voxel_scene_count(); ++s) {
+    scenes.push_back(stratus_voxel_scene_name(s));
+  }
+  scenes.push_back("cloud");
+  check_names(o.scenes, scenes, "scene");
+  check_names(o.methods, all_tree_methods(), "method");
+  o.scenes = o.scenes.empty() ? scenes : o.scenes;
+  o.methods = o.methods.empty() ? all_tree_methods() : o.methods;
+  return o;
+}
+
+void chart(const std::string& path, const std::vector<row>& rows)
+{
+  std::vector<chart_mark> marks;
+  double build = 0.0, primary = 0.0;
+  for (const row& r : rows) {
+    build = r.metric == "build_ms" ? r.value : build;
+    primary = r.metric == "primary_ns" ? r.value : primary;
+    if (r.metric == "random_ns") {
+      marks.push_back({ r.scene, r.method, build, .5 * (primary + r.value) });
+    }
+  }
+  write_chart(path, marks, "build, ms", "a ray, ns: mean of primary and random");
+}
+} // namespace
+
+int tree_main(int argc, char* argv[])
+{
+  if (argc > 2 && std::strcmp(argv[2], "--help") == 0) {
+    std::fputs(help, stdout);
+    return 0;
+  }
+  const options o = parse(argc, argv);
+  if (!o.chart.empty()) {
+    ensure_display(argv);
+  }
+  std::vector<row> rows;
+  for (const std::string& name : o.scenes) {
+    run_scene(name, o, rows);
+  }
+  write_csv(o.csv, rows, "tree");
+  if (!o.chart.empty()) {
+    chart(o.chart, rows);
+  }
+  return 0;
+}
+} // namespace bench
