@@ -8,7 +8,7 @@
  *
  * Supported: point and cell scalars of one component and any numeric type but bits, linear and nearest interpolation, scalar opacity,
  * colour or grey, ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's
- * matrix, cropping to the subvolume, up to six clipping planes. All else (other blend modes, shading, gradient opacity, more components,
+ * matrix, cropping to the subvolume, up to six clipping planes. All else (other blend modes, shading but in first hits, gradient opacity, more components,
  * two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
  *
  * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the

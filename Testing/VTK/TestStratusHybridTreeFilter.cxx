@@ -193,6 +193,38 @@ void EveryMethodBuilds()
   CHECK(filter->GetNumberOfVoxels() < voxels, "an edit of the opacity leaves %lld voxels", static_cast<long long>(filter->GetNumberOfVoxels()));
 }
 
+// Ray casting by the tree that comes with the image: no second build as long as it shows all that the opacity does.
+void RayCastingUsesTheTree()
+{
+  Scene plain, scene;
+  vtkNew<Filter> filter;
+  filter->SetInputData(scene.Image);
+  filter->SetVolumeProperty(scene.Volume->GetProperty());
+  filter->Update();
+  vtkNew<vtkImageData> carried;
+  carried->DeepCopy(filter->GetOutput());
+  scene.Mapper->SetInputData(carried);
+  plain.Mapper->SetStructureToNone();
+  for (int structure : { vtkStratusVolumeMapper::AUTO_STRUCTURE, vtkStratusVolumeMapper::HYBRID_STRUCTURE }) {
+    scene.Mapper->SetStructure(structure);
+    CHECK(scene.Picture() == plain.Picture(), "the tree changes the picture");
+    CHECK(scene.Mapper->GetCarriedTreeUsed() && scene.Mapper->GetStructureBuilds() == 0, "%llu structures built beside the tree",
+      static_cast<unsigned long long>(scene.Mapper->GetStructureBuilds()));
+  }
+  for (bool wider : { false, true }) { // less shows: the tree still serves; more: it does not
+    for (Scene* each : { &plain, &scene }) {
+      each->Opacity->RemoveAllPoints();
+      each->Opacity->AddPoint(wider ? 0.02 : 0.3, 0.0);
+      each->Opacity->AddPoint(1.0, 0.5);
+    }
+    CHECK(scene.Picture() == plain.Picture(), "the tree changes the picture of another opacity");
+    CHECK(scene.Mapper->GetCarriedTreeUsed() == !wider && scene.Mapper->GetStructureBuilds() == (wider ? 1u : 0u),
+      "%s opacity: %llu structures built", wider ? "a wider" : "a narrower",
+      static_cast<unsigned long long>(scene.Mapper->GetStructureBuilds()));
+  }
+  CHECK(scene.Light() > 100.0 && scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
 void Refused(const char* word, const std::function<void(Filter*)>& breaks)
 {
   Scene scene;
@@ -238,6 +270,7 @@ int main(int argc, char** argv)
   FilesKeepTheTree();
   BoxesLieOnTheVoxels();
   EveryMethodBuilds();
+  RayCastingUsesTheTree();
   Refusals();
   return Failures == 0 ? 0 : 1;
 }
