@@ -349,7 +349,7 @@ typedef struct stratus_tree_options {
   int max_depth;              /* 1..64; default 32. A node at it is a leaf. */
   int leaf_bricks;            /* bricks (4^3 voxels and a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
   int leaf_voxels;            /* voxels in a leaf of the baselines, 1..64; default 1 */
-  int64_t field_bricks;       /* most bricks that a distance-field leaf covers, 1..2^29; default 2^25 */
+  int64_t field_bricks;       /* most bricks that a distance-field leaf covers, 1..2^29; default 2^25. hybrid-paper: at most 2^18. */
   double field_emptiness;     /* most bricks that it covers an occupied one, >= 1; default 512 */
   double uniform;             /* hybrid: greatest difference between the axes' deviations of eq. 8, over the node's extent; default .1 */
   double paper_threshold;     /* hybrid-paper: the same difference in voxels, as printed; default 8 */
@@ -741,6 +741,110 @@ typedef struct stratus_mesh {
 STRATUS_API stratus_mesh stratus_mesh_default(void);
 /* Checks a view: pointers, counts, point numbers, finite points, invertible matrix. */
 STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* mesh);
+
+/* ---------------------------------------------------------------- partition of a mesh
+ * A mesh cut along planes into the leaves of a K-D tree (Li et al. 2012, section 2), so that each cell lies in one leaf and leaves can be
+ * sorted apart. Points keep their numbers; a point on a cut edge comes behind them, once, whoever asks for it: pieces of neighbours meet in
+ * the same points and faces. A point that lies on a plane is not cut, and a piece without volume is not made. */
+
+typedef enum stratus_partition_rule {
+  STRATUS_PARTITION_MEDIAN, /* of the planes through the mesh's own points between the 40 % and the 60 % quantile, the one that cuts fewest cells */
+  STRATUS_PARTITION_PAPER   /* of evenly spaced planes, the one that adds fewest cells among those that growth and imbalance admit */
+} stratus_partition_rule;
+
+typedef struct stratus_partition_options {
+  stratus_partition_rule rule; /* default median */
+  int depth;                   /* 0..16: at most 2^depth leaves. Default 3. */
+  int planes;                  /* tried an axis and node, 1..4096. Default 64. */
+  double growth;               /* the paper's Phi: most new cells per cell of the node, > 0, may be INFINITY. Default INFINITY (paper: .3). */
+  double imbalance;            /* the paper's epsilon: |l - r| / ((l + r)/2) is below it, > 0. Default .5. */
+  int rotations;               /* where no plane is admissible at the root the mesh is turned this many times at most, and cut again, 0..64. Default 0. */
+  int64_t leaf_cells;          /* a node of so many or fewer is not cut, >= 1. Default 1024. */
+} stratus_partition_options;
+
+STRATUS_API stratus_partition_options stratus_partition_options_default(void);
+
+/* Node 0 is the root. */
+typedef struct stratus_partition_node {
+  int32_t axis;     /* 0..2; -1: a leaf */
+  int32_t below;    /* child with the points whose coordinate is <= value; of a leaf: its number */
+  int32_t above;    /* child with those >= value */
+  int32_t reserved; /* 0 */
+  double value;     /* of the coordinate along row `axis` of the frame */
+} stratus_partition_node;
+
+/* A tree over a mesh: what a partition gives, and what an order takes. */
+typedef struct stratus_leaves {
+  const stratus_partition_node* nodes;
+  int32_t node_count;      /* >= 1 */
+  int32_t leaf_count;      /* 1..65536 */
+  const int32_t* leaf;     /* of each cell, 0..leaf_count-1 */
+  double frame[9];         /* rows: the axes along which the tree cuts, in the mesh's local coordinates. The identity unless it was rotated. */
+} stratus_leaves;
+
+typedef struct stratus_partition stratus_partition;
+
+/* options may be NULL. The mesh is read during the call only; its values, hidden flags and matrix don't count. */
+STRATUS_API stratus_status stratus_partition_create(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_partition_options* options, stratus_partition** partition);
+STRATUS_API void stratus_partition_destroy(stratus_partition* partition);
+
+typedef struct stratus_partition_result {
+  const double* points;     /* point_count triples: the mesh's, then those on cut edges */
+  int64_t point_count;
+  const int32_t* vertices;  /* cell_count quadruples, leaf by leaf; each with the orientation of the cell that it comes from */
+  int64_t cell_count;
+  const int32_t* cells;     /* the mesh's cell that each comes from */
+  stratus_leaves leaves;
+  int64_t old_points;       /* points of the mesh */
+  const int32_t* ends;      /* 2 for each new point old_points + i: the ends of its edge, lower numbers than its own (one may be new, too) */
+  const double* weights;    /* 1 for each: value = (1 - weight)*value(ends[0]) + weight*value(ends[1]), 0 < weight < 1 */
+  int64_t cut_cells;        /* of the mesh, that are not whole any more */
+  int64_t tiny_pieces;      /* not made: their volume is 0 in exact arithmetic */
+  int64_t largest_leaf;     /* cells */
+  int rotations;            /* made */
+} stratus_partition_result;
+
+/* Valid while the partition lives. */
+STRATUS_API void stratus_partition_get(const stratus_partition* partition, stratus_partition_result* result);
+
+/* ---------------------------------------------------------------- visibility order
+ * The cells of a mesh in an order in which none hides one before it. Which of two neighbours lies in front follows from the side of their
+ * face on which the eye is: in double where its rounding cannot matter, else in exact arithmetic. So an order is exact where relations pass
+ * through faces; cells that share none (across a gap, a hollow, between parts) are kept in order by taking the nearest first, and by leaves.
+ * Cells without volume pass relations on; folded ones (two neighbours on the same side of a face) count as not sharing it. Cells with
+ * coincident faces count as sharing them, even if they name different points. */
+
+typedef struct stratus_visibility_order stratus_visibility_order;
+
+typedef enum stratus_peeling {
+  STRATUS_PEELING_NEAREST, /* of the cells that nothing hides any more, the nearest. Default. */
+  STRATUS_PEELING_LAYERS   /* all that nothing hides, then all that only these hid, ... (Li et al. 2012, section 3.1) */
+} stratus_peeling;
+
+/* Borrows the mesh (points, vertices) and what `leaves` points at, for as long as the order lives. leaves NULL: one leaf. A cell that leaves
+ * its leaf's box is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
+STRATUS_API stratus_status stratus_visibility_order_create(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** order);
+STRATUS_API void stratus_visibility_order_destroy(stratus_visibility_order* order);
+
+typedef struct stratus_visibility_result {
+  const uint32_t* cells;    /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
+  int64_t count;
+  int layers;               /* peeling layers: of the leaf that has most; else 0 */
+  int64_t cycles;           /* found, and broken where the face between two of them is seen smallest */
+  int64_t forced;           /* cells that came by distance alone, as cycles were too many to follow */
+  int64_t exact_signs;      /* that double could not tell */
+  int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
+  int reused;               /* 1: nothing but the camera's turn, zoom or (parallel) shift has changed: the order is the last one */
+  size_t bytes;             /* the order's own */
+  double build_ms, signs_ms, peel_ms; /* of its making; of this call */
+} stratus_visibility_result;
+
+/* The order from the camera's eye (parallel: along its forward), whose right and up don't count. matrix: world = matrix * local, as in
+ * stratus_mesh, NULL: the mesh's. The same at any number of threads. */
+STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
+  const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 
 /* ---------------------------------------------------------------- scenes of record
  * The volumes that tests, benchmarks, examples and the command line share. */
