@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The paper's fields have an entry a voxel: 256^3 of them. */
+#define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
+
 static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh", "ploc",
   "ac", "dpc", "kmeans" };
 
@@ -156,7 +159,11 @@ static stratus_status build(
   if (options->method == STRATUS_TREE_DISTANCE || options->method == STRATUS_TREE_OCTANT) {
     TRY_CLEANUP(whole_shape(context, voxels, &shape));
   } else {
-    TRY_CLEANUP(stratus_hybrid_tree_shape(context, voxels, options, &shape, &tree->statistics));
+    stratus_tree_options capped = *options;
+    if (tree->cell_log2 == 0 && capped.field_bricks > PAPER_FIELD_BRICKS) {
+      capped.field_bricks = PAPER_FIELD_BRICKS;
+    }
+    TRY_CLEANUP(stratus_hybrid_tree_shape(context, voxels, &capped, &shape, &tree->statistics));
   }
   TRY_CLEANUP(fill_leaves(context, voxels, &shape, tree));
 

@@ -138,6 +138,78 @@ static stratus_status fill_distances(
   return STRATUS_OK;
 }
 
+/* The bricks of a node as a set of their own, from the corner of the node's first brick. */
+static stratus_status cut_out(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
+  const stratus_tree_node* node, stratus_voxels* part)
+{
+  const uint32_t count = stratus_tree_node_count(node);
+  void* memory;
+  *part = (stratus_voxels){ .context = context, .brick_count = count };
+  TRY(stratus_allocate(context, count, sizeof *part->bricks, &memory));
+  part->bricks = memory;
+  for (int a = 0; a < 3; a++) {
+    const int32_t first = node->lo[a] / STRATUS_BRICK, last = (node->hi[a] - 1) / STRATUS_BRICK;
+    part->bricks_along[a] = last - first + 1;
+    part->dimensions[a] = part->bricks_along[a] * STRATUS_BRICK;
+    part->lo[a] = node->lo[a] - first * STRATUS_BRICK;
+    part->hi[a] = node->hi[a] - first * STRATUS_BRICK;
+  }
+  for (uint32_t b = 0; b < count; b++) {
+    part->bricks[b] = voxels->bricks[shape->order[node->first + b]];
+    part->count += part->bricks[b].count;
+    for (int a = 0; a < 3; a++) {
+      part->bricks[b].at[a] = (uint16_t)(part->bricks[b].at[a] - node->lo[a] / STRATUS_BRICK);
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* The paper's leaf: a Euclidean field by its adaptive flooding (2.3). A ray may leap so many cells that the cube of those is sure to lie within the
+ * sphere. Floodings tell distances too long: the Chebyshev distance, which is there already, corrects them. */
+static stratus_status shorten_by_flooding(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
+  const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree)
+{
+  stratus_field_options options = stratus_field_options_default();
+  stratus_field* flooded = NULL;
+  stratus_voxels part;
+  stratus_status status = STRATUS_OK;
+  void* distances = NULL;
+  options.method = STRATUS_FIELD_AJFA;
+  TRY(cut_out(context, voxels, shape, node, &part));
+  TRY_CLEANUP(stratus_field_create(context, &part, &options, &flooded, NULL));
+  TRY_CLEANUP(stratus_allocate(
+    context, (size_t)part.dimensions[0] * (size_t)part.dimensions[1], (size_t)part.dimensions[2] * sizeof(float), &distances));
+  stratus_field_distances(flooded, distances);
+  const int32_t* n = field->cells;
+#pragma omp parallel for collapse(2) schedule(static) num_threads(context->threads)
+  for (int32_t k = 0; k < n[2]; k++) {
+    for (int32_t j = 0; j < n[1]; j++) {
+      const float* row =
+        (const float*)distances + ((size_t)(k + part.lo[2]) * (size_t)part.dimensions[1] + (size_t)(j + part.lo[1])) * (size_t)part.dimensions[0] + part.lo[0];
+      uint8_t* e = tree->entries + 2 * ((size_t)field->first_entry + ((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0]);
+      for (int32_t i = 0; i < n[0]; i++, e += 2) {
+        const unsigned longest = (unsigned)(e[0] | e[1] << 8) >> 2;
+        unsigned leap = 1;
+        /* (leap)^3 about the cell lie within the sphere if 3 leap^2 < d^2: one more step leaves them. */
+        while (leap < longest && 3.0f * (float)(leap * leap) < row[i] * row[i]) {
+          leap++;
+        }
+        if (longest > 0) {
+          const unsigned value = leap << 2 | 1u;
+          e[0] = (uint8_t)value;
+          e[1] = (uint8_t)(value >> 8);
+        }
+      }
+    }
+  }
+
+cleanup:
+  stratus_release(context, distances);
+  stratus_field_destroy(flooded);
+  stratus_release(context, part.bricks);
+  return status;
+}
+
 static stratus_status make_field(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, stratus_tree* tree, stratus_tree_field* field, uint32_t* mask)
 {
@@ -150,6 +222,9 @@ static stratus_status make_field(stratus_context* context, const stratus_voxels*
     const stratus_status status = fill_distances(context, field, occupied, tree);
     stratus_release(context, occupied);
     TRY(status);
+  }
+  if (tree->cell_log2 == 0) {
+    TRY(shorten_by_flooding(context, voxels, shape, node, field, tree));
   }
   return tree->cell_log2 ? number_masks(context, voxels, shape, node, field, tree, mask) : STRATUS_OK;
 }
