@@ -4,6 +4,8 @@
  * rounding can hide none; of all voxels that the ray meets the first counts. */
 #include "first_hit.h"
 
+#include <string.h>
+
 /* How far a position may be off, over its size: some ten roundings. */
 #define HAIR 4e-15
 
@@ -207,52 +209,110 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
 
 /* ---------------------------------------------------------------- nodes */
 
+/* The ray in floats, from where it enters the root's box, in lengths of its longest component: boxes grown by the floats' slack are met wherever
+ * the ray meets the boxes. */
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t four_int __attribute__((vector_size(16)));
+
+typedef struct sketch {
+  four o, inverse; /* the last lane is idle */
+  double base, scale;
+  float slack, end;
+} sketch;
+
+static float of_t(const sketch* k, double t)
+{
+  const double length = (t - k->base) * k->scale;
+  return length < 1e30 ? (float)length + 8.0f * k->slack : 1e30f;
+}
+
+static bool make_sketch(const walker* w, sketch* k)
+{
+  double enter, leave, most = 0.0;
+  if (!meets_box(w, w->tree->nodes[0].lo, w->tree->nodes[0].hi, &enter, &leave)) {
+    return false;
+  }
+  for (int a = 0; a < 3; ++a) {
+    most = fmax(most, fabs(w->d[a]));
+  }
+  *k = (sketch){ .o = { 0 }, .inverse = { 0 }, .base = enter, .scale = most, .slack = w->batch->slack };
+  for (int a = 0; a < 3; ++a) {
+    const float d = (float)(w->d[a] / most);
+    k->o[a] = (float)(w->o[a] + enter * w->d[a]);
+    k->inverse[a] = 1.0f / (fabsf(d) < 1e-30f ? 1e-30f : d);
+  }
+  k->end = of_t(k, leave);
+  return true;
+}
+
+static inline four load_box(const int32_t* corner)
+{
+  four_int i;
+  memcpy(&i, corner, sizeof i);
+  return __builtin_convertvector(i, four);
+}
+
+/* Whether the ray meets the node's box before `end`, and about where. */
+static inline bool may_meet(const sketch* k, const stratus_tree_node* node, float end, float* enter)
+{
+  const four lo = (load_box(node->lo) - k->slack - k->o) * k->inverse, hi = (load_box(node->hi) + k->slack - k->o) * k->inverse;
+  float t0 = 0.0f, t1 = end;
+  for (int a = 0; a < 3; ++a) {
+    const float near = lo[a] < hi[a] ? lo[a] : hi[a], far = lo[a] < hi[a] ? hi[a] : lo[a];
+    t0 = near > t0 ? near : t0;
+    t1 = far < t1 ? far : t1;
+  }
+  *enter = t0;
+  return t0 <= t1;
+}
+
 typedef struct pending {
   uint32_t node;
-  double enter, leave;
+  float enter;
 } pending;
+
+static void walk_leaf(walker* w, const stratus_tree_node* node)
+{
+  double enter, leave;
+  if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
+    walk_bricks(w, node);
+  } else if (meets_box(w, node->lo, node->hi, &enter, &leave)) {
+    walk_field(w, &w->tree->fields[node->first], enter, leave);
+  }
+}
 
 static void walk_tree(walker* w)
 {
   const stratus_tree* tree = w->tree;
-  pending stack[2 * 64 + 2]; /* no tree is deeper than 64 but where boxes could not be told apart: see stratus_tree_create() */
+  pending stack[130]; /* two children a level and less one that is taken: trees are at most 128 deep */
   int top = 0;
-  double enter, leave;
-  if (tree->node_count == 0 || !meets_box(w, tree->nodes[0].lo, tree->nodes[0].hi, &enter, &leave)) {
+  sketch k;
+  if (tree->node_count == 0 || !make_sketch(w, &k)) {
     return;
   }
-  stack[top++] = (pending){ 0, enter, leave };
+  float end = k.end;
+  stack[top++] = (pending){ 0, 0.0f };
   while (top > 0) {
     const pending now = stack[--top];
     const stratus_tree_node* node = &tree->nodes[now.node];
-    if (now.enter > w->hit->t) {
+    if (now.enter > end) {
       continue;
     }
     ++w->visited;
-    switch (stratus_tree_node_kind(node)) {
-      case STRATUS_NODE_BRICKS:
-        walk_bricks(w, node);
-        break;
-      case STRATUS_NODE_FIELD:
-        walk_field(w, &tree->fields[node->first], now.enter, now.leave);
-        break;
-      case STRATUS_NODE_INNER: {
-        pending child[2];
-        bool met[2];
-        for (uint32_t c = 0; c < 2; ++c) {
-          const stratus_tree_node* n = &tree->nodes[node->first + c];
-          child[c].node = node->first + c;
-          met[c] = meets_box(w, n->lo, n->hi, &child[c].enter, &child[c].leave);
-        }
-        const int near = met[0] && (!met[1] || child[0].enter <= child[1].enter) ? 0 : 1;
-        if (met[1 - near]) {
-          stack[top++] = child[1 - near];
-        }
-        if (met[near]) {
-          stack[top++] = child[near];
-        }
-        break;
-      }
+    if (stratus_tree_node_kind(node) != STRATUS_NODE_INNER) {
+      walk_leaf(w, node);
+      end = w->hit->t < INFINITY ? fminf(end, of_t(&k, w->hit->t)) : end;
+      continue;
+    }
+    pending child[2] = { { node->first, 0.0f }, { node->first + 1, 0.0f } };
+    const bool left = may_meet(&k, &tree->nodes[node->first], end, &child[0].enter);
+    const bool right = may_meet(&k, &tree->nodes[node->first + 1], end, &child[1].enter);
+    if (left && right) {
+      const int near = child[0].enter <= child[1].enter ? 0 : 1;
+      stack[top++] = child[1 - near];
+      stack[top++] = child[near];
+    } else if (left || right) {
+      stack[top++] = child[left ? 0 : 1];
     }
   }
 }
