@@ -846,6 +846,53 @@ typedef struct stratus_visibility_result {
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 
+/* ---------------------------------------------------------------- tetrahedra picture
+ * Rays march from cell to cell through faces. Every cell that a ray meets counts with its exact thickness, its field linear between where the
+ * ray enters and leaves (a cell's own value: constant), the transfer function pre-integrated over it. No order is needed, and gaps, hollows and
+ * several parts are walked in the order in which the ray meets their borders. Which faces a ray meets is decided exactly, in one plane
+ * for all cells, so that no ray slips between two cells or meets a face twice. Folded and inverted cells are drawn as parts of their own: where
+ * cells overlap, both count, one after the other. */
+
+typedef enum stratus_tetra_mode {
+  STRATUS_TETRA_COMPOSITE, /* light through the whole of a ray */
+  STRATUS_TETRA_MAXIMUM    /* the largest value on a ray: its colour, at the opacity of one unit distance */
+} stratus_tetra_mode;
+
+typedef struct stratus_tetra_options {
+  stratus_tetra_mode mode; /* default composite */
+  double termination;      /* a ray ends when its alpha passes this, 0..1; default .999. Not in mode maximum. */
+} stratus_tetra_options;
+
+STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
+
+typedef struct stratus_tetra_report {
+  uint64_t rays;     /* pixels whose ray meets a cell, in front of the eye or behind it */
+  uint64_t entries;  /* faces through which rays came in from outside */
+  uint64_t segments; /* cells that rays passed, those before the near plane included */
+  uint64_t stuck;    /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
+  int64_t cells, shown_cells;      /* of the mesh; those neither hidden nor of values that are not finite */
+  int64_t border_faces;            /* of shown cells */
+  int64_t flat, inverted, broken_faces, folded_faces; /* cells without volume, of negative orientation; faces shared by more than two; by two on
+                                                       * the same side */
+  uint64_t mesh_builds, table_builds; /* since the caster was created: a camera move raises none */
+  double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* of this call; 0: not done */
+  size_t bytes;      /* of what is kept for the mesh, and a frame's */
+} stratus_tetra_report;
+
+typedef struct stratus_tetra_caster stratus_tetra_caster;
+
+STRATUS_API stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** caster);
+STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
+
+/* Draws on the host, whatever the context's device. The mesh must have values; it is read when pointers, counts, type, stride or revision
+ * differ from the last call's, else only its matrix. Opacity is per world length. image: samples gets the segments of the pixel;
+ * depth the world distance to the first segment that contributes (maximum: to where the largest value is). options, report may be NULL. A failed
+ * call leaves the picture undefined, and the caster fit for the next call. At most 2^31/6 cells and 2^30 points: more are STRATUS_UNSUPPORTED. */
+STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
+/* Frees what was built; the next render builds anew. */
+STRATUS_API void stratus_tetra_caster_release(stratus_tetra_caster* caster);
+
 /* ---------------------------------------------------------------- scenes of record
  * The volumes that tests, benchmarks, examples and the command line share. */
 
