@@ -60,14 +60,16 @@ static bool usable(const stratus_hit_batch* batch, const stratus_ray* ray)
   return isfinite(sum) && isfinite(length) && isfinite(1.0 / length) && !isnan(ray->t_max);
 }
 
-/* One chunk's answers; false if ray *bad of it can't be used. */
-static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count,
+/* One chunk's answers; false if ray *bad of it can't be used. more: rays behind the chunk's. */
+static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count, size_t more,
   stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
 {
   if (functions) {
     if (!functions->prepare(batch, rays, count, chunk, bad)) {
       return false;
     }
+    chunk->ahead = (const char*)(rays + count);
+    chunk->ahead_bytes = (size_t)(more < STRATUS_HIT_CHUNK ? more : STRATUS_HIT_CHUNK) * sizeof *rays;
     functions->walk(batch, chunk);
     functions->finish(batch, rays, chunk, hits);
     return true;
@@ -120,7 +122,8 @@ static stratus_status run_host(
     for (int64_t c = 0; c < chunks; ++c) {
       const size_t first = (size_t)c * STRATUS_HIT_CHUNK, left = count - first;
       int bad = 0;
-      if (!run_chunk(batch, functions, rays + first, left < STRATUS_HIT_CHUNK ? (int)left : STRATUS_HIT_CHUNK, chunk, hits + first, &bad)) {
+      const int n = left < STRATUS_HIT_CHUNK ? (int)left : STRATUS_HIT_CHUNK;
+      if (!run_chunk(batch, functions, rays + first, n, left - (size_t)n, chunk, hits + first, &bad)) {
         worst = (int64_t)first + bad < worst ? (int64_t)first + bad : worst;
       }
     }

@@ -22,6 +22,8 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
 /* A chunk's rays as traversal takes them, `count` of them. end < 0: it misses the root's box. */
 typedef struct stratus_hit_chunk {
   int count;
+  const char* ahead;  /* memory of the next chunk's rays, .. */
+  size_t ahead_bytes; /* .. asked for while this chunk is walked */
   float o[3][STRATUS_HIT_CHUNK], d[3][STRATUS_HIT_CHUNK], inverse[3][STRATUS_HIT_CHUNK], end[STRATUS_HIT_CHUNK];
   int cell[3][STRATUS_HIT_CHUNK];
   int state[STRATUS_HIT_CHUNK], visited[STRATUS_HIT_CHUNK]; /* out: STRATUS_HIT_*, steps; cell: the voxel */

@@ -14,20 +14,22 @@
 
 /* ---------------------------------------------------------------- in */
 
+#define SHORTEST 1e-290 /* of a direction's longest component */
+#define HAIR 4e-7       /* of t found in floats, over t */
+
 /* Loops over a chunk, written so that the compiler makes vectors of them. */
 #define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 
-/* The ray in voxel coordinates; 0 if all of its numbers can be used. */
-static double transform(const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* first, double* last)
+/* The ray in voxel coordinates. */
+static void transform(const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* restrict first, double* restrict last)
 {
   const double* m = batch->to_voxels;
   const int n = chunk->count;
-  double finite = 0.0;
   for (int a = 0; a < 3; ++a) {
-    double *const from = chunk->from[a], *const along = chunk->along[a];
+    double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
     const double x = m[4 * a], y = m[4 * a + 1], z = m[4 * a + 2], w = m[4 * a + 3];
     EACH_RAY
     {
@@ -39,76 +41,84 @@ static double transform(const stratus_hit_batch* batch, const stratus_ray* rays,
     first[i] = rays[i].t_min;
     last[i] = rays[i].t_max;
   }
-#pragma omp simd reduction(+ : finite)
-  for (int i = 0; i < n; ++i) {
-    const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
-    finite += 0.0 * (chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length);
-    finite += last[i] == last[i] ? 0.0 : 1.0;
-  }
-  return finite;
 }
 
-static int find_bad(const stratus_hit_chunk* chunk, const double* first, const double* last)
+/* Lengths of the longest component; 0 is returned if all numbers can be used. */
+static double measure(const stratus_hit_chunk* chunk, const double* restrict first, const double* restrict last, double* restrict most)
+{
+  const int n = chunk->count;
+  double wrong = 0.0;
+#pragma omp simd reduction(+ : wrong)
+  for (int i = 0; i < n; ++i) {
+    const double longest = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
+    const double sum = chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
+    most[i] = longest;
+    wrong += 0.0 * (sum + first[i]) + (longest >= SHORTEST ? 0.0 : 1.0) + (last[i] == last[i] ? 0.0 : 1.0);
+  }
+  return wrong;
+}
+
+static int find_bad(const stratus_hit_chunk* chunk, const double* first, const double* last, const double* most)
 {
   int i = 0;
   for (; i < chunk->count - 1; ++i) {
-    const double length = fabs(chunk->along[0][i]) + fabs(chunk->along[1][i]) + fabs(chunk->along[2][i]);
-    if (!isfinite(chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + length + first[i] + 1.0 / length) || isnan(last[i])) {
+    const double sum = chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
+    if (!isfinite(sum + first[i]) || !(most[i] >= SHORTEST) || isnan(last[i])) {
       break;
     }
   }
   return i;
 }
 
-/* Cuts each ray to the root's box. */
-static void clip(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, double* first, double* last)
-{
-  const int n = chunk->count;
-  for (int a = 0; a < 3; ++a) {
-    const double lo = batch->lo[a], hi = batch->hi[a];
-    const double *const from = chunk->from[a], *const along = chunk->along[a];
-    EACH_RAY
-    {
-      const double d = along[i], inverse = 1.0 / (fabs(d) < 1e-300 ? 1e-300 : d);
-      const double t0 = (lo - from[i]) * inverse, t1 = (hi - from[i]) * inverse;
-      first[i] = larger(first[i], smaller(t0, t1));
-      last[i] = smaller(last[i], larger(t0, t1));
-    }
-  }
-}
-
+/* From here on t is in lengths of the ray's longest component. Where the ray enters the root's box is found in floats, a hair early: it only tells
+ * where the walk begins, and a voxel that is met there by mistake is found out when its hit is made. */
 static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
 {
-  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], scale[STRATUS_HIT_CHUNK];
+  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], most[STRATUS_HIT_CHUNK];
   const int n = count;
-  const float slack = 8.0f * batch->slack;
+  const double slack = 8.0 * (double)batch->slack;
   chunk->count = count;
-  if (!(transform(batch, rays, chunk, first, last) == 0.0)) {
-    *bad = find_bad(chunk, first, last);
+  transform(batch, rays, chunk, first, last);
+  if (!(measure(chunk, first, last, most) == 0.0)) {
+    *bad = find_bad(chunk, first, last, most);
     return false;
   }
-  clip(batch, chunk, first, last);
   EACH_RAY
   {
-    const double most = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
-    /* The box is left a hair late: what begins or ends within rounding of its border is looked at. */
-    const double hair = 1e-12 * (fabs(first[i]) + smaller(fabs(last[i]), 1e300)) * most, length = (last[i] - first[i]) * most;
-    chunk->end[i] = length + hair >= 0.0 ? (float)smaller(length, 1e30) + slack : -1.0f;
-    scale[i] = 1.0 / most;
+    first[i] = first[i] * most[i];
+    last[i] = smaller(last[i], 1e300) * most[i];
+    most[i] = 1.0 / most[i];
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = batch->lo[a], hi = batch->hi[a];
+    const double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
+    float *restrict const d = chunk->d[a], *restrict const inverse = chunk->inverse[a];
+    EACH_RAY
+    {
+      const float unit = (float)(along[i] * most[i]);
+      d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
+      inverse[i] = 1.0f / d[i];
+      const double t0 = (lo - from[i]) * (double)inverse[i], t1 = (hi - from[i]) * (double)inverse[i];
+      const double enter = smaller(t0, t1), leave = larger(t0, t1);
+      first[i] = larger(first[i], enter - HAIR * fabs(enter));
+      last[i] = smaller(last[i], leave + HAIR * fabs(leave));
+    }
+  }
+  EACH_RAY
+  {
+    const double length = last[i] - first[i];
+    chunk->end[i] = length + slack >= 0.0 ? (float)(smaller(length, 1e30) + slack) : -1.0f;
   }
   for (int a = 0; a < 3; ++a) {
     const double lo = batch->lo[a], inside = batch->hi[a] - 0.5; /* in the last voxel */
-    const double *const from = chunk->from[a], *const along = chunk->along[a];
-    float *const o = chunk->o[a], *const d = chunk->d[a], *const inverse = chunk->inverse[a];
-    int* const cell = chunk->cell[a];
+    const double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
+    float* restrict const o = chunk->o[a];
+    int* restrict const cell = chunk->cell[a];
     EACH_RAY
     {
-      const double p = from[i] + first[i] * along[i];
+      const double p = from[i] + first[i] * (along[i] * most[i]);
       o[i] = (float)p;
       cell[i] = (int)smaller(larger(p, lo), inside);
-      const float unit = (float)(along[i] * scale[i]);
-      d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
-      inverse[i] = 1.0f / d[i];
     }
   }
   return true;
@@ -249,6 +259,9 @@ static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_
 /* Packets side by side: a step is a chain of loads and sums that wait for each other, and while one packet waits the next computes. */
 #define PACKETS 2
 
+/* Lines of the next rays that are asked for with each step: memory would else be waited for at the beginning of each chunk. */
+#define LINES 4
+
 static inline __attribute__((always_inline)) void walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
   stratus_hit_chunk* chunk, const int octants, const int entry_bytes, const int cell_log2)
 {
@@ -260,7 +273,12 @@ static inline __attribute__((always_inline)) void walk_field(const stratus_hit_b
   for (int p = 0; p < PACKETS; ++p) {
     s[p] = (stream){ .chunk = chunk, .next = &next, .id = vi_set(-1) };
   }
+  const char* const ahead = chunk->ahead;
+  size_t asked = 0;
   for (bool busy = true; busy;) {
+    for (int line = 0; line < LINES && asked < chunk->ahead_bytes; ++line, asked += 64) {
+      __builtin_prefetch(ahead + asked);
+    }
     busy = false;
     for (int p = 0; p < PACKETS; ++p) {
       busy |= keep_busy(a, &s[p], &k[p]);
