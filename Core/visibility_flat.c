@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Cells without volume lie on no side of their faces, but what lies before and behind them still hides one another through them. So they get the
+ * side on which they would lie were they blown up a little: the one that fits a neighbour's, passed on from cell to cell. */
+#include "visibility_order.h"
+
+/* The neighbour's face that names the same points, -1 if none does; signs as stratus_face_points() returns them. */
+static int find_face(const stratus_visibility_order* order, int64_t cell, int f, int64_t neighbour, int* sign, int* neighbour_sign)
+{
+  int32_t points[3], other[3];
+  *sign = stratus_face_points(order->vertices + 4 * cell, f, points);
+  for (int g = 0; g < 4; g++) {
+    *neighbour_sign = stratus_face_points(order->vertices + 4 * neighbour, g, other);
+    if (points[0] == other[0] && points[1] == other[1] && points[2] == other[2] && order->adjacency->neighbours[4 * neighbour + g] == cell) {
+      return g;
+    }
+  }
+  return -1;
+}
+
+/* The side of a cell that a neighbour's side asks for; 0: none. */
+static int wanted_side(const stratus_visibility_order* order, int64_t cell, int f)
+{
+  const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
+  int sign, neighbour_sign;
+  if (neighbour < 0 || order->side[neighbour] == 0 || find_face(order, cell, f, neighbour, &sign, &neighbour_sign) < 0) {
+    return 0;
+  }
+  return -sign * neighbour_sign * order->side[neighbour];
+}
+
+/* The queue only ever holds flat cells that have a side, each once. */
+static void spread_sides(stratus_visibility_order* order, uint32_t* queue)
+{
+  int64_t end = 0;
+  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+    for (int f = 0; f < 4 && order->side[cell] == 0; f++) {
+      const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
+      if (neighbour >= 0 && order->adjacency->orientation[neighbour] != 0) {
+        order->side[cell] = (int8_t)wanted_side(order, cell, f);
+        if (order->side[cell] != 0) {
+          queue[end++] = (uint32_t)cell;
+        }
+      }
+    }
+  }
+  for (int64_t begin = 0; begin < end; begin++) {
+    const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)queue[begin];
+    for (int f = 0; f < 4; f++) {
+      const int64_t neighbour = neighbours[f];
+      for (int g = 0; g < 4 && neighbour >= 0 && order->side[neighbour] == 0; g++) {
+        if (order->adjacency->neighbours[4 * neighbour + g] == (int32_t)queue[begin]) {
+          order->side[neighbour] = (int8_t)wanted_side(order, neighbour, g);
+          if (order->side[neighbour] != 0) {
+            queue[end++] = (uint32_t)neighbour;
+          }
+        }
+      }
+    }
+  }
+}
+
+void stratus_order_side_flat_cells(stratus_visibility_order* order, uint32_t* queue)
+{
+  if (order->adjacency->flat == 0) {
+    return;
+  }
+  spread_sides(order, queue);
+  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+    for (int f = 0; f < 4 && order->adjacency->orientation[cell] == 0; f++) {
+      const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
+      int sign, neighbour_sign;
+      const int g = neighbour < 0 ? -1 : find_face(order, cell, f, neighbour, &sign, &neighbour_sign);
+      if (g >= 0 && order->side[cell] * order->side[neighbour] * sign * neighbour_sign >= 0) {
+        order->adjacency->neighbours[4 * cell + f] = order->adjacency->neighbours[4 * neighbour + g] = -1;
+        order->adjacency->folded_faces += 2;
+      }
+    }
+  }
+}

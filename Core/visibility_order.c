@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Visibility order of a mesh's cells (Williams 1992; Li et al. 2012): neighbours once a mesh, then for each view the signs of all faces, in
+ * parallel, and the leaves of the K-D tree peeled one by one, in parallel. */
+#include "visibility_order.h"
+
+#include <omp.h>
+#include <string.h>
+
+#define COORDINATE_MAX 1e300 /* so that differences are finite */
+
+static stratus_status find_bounds(stratus_visibility_order* order)
+{
+  double* b = order->bounds;
+  double lx = INFINITY, ly = INFINITY, lz = INFINITY, hx = -INFINITY, hy = -INFINITY, hz = -INFINITY;
+#pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(min : lx, ly, lz) reduction(max : hx, hy, hz)
+  for (int64_t i = 0; i < order->point_count; i++) {
+    const double* p = order->points + 3 * i;
+    lx = fmin(lx, p[0]);
+    ly = fmin(ly, p[1]);
+    lz = fmin(lz, p[2]);
+    hx = fmax(hx, p[0]);
+    hy = fmax(hy, p[1]);
+    hz = fmax(hz, p[2]);
+  }
+  if (order->point_count > 0) {
+    memcpy(b, (const double[]){ lx, hx, ly, hy, lz, hz }, 6 * sizeof *b);
+  }
+  for (int i = 0; i < 6; i++) {
+    if (!(fabs(b[i]) <= COORDINATE_MAX)) {
+      return stratus_fail(order->context, STRATUS_INVALID_ARGUMENT, "mesh reaches %g, beyond +-%g", b[i], COORDINATE_MAX);
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status allocate_part(stratus_visibility_order* order, size_t count, size_t size, void** memory)
+{
+  TRY(stratus_allocate(order->context, count, size, memory));
+  order->bytes += count * size;
+  return STRATUS_OK;
+}
+
+static stratus_status allocate_order(stratus_visibility_order* order)
+{
+  const size_t cells = (size_t)order->cell_count;
+  void* memory;
+  TRY(allocate_part(order, (size_t)order->point_count, 3 * sizeof *order->seen, &memory));
+  order->seen = memory;
+  TRY(allocate_part(order, cells, sizeof *order->state, &memory));
+  order->state = memory;
+  TRY(allocate_part(order, cells, sizeof *order->waiting, &memory));
+  order->waiting = memory;
+  TRY(allocate_part(order, cells, sizeof *order->key, &memory));
+  order->key = memory;
+  TRY(allocate_part(order, cells, sizeof *order->next, &memory));
+  order->next = memory;
+  TRY(allocate_part(order, cells, sizeof *order->cells, &memory));
+  order->cells = memory;
+  TRY(allocate_part(order, (size_t)order->context->threads, STRATUS_BUCKETS_MAX * sizeof *order->heads, &memory));
+  order->heads = memory;
+  return STRATUS_OK;
+}
+
+static stratus_status build_order(stratus_visibility_order* order, const stratus_mesh* mesh, const stratus_leaves* leaves)
+{
+  stratus_context* context = order->context;
+  const size_t cells = (size_t)order->cell_count;
+  void* memory;
+  TRY(find_bounds(order));
+  TRY(stratus_adjacency_create(context, mesh, &order->adjacency));
+  order->bytes += cells * (4 * sizeof(int32_t) + sizeof(int8_t)) + sizeof *order;
+  order->side = order->adjacency->orientation;
+  if (order->adjacency->flat > 0) { /* else no cell needs another side than its own */
+    TRY(allocate_part(order, cells, sizeof *order->side, &memory));
+    order->side = memcpy(memory, order->adjacency->orientation, cells * sizeof *order->side);
+  }
+  TRY(allocate_order(order));
+  stratus_order_side_flat_cells(order, order->next);
+  TRY(stratus_order_join_seams(order));
+  TRY(stratus_order_take_leaves(order, leaves));
+  return stratus_progress(context, "visibility order", 1.0);
+}
+
+stratus_status stratus_visibility_order_create(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** out)
+{
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "order is NULL");
+  }
+  const double begin = stratus_now_ms();
+  void* memory = NULL;
+  TRY(stratus_mesh_check(context, mesh));
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_visibility_order), &memory));
+  stratus_visibility_order* order = memory;
+  order->context = context;
+  order->points = mesh->points;
+  order->vertices = mesh->vertices;
+  order->point_count = mesh->point_count;
+  order->cell_count = mesh->cell_count;
+  memcpy(order->matrix, mesh->matrix, sizeof order->matrix);
+  const stratus_status status = build_order(order, mesh, leaves);
+  if (status != STRATUS_OK) {
+    stratus_visibility_order_destroy(order);
+    return status;
+  }
+  order->build_ms = stratus_now_ms() - begin;
+  *out = order;
+  return STRATUS_OK;
+}
+
+void stratus_visibility_order_destroy(stratus_visibility_order* order)
+{
+  if (!order) {
+    return;
+  }
+  stratus_context* context = order->context;
+  if (order->adjacency && order->side != order->adjacency->orientation) {
+    stratus_release(context, order->side);
+  }
+  stratus_adjacency_destroy(order->adjacency);
+  stratus_release(context, order->nodes);
+  stratus_release(context, order->listed);
+  stratus_release(context, order->leaf_begin);
+  stratus_release(context, order->leaf_order);
+  stratus_release(context, order->leaf_output);
+  stratus_release(context, order->seen);
+  stratus_release(context, order->state);
+  stratus_release(context, order->waiting);
+  stratus_release(context, order->key);
+  stratus_release(context, order->next);
+  stratus_release(context, order->cells);
+  stratus_release(context, order->heads);
+  stratus_release(context, order);
+}
+
+/* The eye and direction in the mesh's coordinates: what rounding moves them by is the same for every cell. */
+static stratus_status find_view(stratus_visibility_order* order, const stratus_camera* camera, const double matrix[16], stratus_view* view)
+{
+  stratus_context* context = order->context;
+  double inverse[16], largest = 0.0;
+  if (!camera) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
+  }
+  for (int i = 0; matrix && i < 16; i++) {
+    if (!isfinite(matrix[i]) || (i >= 12 && matrix[i] != (i == 15))) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "matrix[%d] is %g, must be finite, and the last row 0 0 0 1", i, matrix[i]);
+    }
+  }
+  if (!stratus_matrix_invert_affine(matrix ? matrix : order->matrix, inverse)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "matrix is singular, must be invertible");
+  }
+  *view = (stratus_view){ .parallel = camera->parallel != 0 };
+  if (view->parallel) {
+    stratus_matrix_vector(inverse, camera->forward, view->direction);
+  } else {
+    stratus_matrix_point(inverse, camera->eye, view->eye);
+  }
+  for (int a = 0; a < 3; a++) {
+    const double number = view->parallel ? view->direction[a] : view->eye[a];
+    if (!(fabs(number) <= COORDINATE_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera %s[%d] is %g in the mesh's coordinates, outside +-%g",
+        view->parallel ? "forward" : "eye", a, number, COORDINATE_MAX);
+    }
+    largest = fmax(largest, fabs(number));
+  }
+  if (view->parallel && largest == 0.0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera forward is (0, 0, 0), must have a length");
+  }
+  return STRATUS_OK;
+}
+
+static bool same_view(const stratus_view* p, const stratus_view* q)
+{
+  const double *a = p->parallel ? p->direction : p->eye, *b = q->parallel ? q->direction : q->eye;
+  return p->parallel == q->parallel && a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling, stratus_visibility_result* result)
+{
+  int64_t cycles = 0, forced = 0;
+  int layers = 0;
+  const int threads = order->leaf_count < order->context->threads ? order->leaf_count : order->context->threads;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(+ : cycles, forced) reduction(max : layers)
+  for (int32_t i = 0; i < order->leaf_count; i++) {
+    const stratus_peel_counts counts = stratus_order_peel_leaf(
+      order, order->leaf_order[i], peeling, order->heads + (size_t)omp_get_thread_num() * STRATUS_BUCKETS_MAX);
+    cycles += counts.cycles;
+    forced += counts.forced;
+    layers = counts.layers > layers ? counts.layers : layers;
+  }
+  result->cycles = cycles;
+  result->forced = forced;
+  result->layers = layers;
+}
+
+stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera, const double matrix[16],
+  stratus_peeling peeling, stratus_visibility_result* result)
+{
+  if (!order) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  stratus_context* context = order->context;
+  if (!result) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "result is NULL");
+  }
+  if (peeling != STRATUS_PEELING_NEAREST && peeling != STRATUS_PEELING_LAYERS) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "peeling %d outside %d..%d", (int)peeling, STRATUS_PEELING_NEAREST, STRATUS_PEELING_LAYERS);
+  }
+  stratus_view view;
+  TRY(find_view(order, camera, matrix, &view));
+  if (order->sorted && order->peeling == peeling && same_view(&view, &order->view)) {
+    order->result.reused = 1;
+    order->result.signs_ms = order->result.peel_ms = 0.0;
+    *result = order->result;
+    return STRATUS_OK;
+  }
+  order->sorted = false;
+  order->view = view;
+  order->peeling = peeling;
+  const stratus_adjacency* adjacency = order->adjacency;
+  stratus_visibility_result found = { .cells = order->cells,
+    .count = order->cell_count,
+    .flat = adjacency->flat,
+    .folded = adjacency->folded_faces,
+    .inverted = adjacency->inverted,
+    .bytes = order->bytes,
+    .build_ms = order->build_ms };
+  const double begin = stratus_now_ms();
+  found.exact_signs = stratus_order_find_signs(order, &view);
+  const double signs_end = stratus_now_ms();
+  TRY(stratus_progress(context, "visibility order", 0.5));
+  stratus_order_sort_leaves(order, &view);
+  peel_leaves(order, peeling, &found);
+  found.signs_ms = signs_end - begin;
+  found.peel_ms = stratus_now_ms() - signs_end;
+  order->result = found;
+  order->sorted = true;
+  *result = found;
+  return STRATUS_OK;
+}
