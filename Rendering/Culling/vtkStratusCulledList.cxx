@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusCulledList.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+#define TRY(call)                                                                                                                          \
+  do {                                                                                                                                     \
+    const stratus_status tried = (call);                                                                                                   \
+    if (tried != STRATUS_OK) {                                                                                                             \
+      return tried;                                                                                                                        \
+    }                                                                                                                                      \
+  } while (0)
+
+namespace {
+// As vtkFrustumCoverageCuller allots them: little to what has no bounds, such as a title, less to a point.
+constexpr float ShareWithoutBounds = 1e-3f;
+constexpr double ShareOfPoint = 1e-4;
+
+bool Same(const double a[6], const double b[6])
+{
+  return std::memcmp(a, b, 6 * sizeof(double)) == 0; // NaN are equal here
+}
+
+// The prop's bounds, or NaN and a share where they are not to be used.
+void Ask(vtkProp* prop, double bounds[6], float& share)
+{
+  const bool use = prop->GetUseBounds();
+  const double* given = use ? prop->GetBounds() : nullptr;
+  share = use ? ShareWithoutBounds : 1.0f;
+  bool good = given != nullptr;
+  for (int a = 0; good && a < 3; ++a) {
+    good = given[2 * a] <= given[2 * a + 1] && std::fabs(given[2 * a]) <= 1e30 && std::fabs(given[2 * a + 1]) <= 1e30;
+  }
+  if (good) {
+    std::copy(given, given + 6, bounds);
+    share = -1.0f;
+  } else {
+    std::fill(bounds, bounds + 6, std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void SetBit(std::vector<uint64_t>& bits, size_t bit)
+{
+  bits[bit / 64] |= uint64_t(1) << (bit % 64);
+}
+
+bool GetBit(const std::vector<uint64_t>& bits, size_t bit)
+{
+  return (bits[bit / 64] >> (bit % 64) & 1) != 0;
+}
+} // namespace
+
+vtkStratusCulledList::~vtkStratusCulledList()
+{
+  this->Close();
+}
+
+void vtkStratusCulledList::Close()
+{
+  stratus_octree_view_destroy(this->View);
+  stratus_octree_destroy(this->Octree);
+  this->View = nullptr;
+  this->Octree = nullptr;
+  this->Order.clear();
+  this->Positions.clear();
+  this->Slots.clear();
+  this->Seen.clear();
+}
+
+stratus_status vtkStratusCulledList::Open(stratus_context* context, const stratus_octree_options& options)
+{
+  this->Close();
+  stratus_status status = stratus_octree_create(context, &options, &this->Octree);
+  if (status == STRATUS_OK) {
+    status = stratus_octree_view_create(this->Octree, &this->View);
+  }
+  if (status != STRATUS_OK) {
+    this->Close();
+  }
+  return status;
+}
+
+stratus_octree_statistics vtkStratusCulledList::GetStatistics() const
+{
+  stratus_octree_statistics statistics = {};
+  if (this->Octree) {
+    stratus_octree_get_statistics(this->Octree, &statistics);
+  }
+  return statistics;
+}
+
+// ---- the renderer's list
+
+stratus_status vtkStratusCulledList::Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll)
+{
+  watch.NextLook();
+  this->Asked = 0;
+  stratus_status status = this->Match(props, static_cast<size_t>(count), watch);
+  if (status == STRATUS_OK && (ask || askAll)) {
+    status = this->Refresh(watch, askAll);
+  }
+  if (status != STRATUS_OK) {
+    this->Close();
+  }
+  return status;
+}
+
+// Lists differ little from frame to frame: what they begin and end with alike is left alone. A prop at the address of one that is gone is not alike,
+// since pointers to what is gone are NULL.
+stratus_status vtkStratusCulledList::Match(vtkProp** props, size_t count, vtkStratusBoundsWatch& watch)
+{
+  const size_t before = this->Order.size(), shorter = std::min(before, count);
+  size_t first = 0, last = 0;
+  while (first < shorter && this->Slots[this->Order[first]].Prop.GetPointer() == props[first]) {
+    ++first;
+  }
+  if (first == before && first == count) {
+    return STRATUS_OK;
+  }
+  while (last < shorter - first && this->Slots[this->Order[before - 1 - last]].Prop.GetPointer() == props[count - 1 - last]) {
+    ++last;
+  }
+  return this->Replace(props, first, before - last, count - last, watch);
+}
+
+stratus_status vtkStratusCulledList::Replace(
+  vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch)
+{
+  std::unordered_map<vtkProp*, uint32_t> known;
+  std::vector<uint32_t> gone, ids(newEnd - first);
+  for (size_t i = first; i < oldEnd; ++i) {
+    const uint32_t id = this->Order[i];
+    vtkProp* prop = this->Slots[id].Prop;
+    if (!prop || !known.emplace(prop, id).second) {
+      gone.push_back(id);
+    }
+  }
+  std::vector<Slot> slots;
+  std::vector<size_t> places; // in ids
+  for (size_t i = first; i < newEnd; ++i) {
+    const auto found = known.find(props[i]);
+    if (found != known.end()) {
+      ids[i - first] = found->second;
+      known.erase(found);
+      continue;
+    }
+    Slot slot;
+    slot.Prop = props[i];
+    watch.Changed(props[i], slot.Watched); // the times from before the bounds: what changes in between is seen at the next look
+    Ask(props[i], slot.Bounds, slot.Share);
+    ++this->Asked;
+    slots.push_back(slot);
+    places.push_back(i - first);
+  }
+  for (const auto& entry : known) {
+    gone.push_back(entry.second);
+  }
+  TRY(stratus_octree_remove(this->Octree, gone.data(), gone.size()));
+  for (const uint32_t id : gone) {
+    this->Slots[id] = Slot();
+  }
+  TRY(this->Insert(slots, places, ids));
+  this->Order.erase(this->Order.begin() + static_cast<ptrdiff_t>(first), this->Order.begin() + static_cast<ptrdiff_t>(oldEnd));
+  this->Order.insert(this->Order.begin() + static_cast<ptrdiff_t>(first), ids.begin(), ids.end());
+  for (size_t i = first; i < this->Order.size(); ++i) {
+    this->Positions[this->Order[i]] = static_cast<uint32_t>(i);
+  }
+  return STRATUS_OK;
+}
+
+stratus_status vtkStratusCulledList::Insert(const std::vector<Slot>& slots, const std::vector<size_t>& places, std::vector<uint32_t>& ids)
+{
+  if (slots.empty()) {
+    return STRATUS_OK;
+  }
+  std::vector<double> bounds;
+  std::vector<uint32_t> made(slots.size());
+  for (const Slot& slot : slots) {
+    bounds.insert(bounds.end(), slot.Bounds, slot.Bounds + 6);
+  }
+  TRY(stratus_octree_insert(this->Octree, bounds.data(), slots.size(), made.data()));
+  const size_t limit = stratus_octree_id_limit(this->Octree);
+  if (this->Slots.size() < limit) {
+    this->Slots.resize(limit);
+    this->Positions.resize(limit);
+    this->Seen.resize((limit + 63) / 64, 0);
+  }
+  for (size_t i = 0; i < slots.size(); ++i) {
+    this->Slots[made[i]] = slots[i];
+    SetBit(this->Seen, made[i]); // its time is its own yet: 0 from the first look on that does not see it
+    ids[places[i]] = made[i];
+  }
+  return STRATUS_OK;
+}
+
+stratus_status vtkStratusCulledList::Refresh(vtkStratusBoundsWatch& watch, bool askAll)
+{
+  std::vector<uint32_t> moved;
+  std::vector<double> bounds;
+  for (const uint32_t id : this->Order) {
+    Slot& slot = this->Slots[id];
+    vtkProp* prop = slot.Prop;
+    if (!prop || (!watch.Changed(prop, slot.Watched) && !askAll)) {
+      continue;
+    }
+    double now[6];
+    Ask(prop, now, slot.Share);
+    ++this->Asked;
+    if (!Same(now, slot.Bounds)) {
+      std::copy(now, now + 6, slot.Bounds);
+      bounds.insert(bounds.end(), now, now + 6);
+      moved.push_back(id);
+    }
+  }
+  return moved.empty() ? STRATUS_OK : stratus_octree_move(this->Octree, moved.data(), bounds.data(), moved.size());
+}
+
+// ---- what is seen
+
+void vtkStratusCulledList::Mark(const stratus_octree_visible& visible)
+{
+  this->SeenBefore.swap(this->Seen);
+  this->Seen.assign(this->SeenBefore.size(), 0);
+  this->Marks.assign((this->Order.size() + 63) / 64, 0);
+  this->Ranks.resize(this->Order.size());
+  for (size_t i = 0; i < visible.count; ++i) {
+    const uint32_t position = this->Positions[visible.ids[i]];
+    SetBit(this->Marks, position);
+    this->Ranks[position] = static_cast<uint32_t>(i);
+  }
+}
+
+double vtkStratusCulledList::Time(const stratus_octree_visible& visible, size_t position, const Policy& policy, double& depth)
+{
+  const uint32_t rank = this->Ranks[position];
+  const float share = this->Slots[visible.ids[rank]].Share;
+  if (share >= 0.0f) {
+    depth = -std::numeric_limits<double>::infinity(); // before all others, in the list's order
+    return share;
+  }
+  depth = visible.depth[rank];
+  double coverage = visible.coverage[rank];
+  if (!(coverage > 0.0) && policy.MinimumCoverage == 0.0) {
+    coverage = ShareOfPoint;
+  }
+  if (coverage < policy.MinimumCoverage) {
+    return 0.0;
+  }
+  return coverage > policy.MaximumCoverage ? 1.0 : (coverage - policy.MinimumCoverage) / policy.MaximumCoverage;
+}
+
+// Of those that were seen the last time and are no more.
+void vtkStratusCulledList::ClearTimes()
+{
+  for (size_t word = 0; word < this->Seen.size(); ++word) {
+    uint64_t bits = this->SeenBefore[word] & ~this->Seen[word];
+    for (size_t id = 64 * word; bits != 0; ++id, bits >>= 1) {
+      vtkProp* prop = (bits & 1) != 0 ? this->Slots[id].Prop.GetPointer() : nullptr;
+      if (prop) {
+        prop->SetRenderTimeMultiplier(0.0);
+      }
+    }
+  }
+}
+
+stratus_status vtkStratusCulledList::Cull(
+  const stratus_frustum& frustum, const Policy& policy, bool initialized, vtkProp** props, int& seen, double& total)
+{
+  stratus_octree_cull_options options = {};
+  options.exact = policy.Exact;
+  options.coverage = 1;
+  stratus_octree_visible visible;
+  TRY(stratus_octree_cull(this->View, &frustum, &options, &visible));
+  this->Mark(visible);
+  this->Kept.clear();
+  this->Rest.clear();
+  total = 0.0;
+  for (size_t position = 0; position < this->Order.size(); ++position) {
+    Entry entry = { props[position], 0.0 };
+    double time = GetBit(this->Marks, position) ? this->Time(visible, position, policy, entry.Depth) : 0.0;
+    time *= time > 0.0 && initialized ? entry.Prop->GetRenderTimeMultiplier() : 1.0;
+    if (!(time > 0.0)) {
+      this->Rest.push_back(entry.Prop);
+      continue;
+    }
+    entry.Prop->SetRenderTimeMultiplier(time);
+    total += time;
+    this->Kept.push_back(entry);
+    SetBit(this->Seen, this->Order[position]);
+  }
+  this->ClearTimes();
+  if (policy.Sorting != 0) {
+    const double sign = policy.Sorting;
+    std::stable_sort(
+      this->Kept.begin(), this->Kept.end(), [sign](const Entry& a, const Entry& b) { return sign * a.Depth < sign * b.Depth; });
+  }
+  vtkProp** end = std::transform(this->Kept.begin(), this->Kept.end(), props, [](const Entry& entry) { return entry.Prop; });
+  std::copy(this->Rest.begin(), this->Rest.end(), end);
+  seen = static_cast<int>(this->Kept.size());
+  return STRATUS_OK;
+}
+
+// ---- boxes for people
+
+stratus_status vtkStratusCulledList::Boxes(const stratus_frustum* frustum, vtkPolyData* output) const
+{
+  // All twelve edges in one stroke, so that a box is one cell: three are drawn twice.
+  static const vtkIdType stroke[16] = { 0, 1, 3, 2, 0, 4, 5, 1, 5, 7, 3, 7, 6, 2, 6, 4 };
+  std::vector<stratus_octree_node> nodes(this->GetStatistics().nodes);
+  if (!nodes.empty()) {
+    TRY(stratus_octree_nodes(this->Octree, frustum, nodes.data()));
+  }
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkIntArray> levels;
+  vtkNew<vtkUnsignedCharArray> visibility, split;
+  vtkNew<vtkIdTypeArray> objects;
+  levels->SetName("Level");
+  visibility->SetName("Visibility");
+  split->SetName("Split");
+  objects->SetName("Objects");
+  points->SetDataTypeToDouble();
+  for (const stratus_octree_node& node : nodes) {
+    vtkIdType corners[8], cell[16];
+    for (int c = 0; c < 8; ++c) {
+      corners[c] = points->InsertNextPoint(node.bounds[c & 1], node.bounds[2 + (c >> 1 & 1)], node.bounds[4 + (c >> 2)]);
+    }
+    std::transform(stroke, stroke + 16, cell, [&corners](vtkIdType corner) { return corners[corner]; });
+    lines->InsertNextCell(16, cell);
+    levels->InsertNextValue(node.level);
+    visibility->InsertNextValue(static_cast<unsigned char>(node.side));
+    split->InsertNextValue(node.split != 0);
+    objects->InsertNextValue(static_cast<vtkIdType>(node.objects));
+  }
+  output->Initialize();
+  output->SetPoints(points);
+  output->SetLines(lines);
+  output->GetCellData()->SetScalars(levels);
+  output->GetCellData()->AddArray(visibility);
+  output->GetCellData()->AddArray(split);
+  output->GetCellData()->AddArray(objects);
+  return STRATUS_OK;
+}
