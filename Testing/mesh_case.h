@@ -248,7 +248,8 @@ static inline int64_t mesh_wrong_pairs(
     size = fmax(size, bounds[2 * a + 1] - bounds[2 * a]);
   }
   for (int r = 0; r < rays && mesh->cell_count > 0; r++) {
-    const int32_t* v = mesh->vertices + 4 * (mesh_random(&seed) % mesh->cell_count);
+    const int64_t through = mesh_random(&seed) % mesh->cell_count;
+    const int32_t* v = mesh->vertices + 4 * through;
     double target[3] = { 0 }, origin[3], direction[3], weight[4], sum = 0.0, length = 0.0;
     for (int i = 0; i < 4; i++) {
       sum += weight[i] = mesh_random_unit(&seed) + 1e-3;
@@ -265,6 +266,9 @@ static inline int64_t mesh_wrong_pairs(
       origin[a] = camera->parallel ? target[a] - 4.0 * size * direction[a] : camera->eye[a];
     }
     int64_t count = 0;
+    if (!mesh_clip_cell(mesh, through, origin, direction, 1e-9 * size, hits)) {
+      continue; /* a flat cell: such a ray runs between the others, in none of them */
+    }
     for (int64_t c = 0; c < mesh->cell_count; c++) {
       if (mesh_clip_box(boxes + 6 * c, origin, direction) && mesh_clip_cell(mesh, c, origin, direction, 1e-9 * size, hits + count)) {
         hits[count++].rank = rank[c];
