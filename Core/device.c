@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * OpenCL 1.2: choice of a device, buffers, launches. Calls that release are never refused, so that a lost device frees all. */
+ * OpenCL 1.2: choice of a device, buffers. Calls that release are never refused, so that a lost device frees all. */
 #include "device_state.h"
 
 #include <ctype.h>
@@ -80,10 +80,6 @@ cl_int stratus_device_next_error(stratus_device* device)
   --device->calls_left;
   return CL_SUCCESS;
 }
-
-/* The call is evaluated only where no test asked it to fail. */
-#define CALL(context, device, name, call)                                                                                                  \
-  stratus_device_check(context, device, name, stratus_device_next_error(device) != CL_SUCCESS ? (device)->injected : (call))
 
 void stratus_device_fail_after(stratus_device* device, int64_t calls, int error)
 {
@@ -320,7 +316,7 @@ size_t stratus_device_largest_allocation(const stratus_device* device)
   return device->largest_allocation;
 }
 
-/* ---------------------------------------------------------------- buffers and launches */
+/* ---------------------------------------------------------------- buffers */
 
 stratus_status stratus_device_buffer(
   stratus_context* context, cl_mem_flags access, size_t bytes, const void* host, bool borrow, cl_mem* buffer)
@@ -369,25 +365,19 @@ stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size
     : CALL(context, device, "clEnqueueReadBuffer", clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
 }
 
-stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value)
+bool stratus_device_lends(const stratus_device* device, const void* host)
 {
-  return CALL(context, context->device, "clSetKernelArg", clSetKernelArg(kernel, index, size, value));
+  return device->is_cpu && (uintptr_t)host % device->borrow_alignment == 0;
 }
 
-stratus_status stratus_device_run(
-  stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local)
+stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, size_t bytes)
 {
   stratus_device* device = context->device;
-  size_t rounded[3] = { 1, 1, 1 };
-  for (unsigned d = 0; d < dimensions && d < 3; ++d) {
-    rounded[d] = (global[d] + local[d] - 1) / local[d] * local[d];
+  cl_int error = stratus_device_next_error(device);
+  void* mapped = NULL;
+  if (error == CL_SUCCESS) {
+    mapped = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &error);
   }
-  return CALL(context, device, "clEnqueueNDRangeKernel",
-    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL));
-}
-
-stratus_status stratus_device_finish(stratus_context* context)
-{
-  stratus_device* device = context->device;
-  return CALL(context, device, "clFinish", clFinish(device->queue));
+  TRY(stratus_device_check(context, device, "clEnqueueMapBuffer", error));
+  return CALL(context, device, "clEnqueueUnmapMemObject", clEnqueueUnmapMemObject(device->queue, buffer, mapped, 0, NULL, NULL));
 }

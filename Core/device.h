@@ -35,6 +35,10 @@ void stratus_device_buffer_release(cl_mem buffer); /* takes NULL */
 stratus_status stratus_device_write(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, const void* host);
 stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, void* host); /* blocks */
 
+/* True where a buffer over `host` is that memory itself, for kernels to write too; settled, the host sees what they wrote. */
+bool stratus_device_lends(const stratus_device* device, const void* host);
+stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, size_t bytes); /* blocks */
+
 /* Sets argument `index`. */
 stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value);
 /* Enqueues over `global` items, rounded up to whole groups of `local` (both `dimensions` long, 1..3; local > 0): the kernel ignores items

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Programs and kernels of an OpenCL device, built once for each source and set of defines. */
+ * Programs and kernels of an OpenCL device, built once for each source and set of defines, and their launches. */
 #include "device_state.h"
 
 #include <stdio.h>
@@ -147,4 +147,29 @@ void stratus_device_programs_release(stratus_device* device)
     clReleaseProgram(program->program);
     stratus_release(device->owner, program);
   }
+}
+
+/* ---------------------------------------------------------------- launches */
+
+stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value)
+{
+  return CALL(context, context->device, "clSetKernelArg", clSetKernelArg(kernel, index, size, value));
+}
+
+stratus_status stratus_device_run(
+  stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local)
+{
+  stratus_device* device = context->device;
+  size_t rounded[3] = { 1, 1, 1 };
+  for (unsigned d = 0; d < dimensions && d < 3; ++d) {
+    rounded[d] = (global[d] + local[d] - 1) / local[d] * local[d];
+  }
+  return CALL(context, device, "clEnqueueNDRangeKernel",
+    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL));
+}
+
+stratus_status stratus_device_finish(stratus_context* context)
+{
+  stratus_device* device = context->device;
+  return CALL(context, device, "clFinish", clFinish(device->queue));
 }

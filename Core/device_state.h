@@ -38,6 +38,10 @@ struct stratus_device {
 stratus_status stratus_device_check(stratus_context* context, const stratus_device* device, const char* call, cl_int error);
 /* What a test asked the next call to fail with, else CL_SUCCESS. */
 cl_int stratus_device_next_error(stratus_device* device);
+/* The call is evaluated only where no test asked it to fail. */
+#define CALL(context, device, name, call)                                                                                                  \
+  stratus_device_check(context, device, name, stratus_device_next_error(device) != CL_SUCCESS ? (device)->injected : (call))
+
 /* Frees all programs and kernels. */
 void stratus_device_programs_release(stratus_device* device);
 

@@ -52,7 +52,8 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preinteg
   return stratus_ray_cast_tile_isa0(type, preintegrated);
 }
 
-void stratus_ray_round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1)
+/* rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
+static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1)
 {
   const size_t width = (size_t)frame->arguments->width, count = 4 * (size_t)(x1 - x0);
   for (int y = y0; frame->rgba8 && y < y1; ++y) {
@@ -83,7 +84,7 @@ stratus_status stratus_ray_cast_host(
       const int x0 = tile % columns * TILE, x1 = x0 + TILE < width ? x0 + TILE : width;
       const int y0 = tile / columns * TILE, y1 = y0 + TILE < height ? y0 + TILE : height;
       draw(frame, x0, y0, x1, y1, &mine);
-      stratus_ray_round_pixels(frame, x0, y0, x1, y1); /* while the tile is in the cache */
+      round_pixels(frame, x0, y0, x1, y1); /* while the tile is in the cache */
       if (omp_get_thread_num() == 0 && context->options.progress) {
         status = stratus_progress(context, "ray cast", (double)(tile + 1) / tiles);
         if (status != STRATUS_OK) {

@@ -7,14 +7,16 @@
 #include <string.h>
 
 #define LOCAL_SIDE 8 /* work items a group along each axis where a work item is a ray */
+#define TILE 16 /* pixels along each side of a work item's tile where it marches packets: PoCL hands out the last 64 groups in one piece */
 
 _Static_assert(sizeof(stratus_ray_cast_arguments) == 4 * STRATUS_RAY_CAST_ARGUMENTS_WORDS, "arguments must have no padding");
 
-typedef enum buffer_name { VALUES, HIDDEN, MAP, TABLE, ARGUMENTS, OPAQUE, RGBA, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
+typedef enum buffer_name { VALUES, HIDDEN, MAP, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
 
 struct stratus_ray_device {
   cl_mem buffers[BUFFERS];
   size_t sizes[BUFFERS];
+  bool lent[BUFFERS]; /* over the memory of the frame at hand: gone when it is done */
   uint64_t data_serial, table_serial, map_serial;
 };
 
@@ -92,55 +94,51 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
   return STRATUS_OK;
 }
 
-static stratus_status prepare(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, size_t rows)
+/* A buffer for one frame: over the host's own memory where the device lends it, so that nothing is copied. `host` NULL: not wanted. */
+static stratus_status lend(stratus_ray_caster* caster, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
 {
-  stratus_context* context = caster->context;
   stratus_ray_device* d = caster->device;
-  const size_t pixels = (size_t)frame->arguments->width * (size_t)frame->arguments->height;
-  TRY(reserve(caster, ARGUMENTS, CL_MEM_READ_ONLY, sizeof *frame->arguments));
-  TRY(stratus_device_write(context, d->buffers[ARGUMENTS], 0, sizeof *frame->arguments, frame->arguments));
-  TRY(reserve(caster, OPAQUE, CL_MEM_READ_ONLY, frame->opaque_depth ? pixels * sizeof(float) : 16));
-  if (frame->opaque_depth) {
-    TRY(stratus_device_write(context, d->buffers[OPAQUE], 0, pixels * sizeof(float), frame->opaque_depth));
+  if (!host || !stratus_device_lends(caster->context->device, host)) {
+    return reserve(caster, name, access, host ? bytes : 16);
   }
-  TRY(reserve(caster, RGBA, CL_MEM_WRITE_ONLY, pixels * 4 * sizeof(float)));
-  TRY(reserve(caster, DEPTH, CL_MEM_WRITE_ONLY, frame->depth ? pixels * sizeof(float) : 16));
-  TRY(reserve(caster, SAMPLES, CL_MEM_WRITE_ONLY, frame->samples ? pixels * sizeof(uint32_t) : 16));
-  void* zeros = NULL;
-  TRY(stratus_allocate_zero(context, rows, 4 * sizeof(cl_uint), &zeros));
-  stratus_status status = reserve(caster, COUNTS, CL_MEM_READ_WRITE, rows * 4 * sizeof(cl_uint));
-  if (status == STRATUS_OK) {
-    status = stratus_device_write(context, d->buffers[COUNTS], 0, rows * 4 * sizeof(cl_uint), zeros);
-  }
-  stratus_release(context, zeros);
-  return status;
+  stratus_device_buffer_release(d->buffers[name]);
+  d->buffers[name] = NULL;
+  d->sizes[name] = 0;
+  TRY(stratus_device_buffer(caster->context, access, bytes, host, true, &d->buffers[name]));
+  d->lent[name] = true;
+  return STRATUS_OK;
 }
 
-static stratus_status read_back(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, size_t rows, stratus_ray_counts* counts)
+/* The same with what the host has written there. */
+static stratus_status send(stratus_ray_caster* caster, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
 {
-  stratus_context* context = caster->context;
+  TRY(lend(caster, name, access, host, bytes));
+  return !host || caster->device->lent[name] ? STRATUS_OK
+                                             : stratus_device_write(caster->context, caster->device->buffers[name], 0, bytes, host);
+}
+
+/* What the kernel has written, once it is done. */
+static stratus_status receive(stratus_ray_caster* caster, buffer_name name, void* host, size_t bytes)
+{
+  const stratus_ray_device* d = caster->device;
+  if (!host) {
+    return STRATUS_OK;
+  }
+  return d->lent[name] ? stratus_device_settle(caster->context, d->buffers[name], bytes)
+                       : stratus_device_read(caster->context, d->buffers[name], 0, bytes, host);
+}
+
+/* The host's memory is its own again. */
+static void return_lent(stratus_ray_caster* caster)
+{
   stratus_ray_device* d = caster->device;
-  const size_t pixels = (size_t)frame->arguments->width * (size_t)frame->arguments->height;
-  void* memory = NULL;
-  TRY(stratus_device_read(context, d->buffers[RGBA], 0, pixels * 4 * sizeof(float), frame->rgba));
-  if (frame->depth) {
-    TRY(stratus_device_read(context, d->buffers[DEPTH], 0, pixels * sizeof(float), frame->depth));
+  for (int b = 0; b < BUFFERS; ++b) {
+    if (d->lent[b]) {
+      stratus_device_buffer_release(d->buffers[b]);
+      d->buffers[b] = NULL;
+      d->lent[b] = false;
+    }
   }
-  if (frame->samples) {
-    TRY(stratus_device_read(context, d->buffers[SAMPLES], 0, pixels * sizeof(uint32_t), frame->samples));
-  }
-  TRY(stratus_allocate(context, rows, 4 * sizeof(cl_uint), &memory));
-  const cl_uint* row = memory;
-  const stratus_status status = stratus_device_read(context, d->buffers[COUNTS], 0, rows * 4 * sizeof(cl_uint), memory);
-  *counts = (stratus_ray_counts){ 0 };
-  for (size_t i = 0; status == STRATUS_OK && i < rows; ++i) {
-    counts->rays += row[4 * i];
-    counts->samples += row[4 * i + 1];
-    counts->skipped += row[4 * i + 2];
-    counts->lookups += row[4 * i + 3];
-  }
-  stratus_release(context, memory);
-  return status;
 }
 
 /* Why the device can't draw this volume, or NULL. */
@@ -160,25 +158,71 @@ static const char* obstacle(const stratus_ray_caster* caster)
   return NULL;
 }
 
-static stratus_status launch(
-  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, bool packets, size_t* rows)
+static stratus_status find_kernel(stratus_ray_caster* caster, int type, bool preintegrated, bool packets, cl_kernel* kernel)
 {
   stratus_context* context = caster->context;
-  char defines[160];
-  cl_kernel kernel;
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d%s", type,
-    preintegrated, packets ? 16 : 1, stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
-  TRY(stratus_device_kernel(context, "ray_cast", defines, "ray_cast", &kernel));
-  const size_t side = packets ? 4 : 1, group = packets ? 1 : LOCAL_SIDE;
-  const size_t global[2] = { ((size_t)frame->arguments->width + side - 1) / side, ((size_t)frame->arguments->height + side - 1) / side };
-  const size_t local[2] = { group * (packets ? 4 : 1), group };
-  *rows = global[1];
-  TRY(prepare(caster, frame, *rows));
-  static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, TABLE, OPAQUE, RGBA, DEPTH, SAMPLES, COUNTS };
+  char defines[192];
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
+    type, preintegrated, packets ? 16 : 1, TILE, stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  return stratus_device_kernel(context, "ray_cast", defines, "ray_cast", kernel);
+}
+
+/* counts: 4 numbers a tile or a row, 0 before. */
+static stratus_status draw(
+  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
+{
+  static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  const stratus_ray_cast_arguments* a = frame->arguments;
+  const size_t width = (size_t)a->width, height = (size_t)a->height, pixels = width * height;
+  TRY(send(caster, ARGUMENTS, CL_MEM_READ_ONLY, a, sizeof *a));
+  TRY(send(caster, OPAQUE, CL_MEM_READ_ONLY, frame->opaque_depth, pixels * sizeof(float)));
+  TRY(lend(caster, RGBA, CL_MEM_WRITE_ONLY, frame->rgba, pixels * 4 * sizeof(float)));
+  TRY(lend(caster, RGBA8, CL_MEM_WRITE_ONLY, frame->rgba8, pixels * 4));
+  TRY(lend(caster, DEPTH, CL_MEM_WRITE_ONLY, frame->depth, pixels * sizeof(float)));
+  TRY(lend(caster, SAMPLES, CL_MEM_WRITE_ONLY, frame->samples, pixels * sizeof(uint32_t)));
+  TRY(send(caster, COUNTS, CL_MEM_READ_WRITE, counts, counts_bytes));
   for (unsigned i = 0; i < sizeof order / sizeof *order; ++i) {
-    TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &caster->device->buffers[order[i]]));
+    TRY(stratus_device_argument(caster->context, kernel, i, sizeof(cl_mem), &caster->device->buffers[order[i]]));
   }
-  return stratus_device_run(context, kernel, 2, global, local);
+  const size_t side = packets ? TILE : 1, group = packets ? 1 : LOCAL_SIDE;
+  const size_t global[2] = { (width + side - 1) / side, (height + side - 1) / side }, local[2] = { group, group };
+  TRY(stratus_device_run(caster->context, kernel, 2, global, local));
+  TRY(receive(caster, RGBA, frame->rgba, pixels * 4 * sizeof(float)));
+  TRY(receive(caster, RGBA8, frame->rgba8, pixels * 4));
+  TRY(receive(caster, DEPTH, frame->depth, pixels * sizeof(float)));
+  TRY(receive(caster, SAMPLES, frame->samples, pixels * sizeof(uint32_t)));
+  return receive(caster, COUNTS, counts, counts_bytes);
+}
+
+static void add_counts(const cl_uint* part, size_t parts, stratus_ray_counts* counts)
+{
+  *counts = (stratus_ray_counts){ 0 };
+  for (size_t i = 0; i < parts; ++i) {
+    counts->rays += part[4 * i];
+    counts->samples += part[4 * i + 1];
+    counts->skipped += part[4 * i + 2];
+    counts->lookups += part[4 * i + 3];
+  }
+}
+
+static stratus_status draw_and_count(
+  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
+{
+  stratus_context* context = caster->context;
+  const bool packets = stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
+  const size_t width = (size_t)frame->arguments->width, height = (size_t)frame->arguments->height;
+  const size_t parts = packets ? ((width + TILE - 1) / TILE) * ((height + TILE - 1) / TILE) : height;
+  cl_kernel kernel;
+  void* memory = NULL;
+  TRY(find_kernel(caster, type, preintegrated, packets, &kernel));
+  TRY(stratus_allocate_zero(context, parts, 4 * sizeof(cl_uint), &memory));
+  const stratus_status status = draw(caster, frame, kernel, packets, memory, parts * 4 * sizeof(cl_uint));
+  return_lent(caster);
+  if (status == STRATUS_OK) {
+    add_counts(memory, parts, counts);
+  }
+  stratus_release(context, memory);
+  return status;
 }
 
 stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated,
@@ -196,13 +240,10 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
     caster->device = memory;
   }
   const double start = stratus_now_ms();
-  size_t rows = 0;
   TRY(upload(caster, frame));
   *upload_ms += stratus_now_ms() - start;
   TRY(stratus_progress(context, "ray cast", 0.0));
-  const bool packets = stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
-  TRY(launch(caster, frame, type, preintegrated, packets, &rows));
-  TRY(read_back(caster, frame, rows, counts));
+  TRY(draw_and_count(caster, frame, type, preintegrated, counts));
   *drawn = true;
   return stratus_progress(context, "ray cast", 1.0);
 }

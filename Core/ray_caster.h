@@ -89,9 +89,7 @@ stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_
 void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel, const double lo[3],
   const double hi[3], const int sides[2], int window[4]);
 
-/* ray_cast.c: rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
-void stratus_ray_round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1);
-/* All tiles on the host. */
+/* ray_cast.c: all tiles on the host. */
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts);
 

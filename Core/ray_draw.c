@@ -107,7 +107,6 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
     bool drawn = false;
     TRY(stratus_ray_cast_device(caster, &frame, type, preintegrated, counts, upload_ms, &drawn));
     if (drawn) {
-      stratus_ray_round_pixels(&frame, 0, 0, image->width, image->height);
       return STRATUS_OK;
     }
   }
@@ -119,7 +118,7 @@ static stratus_status audit(
   stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
 {
   const size_t pixels = (size_t)image->width * (size_t)image->height;
-  stratus_ray_cast_arguments plain = *arguments;
+  _Alignas(64) stratus_ray_cast_arguments plain = *arguments;
   stratus_ray_counts counts;
   stratus_image march = *image;
   void *rgba = NULL, *depth = NULL;
@@ -127,6 +126,7 @@ static stratus_status audit(
   stratus_status status;
 
   stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
+  plain.want_samples = plain.want_bytes = 0;
   march.samples = NULL;
   march.rgba8 = NULL;
   TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
@@ -181,7 +181,7 @@ static void fill_report(
 static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
-  stratus_ray_cast_arguments arguments;
+  _Alignas(64) stratus_ray_cast_arguments arguments; /* as devices want what they borrow */
   stratus_structure used = STRATUS_STRUCTURE_NONE;
   stratus_ray_counts counts = { 0 };
   char why[128] = "";

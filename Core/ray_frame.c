@@ -233,6 +233,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   a->has_depth = image->opaque_depth != NULL;
   a->want_depth = image->depth != NULL;
   a->want_samples = image->samples != NULL;
+  a->want_bytes = image->rgba8 != NULL;
   a->nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
   a->clamp = volume->cell_centered != 0;
   a->termination = (float)(1.0 - options->termination);

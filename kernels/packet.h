@@ -54,13 +54,6 @@ typedef unsigned int uint;
 #endif
 #define PACKET_Y (STRATUS_WIDTH / PACKET_X)
 
-/* Packets that march side by side: two where registers are many and gathers wait long. */
-#if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
-#define PACKETS_TOGETHER 2
-#else
-#define PACKETS_TOGETHER 1
-#endif
-
 #define LARGEST_FLOAT 3.402823466e+38f
 
 /* ------------------------------------------------------------------------------------------------ scalar, either language */
@@ -124,7 +117,8 @@ typedef float16 vfloat;
 typedef int16 vint;
 
 #if defined(__AVX512F__) && __has_builtin(__builtin_ia32_cmpps512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask) &&                   \
-  __has_builtin(__builtin_ia32_selectps_512) && __has_builtin(__builtin_ia32_selectd_512) && __has_builtin(__builtin_ia32_gathersiv16si)
+  __has_builtin(__builtin_ia32_minps512) && __has_builtin(__builtin_ia32_maxps512) && __has_builtin(__builtin_ia32_selectps_512) &&        \
+  __has_builtin(__builtin_ia32_selectd_512) && __has_builtin(__builtin_ia32_gathersiv16si)
 /* PoCL on a CPU with AVX-512: clang's own builtins, since OpenCL C has no word for a mask register or a gather. */
 #define STRATUS_DEVICE_AVX512 1
 #endif
@@ -160,6 +154,8 @@ INLINE vint vi_select(vmask m, vint a, vint b)
 {
   return __builtin_astype(__builtin_ia32_selectd_512(m, STRATUS_I16(a), STRATUS_I16(b)), int16);
 }
+INLINE vfloat v_min(vfloat a, vfloat b) { return __builtin_astype(__builtin_ia32_minps512(STRATUS_F16(a), STRATUS_F16(b), 4), float16); }
+INLINE vfloat v_max(vfloat a, vfloat b) { return __builtin_astype(__builtin_ia32_maxps512(STRATUS_F16(a), STRATUS_F16(b), 4), float16); }
 INLINE vmask m_andnot(vmask a, vmask b) { return (ushort)(a & ~b); }
 INLINE vmask m_none(void) { return 0; }
 INLINE int m_any(vmask m) { return m != 0; }
@@ -172,6 +168,8 @@ INLINE vmask vi_lt(vint a, vint b) { return a < b; }
 INLINE vmask vi_ge(vint a, vint b) { return a >= b; }
 INLINE vfloat v_select(vmask m, vfloat a, vfloat b) { return m ? a : b; }
 INLINE vint vi_select(vmask m, vint a, vint b) { return m ? a : b; }
+INLINE vfloat v_min(vfloat a, vfloat b) { return v_select(v_lt(a, b), a, b); }
+INLINE vfloat v_max(vfloat a, vfloat b) { return v_select(v_lt(b, a), a, b); }
 INLINE vmask m_andnot(vmask a, vmask b) { return a & ~b; }
 INLINE vmask m_none(void) { return (int16)(0); }
 INLINE int m_any(vmask m) { return any(m); }
@@ -188,8 +186,6 @@ INLINE vfloat v_set(float a) { return (float16)(a); }
 INLINE vint vi_set(int a) { return (int16)(a); }
 INLINE vint vi_lanes(void) { return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
 INLINE vfloat v_fma(vfloat a, vfloat b, vfloat c) { return fma(a, b, c); }
-INLINE vfloat v_min(vfloat a, vfloat b) { return v_select(v_lt(a, b), a, b); }
-INLINE vfloat v_max(vfloat a, vfloat b) { return v_select(v_lt(b, a), a, b); }
 INLINE vint vi_min(vint a, vint b) { return min(a, b); }
 INLINE vint vi_max(vint a, vint b) { return max(a, b); }
 INLINE vfloat v_from_int(vint a) { return convert_float16(a); }
@@ -311,6 +307,13 @@ INLINE vint vi_load(const int* p)
   memcpy(&r, p, sizeof r);
   return r;
 }
+#endif
+
+/* Packets that march side by side: two where registers are many and gathers wait long. */
+#if STRATUS_WIDTH == 16 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
+#define PACKETS_TOGETHER 2
+#else
+#define PACKETS_TOGETHER 1
 #endif
 
 INLINE vfloat v_clamp(vfloat a, float lo, float hi) { return v_min(v_max(a, v_set(lo)), v_set(hi)); }

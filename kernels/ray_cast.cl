@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Entry point of the ray cast: a packet of STRATUS_WIDTH rays a work item. */
+ * Entry point of the ray cast: one ray a work item where STRATUS_WIDTH is 1 (a GPU), else a tile of packets, as on the host (a CPU). */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -13,71 +13,158 @@
 #define STRATUS_PREINTEGRATED 0
 #endif
 #define RAY_NAME(x) kernel_##x
+/* Pixels along each side of a work item's tile of packets. */
+#ifndef RAY_TILE
+#define RAY_TILE 16
+#endif
 
 #include "ray_segment.h"
 
 #include "ray_cast.h"
 
-static void store_pixel(__constant stratus_ray_cast_arguments* a, __global float4* rgba, __global float* depth, __global uint* samples,
-  int x, int y, float4 color, float far, uint taken)
+typedef struct stratus_pixels {
+  __global float* rgba;
+  __global uchar* rgba8;
+  __global float* depth;
+  __global uint* samples;
+} stratus_pixels;
+
+static void store_pixel(
+  __constant stratus_ray_cast_arguments* a, const stratus_pixels* to, int x, int y, float4 color, float far, uint taken)
 {
   if (x < a->width && y < a->height) {
     const size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
-    rgba[pixel] = color;
+    vstore4(color, pixel, to->rgba);
+    if (a->want_bytes) {
+      const float4 bytes = color * 255.0f + 0.5f;
+      vstore4(convert_uchar4(min(bytes, 255.0f)), pixel, to->rgba8);
+    }
     if (a->want_depth) {
-      depth[pixel] = far >= LARGEST_FLOAT ? INFINITY : far;
+      to->depth[pixel] = far >= LARGEST_FLOAT ? INFINITY : far;
     }
     if (a->want_samples) {
-      samples[pixel] = taken;
+      to->samples[pixel] = taken;
     }
   }
 }
 
-/* counts: rays, samples, skipped, lookups, a row of packets each, so that 32 bits hold them. */
+#if STRATUS_WIDTH == 1
+/* counts: rays, samples, skipped, lookups, a row of pixels each, so that 32 bits hold them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
-  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float4* rgba, __global float* depth,
-  __global uint* samples, __global uint* counts)
+  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
+  __global float* depth, __global uint* samples, __global uint* counts)
 {
-  const int column = (int)get_global_id(0), row = (int)get_global_id(1);
-  const int x = column * PACKET_X, y = row * PACKET_Y;
+  const stratus_pixels to = { rgba, rgba8, depth, samples };
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= a->width || y >= a->height) {
     return;
   }
-  if (packet_outside(a, x, y)) {
-    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      store_pixel(a, rgba, depth, samples, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), (float4)(0.0f), LARGEST_FLOAT, 0u);
-    }
-    return;
-  }
   stratus_packet k;
-  kernel_ray_load(a, opaque_depth, x, y, &k);
-  if (m_any(k.live)) {
-    kernel_ray_march(a, values, hidden, map, table, &k);
+  packet_nothing(&k);
+  if (!packet_outside(a, x, y)) {
+    kernel_ray_load(a, opaque_depth, x, y, &k);
+    if (m_any(k.live)) {
+      kernel_ray_march(a, values, hidden, map, table, &k);
+    }
   }
-  float red[STRATUS_WIDTH], green[STRATUS_WIDTH], blue[STRATUS_WIDTH], alpha[STRATUS_WIDTH], far[STRATUS_WIDTH];
-  int taken[STRATUS_WIDTH], skipped[STRATUS_WIDTH], lookups[STRATUS_WIDTH];
-  v_store(red, k.red);
-  v_store(green, k.green);
-  v_store(blue, k.blue);
-  v_store(alpha, v_set(1.0f) - k.transparency);
-  v_store(far, k.depth);
-  vi_store(taken, k.samples);
-  vi_store(skipped, k.skipped);
-  vi_store(lookups, k.lookups);
-  uint sum[3] = { 0, 0, 0 };
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    store_pixel(a, rgba, depth, samples, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2),
-      (float4)(red[lane], green[lane], blue[lane], alpha[lane]), far[lane], (uint)taken[lane]);
-    sum[0] += (uint)taken[lane];
-    sum[1] += (uint)skipped[lane];
-    sum[2] += (uint)lookups[lane];
-  }
-  const uint hits = (uint)m_count(k.hits);
-  if (hits) {
-    __global uint* count = counts + 4 * row;
-    atomic_add(count, hits);
-    atomic_add(count + 1, sum[0]);
-    atomic_add(count + 2, sum[1]);
-    atomic_add(count + 3, sum[2]);
+  store_pixel(a, &to, x, y, (float4)(k.red, k.green, k.blue, 1.0f - k.transparency), k.depth, (uint)k.samples);
+  if (k.hits) {
+    __global uint* count = counts + 4 * y;
+    atomic_inc(count);
+    atomic_add(count + 1, (uint)k.samples);
+    atomic_add(count + 2, (uint)k.skipped);
+    atomic_add(count + 3, (uint)k.lookups);
   }
 }
+
+#else
+/* Four pixels of a row. */
+static void store_four(__constant stratus_ray_cast_arguments* a, const stratus_pixels* to, size_t pixel, float4 red, float4 green,
+  float4 blue, float4 alpha, float4 far, int4 taken)
+{
+  const float16 row = (float16)(red.x, green.x, blue.x, alpha.x, red.y, green.y, blue.y, alpha.y, red.z, green.z, blue.z, alpha.z, red.w,
+    green.w, blue.w, alpha.w);
+  vstore16(row, 0, to->rgba + 4 * pixel);
+  if (a->want_bytes) {
+    const float16 bytes = row * 255.0f + 0.5f;
+    vstore16(convert_uchar16(v_min(bytes, v_set(255.0f))), 0, to->rgba8 + 4 * pixel);
+  }
+  if (a->want_depth) {
+    vstore4(select(far, (float4)(INFINITY), far >= LARGEST_FLOAT), 0, to->depth + pixel);
+  }
+  if (a->want_samples) {
+    vstore4(as_uint4(taken), 0, to->samples + pixel);
+  }
+}
+
+static void store_packet(__constant stratus_ray_cast_arguments* a, const stratus_pixels* to, const stratus_packet* k, int x, int y)
+{
+  const vfloat opacity = v_set(1.0f) - k->transparency;
+  if (x + PACKET_X <= a->width && y + PACKET_Y <= a->height) {
+    const size_t width = (size_t)a->width, pixel = (size_t)y * width + (size_t)x;
+    store_four(a, to, pixel, k->red.s0123, k->green.s0123, k->blue.s0123, opacity.s0123, k->depth.s0123, k->samples.s0123);
+    store_four(a, to, pixel + width, k->red.s4567, k->green.s4567, k->blue.s4567, opacity.s4567, k->depth.s4567, k->samples.s4567);
+    store_four(a, to, pixel + 2 * width, k->red.s89ab, k->green.s89ab, k->blue.s89ab, opacity.s89ab, k->depth.s89ab, k->samples.s89ab);
+    store_four(a, to, pixel + 3 * width, k->red.scdef, k->green.scdef, k->blue.scdef, opacity.scdef, k->depth.scdef, k->samples.scdef);
+    return;
+  }
+  float red[STRATUS_WIDTH], green[STRATUS_WIDTH], blue[STRATUS_WIDTH], alpha[STRATUS_WIDTH], far[STRATUS_WIDTH];
+  int taken[STRATUS_WIDTH];
+  v_store(red, k->red);
+  v_store(green, k->green);
+  v_store(blue, k->blue);
+  v_store(alpha, opacity);
+  v_store(far, k->depth);
+  vi_store(taken, k->samples);
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    store_pixel(a, to, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), (float4)(red[lane], green[lane], blue[lane], alpha[lane]),
+      far[lane], (uint)taken[lane]);
+  }
+}
+
+static uint sum_lanes(vint lanes)
+{
+  const uint8 a = as_uint8(lanes.lo) + as_uint8(lanes.hi);
+  const uint4 b = a.lo + a.hi;
+  const uint2 c = b.lo + b.hi;
+  return c.x + c.y;
+}
+
+/* counts: rays, samples, skipped, lookups, a tile each, so that 32 bits hold them and nobody else adds to them. */
+__kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
+  __global float* depth, __global uint* samples, __global uint* counts)
+{
+  const stratus_pixels to = { rgba, rgba8, depth, samples };
+  const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
+  const int x1 = min(x0 + RAY_TILE, a->width), y1 = min(y0 + RAY_TILE, a->height);
+  vint taken = vi_set(0), skipped = vi_set(0), lookups = vi_set(0);
+  uint rays = 0;
+  for (int y = y0; y < y1; y += PACKET_Y) {
+    for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
+      stratus_packet k[PACKETS_TOGETHER];
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        if (packet_outside(a, x + i * PACKET_X, y)) {
+          packet_nothing(&k[i]);
+        } else {
+          kernel_ray_load(a, opaque_depth, x + i * PACKET_X, y, &k[i]); /* beyond the picture: no live ray, nothing stored */
+        }
+      }
+#if PACKETS_TOGETHER == 2
+      kernel_ray_march_two(a, values, hidden, map, table, &k[0], &k[1]);
+#else
+      kernel_ray_march(a, values, hidden, map, table, &k[0]);
+#endif
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        store_packet(a, &to, &k[i], x + i * PACKET_X, y);
+        rays += (uint)m_count(k[i].hits);
+        taken = taken + k[i].samples;
+        skipped = skipped + k[i].skipped;
+        lookups = lookups + k[i].lookups;
+      }
+    }
+  }
+  const size_t tile = get_global_id(1) * get_global_size(0) + get_global_id(0);
+  vstore4((uint4)(rays, sum_lanes(taken), sum_lanes(skipped), sum_lanes(lookups)), tile, counts);
+}
+#endif

@@ -33,7 +33,7 @@ typedef struct stratus_ray_cast_arguments {
   int parallel;
   int clip_count;
   int has_far, has_piece, has_depth; /* has_depth: opaque depth is given */
-  int want_depth, want_samples;
+  int want_depth, want_samples, want_bytes;
   int clamp; /* cell_centered: positions are clamped to 0..last */
   int nearest;
   int dimensions[3];
@@ -51,6 +51,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 34)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35)
 
 #endif
