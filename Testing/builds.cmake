@@ -9,8 +9,8 @@ function (stratus_add_core_build name)
     --build-generator "${CMAKE_GENERATOR}" --build-project Stratus
     --build-options -DSTRATUS_BUILD_VTK=OFF -DSTRATUS_BUILD_TESTING=ON -DSTRATUS_WERROR=ON
       "-DCMAKE_INSTALL_PREFIX=${CMAKE_BINARY_DIR}/${name}/prefix" ${ARGN}
-    --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
+    --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure --parallel 2)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 2700)
 endfunction ()
 stratus_add_core_build(core_under_sanitizers
   "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_C_FLAGS_DEBUG=-O1 -g")
