@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The renderer of tetrahedra: checks what it is given, builds anew what changed (mesh -> cells and border; transfer function -> table), draws,
+ * reports. */
+#include "tetra_caster.h"
+
+#include "ray_caster.h"
+
+#include <string.h>
+
+#define SIDE_MOST 65536
+/* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the error. */
+#define PIECES 4.0f
+
+stratus_tetra_options stratus_tetra_options_default(void)
+{
+  return (stratus_tetra_options){ .termination = 0.999 };
+}
+
+stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)
+{
+  void* memory = NULL;
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "no place for the caster of tetrahedra: out is NULL");
+  }
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_caster), &memory));
+  *out = memory;
+  (*out)->context = context;
+  return STRATUS_OK;
+}
+
+static void drop_table(stratus_tetra_caster* caster)
+{
+  stratus_table_destroy(caster->table);
+  stratus_release(caster->context, caster->transfer_points);
+  caster->table = NULL;
+  caster->transfer_points = NULL;
+}
+
+static void drop_mesh(stratus_tetra_caster* caster)
+{
+  drop_table(caster); /* it spans the mesh's values */
+  stratus_tetra_mesh_destroy(caster->mesh);
+  caster->mesh = NULL;
+}
+
+void stratus_tetra_caster_release(stratus_tetra_caster* caster)
+{
+  if (caster) {
+    drop_mesh(caster);
+    stratus_tetra_buffers_release(caster->context, &caster->buffers);
+  }
+}
+
+void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
+{
+  if (caster) {
+    stratus_tetra_caster_release(caster);
+    stratus_release(caster->context, caster);
+  }
+}
+
+static stratus_status check_image(stratus_context* context, const stratus_image* image)
+{
+  if (!image || !image->rgba) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image%s is NULL", image ? "'s rgba buffer" : "");
+  }
+  if (image->width < 1 || image->width > SIDE_MOST || image->height < 1 || image->height > SIDE_MOST) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
+{
+  if ((unsigned)options->mode > STRATUS_TETRA_MAXIMUM) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_MAXIMUM);
+  }
+  if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
+  }
+  return STRATUS_OK;
+}
+
+/* ---- rebuilding */
+
+static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
+{
+  return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
+    a->values == b->values && a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values &&
+    a->hidden == b->hidden && a->revision == b->revision;
+}
+
+static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, double* ms)
+{
+  stratus_tetra_mesh* made = NULL;
+  if (caster->mesh && same_mesh(&caster->view, mesh)) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
+  drop_mesh(caster);
+  caster->mesh = made;
+  caster->view = *mesh;
+  ++caster->mesh_builds;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+static bool same_transfer(const stratus_tetra_caster* caster, const stratus_transfer* transfer)
+{
+  const stratus_transfer* old = &caster->transfer;
+  return caster->table && old->opacity_count == transfer->opacity_count && old->color_count == transfer->color_count &&
+    old->clamp == transfer->clamp && old->unit_distance == transfer->unit_distance &&
+    memcmp(old->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0 &&
+    memcmp(old->color, transfer->color, 4 * sizeof(double) * transfer->color_count) == 0;
+}
+
+/* Composite: running sums, a world unit as their sample distance. Maximum: colour and alpha of one unit distance. */
+static stratus_status update_table(stratus_tetra_caster* caster, const stratus_transfer* transfer, stratus_tetra_mode mode, double* ms)
+{
+  const double start = stratus_now_ms();
+  const size_t opacity = 2 * transfer->opacity_count, color = 4 * transfer->color_count;
+  const stratus_tetra_mesh* mesh = caster->mesh;
+  const bool any = mesh->low <= mesh->high;
+  stratus_table* table = NULL;
+  void* memory = NULL;
+  if (same_transfer(caster, transfer) && caster->mode == mode) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(caster->context, opacity + color, sizeof(double), &memory));
+  double* points = memory;
+  const stratus_status status = stratus_table_create(caster->context, transfer, mesh->bias, any ? mesh->low : 0.0f, any ? mesh->high : 0.0f,
+    mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
+    mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, &table);
+  if (status != STRATUS_OK) {
+    stratus_release(caster->context, points);
+    return status;
+  }
+  memcpy(points, transfer->opacity, opacity * sizeof *points);
+  memcpy(points + opacity, transfer->color, color * sizeof *points);
+  drop_table(caster);
+  caster->table = table;
+  caster->mode = mode;
+  caster->transfer_points = points;
+  caster->transfer = *transfer;
+  caster->transfer.opacity = points;
+  caster->transfer.color = points + opacity;
+  ++caster->table_builds;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+/* ---- drawing */
+
+static void clear_image(const stratus_image* image)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
+  for (size_t i = 0; image->depth && i < pixels; ++i) {
+    image->depth[i] = INFINITY;
+  }
+  if (image->samples) {
+    memset(image->samples, 0, pixels * sizeof *image->samples);
+  }
+  if (image->rgba8) {
+    memset(image->rgba8, 0, pixels * 4);
+  }
+}
+
+static void set_shading(
+  const stratus_table* table, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_arguments* arguments)
+{
+  stratus_ray_cast_arguments* a = &arguments->table;
+  a->table_scale = table->scale;
+  a->table_offset = table->offset;
+  a->table_last = (float)(table->size - 1);
+  a->shown_first = (float)table->next_shown[0];
+  a->shown_beyond = (float)(table->last_shown + 1);
+  a->tau_scale = table->sum_scale;
+  a->color_slope = PIECES * table->color_slope;
+  a->want_depth = image->depth != NULL;
+  a->world_step = 1.0f;
+  arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
+  a->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
+}
+
+static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+{
+  stratus_tetra_frame frame;
+  stratus_tetra_counts counts = { 0 };
+  const double start = stratus_now_ms();
+  if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
+    clear_image(image);
+    return STRATUS_OK;
+  }
+  TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, &caster->buffers, &frame));
+  frame.table = caster->table;
+  frame.sums = caster->table->sums;
+  set_shading(caster->table, options, image, &frame.arguments);
+  report->transform_ms = stratus_now_ms() - start;
+  TRY(stratus_tetra_march(caster->context, &frame, &caster->buffers, &counts, &report->entries_ms, &report->march_ms));
+  report->rays = counts.rays;
+  report->entries = counts.entries;
+  report->segments = counts.segments;
+  report->stuck = counts.stuck;
+  return STRATUS_OK;
+}
+
+static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report* report)
+{
+  const stratus_tetra_mesh* mesh = caster->mesh;
+  const stratus_tetra_buffers* b = &caster->buffers;
+  report->cells = mesh->cell_count;
+  report->shown_cells = mesh->shown_cells;
+  report->border_faces = (int64_t)mesh->face_count;
+  report->flat = mesh->flat;
+  report->inverted = mesh->inverted;
+  report->broken_faces = mesh->broken;
+  report->folded_faces = mesh->folded;
+  report->mesh_builds = caster->mesh_builds;
+  report->table_builds = caster->table_builds;
+  report->bytes = mesh->bytes + b->points.bytes + b->faces.bytes + b->rects.bytes + b->lines.bytes + b->bin_begin.bytes + b->bins.bytes +
+    b->first.bytes + b->entries.bytes;
+}
+
+stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+{
+  const stratus_tetra_options defaults = stratus_tetra_options_default();
+  stratus_tetra_report mine = { 0 };
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  options = options ? options : &defaults;
+  TRY(check_image(caster->context, image));
+  TRY(check_options(caster->context, options));
+  TRY(stratus_transfer_check(caster->context, transfer));
+  TRY(stratus_ray_check_camera(caster->context, camera, image));
+  /* what has been checked once need not be again: a moved camera shall not cost a pass over the mesh */
+  if (!mesh || !caster->mesh || !same_mesh(&caster->view, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
+    TRY(stratus_mesh_check(caster->context, mesh));
+  }
+  const int64_t values = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  if (!mesh->values && values > 0) {
+    return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
+  }
+  TRY(update_mesh(caster, mesh, &mine.build_ms));
+  memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
+  TRY(update_table(caster, transfer, options->mode, &mine.table_ms));
+  TRY(draw(caster, mesh, camera, options, image, &mine));
+  fill_report(caster, &mine);
+  if (report) {
+    *report = mine;
+  }
+  return STRATUS_OK;
+}

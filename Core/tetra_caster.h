@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The renderer of tetrahedra: what it keeps of a mesh, what a frame needs, and the steps of a render that have files of their own. */
+#ifndef STRATUS_TETRA_CASTER_H
+#define STRATUS_TETRA_CASTER_H
+
+#include "internal.h"
+#include "tetra_march.h"
+
+/* What rays read of a mesh, made once for all views. Only shown cells are linked to each other. */
+typedef struct stratus_tetra_mesh {
+  stratus_context* context;
+  int stride;        /* ints a cell: see tetra_arguments.h */
+  int32_t* cells;    /* stride*cell_count */
+  float* values;     /* a fetched value a point; NULL where cells have them */
+  uint8_t* shown;    /* a byte a cell */
+  stratus_tetra_face* faces;
+  size_t face_count;
+  double lo[3], hi[3];   /* bounds of the points that shown cells use, local */
+  float low, high;       /* fetched values of shown cells, low > high if there is none */
+  double bias;
+  int64_t cell_count, shown_cells, flat, inverted, broken, folded;
+  size_t bytes;
+} stratus_tetra_mesh;
+
+struct stratus_tetra_caster {
+  stratus_context* context;
+  stratus_mesh view; /* what `mesh` was made from */
+  stratus_tetra_mesh* mesh;
+  double* transfer_points; /* the transfer function's, copied: opacity, then colour */
+  stratus_transfer transfer;
+  stratus_tetra_mode mode; /* that the table is for */
+  stratus_table* table;
+  stratus_tetra_buffers buffers;
+  uint64_t mesh_builds, table_builds;
+};
+
+/* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
+stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
+void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
+
+/* tetra_frame.c: points in the rays' coordinates, rays of rows and columns, border faces by tile. Buffers grow and are kept. */
+stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
+  const stratus_camera* camera, const stratus_image* image, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
+void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);
+/* At least `count` elements of `size` bytes in *memory, whose old contents are lost. */
+stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size);
+
+#endif

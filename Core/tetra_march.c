@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * All tiles of a picture of tetrahedra on the host: first how many ways into the mesh each pixel has, then the ways and the march. */
+#include "tetra_caster.h"
+
+#include "ray_caster.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#define PIXELS ((size_t)TETRA_TILE * TETRA_TILE)
+
+static stratus_tetra_tile* tile_for(int isa)
+{
+  const int best = stratus_ray_cast_best_isa();
+  isa = isa < best ? isa : best;
+#if STRATUS_HAVE_X86_ISAS
+  if (isa == 2) {
+    return stratus_tetra_tile_isa2;
+  }
+  if (isa == 1) {
+    return stratus_tetra_tile_isa1;
+  }
+#endif
+  return stratus_tetra_tile_isa0;
+}
+
+static void round_tile(const stratus_tetra_frame* frame, int tile)
+{
+  const stratus_image* image = &frame->image;
+  const int x0 = tile % frame->columns * TETRA_TILE, y0 = tile / frame->columns * TETRA_TILE;
+  const int x1 = x0 + TETRA_TILE < image->width ? x0 + TETRA_TILE : image->width;
+  const int y1 = y0 + TETRA_TILE < image->height ? y0 + TETRA_TILE : image->height;
+  for (int y = y0; image->rgba8 && y < y1; ++y) {
+    const size_t begin = 4 * ((size_t)y * (size_t)image->width + (size_t)x0), end = begin + 4 * (size_t)(x1 - x0);
+    for (size_t i = begin; i < end; ++i) {
+      const float value = image->rgba[i] * 255.0f + 0.5f;
+      image->rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
+    }
+  }
+}
+
+static stratus_status each_tile(stratus_context* context, const stratus_tetra_frame* frame, bool counting, stratus_tetra_counts* counts)
+{
+  const int tiles = frame->columns * frame->rows;
+  stratus_tetra_tile* const work = tile_for(context->isa);
+  stratus_tetra_counts sum = { 0 };
+  atomic_int next = 0, cancelled = 0;
+  stratus_status status = STRATUS_OK;
+#pragma omp parallel num_threads(context->threads)
+  {
+    stratus_tetra_counts mine = { 0 };
+    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
+      work(frame, tile, counting, &mine);
+      if (!counting) {
+        round_tile(frame, tile);
+      }
+      if (omp_get_thread_num() == 0 && context->options.progress) {
+        status = stratus_progress(context, counting ? "entry faces" : "march", (double)(tile + 1) / tiles);
+        if (status != STRATUS_OK) {
+          atomic_store(&cancelled, 1);
+        }
+      }
+    }
+#pragma omp critical(stratus_tetra_counts)
+    {
+      sum.rays += mine.rays;
+      sum.entries += mine.entries;
+      sum.segments += mine.segments;
+      sum.stuck += mine.stuck;
+    }
+  }
+  *counts = sum;
+  return status;
+}
+
+stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
+  stratus_tetra_counts* counts, double* entries_ms, double* march_ms)
+{
+  const size_t pixels = (size_t)frame->columns * (size_t)frame->rows * PIXELS;
+  const double start = stratus_now_ms();
+  TRY(stratus_tetra_reserve(context, &buffers->first, pixels + 1, sizeof(uint32_t)));
+  frame->first = buffers->first.memory;
+  TRY(each_tile(context, frame, true, counts));
+  uint64_t total = 0;
+  for (size_t i = 0; i <= pixels; ++i) {
+    const uint32_t here = i < pixels ? frame->first[i] : 0;
+    frame->first[i] = (uint32_t)total;
+    total += here;
+  }
+  if (total > UINT32_MAX) {
+    return stratus_fail(context, STRATUS_OVERFLOW, "rays come into the mesh %llu times, at most %lu", (unsigned long long)total,
+      (unsigned long)UINT32_MAX);
+  }
+  TRY(stratus_tetra_reserve(context, &buffers->entries, (size_t)total, sizeof(stratus_tetra_entry)));
+  frame->entries = buffers->entries.memory;
+  const double marching = stratus_now_ms();
+  TRY(each_tile(context, frame, false, counts));
+  *entries_ms += marching - start;
+  *march_ms = stratus_now_ms() - marching;
+  return STRATUS_OK;
+}

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Marching through tetrahedra on the host, compiled once for each instruction set and picked at run time. */
+#ifndef STRATUS_TETRA_MARCH_HOST_H
+#define STRATUS_TETRA_MARCH_HOST_H
+
+#include "../kernels/tetra_arguments.h"
+
+#include "internal.h"
+
+/* A face of one shown cell only, turned so that a ray that enters the cell by it sees its points turn from right to up. */
+typedef struct stratus_tetra_face {
+  int32_t cell; /* where its ints begin */
+  int32_t point[3];
+} stratus_tetra_face;
+
+/* Where a ray comes in from outside. Those of a pixel lie together, nearest first. */
+typedef struct stratus_tetra_entry {
+  float z;
+  int32_t face;
+} stratus_tetra_entry;
+
+typedef struct stratus_tetra_buffer {
+  void* memory;
+  size_t bytes;
+} stratus_tetra_buffer;
+
+/* Memory of a frame, kept for the next one. */
+typedef struct stratus_tetra_buffers {
+  stratus_tetra_buffer points, faces, rects, lines, bin_begin, bins, first, entries;
+} stratus_tetra_buffers;
+
+typedef struct stratus_tetra_counts {
+  uint64_t rays, entries, segments, stuck;
+} stratus_tetra_counts;
+
+typedef struct stratus_tetra_frame {
+  stratus_tetra_arguments arguments;
+  const int32_t* cells;
+  const float* points;             /* x, y, z, value each */
+  const stratus_tetra_face* faces; /* turned for this camera */
+  size_t face_count;
+  const float *us, *uw, *vs, *vw;  /* a column each, a row each: STRATUS_WIDTH_MOST of them beyond the picture */
+  int columns, rows;               /* of tiles */
+  const uint32_t* bin_begin;       /* columns*rows + 1 places in bins */
+  const int32_t* bins;             /* faces that may cover a tile, rising */
+  uint32_t* first;                 /* entries of tile t's pixel p begin at first[256 t + p] */
+  stratus_tetra_entry* entries;
+  const int32_t* sums;             /* of the table */
+  const stratus_table* table;
+  stratus_camera camera;
+  double middle, per_z;            /* k = middle + per_z*z */
+  stratus_image image;
+} stratus_tetra_frame;
+
+#define TETRA_WIDTH_MOST 16
+
+/* counting: writes how many entries each pixel of the tile has to first[]; else fills the entries, marches and stores the pixels. */
+typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts);
+
+stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tetra_tile_isa2;
+
+/* tetra_march.c: all tiles. */
+stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
+  stratus_tetra_counts* counts, double* entries_ms, double* march_ms);
+
+#endif

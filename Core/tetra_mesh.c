@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What rays read of a mesh of tetrahedra: a few ints a cell, packed from its neighbours, and the faces by which rays come in. Cells that show
+ * nothing (hidden, or with a value that is not finite) are left out, as if there were a hollow. */
+#include "mesh.h"
+#include "tetra_caster.h"
+
+#include <string.h>
+
+#define CELL_INTS_MOST INT32_MAX
+#define POINTS_MOST ((int64_t)1 << 30)
+#define POINT_INTS 5 /* of a cell with values at its points: four neighbours, and its points' exclusive or */
+
+/* Values as volumes have them, so that fetching is the same. */
+static stratus_volume values_of(const stratus_mesh* mesh)
+{
+  stratus_volume volume = stratus_volume_default();
+  volume.values = mesh->values;
+  volume.type = mesh->type;
+  volume.value_stride = mesh->value_stride;
+  volume.dimensions[0] = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  volume.dimensions[1] = volume.dimensions[2] = 1;
+  return volume;
+}
+
+static void find_shown(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+{
+  int64_t shown = 0;
+  float low = INFINITY, high = -INFINITY;
+#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown) reduction(min : low) reduction(max : high)
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    const int32_t* v = mesh->vertices + 4 * cell;
+    float least = INFINITY, most = -INFINITY;
+    bool finite = !(mesh->hidden && mesh->hidden[cell]);
+    for (int i = 0; i < 4; ++i) {
+      const float value = mesh->cell_values ? stratus_volume_fetch(volume, tetra->bias, (size_t)cell) : tetra->values[v[i]];
+      finite = finite && isfinite(value);
+      least = fminf(least, value);
+      most = fmaxf(most, value);
+    }
+    tetra->shown[cell] = finite;
+    shown += finite;
+    if (finite && adjacency->orientation[cell] != 0) {
+      low = fminf(low, least);
+      high = fmaxf(high, most);
+    }
+  }
+  tetra->shown_cells = shown;
+  tetra->low = low;
+  tetra->high = high;
+}
+
+static void find_bounds(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
+{
+  double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+#pragma omp parallel for num_threads(tetra->context->threads) reduction(min : lo[:3]) reduction(max : hi[:3])
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    for (int i = 0; i < 4 && tetra->shown[cell]; ++i) {
+      const double* p = mesh->points + 3 * (int64_t)mesh->vertices[4 * cell + i];
+      for (int axis = 0; axis < 3; ++axis) {
+        lo[axis] = fmin(lo[axis], p[axis]);
+        hi[axis] = fmax(hi[axis], p[axis]);
+      }
+    }
+  }
+  memcpy(tetra->lo, lo, sizeof lo);
+  memcpy(tetra->hi, hi, sizeof hi);
+}
+
+/* The face of `cell` that names the same points as another's face. -1: none. */
+static int face_with(const int32_t cell[4], const int32_t point[3])
+{
+  for (int f = 0; f < 4; ++f) {
+    int32_t own[3];
+    (void)stratus_face_points(cell, f, own);
+    if (memcmp(own, point, sizeof own) == 0) {
+      return f;
+    }
+  }
+  return -1;
+}
+
+/* A flat cell's faces look the way that its neighbours need: as if it had volume between them. 0 if no neighbour has any. */
+static int nominal_orientation(const stratus_mesh* mesh, const stratus_adjacency* adjacency, int64_t cell)
+{
+  const int32_t* v = mesh->vertices + 4 * cell;
+  if (adjacency->orientation[cell] != 0) {
+    return adjacency->orientation[cell];
+  }
+  for (int f = 0; f < 4; ++f) {
+    const int32_t other = adjacency->neighbours[4 * cell + f];
+    if (other >= 0 && adjacency->orientation[other] != 0) {
+      int32_t point[3], same[3];
+      const int sign = stratus_face_points(v, f, point), face = face_with(mesh->vertices + 4 * (int64_t)other, point);
+      if (face >= 0) {
+        return -sign * stratus_face_points(mesh->vertices + 4 * (int64_t)other, face, same) * adjacency->orientation[other];
+      }
+    }
+  }
+  return 0;
+}
+
+/* The neighbour through face f, -1 where a ray would be outside. */
+static int32_t shown_neighbour(const stratus_tetra_mesh* tetra, const stratus_adjacency* adjacency, int64_t cell, int f)
+{
+  const int32_t other = adjacency->neighbours[4 * cell + f];
+  return other >= 0 && tetra->shown[other] ? other : -1;
+}
+
+static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+{
+#pragma omp parallel for num_threads(tetra->context->threads)
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    const int32_t* v = mesh->vertices + 4 * cell;
+    int32_t* ints = tetra->cells + tetra->stride * cell;
+    for (int f = 0; f < 4; ++f) {
+      int rank = 0; /* cells whose points are not four have no neighbours: any place will do */
+      for (int i = 0; i < 4; ++i) {
+        rank += v[i] < v[f] || (v[i] == v[f] && i < f);
+      }
+      const int32_t other = shown_neighbour(tetra, adjacency, cell, f);
+      ints[rank] = other < 0 ? -1 : (int32_t)(tetra->stride * other);
+    }
+    ints[4] = v[0] ^ v[1] ^ v[2] ^ v[3];
+    if (mesh->cell_values) {
+      const float value = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
+      memcpy(ints + POINT_INTS, &value, sizeof value);
+    }
+  }
+}
+
+static size_t list_faces(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, stratus_tetra_face* faces)
+{
+  size_t count = 0;
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    for (int f = 0; f < 4 && tetra->shown[cell]; ++f) {
+      if (shown_neighbour(tetra, adjacency, cell, f) >= 0) {
+        continue;
+      }
+      const int nominal = nominal_orientation(mesh, adjacency, cell);
+      if (nominal == 0) {
+        break;
+      }
+      if (faces) {
+        int32_t p[3];
+        const bool right = stratus_face_points(mesh->vertices + 4 * cell, f, p) * nominal > 0;
+        faces[count] = (stratus_tetra_face){ (int32_t)(tetra->stride * cell), { p[0], right ? p[1] : p[2], right ? p[2] : p[1] } };
+      }
+      ++count;
+    }
+  }
+  return count;
+}
+
+static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency)
+{
+  const stratus_volume volume = values_of(mesh);
+  void* memory = NULL;
+  tetra->bias = stratus_volume_bias(&volume);
+  TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, 1, &memory));
+  tetra->shown = memory;
+  if (!mesh->cell_values) {
+    TRY(stratus_allocate(tetra->context, (size_t)mesh->point_count, sizeof(float), &memory));
+    tetra->values = memory;
+#pragma omp parallel for num_threads(tetra->context->threads)
+    for (int64_t i = 0; i < mesh->point_count; ++i) {
+      tetra->values[i] = stratus_volume_fetch(&volume, tetra->bias, (size_t)i);
+    }
+  }
+  find_shown(tetra, mesh, &volume, adjacency);
+  find_bounds(tetra, mesh);
+  TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, (size_t)tetra->stride * sizeof(int32_t), &memory));
+  tetra->cells = memory;
+  pack_cells(tetra, mesh, &volume, adjacency);
+  tetra->face_count = list_faces(tetra, mesh, adjacency, NULL);
+  TRY(stratus_allocate(tetra->context, tetra->face_count, sizeof(stratus_tetra_face), &memory));
+  tetra->faces = memory;
+  (void)list_faces(tetra, mesh, adjacency, tetra->faces);
+  stratus_release(tetra->context, tetra->shown);
+  tetra->shown = NULL;
+  tetra->bytes = (size_t)mesh->cell_count * (size_t)tetra->stride * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
+    (tetra->values ? (size_t)mesh->point_count * sizeof(float) : 0);
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_adjacency* adjacency = NULL;
+  void* memory = NULL;
+  const int stride = mesh->cell_values ? POINT_INTS + 1 : POINT_INTS;
+  if (mesh->cell_count > CELL_INTS_MOST / (POINT_INTS + 1) || mesh->point_count > POINTS_MOST) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh of %lld cells and %lld points is too large to draw: at most %d and %lld",
+      (long long)mesh->cell_count, (long long)mesh->point_count, CELL_INTS_MOST / (POINT_INTS + 1), (long long)POINTS_MOST);
+  }
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_mesh), &memory));
+  stratus_tetra_mesh* tetra = memory;
+  tetra->context = context;
+  tetra->stride = stride;
+  tetra->cell_count = mesh->cell_count;
+  TRY_CLEANUP(stratus_adjacency_create(context, mesh, &adjacency));
+  tetra->flat = adjacency->flat;
+  tetra->inverted = adjacency->inverted;
+  tetra->broken = adjacency->broken_faces;
+  tetra->folded = adjacency->folded_faces;
+  TRY_CLEANUP(build(tetra, mesh, adjacency));
+  *out = tetra;
+  tetra = NULL;
+
+cleanup:
+  stratus_adjacency_destroy(adjacency);
+  stratus_tetra_mesh_destroy(tetra);
+  return status;
+}
+
+void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
+{
+  if (mesh) {
+    stratus_release(mesh->context, mesh->cells);
+    stratus_release(mesh->context, mesh->values);
+    stratus_release(mesh->context, mesh->shown);
+    stratus_release(mesh->context, mesh->faces);
+    stratus_release(mesh->context, mesh);
+  }
+}

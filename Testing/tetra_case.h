@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Small meshes of tetrahedra at random, and the picture that the renderer is judged by, written apart from it: each ray against every cell in
+ * double precision by barycentric coordinates, what it meets sorted by where it enters, each stretch in many midpoint steps. */
+#ifndef STRATUS_TESTING_TETRA_CASE_H
+#define STRATUS_TESTING_TETRA_CASE_H
+
+#include "stratus.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define TETRA_WIDTH 45
+#define TETRA_HEIGHT 37
+#define TETRA_PIXELS (TETRA_WIDTH * TETRA_HEIGHT)
+
+typedef struct tetra_case {
+  stratus_mesh mesh;
+  double* points;
+  int32_t* vertices;
+  float* values;
+  uint8_t* hidden;
+  stratus_transfer transfer;
+  stratus_camera camera;
+  stratus_tetra_options options;
+  const float* opaque_depth;
+  double opacity[8], color[12];
+} tetra_case;
+
+typedef struct tetra_picture {
+  float rgba[4 * TETRA_PIXELS], depth[TETRA_PIXELS];
+  uint8_t rgba8[4 * TETRA_PIXELS];
+  uint32_t samples[TETRA_PIXELS];
+  stratus_tetra_report report;
+} tetra_picture;
+
+static inline double tetra_uniform(uint32_t* state, double lo, double hi)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return lo + (hi - lo) * (double)(*state >> 8) / 16777216.0;
+}
+
+/* A cube of n^3 boxes, six cells each about the boxes' diagonals, its points moved by up to `jitter` of a box, corners of cells in any order;
+ * `missing` of the cells left out; values within 0..1, those of neighbours alike. */
+static inline void tetra_create(tetra_case* c, int n, double jitter, double missing, uint32_t seed)
+{
+  static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
+  const int side = n + 1;
+  uint32_t s = seed * 7919u + 5u;
+  memset(c, 0, sizeof *c);
+  c->mesh = stratus_mesh_default();
+  c->points = calloc((size_t)(side * side * side), 3 * sizeof(double));
+  c->values = calloc((size_t)(6 * side * side * side), sizeof(float)); /* enough for a value a cell, too */
+  c->vertices = calloc((size_t)(6 * n * n * n), 4 * sizeof(int32_t));
+  c->hidden = calloc((size_t)(6 * n * n * n), 1);
+  assert_true(c->points && c->values && c->vertices && c->hidden);
+  for (int i = 0; i < side * side * side; ++i) {
+    const int at[3] = { i % side, i / side % side, i / side / side };
+    for (int a = 0; a < 3; ++a) {
+      c->points[3 * i + a] = at[a] + tetra_uniform(&s, -jitter, jitter);
+    }
+    c->values[i] = (float)(0.5 + 0.25 * sin(1.9 * at[0] + 0.7 * at[1] + seed) + 0.25 * cos(1.3 * at[2] - 0.9 * at[1]));
+  }
+  for (int box = 0; box < n * n * n; ++box) {
+    const int corner = (box / n / n * side + box / n % n) * side + box % n, step[3] = { 1, side, side * side };
+    for (int t = 0; t < 6; ++t) {
+      const int a = corner + step[path[t][0]], b = a + step[path[t][1]], last = corner + 1 + side + side * side;
+      const int32_t v[4] = { corner, a, b, last };
+      const int turn = (int)tetra_uniform(&s, 0, 3.999);
+      if (tetra_uniform(&s, 0, 1) >= missing) {
+        for (int i = 0; i < 4; ++i) {
+          c->vertices[4 * c->mesh.cell_count + i] = v[(i * (turn & 1 ? 3 : 1) + turn) & 3];
+        }
+        ++c->mesh.cell_count;
+      }
+    }
+  }
+  c->mesh.points = c->points;
+  c->mesh.point_count = side * side * side;
+  c->mesh.vertices = c->vertices;
+  c->mesh.values = c->values;
+  const double opacity[8] = { 0.0, 0.0, 0.3, 0.05, 0.6, 0.7, 1.0, 0.2 };
+  const double color[12] = { 0.0, 0.2, 0.3, 0.9, 0.5, 0.9, 0.8, 0.2, 1.0, 1.0, 0.1, 0.1 };
+  memcpy(c->opacity, opacity, sizeof opacity);
+  memcpy(c->color, color, sizeof color);
+  c->transfer = stratus_transfer_default();
+  c->transfer.opacity = c->opacity;
+  c->transfer.opacity_count = 4;
+  c->transfer.color = c->color;
+  c->transfer.color_count = 3;
+  c->options = stratus_tetra_options_default();
+  c->options.termination = 1.0;
+}
+
+static inline void tetra_destroy(tetra_case* c)
+{
+  free(c->points);
+  free(c->values);
+  free(c->vertices);
+  free(c->hidden);
+}
+
+/* From outside, camera of record `view` about a cube of edge n. */
+static inline void tetra_look(stratus_context* context, tetra_case* c, int n, int view, int parallel)
+{
+  const double bounds[6] = { 0, n, 0, n, 0, n };
+  assert_int_equal(
+    stratus_scene_camera(context, bounds, 2, view, parallel, (double)TETRA_WIDTH / TETRA_HEIGHT, &c->camera), STRATUS_OK);
+}
+
+static inline void tetra_draw(stratus_context* context, const tetra_case* c, tetra_picture* p)
+{
+  stratus_tetra_caster* caster = NULL;
+  memset(p, 0x5a, sizeof *p);
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = p->rgba, .depth = p->depth, .rgba8 = p->rgba8,
+    .samples = p->samples, .opaque_depth = c->opaque_depth };
+  assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+  const stratus_status status =
+    stratus_tetra_caster_render(caster, &c->mesh, &c->transfer, &c->camera, &c->options, &image, &p->report);
+  if (status != STRATUS_OK) {
+    print_error("%s\n", stratus_context_message(context));
+  }
+  assert_int_equal(status, STRATUS_OK);
+  stratus_tetra_caster_destroy(caster);
+}
+
+/* ---- the reference */
+
+typedef struct tetra_stretch {
+  double from, to, first, last;
+} tetra_stretch;
+
+static inline double tetra_function(const double* points, size_t count, size_t width, size_t component, double x)
+{
+  size_t i = 0;
+  while (i + 1 < count && points[(i + 1) * width] <= x) {
+    ++i;
+  }
+  const double* p = points + i * width;
+  if (i + 1 == count || x <= p[0]) {
+    return p[component];
+  }
+  return p[component] + (x - p[0]) / (p[width] - p[0]) * (p[width + component] - p[component]);
+}
+
+static inline int tetra_nearer(const void* a, const void* b)
+{
+  const double d = ((const tetra_stretch*)a)->from - ((const tetra_stretch*)b)->from;
+  return (d > 0) - (d < 0);
+}
+
+static inline double tetra_volume(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+  double u[3], v[3], w[3];
+  for (int i = 0; i < 3; ++i) {
+    u[i] = b[i] - a[i];
+    v[i] = c[i] - a[i];
+    w[i] = d[i] - a[i];
+  }
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+/* What of the ray lies within the cell: each barycentric coordinate is linear along it. */
+static inline int tetra_meet(const tetra_case* c, int64_t cell, const double origin[3], const double along[3], double from, double to,
+  tetra_stretch* stretch)
+{
+  const int32_t* v = c->mesh.vertices + 4 * cell;
+  const double* m = c->mesh.matrix;
+  double p[4][3], value[4], coordinate[2][4];
+  for (int i = 0; i < 4; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const double* q = c->mesh.points + 3 * (int64_t)v[i];
+      p[i][a] = m[4 * a] * q[0] + m[4 * a + 1] * q[1] + m[4 * a + 2] * q[2] + m[4 * a + 3] - origin[a];
+    }
+    value[i] = (double)c->values[c->mesh.cell_values ? cell : v[i]];
+    if (!isfinite(value[i])) {
+      return 0;
+    }
+  }
+  const double whole = tetra_volume(p[0], p[1], p[2], p[3]);
+  if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
+    return 0;
+  }
+  /* a second point of the ray, as far away as the cell: another scale would drown the cell's in rounding */
+  double reach = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    reach = fmax(reach, sqrt((p[i][0] * p[i][0] + p[i][1] * p[i][1] + p[i][2] * p[i][2]) /
+                          (along[0] * along[0] + along[1] * along[1] + along[2] * along[2])));
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int end = 0; end < 2; ++end) {
+      double q[4][3];
+      memcpy(q, p, sizeof q);
+      for (int a = 0; a < 3; ++a) {
+        q[i][a] = end ? along[a] * reach : 0.0;
+      }
+      coordinate[end][i] = tetra_volume(q[0], q[1], q[2], q[3]) / whole;
+    }
+    const double start = coordinate[0][i], rise = (coordinate[1][i] - start) / reach;
+    if (rise == 0.0 ? start < 0.0 : 0) {
+      return 0;
+    }
+    from = rise > 0.0 ? fmax(from, -start / rise) : from;
+    to = rise < 0.0 ? fmin(to, -start / rise) : to;
+  }
+  if (!(from < to)) {
+    return 0;
+  }
+  *stretch = (tetra_stretch){ .from = from, .to = to };
+  for (int i = 0; i < 4; ++i) {
+    const double rise = (coordinate[1][i] - coordinate[0][i]) / reach;
+    stretch->first += value[i] * (coordinate[0][i] + from * rise);
+    stretch->last += value[i] * (coordinate[0][i] + to * rise);
+  }
+  return 1;
+}
+
+static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, double length, double rgba[4], double* depth)
+{
+  enum { STEPS = 200 };
+  for (int i = 0; i < STEPS; ++i) {
+    const double t = (i + 0.5) / STEPS, x = s->first + t * (s->last - s->first);
+    const double a = tetra_function(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
+    const double alpha = -expm1(log1p(-a) * (s->to - s->from) * length / STEPS / c->transfer.unit_distance);
+    if (alpha > 0.0 && isinf(*depth)) {
+      *depth = (s->from + t * (s->to - s->from)) * length;
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      rgba[k] += (1.0 - rgba[3]) * alpha * tetra_function(c->transfer.color, c->transfer.color_count, 4, k + 1, x);
+    }
+    rgba[3] += (1.0 - rgba[3]) * alpha;
+  }
+}
+
+/* rgba: TETRA_PIXELS times 4; depth, may be NULL. */
+static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
+{
+  tetra_stretch* met = calloc((size_t)c->mesh.cell_count + 1, sizeof *met);
+  assert_non_null(met);
+  for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
+    const double u = (2.0 * (pixel % TETRA_WIDTH) + 1.0) / TETRA_WIDTH - 1.0, v = (2.0 * (pixel / TETRA_WIDTH) + 1.0) / TETRA_HEIGHT - 1.0;
+    const stratus_camera* k = &c->camera;
+    double origin[3], along[3], to = k->far_k, first = INFINITY, *out = rgba + 4 * pixel;
+    size_t count = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double side = u * k->right[a] + v * k->up[a];
+      origin[a] = k->eye[a] + (k->parallel ? side : 0.0);
+      along[a] = k->forward[a] + (k->parallel ? 0.0 : side);
+    }
+    if (c->opaque_depth) {
+      const double d = (double)c->opaque_depth[pixel];
+      to = k->parallel ? k->near_k + d * (k->far_k - k->near_k) : k->near_k * k->far_k / (k->far_k - d * (k->far_k - k->near_k));
+    }
+    for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
+      count += (size_t)tetra_meet(c, cell, origin, along, k->near_k, to, met + count);
+    }
+    qsort(met, count, sizeof *met, tetra_nearer);
+    memset(out, 0, 4 * sizeof *out);
+    const double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+    double largest = -INFINITY;
+    for (size_t i = 0; i < count; ++i) {
+      largest = fmax(largest, fmax(met[i].first, met[i].last));
+      if (c->options.mode == STRATUS_TETRA_COMPOSITE) {
+        tetra_integrate(c, met + i, length, out, &first);
+      }
+    }
+    if (c->options.mode == STRATUS_TETRA_MAXIMUM && count > 0) {
+      out[3] = tetra_function(c->transfer.opacity, c->transfer.opacity_count, 2, 1, largest);
+      for (size_t i = 0; i < 3; ++i) {
+        out[i] = out[3] * tetra_function(c->transfer.color, c->transfer.color_count, 4, i + 1, largest);
+      }
+    }
+    if (depth) {
+      depth[pixel] = first;
+    }
+  }
+  free(met);
+}
+
+/* Root mean square of RGBA in 0..255 over the pixels that either shows. */
+static inline double tetra_error(const float* rgba, const double* reference, double* largest)
+{
+  double squares = 0.0, count = 0.0;
+  *largest = 0.0;
+  for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
+    if (rgba[4 * pixel + 3] > 0.0f || reference[4 * pixel + 3] > 0.0) {
+      for (int c = 0; c < 4; ++c) {
+        const double d = 255.0 * ((double)rgba[4 * pixel + c] - reference[4 * pixel + c]);
+        squares += d * d;
+        *largest = fmax(*largest, isfinite(d) ? fabs(d) : INFINITY);
+        count += 1.0;
+      }
+    }
+  }
+  return count > 0.0 ? sqrt(squares / count) : INFINITY; /* nothing to be compared is no agreement */
+}
+
+#endif
