@@ -3,7 +3,7 @@
 include(CheckLanguage)
 
 # Named one by one: a bare find of Debian's VTK wants Qt. What consumers need is in the first list, tests and programs want the second.
-set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonTransforms ImagingCore RenderingCore
+set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore IOCore RenderingCore
   RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
   IOImage IOLegacy IOXML RenderingContext2D RenderingContextOpenGL2 RenderingFreeType TestingRendering ViewsContext2D)

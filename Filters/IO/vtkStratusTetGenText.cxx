@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusTetGenText.h"
+
+#include "vtkErrorCode.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace {
+const size_t ChunkBytes = size_t(1) << 20;
+const size_t LineBytes = size_t(1) << 26; // no line of TetGen's is nearly so long, a binary file may be one line
+
+bool IsBlank(char c)
+{
+  return c == ' ' || c == '\t' || c == ',' || c == '\r' || c == '\v' || c == '\f';
+}
+
+// What stands in the file, fit for a message.
+std::string Shown(std::string_view token)
+{
+  std::string shown(token.substr(0, 40));
+  std::replace_if(shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return shown + (token.size() > 40 ? "..." : "");
+}
+
+// from_chars takes no plus sign.
+template <typename T>
+std::errc Parse(std::string_view token, T& value)
+{
+  const char* end = token.data() + token.size();
+  const bool plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
+  const std::from_chars_result result = std::from_chars(token.data() + (plus ? 1 : 0), end, value);
+  return result.ec == std::errc() && result.ptr != end ? std::errc::invalid_argument : result.ec;
+}
+} // namespace
+
+vtkStratusTetGenInput::vtkStratusTetGenInput(const std::string& path, const vtkStratusTetGenProgress& progress)
+    : Path(path), Progress(progress)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw vtkStratusTetGenError{ "there is no file " + path, vtkErrorCode::FileNotFoundError };
+  }
+  if (!std::filesystem::is_regular_file(status)) { // its size is needed
+    throw vtkStratusTetGenError{ path + " is not a regular file", vtkErrorCode::CannotOpenFileError };
+  }
+  this->Size = std::filesystem::file_size(path, error);
+  this->Buffer.resize(ChunkBytes);
+  this->File = error ? nullptr : std::fopen(path.c_str(), "rb");
+  if (!this->File) {
+    throw vtkStratusTetGenError{ "can't open " + path + ": " + std::strerror(errno), vtkErrorCode::CannotOpenFileError };
+  }
+}
+
+vtkStratusTetGenInput::~vtkStratusTetGenInput()
+{
+  if (this->File) {
+    std::fclose(this->File);
+  }
+}
+
+void vtkStratusTetGenInput::Fail(const std::string& text) const
+{
+  throw vtkStratusTetGenError{ this->Path + ", line " + std::to_string(this->Line) + ": " + text, vtkErrorCode::FileFormatError };
+}
+
+void vtkStratusTetGenInput::FailEarly(const std::string& text) const
+{
+  throw vtkStratusTetGenError{ this->Path + " ends after line " + std::to_string(this->Line) + ": " + text,
+    vtkErrorCode::PrematureEndOfFileError };
+}
+
+// Reads on behind what is left, which moves to the buffer's begin.
+bool vtkStratusTetGenInput::Fill()
+{
+  if (this->AtEnd) {
+    return false;
+  }
+  std::copy(this->Buffer.begin() + static_cast<std::ptrdiff_t>(this->Begin), this->Buffer.begin() + static_cast<std::ptrdiff_t>(this->End),
+    this->Buffer.begin());
+  this->End -= this->Begin;
+  this->Begin = 0;
+  if (this->End == this->Buffer.size()) {
+    if (this->Buffer.size() >= LineBytes) {
+      ++this->Line;
+      this->Fail("the line is longer than " + std::to_string(LineBytes) + " bytes");
+    }
+    this->Buffer.resize(2 * this->Buffer.size());
+  }
+  const size_t read = std::fread(this->Buffer.data() + this->End, 1, this->Buffer.size() - this->End, this->File);
+  if (std::ferror(this->File)) {
+    throw vtkStratusTetGenError{ "can't read " + this->Path + ": " + std::strerror(errno), vtkErrorCode::UnknownError };
+  }
+  this->AtEnd = read == 0;
+  this->End += read;
+  this->Progress(read);
+  return read > 0;
+}
+
+void vtkStratusTetGenInput::Skip()
+{
+  size_t blanks = 0;
+  while (blanks < this->Rest.size() && IsBlank(this->Rest[blanks])) {
+    ++blanks;
+  }
+  this->Rest.remove_prefix(blanks);
+}
+
+bool vtkStratusTetGenInput::NextLine()
+{
+  for (;;) {
+    const char* begin = this->Buffer.data() + this->Begin;
+    const size_t available = this->End - this->Begin;
+    const char* newline = available ? static_cast<const char*>(std::memchr(begin, '\n', available)) : nullptr;
+    if (!newline && this->Fill()) {
+      continue;
+    }
+    if (!newline && this->Begin == this->End) {
+      return false;
+    }
+    begin = this->Buffer.data() + this->Begin; // the last line may lack its end, and filling moves
+    const size_t length = newline ? static_cast<size_t>(newline - begin) : this->End - this->Begin;
+    this->Begin += length + (newline ? 1 : 0);
+    this->Consumed += length + (newline ? 1 : 0);
+    ++this->Line;
+    this->Rest = std::string_view(begin, length);
+    this->Rest = this->Rest.substr(0, this->Rest.find('#'));
+    this->Skip();
+    if (!this->Rest.empty()) {
+      return true;
+    }
+  }
+}
+
+void vtkStratusTetGenInput::NeedLine(const char* things, vtkIdType done, vtkIdType all)
+{
+  if (!this->NextLine()) {
+    this->FailEarly("it holds " + std::to_string(done) + " of " + std::to_string(all) + " " + things);
+  }
+}
+
+int vtkStratusTetGenInput::GetNumbersLeft() const
+{
+  int numbers = 0;
+  bool blank = true;
+  for (const char c : this->Rest) {
+    numbers += blank && !IsBlank(c) ? 1 : 0;
+    blank = IsBlank(c);
+  }
+  return numbers;
+}
+
+std::string_view vtkStratusTetGenInput::Next(const char* name)
+{
+  if (this->Rest.empty()) {
+    this->Fail(std::string("the line ends where ") + name + " must be");
+  }
+  size_t length = 0;
+  while (length < this->Rest.size() && !IsBlank(this->Rest[length])) {
+    ++length;
+  }
+  const std::string_view token = this->Rest.substr(0, length);
+  this->Rest.remove_prefix(length);
+  this->Skip();
+  return token;
+}
+
+vtkIdType vtkStratusTetGenInput::GetInteger(const char* name, vtkIdType lower, vtkIdType upper)
+{
+  const std::string_view token = this->Next(name);
+  vtkIdType value = 0;
+  if (Parse(token, value) != std::errc() || value < lower || value > upper) {
+    const std::string allowed = lower == upper
+      ? std::to_string(lower)
+      : lower < upper ? "an integer from " + std::to_string(lower) + " to " + std::to_string(upper) : "none at all";
+    this->Fail(std::string(name) + " is '" + Shown(token) + "', it must be " + allowed);
+  }
+  return value;
+}
+
+double vtkStratusTetGenInput::GetReal(const char* name)
+{
+  const std::string_view token = this->Next(name);
+  double value = 0.0;
+  const std::errc error = Parse(token, value);
+  if (error == std::errc::result_out_of_range) { // what is too small is zero; too large stays an error
+    value = std::strtod(std::string(token).c_str(), nullptr);
+  }
+  if (error == std::errc::invalid_argument || (error == std::errc::result_out_of_range && !(std::abs(value) < 1.0))) {
+    this->Fail(std::string(name) + " is '" + Shown(token) + "', it must be a number of double precision");
+  }
+  return value;
+}
+
+double vtkStratusTetGenInput::GetFinite(const char* name)
+{
+  const double value = this->GetReal(name);
+  if (!std::isfinite(value)) {
+    this->Fail(std::string(name) + " is " + std::to_string(value) + ", it must be finite");
+  }
+  return value;
+}
+
+vtkIdType vtkStratusTetGenInput::GetCount(const char* name, vtkIdType numbers)
+{
+  const vtkIdType count = this->GetInteger(name, 0, VTK_ID_MAX);
+  this->CheckCount(name, count, numbers);
+  return count;
+}
+
+void vtkStratusTetGenInput::CheckCount(const char* name, vtkIdType count, vtkIdType numbers) const
+{
+  // Each number takes a digit and a separator; the very last may do without.
+  const vtkIdType room = static_cast<vtkIdType>((this->Size - std::min(this->Size, this->Consumed) + 1) / 2) / numbers;
+  if (count > room) {
+    this->Fail(std::string(name) + " is " + std::to_string(count) + ", but the rest of the file, of " + std::to_string(this->Size) +
+      " bytes, can hold no more than " + std::to_string(room));
+  }
+}
+
+void vtkStratusTetGenInput::EndLine()
+{
+  if (!this->Rest.empty()) {
+    this->Fail("there is more on the line than expected: '" + Shown(this->Rest) + "'");
+  }
+}
+
+void vtkStratusTetGenInput::EndFile(const char* things, vtkIdType all)
+{
+  if (this->NextLine()) {
+    this->Fail("there is more than the " + std::to_string(all) + " " + things + " that the file announces: '" + Shown(this->Rest) + "'");
+  }
+}
+
+vtkStratusTetGenOutput::vtkStratusTetGenOutput(const std::string& path, const vtkStratusTetGenProgress& progress)
+    : Path(path), Part(path + ".part"), Progress(progress)
+{
+  this->Buffer.reserve(ChunkBytes + 64);
+  this->File = std::fopen(this->Part.c_str(), "wb");
+  if (!this->File) {
+    throw vtkStratusTetGenError{ "can't open " + this->Part + " for writing: " + std::strerror(errno), vtkErrorCode::CannotOpenFileError };
+  }
+}
+
+vtkStratusTetGenOutput::~vtkStratusTetGenOutput()
+{
+  if (this->File) {
+    std::fclose(this->File);
+  }
+  if (!this->Committed) {
+    std::remove(this->Part.c_str());
+  }
+}
+
+void vtkStratusTetGenOutput::Fail(const char* doing) const
+{
+  throw vtkStratusTetGenError{ std::string("can't ") + doing + " " + this->Path + ": " + std::strerror(errno),
+    errno == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError };
+}
+
+void vtkStratusTetGenOutput::Put(vtkIdType value)
+{
+  char text[32];
+  const std::to_chars_result result = std::to_chars(text, text + sizeof text, value);
+  this->Buffer.append(text, result.ptr);
+  this->Buffer += ' ';
+}
+
+void vtkStratusTetGenOutput::Put(double value)
+{
+  char text[32];
+  const std::to_chars_result result = std::to_chars(text, text + sizeof text, value);
+  this->Buffer.append(text, result.ptr);
+  this->Buffer += ' ';
+}
+
+void vtkStratusTetGenOutput::EndLine()
+{
+  if (!this->Buffer.empty() && this->Buffer.back() == ' ') {
+    this->Buffer.pop_back();
+  }
+  this->Buffer += '\n';
+  if (this->Buffer.size() >= ChunkBytes) {
+    this->Flush();
+  }
+}
+
+void vtkStratusTetGenOutput::Flush()
+{
+  const size_t bytes = this->Buffer.size();
+  if (std::fwrite(this->Buffer.data(), 1, bytes, this->File) != bytes) {
+    this->Fail("write");
+  }
+  this->Buffer.clear();
+  this->Progress(bytes);
+}
+
+void vtkStratusTetGenOutput::Close()
+{
+  this->Flush();
+  std::FILE* file = this->File;
+  this->File = nullptr;
+  if (std::fclose(file) != 0) {
+    this->Fail("write");
+  }
+}
+
+void vtkStratusTetGenOutput::Commit()
+{
+  std::error_code error;
+  std::filesystem::rename(this->Part, this->Path, error);
+  if (error) {
+    errno = error.value();
+    this->Fail("rename the file just written to");
+  }
+  this->Committed = true;
+}
