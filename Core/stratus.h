@@ -745,7 +745,8 @@ STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const st
 /* ---------------------------------------------------------------- partition of a mesh
  * A mesh cut along planes into the leaves of a K-D tree (Li et al. 2012, section 2), so that each cell lies in one leaf and leaves can be
  * sorted apart. Points keep their numbers; a point on a cut edge comes behind them, once, whoever asks for it: pieces of neighbours meet in
- * the same points and faces. A point that lies on a plane is not cut, and a piece without volume is not made. */
+ * the same points and faces. A point that lies on a plane is not cut, and a cell that
+ * has a volume leaves no piece without one. */
 
 typedef enum stratus_partition_rule {
   STRATUS_PARTITION_MEDIAN, /* of the planes through the mesh's own points between the 40 % and the 60 % quantile, the one that cuts fewest cells */
@@ -800,7 +801,7 @@ typedef struct stratus_partition_result {
   const int32_t* ends;      /* 2 for each new point old_points + i: the ends of its edge, lower numbers than its own (one may be new, too) */
   const double* weights;    /* 1 for each: value = (1 - weight)*value(ends[0]) + weight*value(ends[1]), 0 < weight < 1 */
   int64_t cut_cells;        /* of the mesh, that are not whole any more */
-  int64_t tiny_pieces;      /* not made: their volume is 0 in exact arithmetic */
+  int64_t tiny_pieces;      /* left out: of cells with a volume, but rounding left them none */
   int64_t largest_leaf;     /* cells */
   int rotations;            /* made */
 } stratus_partition_result;
