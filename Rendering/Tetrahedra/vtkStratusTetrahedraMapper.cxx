@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusTetrahedraMapper.h"
+
+#include "vtkStratusTetrahedraMapperInternals.h"
+
+#include "vtkCommand.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkObjectFactory.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <chrono>
+
+vtkStandardNewMacro(vtkStratusTetrahedraMapper);
+
+vtkStratusTetrahedraMapper::vtkStratusTetrahedraMapper() : Internal(new Internals(this)) {}
+
+vtkStratusTetrahedraMapper::~vtkStratusTetrahedraMapper() = default;
+
+int vtkStratusTetrahedraMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  return 1;
+}
+
+void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
+{
+  const auto start = std::chrono::steady_clock::now();
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
+  std::string error;
+  if (this->Internal->Render(ren, vol, error)) {
+    this->Internal->LastError.clear();
+  } else if (!error.empty() && error != this->Internal->LastError) {
+    this->Internal->LastError = error; // once, not with every picture
+    vtkErrorMacro(<< error << "; nothing is drawn");
+  }
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
+  this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Internal->Display.ReleaseGraphicsResources(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+double vtkStratusTetrahedraMapper::GetMarchMilliseconds()
+{
+  return this->Internal->Report.march_ms;
+}
+
+double vtkStratusTetrahedraMapper::GetBuildMilliseconds()
+{
+  return this->Internal->Report.build_ms;
+}
+
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfSegments()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.segments);
+}
+
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfEntries()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.entries);
+}
+
+vtkImageData* vtkStratusTetrahedraMapper::GetLastImage()
+{
+  return this->Internal->GetLastImage();
+}
+
+void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  const stratus_tetra_report& report = this->Internal->Report;
+  os << indent << "Termination: " << this->Termination << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "March Milliseconds: " << report.march_ms << "\n";
+  os << indent << "Build Milliseconds: " << report.build_ms << "\n";
+  os << indent << "Segments: " << report.segments << "\n";
+  os << indent << "Entries: " << report.entries << "\n";
+}

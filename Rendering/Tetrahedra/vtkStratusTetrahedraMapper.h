@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusTetrahedraMapper
+ * @brief   draws a vtkUnstructuredGrid of tetrahedra by rays that march through faces, with exact thickness and order
+ *
+ * Takes the place of vtkProjectedTetrahedraMapper and of vtkUnstructuredGridVolumeRayCastMapper: a vtkUnstructuredGrid and the vtkVolume's
+ * vtkVolumeProperty go in, the picture is composited with the opaque geometry of the scene.
+ *
+ * Supported: grids of tetrahedra of any orientation, in any number of parts, with gaps, hollows and flat cells; point and cell scalars of one
+ * component and any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite and
+ * maximum intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not
+ * finite (their cells are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that cross the near plane are cut there. All else (other
+ * cells, shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping planes) is refused by an error, and nothing is drawn.
+ *
+ * What is built is kept: a new view of the same grid rebuilds nothing, a new transfer function a table only.
+ *
+ * @sa vtkStratusVolumeMapper vtkProjectedTetrahedraMapper
+ */
+#ifndef vtkStratusTetrahedraMapper_h
+#define vtkStratusTetrahedraMapper_h
+
+#include "StratusRenderingTetrahedraModule.h" // For export macro
+#include "vtkUnstructuredGridVolumeMapper.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkImageData;
+
+class STRATUSRENDERINGTETRAHEDRA_EXPORT vtkStratusTetrahedraMapper : public vtkUnstructuredGridVolumeMapper
+{
+public:
+  static vtkStratusTetrahedraMapper* New();
+  vtkTypeMacro(vtkStratusTetrahedraMapper, vtkUnstructuredGridVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * A ray ends when its alpha passes this, 0..1. Default .999. Not in maximum intensity.
+   */
+  vtkSetClampMacro(Termination, double, 0.0, 1.0);
+  vtkGetMacro(Termination, double);
+  ///@}
+
+  ///@{
+  /**
+   * Threads that draw, 0..1024; 0 takes as many as OpenMP would. The picture is the same with any number. Default 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of the last picture: milliseconds that the march took, and making the grid ready (0 where it was), cells that rays passed, and faces
+   * through which they came in.
+   */
+  double GetMarchMilliseconds();
+  double GetBuildMilliseconds();
+  vtkIdType GetNumberOfSegments();
+  vtkIdType GetNumberOfEntries();
+  ///@}
+
+  /**
+   * The last picture as floats, as large as the renderer's viewport: point arrays RGBA (premultiplied by alpha) and Depth (world distance
+   * along the ray from the eye, infinity where nothing is). nullptr before the first. Made anew with each call.
+   */
+  vtkImageData* GetLastImage();
+
+  void Render(vtkRenderer* ren, vtkVolume* vol) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkStratusTetrahedraMapper();
+  ~vtkStratusTetrahedraMapper() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+  double Termination = 0.999;
+  int NumberOfThreads = 0;
+
+private:
+  vtkStratusTetrahedraMapper(const vtkStratusTetrahedraMapper&) = delete;
+  void operator=(const vtkStratusTetrahedraMapper&) = delete;
+
+  class Internals;
+  friend class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

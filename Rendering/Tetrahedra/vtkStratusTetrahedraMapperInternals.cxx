@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusTetrahedraMapperInternals.h"
+
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlaneCollection.h"
+#include "vtkPointData.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <limits>
+
+vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* mapper)
+    : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
+{
+  this->Context.OnRelease = [this] {
+    stratus_tetra_caster_destroy(this->Caster);
+    this->Caster = nullptr;
+  };
+}
+
+vtkStratusTetrahedraMapper::Internals::~Internals()
+{
+  this->Context.OnRelease();
+  this->Context.OnRelease = nullptr; // members that it touches go before the context does
+}
+
+bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
+{
+  this->Mapper->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &fraction);
+  vtkRenderWindow* window = this->Renderer ? this->Renderer->GetRenderWindow() : nullptr;
+  return window && window->CheckAbortStatus();
+}
+
+// ---------------------------------------------------------------- what is asked for
+
+bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
+{
+  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
+  if (planes && planes->GetNumberOfItems() > 0) {
+    error = std::to_string(planes->GetNumberOfItems()) + " clipping planes are not supported, none may be set";
+  } else if (this->Mapper->BlendMode != COMPOSITE_BLEND && this->Mapper->BlendMode != MAXIMUM_INTENSITY_BLEND) {
+    error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) and maximum intensity (1) are";
+  } else if (property->GetShade()) {
+    error = "shading is not supported, only ShadeOff is";
+  } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
+    error = "two-dimensional transfer functions are not supported, only TF_1D is";
+  } else if (property->GetNumberOfLabels() > 0) {
+    error = "label maps are not supported, only the scalar transfer functions are";
+  } else if (!property->GetDisableGradientOpacity() && property->HasGradientOpacity()) {
+    vtkPiecewiseFunction* gradient = property->GetGradientOpacity();
+    for (int n = 0; n < gradient->GetSize(); ++n) {
+      double node[4];
+      gradient->GetNodeValue(n, node);
+      if (node[1] != 1.0) {
+        error = "gradient opacity is not supported, only a function that is 1 everywhere, or DisableGradientOpacityOn";
+      }
+    }
+  }
+  return error.empty();
+}
+
+bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
+{
+  vtkStratusTetrahedraMapper* mapper = this->Mapper;
+  if (mapper->GetNumberOfInputConnections(0) > 0) {
+    mapper->GetInputAlgorithm()->Update();
+  }
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(mapper->GetDataObjectInput());
+  if (!grid) {
+    error = "there is no input, a vtkUnstructuredGrid is needed";
+    return false;
+  }
+  empty = grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0;
+  if (empty) {
+    return true;
+  }
+  int cells = 0;
+  vtkDataArray* array =
+    vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
+  if (!array || cells > 1) {
+    error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
+    return false;
+  }
+  return this->Mesh.Set(grid, array, cells == 1, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
+}
+
+bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
+{
+  const int threads = this->Mapper->NumberOfThreads;
+  if ((!this->Context.Get() || this->Context.GetThreads() != threads) && !this->Context.Create("host", threads, error)) {
+    return false;
+  }
+  if (!this->Caster && stratus_tetra_caster_create(this->Context.Get(), &this->Caster) != STRATUS_OK) {
+    error = stratus_context_message(this->Context.Get());
+    return false;
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------- a picture
+
+// Whether something may have written depth before: reading it back costs as much as a simple scene.
+bool vtkStratusTetrahedraMapper::Internals::HasGeometry(vtkRenderer* renderer, vtkVolume* prop) const
+{
+  bool geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator iterator;
+  props->InitTraversal(iterator);
+  while (vtkProp* other = props->GetNextProp(iterator)) {
+    geometry = geometry || (other != prop && other->GetVisibility() && !other->IsA("vtkActor2D"));
+  }
+  return geometry;
+}
+
+const float* vtkStratusTetrahedraMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer)
+{
+  const int* rectangle = this->Picture.Rectangle;
+  const int x = this->Picture.Viewport[0] + rectangle[0], y = this->Picture.Viewport[1] + rectangle[1];
+  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
+  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
+  return this->WindowDepth.data();
+}
+
+bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error)
+{
+  const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
+  this->Rgba.resize(4 * pixels);
+  this->Depth.resize(pixels);
+  stratus_image image = stratus_image();
+  image.width = this->Picture.Size[0];
+  image.height = this->Picture.Size[1];
+  image.rgba = this->Rgba.data();
+  image.depth = this->Depth.data();
+  image.opaque_depth = opaqueDepth;
+  stratus_tetra_options options = stratus_tetra_options_default();
+  options.termination = this->Mapper->Termination;
+  options.mode = this->Mapper->BlendMode == MAXIMUM_INTENSITY_BLEND ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+  this->Renderer = renderer;
+  const stratus_status status = stratus_tetra_caster_render(
+    this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+  this->Renderer = nullptr;
+  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
+    error = stratus_context_message(this->Context.Get());
+  }
+  return status == STRATUS_OK;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
+{
+  bool empty = false;
+  this->HasPicture = false;
+  if (!this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
+    return false;
+  }
+  if (empty) {
+    return true;
+  }
+  if (!this->Picture.Set(renderer, this->Mesh.GetBox(), nullptr, 1.0)) {
+    error = "the camera's projection has no inverse";
+    return false;
+  }
+  this->HasPicture = this->Picture.IsEmpty();
+  if (this->HasPicture) {
+    return true;
+  }
+  const float* opaqueDepth = this->HasGeometry(renderer, prop) ? this->ReadOpaqueDepth(renderer) : nullptr;
+  if (!this->Cast(renderer, opaqueDepth, error)) {
+    return false;
+  }
+  this->HasPicture = true;
+  vtkStratusDisplay::Pixels pixels;
+  pixels.Rgba = this->Rgba.data();
+  pixels.Window[1] = this->Picture.Size[0];
+  pixels.Window[3] = this->Picture.Size[1];
+  if (!this->Display.Draw(renderer, this->Picture, pixels)) {
+    error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+    return false;
+  }
+  return true;
+}
+
+vtkImageData* vtkStratusTetrahedraMapper::Internals::GetLastImage()
+{
+  if (!this->HasPicture) {
+    return nullptr;
+  }
+  const int width = this->Picture.Viewport[2], height = this->Picture.Viewport[3];
+  const int* rectangle = this->Picture.Rectangle;
+  this->LastImage = vtkSmartPointer<vtkImageData>::New();
+  this->LastImage->SetDimensions(width, height, 1);
+  vtkNew<vtkFloatArray> rgba, depth;
+  rgba->SetName("RGBA");
+  rgba->SetNumberOfComponents(4);
+  depth->SetName("Depth");
+  for (vtkFloatArray* array : { rgba.Get(), depth.Get() }) {
+    array->SetNumberOfTuples(static_cast<vtkIdType>(width) * height);
+  }
+  rgba->Fill(0.0);
+  depth->Fill(std::numeric_limits<double>::infinity());
+  for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
+    for (int i = 0; i < rectangle[2]; ++i) {
+      const size_t from = static_cast<size_t>(j) * this->Picture.Size[0] + i;
+      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
+      std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
+      depth->SetValue(to, this->Depth[from]);
+    }
+  }
+  this->LastImage->GetPointData()->SetScalars(rgba);
+  this->LastImage->GetPointData()->AddArray(depth);
+  return this->LastImage;
+}

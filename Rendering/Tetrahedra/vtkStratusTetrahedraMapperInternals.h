@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkStratusTetrahedraMapper holds between pictures. Private to the module.
+#ifndef vtkStratusTetrahedraMapperInternals_h
+#define vtkStratusTetrahedraMapperInternals_h
+
+#include "vtkStratusContext.h"
+#include "vtkStratusDisplay.h"
+#include "vtkStratusMeshView.h"
+#include "vtkStratusPicture.h"
+#include "vtkStratusTetrahedraMapper.h"
+
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkVolumeProperty;
+
+class VTK_STRATUS_PRIVATE vtkStratusTetrahedraMapper::Internals
+{
+public:
+  explicit Internals(vtkStratusTetrahedraMapper* mapper);
+  ~Internals();
+
+  // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
+  bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
+  vtkImageData* GetLastImage();
+
+  vtkStratusTetrahedraMapper* Mapper;
+  stratus_tetra_caster* Caster = nullptr;
+  vtkStratusContext Context;
+  stratus_tetra_report Report = stratus_tetra_report();
+  vtkStratusDisplay Display;
+  std::string LastError; // told already
+
+private:
+  bool OnProgress(double fraction);
+  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
+  bool PrepareContext(std::string& error);
+  bool HasGeometry(vtkRenderer* renderer, vtkVolume* prop) const;
+  const float* ReadOpaqueDepth(vtkRenderer* renderer);
+  bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
+
+  vtkRenderer* Renderer = nullptr; // while rendering
+  vtkStratusMeshView Mesh;
+  vtkStratusTransferView Transfer;
+  vtkStratusPicture Picture;
+  bool HasPicture = false;
+  std::vector<float> Rgba, Depth, WindowDepth;
+  vtkSmartPointer<vtkImageData> LastImage;
+};
+
+#endif

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkStratusTetrahedraMapper: the same picture as the image mapper's where the field is the same, what the window shows, opaque geometry, matrices,
+// scalars of cells, ghosts, both blend modes, and what is refused.
+#include "mapper_testing.h"
+#include "vtkStratusTetrahedraMapper.h"
+
+#include "vtkActor.h"
+#include "vtkCellType.h"
+#include "vtkPlane.h"
+#include "vtkPlaneSource.h"
+#include "vtkPoints.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkUnstructuredGrid.h"
+
+namespace {
+// A cube of 6^3 boxes, six cells each about the boxes' diagonals; values fall and rise with x and z alone, linearly within each box: both
+// ways of interpolating agree then.
+constexpr int Boxes = 6;
+
+float FieldAt(int i, int k)
+{
+  return static_cast<float>(0.1 * i + 0.05 * k);
+}
+
+void MakeGrid(vtkUnstructuredGrid* grid)
+{
+  static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
+  const vtkIdType side = Boxes + 1;
+  const vtkIdType step[3] = { 1, side, side * side };
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> values;
+  values->SetName("density");
+  for (int k = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        points->InsertNextPoint(i, j, k);
+        values->InsertNextValue(FieldAt(i, k));
+      }
+    }
+  }
+  grid->SetPoints(points);
+  grid->Allocate(6 * Boxes * Boxes * Boxes);
+  for (vtkIdType k = 0; k < Boxes; ++k) {
+    for (vtkIdType j = 0; j < Boxes; ++j) {
+      for (vtkIdType i = 0; i < Boxes; ++i) {
+        const vtkIdType corner = (k * side + j) * side + i;
+        for (const auto& way : path) {
+          const vtkIdType a = corner + step[way[0]], b = a + step[way[1]];
+          const vtkIdType cell[4] = { corner, a, b, corner + step[0] + step[1] + step[2] };
+          grid->InsertNextCell(VTK_TETRA, 4, cell);
+        }
+      }
+    }
+  }
+  grid->GetPointData()->SetScalars(values);
+}
+
+// The grid in the place of Scene's image.
+struct GridScene : Scene {
+  GridScene()
+  {
+    MakeGrid(this->Grid);
+    this->Tetrahedra->SetInputData(this->Grid);
+    this->Tetrahedra->AddObserver(vtkCommand::ErrorEvent, this->GridErrors);
+    this->Image->SetDimensions(Boxes + 1, Boxes + 1, Boxes + 1);
+    this->Image->SetSpacing(1, 1, 1);
+    vtkNew<vtkFloatArray> values;
+    values->DeepCopy(this->Grid->GetPointData()->GetScalars());
+    this->Image->GetPointData()->SetScalars(values);
+    this->Mapper->SetSampleDistance(0.02);
+    this->Volume->SetMapper(this->Tetrahedra);
+    this->Look(35, 20);
+  }
+
+  std::vector<float> GridPicture()
+  {
+    this->Render();
+    vtkImageData* image = this->Tetrahedra->GetLastImage();
+    const float* rgba = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA"))->GetPointer(0) : nullptr;
+    return rgba ? std::vector<float>(rgba, rgba + 4 * this->Pixels()) : std::vector<float>();
+  }
+  double GridLight()
+  {
+    double sum = 0.0;
+    for (float value : this->GridPicture()) {
+      sum += value;
+    }
+    return sum;
+  }
+  // The image mapper's picture of the same scene against ours, PSNR in dB.
+  double Psnr()
+  {
+    const std::vector<float> ours = this->GridPicture();
+    this->Volume->SetMapper(this->Mapper);
+    const std::vector<float> theirs = this->Picture();
+    this->Volume->SetMapper(this->Tetrahedra);
+    CHECK(ours.size() == theirs.size() && !ours.empty(), "%zu and %zu values", ours.size(), theirs.size());
+    return ours.size() == theirs.size() && !ours.empty() ? reference_psnr(ours.data(), theirs.data(), this->Pixels()) : 0.0;
+  }
+
+  vtkNew<vtkUnstructuredGrid> Grid;
+  vtkNew<vtkStratusTetrahedraMapper> Tetrahedra;
+  vtkNew<ErrorObserver> GridErrors;
+};
+
+// Image samples .02 apart err by about 1e-4 where the function bends, and by what a first or last sample covers too much or little.
+constexpr double SamePicture = 62.0;
+
+void TestAgainstTheImageMapper()
+{
+  GridScene scene;
+  CHECK(scene.GridLight() > 100.0, "the picture is all but empty");
+  for (int view = 0; view < 4; ++view) {
+    scene.Look(35 + 80 * view, 20 - 15 * view);
+    scene.Renderer->GetActiveCamera()->SetParallelProjection(view & 1);
+    scene.Renderer->ResetCamera();
+    const double psnr = scene.Psnr();
+    CHECK(psnr > SamePicture, "view %d: %.1f dB", view, psnr);
+  }
+  scene.Volume->SetScale(1.0, -0.7, 1.3); // a mirror too
+  scene.Volume->RotateZ(20);
+  scene.Volume->SetPosition(6e6, 0, 0);
+  scene.Renderer->ResetCamera();
+  const double moved = scene.Psnr();
+  CHECK(moved > SamePicture - 4.0, "moved: %.1f dB", moved); // VTK's own camera is worse out there
+}
+
+void TestInside()
+{
+  GridScene scene;
+  vtkCamera* camera = scene.Renderer->GetActiveCamera();
+  camera->SetPosition(2.3, 2.9, 3.1);
+  camera->SetFocalPoint(5, 3, 2.8);
+  camera->SetClippingRange(0.5, 20);
+  const double psnr = scene.Psnr();
+  CHECK(psnr > SamePicture, "%.1f dB", psnr);
+  CHECK(scene.Tetrahedra->GetNumberOfSegments() > 0, "no segments");
+}
+
+void TestShown()
+{
+  GridScene scene;
+  const double background[3] = { 0.2, 0.5, 0.9 };
+  scene.Renderer->SetBackground(0.2, 0.5, 0.9);
+  const std::vector<float> picture = scene.GridPicture();
+  const std::vector<unsigned char> bytes = scene.Bytes();
+  double worst = picture.empty() ? 255.0 : 0.0;
+  for (size_t p = 0; 4 * p < picture.size(); ++p) {
+    for (size_t c = 0; c < 3; ++c) {
+      const double meant = picture[4 * p + c] + (1.0 - picture[4 * p + 3]) * background[c];
+      worst = std::max(worst, std::fabs(255.0 * meant - bytes[4 * p + c]));
+    }
+  }
+  CHECK(worst <= 1.0, "the window is off by %.2f of 255", worst);
+}
+
+// A wall across the middle: rays end there, as the image mapper's do.
+void TestOpaque()
+{
+  GridScene scene;
+  vtkNew<vtkPlaneSource> wall;
+  wall->SetOrigin(-5, -5, 3);
+  wall->SetPoint1(11, -5, 3.5);
+  wall->SetPoint2(-5, 11, 3);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(wall->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  const double before = scene.GridLight();
+  scene.Renderer->AddActor(actor);
+  const double psnr = scene.Psnr();
+  CHECK(psnr > SamePicture, "%.1f dB", psnr);
+  CHECK(scene.GridLight() < 0.9 * before, "the wall hides nothing: %g of %g", scene.GridLight(), before);
+}
+
+void TestScalarsAndGhosts()
+{
+  GridScene scene;
+  const std::vector<float> whole = scene.GridPicture();
+  vtkNew<vtkFloatArray> cells;
+  cells->SetName("cells");
+  for (vtkIdType i = 0; i < scene.Grid->GetNumberOfCells(); ++i) {
+    cells->InsertNextValue(0.5f);
+  }
+  scene.Grid->GetCellData()->AddArray(cells);
+  scene.Tetrahedra->SetScalarMode(VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
+  scene.Tetrahedra->SelectScalarArray("cells");
+  const std::vector<float> constant = scene.GridPicture();
+  CHECK(!constant.empty() && constant != whole, "scalars of cells change nothing");
+  scene.Tetrahedra->SetScalarMode(VTK_SCALAR_MODE_DEFAULT);
+  CHECK(scene.GridPicture() == whole, "the first scalars give another picture the second time");
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName("vtkGhostType");
+  ghosts->SetNumberOfValues(scene.Grid->GetNumberOfCells());
+  ghosts->Fill(vtkDataSetAttributes::DUPLICATECELL);
+  scene.Grid->GetCellData()->AddArray(ghosts);
+  scene.Grid->Modified();
+  CHECK(scene.GridLight() == 0.0, "cells of another piece are drawn");
+  ghosts->Fill(0);
+  ghosts->SetValue(700, vtkDataSetAttributes::HIDDENCELL);
+  scene.Grid->Modified();
+  const std::vector<float> hole = scene.GridPicture();
+  CHECK(!hole.empty() && hole != whole, "a blanked cell is drawn");
+}
+
+void TestMaximum()
+{
+  GridScene scene;
+  scene.Tetrahedra->SetBlendMode(vtkUnstructuredGridVolumeMapper::MAXIMUM_INTENSITY_BLEND);
+  const std::vector<float> picture = scene.GridPicture();
+  float largest = 0.0f;
+  for (size_t p = 0; 4 * p < picture.size(); ++p) {
+    largest = std::max(largest, picture[4 * p + 3]);
+  }
+  // the largest value is .9, at the cube's edge: opacity .15 + .35 * 5/6
+  CHECK(largest > 0.40f && largest < 0.442f, "the largest alpha is %g", largest);
+}
+
+void TestRefusals()
+{
+  GridScene scene;
+  const auto refuses = [&](const char* word) {
+    const int before = scene.GridErrors->Count;
+    CHECK(scene.GridPicture().empty(), "%s: something is drawn", word);
+    CHECK(scene.GridErrors->Count == before + 1 && scene.GridErrors->Has(word), "%s: %d errors, '%s'", word,
+      scene.GridErrors->Count - before, scene.GridErrors->Text.c_str());
+    scene.Render();
+    CHECK(scene.GridErrors->Count == before + 1, "%s: told again", word);
+  };
+  scene.Volume->GetProperty()->ShadeOn();
+  refuses("shading");
+  scene.Volume->GetProperty()->ShadeOff();
+  vtkNew<vtkPlane> plane;
+  scene.Tetrahedra->AddClippingPlane(plane);
+  refuses("clipping planes");
+  scene.Tetrahedra->RemoveAllClippingPlanes();
+  const vtkIdType triangle[3] = { 0, 1, 2 };
+  scene.Grid->InsertNextCell(VTK_TRIANGLE, 3, triangle);
+  scene.Grid->Modified();
+  refuses("vtkTriangle");
+  vtkNew<vtkUnstructuredGrid> empty;
+  scene.Tetrahedra->SetInputData(empty);
+  const int before = scene.GridErrors->Count;
+  CHECK(scene.GridPicture().empty() && scene.GridErrors->Count == before, "an empty grid is an error: %s", scene.GridErrors->Text.c_str());
+  vtkNew<vtkUnstructuredGrid> bare;
+  MakeGrid(bare);
+  bare->GetPointData()->Initialize();
+  scene.Tetrahedra->SetInputData(bare);
+  refuses("no scalar array");
+  MakeGrid(bare);
+  scene.Tetrahedra->SetInputData(bare);
+  CHECK(scene.GridLight() > 100.0, "nothing is drawn after errors");
+}
+} // namespace
+
+int main()
+{
+  TestAgainstTheImageMapper();
+  TestInside();
+  TestShown();
+  TestOpaque();
+  TestScalarsAndGhosts();
+  TestMaximum();
+  TestRefusals();
+  return Failures ? 1 : 0;
+}
