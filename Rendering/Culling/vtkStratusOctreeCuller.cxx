@@ -10,6 +10,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
 #include <chrono>
@@ -25,11 +26,14 @@ double Milliseconds()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Clip coordinates are x, y, z within -w..w; with a margin, x and y within that much more. Unit normals, since coverage measures distances.
+// Clip coordinates are x, y, z within -w..w; with a margin, x and y within that much more. Unit normals, since coverage measures distances. The
+// camera's composite matrix, and so its GetFrustumPlanes(), leaves stereo out: an eye's view is the product of what is drawn with.
 void GetFrustum(vtkRenderer* renderer, double margin, stratus_frustum& frustum)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
-  vtkMatrix4x4* matrix = camera->GetCompositeProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0);
+  vtkNew<vtkMatrix4x4> matrix;
+  vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0);
+  vtkMatrix4x4::Multiply4x4(projection, camera->GetModelViewTransformMatrix(), matrix);
   const int* size = renderer->GetSize();
   for (int p = 0; p < 6; ++p) {
     const int axis = p / 2;
@@ -52,6 +56,19 @@ bool SameTree(const stratus_octree_options& a, const stratus_octree_options& b)
   return a.stop == b.stop && a.pixels == b.pixels && a.c == b.c && a.levels == b.levels && a.leaf_objects == b.leaf_objects;
 }
 
+// Whether the camera's state is the one that it will draw in: which eye it is, if any, it learns only when it draws.
+bool KnowsEye(vtkRenderer* renderer)
+{
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const bool stereo = window && window->GetStereoRender() != 0;
+  if (!window || stereo != (camera->GetStereo() != 0)) {
+    return !window;
+  }
+  const int type = window->GetStereoType(), eye = camera->GetLeftEye();
+  return !stereo || (type != VTK_STEREO_LEFT && type != VTK_STEREO_RIGHT) || eye == (type == VTK_STEREO_LEFT);
+}
+
 // Nothing is left out, and times are what they were.
 double KeepAll(vtkProp** props, int count, bool initialized)
 {
@@ -72,6 +89,7 @@ public:
     vtkStratusCulledList List;
     stratus_octree_options Options;
     vtkMTimeType Asked = 0;
+    vtkMTimeType Doubtful = 0; // a camera of this age may draw with matrices from before it learned of its eye
   };
 
   ~Internals() { this->Close(); }
@@ -117,6 +135,15 @@ public:
   {
     const auto found = this->Renderers.find(renderer);
     return found != this->Renderers.end() && found->second.Renderer && found->second.List.IsOpen() ? &found->second : nullptr;
+  }
+
+  // Whether the renderer will draw with the matrices that the camera tells now.
+  bool KnowsView(vtkRenderer* renderer)
+  {
+    Served& served = this->Of(renderer);
+    const vtkMTimeType age = renderer->GetActiveCamera()->GetMTime();
+    served.Doubtful = KnowsEye(renderer) ? served.Doubtful : age;
+    return served.Doubtful != age;
   }
 
   stratus_status Cull(vtkStratusOctreeCuller* self, vtkRenderer* renderer, const stratus_frustum& frustum, vtkProp** propList, int& listLength,
@@ -223,7 +250,7 @@ double vtkStratusOctreeCuller::Cull(vtkRenderer* renderer, vtkProp** propList, i
   GetFrustum(renderer, this->Margin, frustum);
   stratus_status status = this->Internal->OpenContext(this->NumberOfThreads);
   this->NumberOfProps = listLength;
-  if (status == STRATUS_OK && stratus_frustum_check(this->Internal->Context, &frustum) != STRATUS_OK) {
+  if (status == STRATUS_OK && (!this->Internal->KnowsView(renderer) || stratus_frustum_check(this->Internal->Context, &frustum) != STRATUS_OK)) {
     total = KeepAll(propList, listLength, before);
   } else if (status == STRATUS_OK) {
     status = this->Internal->Cull(this, renderer, frustum, propList, listLength, before, total);

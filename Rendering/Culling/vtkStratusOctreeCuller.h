@@ -163,7 +163,8 @@ public:
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 
   /**
-   * Called by the renderer. Where the camera's planes are not finite, or (an error) the core fails, all props stay in the list.
+   * Called by the renderer. All props stay in the list where the camera's planes are not finite, while a camera goes into
+   * stereo or out of it and has not moved since (it learns of that too late), and, which is an error, where the core fails.
    */
   double Cull(vtkRenderer* renderer, vtkProp** propList, int& listLength, int& initialized) override;
 
