@@ -20,7 +20,7 @@ const char* const help = R"(stratus-bench volume [options]
   --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, cloud-N (resampled to N x N/2 x N), or an image file;
                             default: cloud,plume,fog,voxel,peak and ../shared/data/isabel_02.vti where it is
   --size N                  N x N pixels (default 512)
-  --method M,...            stratus:none|block|distance|octant|auto, with @host or @device (the first OpenCL device) behind it;
+  --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
                             vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
   --chart FILE.png          frame time against error

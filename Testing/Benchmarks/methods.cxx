@@ -18,7 +18,7 @@ namespace bench {
 
 namespace {
 
-const char* const structures[] = { "auto", "none", "block", "distance", "octant" };
+const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
 // stratus:STRUCTURE[@host|@device] -> structure and device; false for other names.
 bool parse_stratus(const std::string& name, int& structure, std::string& device)
@@ -128,7 +128,7 @@ bool draws(const std::vector<uint8_t>& bytes)
 
 std::vector<std::string> all_methods()
 {
-  return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:auto", "stratus:none@device",
+  return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:hybrid", "stratus:auto", "stratus:none@device",
     "stratus:auto@device", "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
 }
 
@@ -139,7 +139,7 @@ void check_method(const std::string& name)
   static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
   if (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others)) {
     throw failure("unknown method '" + name +
-      "'; known: stratus:none|block|distance|octant|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, "
+      "'; known: stratus:none|block|distance|octant|hybrid|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, "
       "openvdb, floor");
   }
 }
