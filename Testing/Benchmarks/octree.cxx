@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -18,10 +19,12 @@ namespace {
 
 const char* const help = R"(stratus-bench octree [options]
 
-  --scene NAME,...     boxes-N (default: boxes-1000,boxes-9454,boxes-100000,boxes-1000000)
+  --scene NAME,...     boxes-N, or actors-N: the same boxes as actors of VTK (default: boxes-1000,boxes-9454,boxes-100000,boxes-1000000,
+                       actors-1000,actors-9454,actors-100000)
   --path NAME,...      far, near, inside, turn (default: all of them)
   --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static with
-                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256).
+                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256). With actors
+                       stratus:culler|culler-static, vtk:coverage.
                        (default: all)
   --sweep C,...        stratus:octree-paper at these C too
   --frames N           of each path (default 120)
@@ -33,6 +36,7 @@ cull_ms: median over a path's frames, from a tree that has not been looked at; c
 else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own size. nodes, bytes, depth: at the
 path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to
 the depth that the pixel one reached. visible: mean of the frames.
+With actors cull_ms is the whole of Cull(), its look for changes included, and frame_ms the median of up to 24 frames of the path, 512 x 384.
 wrong_culls, false_keeps (percent of what was kept): against faces cut by the planes, at 5 frames.
 )";
 
@@ -66,6 +70,11 @@ double clock_ms(int threads)
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+bool of_actors(const std::string& method)
+{
+  return std::count(actor_methods().begin(), actor_methods().end(), method) > 0;
 }
 
 stratus_octree_options method_options(const std::string& method)
@@ -229,17 +238,20 @@ std::vector<std::string> parts_of(const std::string& text)
 void check(options& o, const std::vector<std::string>& sweep)
 {
   if (o.scenes.empty()) {
-    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000" };
+    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000", "actors-1000", "actors-9454", "actors-100000" };
   }
   if (o.methods.empty()) {
     o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:256",
       "stratus:linear" };
+    o.methods.insert(o.methods.end(), actor_methods().begin(), actor_methods().end());
   }
   for (const std::string& c : sweep) {
     o.methods.push_back("stratus:octree-paper:" + c);
   }
   for (const std::string& method : o.methods) {
-    method_options(method);
+    if (!of_actors(method)) {
+      method_options(method);
+    }
   }
   o.paths = o.paths.empty() ? path_names() : o.paths;
   for (const std::string& path : o.paths) {
@@ -290,11 +302,33 @@ std::vector<chart_mark> marks_of(const std::vector<row>& rows)
     mark.x = r.metric == "cull_ms" ? r.value : mark.x;
     mark.y = r.metric == "bytes" ? r.value : mark.y;
   }
-  std::vector<chart_mark> marks;
+  std::vector<chart_mark> marks; // a list takes no bytes, and of actors none are told
   for (const auto& entry : found) {
-    marks.push_back(entry.second);
+    if (entry.second.x > 0.0 && entry.second.y > 0.0) {
+      marks.push_back(entry.second);
+    }
   }
   return marks;
+}
+
+void run_scene(stratus_context* context, const std::string& scene, const options& o, std::vector<row>& rows)
+{
+  std::vector<std::string> of_boxes, others;
+  std::partition_copy(o.methods.begin(), o.methods.end(), std::back_inserter(others), std::back_inserter(of_boxes), of_actors);
+  if (scene.rfind("actors-", 0) == 0) {
+    run_actors(context, scene, o.paths, o.frames, others, rows);
+    return;
+  }
+  const std::vector<box_bounds> boxes = make_boxes(scene);
+  for (const std::string& path : o.paths) {
+    std::fprintf(stderr, "%s/%s\n", scene.c_str(), path.c_str());
+    const std::vector<stratus_camera> cameras = camera_path(context, path, o.frames);
+    run_state run = { context, boxes, cameras, o.threads, nullptr, nullptr, {} };
+    const int depth = pixel_depth(run);
+    for (const std::string& method : of_boxes) {
+      run_method(run, scene + '/' + path, method, depth, rows);
+    }
+  }
 }
 } // namespace
 
@@ -305,7 +339,8 @@ int octree_main(int argc, char* argv[])
     return 0;
   }
   const options o = parse(argc, argv);
-  if (!o.chart.empty()) {
+  const bool actors = std::any_of(o.scenes.begin(), o.scenes.end(), [](const std::string& scene) { return scene.rfind("actors-", 0) == 0; });
+  if (!o.chart.empty() || actors) {
     ensure_display(argv);
   }
   stratus_context_options host = stratus_context_options_default();
@@ -319,16 +354,7 @@ int octree_main(int argc, char* argv[])
   const context_pointer context(made);
   std::vector<row> rows;
   for (const std::string& scene : o.scenes) {
-    const std::vector<box_bounds> boxes = make_boxes(scene);
-    for (const std::string& path : o.paths) {
-      std::fprintf(stderr, "%s/%s\n", scene.c_str(), path.c_str());
-      const std::vector<stratus_camera> cameras = camera_path(made, path, o.frames);
-      run_state run = { made, boxes, cameras, o.threads, nullptr, nullptr, {} };
-      const int depth = pixel_depth(run);
-      for (const std::string& method : o.methods) {
-        run_method(run, scene + '/' + path, method, depth, rows);
-      }
-    }
+    run_scene(made, scene, o, rows);
   }
   write_csv(o.csv, rows, "octree");
   if (!o.chart.empty()) {

@@ -11,6 +11,8 @@
 
 namespace bench {
 
+struct row; // bench.h
+
 int octree_main(int argc, char* argv[]);
 
 // ---- octree_scenes.cxx
@@ -30,4 +32,11 @@ struct verdict {
 // Every box cut out against the frustum, face by face; ids: what a method kept.
 verdict judge_culling(
   const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
+
+// ---- octree_actors.cxx
+
+const std::vector<std::string>& actor_methods();
+// actors-N: the boxes of boxes-N as actors.
+void run_actors(stratus_context* context, const std::string& scene, const std::vector<std::string>& paths, int frames,
+  const std::vector<std::string>& methods, std::vector<row>& rows);
 } // namespace bench
