@@ -64,8 +64,8 @@ void vtkStratusTetGenReadNodes(vtkStratusTetGenInput& input, bool whole, vtkStra
     for (const auto& attribute : nodes.Attributes) {
       attribute->SetValue(point, input.GetReal("an attribute"));
     }
-    if (marked) { // a file may leave them out line by line
-      nodes.Markers->SetValue(point, static_cast<int>(OptionalInteger(input, "the marker", SmallestMarker, LargestMarker, 0)));
+    if (marked) {
+      nodes.Markers->SetValue(point, static_cast<int>(input.GetInteger("the marker", SmallestMarker, LargestMarker)));
     }
     input.EndLine();
   }

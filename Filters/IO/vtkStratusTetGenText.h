@@ -49,7 +49,8 @@ public:
   vtkIdType GetInteger(const char* name, vtkIdType lower, vtkIdType upper);
   double GetReal(const char* name);
   double GetFinite(const char* name);
-  // How many lines of at least `numbers` numbers follow: no more than the rest of the file can hold, so that nothing is allocated for a lie.
+  // How many lines of at least `numbers` numbers follow: no more than the rest of the file can hold, so that
+  // nothing large is allocated for a lie.
   vtkIdType GetCount(const char* name, vtkIdType numbers);
   void CheckCount(const char* name, vtkIdType count, vtkIdType numbers) const;
 

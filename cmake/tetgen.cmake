@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds TetGen, which has no CMake package, and sets stratus_tetgen: whether to build Filters/TetGen and the program that does TetGen's work.
+set(STRATUS_BUILD_TETGEN AUTO CACHE STRING "Build vtkStratusTetGenFilter, whose program links TetGen (AGPL): ON, OFF, or AUTO (where it is found)")
+set_property(CACHE STRATUS_BUILD_TETGEN PROPERTY STRINGS AUTO ON OFF)
+set(stratus_tetgen OFF)
+if (STRATUS_BUILD_TETGEN)
+  find_path(TETGEN_INCLUDE_DIR tetgen.h)
+  find_library(TETGEN_LIBRARY tet)
+  mark_as_advanced(TETGEN_INCLUDE_DIR TETGEN_LIBRARY)
+  if (UNIX AND TETGEN_INCLUDE_DIR AND TETGEN_LIBRARY)
+    set(stratus_tetgen ON)
+  elseif (NOT STRATUS_BUILD_TETGEN STREQUAL "AUTO")
+    message(FATAL_ERROR "STRATUS_BUILD_TETGEN is ${STRATUS_BUILD_TETGEN}, but TetGen was not found (Debian: libtet1.5-dev)")
+  endif ()
+endif ()
