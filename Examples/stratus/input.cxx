@@ -18,6 +18,8 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPImageDataReader.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -106,6 +108,12 @@ vtkSmartPointer<vtkAlgorithm> choose_reader(const std::string& path)
   if (extension == ".pvti") {
     return reader_for<vtkXMLPImageDataReader>(path);
   }
+  if (extension == ".vtu") {
+    return reader_for<vtkXMLUnstructuredGridReader>(path);
+  }
+  if (extension == ".pvtu") {
+    return reader_for<vtkXMLPUnstructuredGridReader>(path);
+  }
   if (extension == ".vtk") {
     return reader_for<vtkDataSetReader>(path);
   }
@@ -153,7 +161,7 @@ vtkDataArray* first_single(vtkDataSetAttributes* data)
   return active;
 }
 
-std::string names_of(vtkImageData* image)
+std::string names_of(vtkDataSet* image)
 {
   std::string names;
   for (vtkDataSetAttributes* data :
@@ -187,7 +195,7 @@ std::string scene_names()
 
 namespace cli {
 
-vtkSmartPointer<vtkImageData> read_image(const std::string& path)
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
 {
   check_file(path);
   listening listener;
@@ -196,12 +204,17 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path)
     throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...)");
   }
   reader->Update();
-  vtkDataObject* output = reader->GetOutputDataObject(0);
-  vtkImageData* image = vtkImageData::SafeDownCast(output);
   const std::string heard = listener.heard();
   if (!heard.empty()) {
     throw failure("cannot read '" + path + "': " + first_message(heard));
   }
+  return reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkImageData> read_image(const std::string& path)
+{
+  const vtkSmartPointer<vtkDataObject> output = read_data(path);
+  vtkImageData* image = vtkImageData::SafeDownCast(output);
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");
   }
@@ -211,11 +224,11 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path)
   return image;
 }
 
-vtkDataArray* choose_array(vtkImageData* image, const std::string& name, bool& on_cells)
+vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells)
 {
   vtkDataArray* array = nullptr;
   for (bool cells : { false, true }) {
-    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
+    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(data_set->GetCellData()) : data_set->GetPointData();
     array = name.empty() ? first_single(data) : data->GetArray(name.c_str());
     if (array) {
       on_cells = cells;
@@ -223,13 +236,13 @@ vtkDataArray* choose_array(vtkImageData* image, const std::string& name, bool& o
     }
   }
   if (!array) {
-    throw failure((name.empty() ? std::string("no array to draw") : "no array '" + name + "'") + "; the arrays are: " + names_of(image));
+    throw failure((name.empty() ? std::string("no array to draw") : "no array '" + name + "'") + "; the arrays are: " + names_of(data_set));
   }
   const std::string label = array->GetName() ? array->GetName() : "(unnamed)";
   if (array->GetNumberOfComponents() != 1) {
     throw failure("array '" + label + "' has " + std::to_string(array->GetNumberOfComponents()) + " components; one is drawn");
   }
-  const vtkIdType expected = on_cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
+  const vtkIdType expected = on_cells ? data_set->GetNumberOfCells() : data_set->GetNumberOfPoints();
   if (array->GetNumberOfTuples() != expected) {
     throw failure("array '" + label + "' has " + std::to_string(array->GetNumberOfTuples()) + " values for " + std::to_string(expected) +
       (on_cells ? " cells" : " points"));

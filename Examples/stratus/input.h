@@ -11,11 +11,13 @@ class vtkDataArray;
 
 namespace cli {
 
-// Reads any image file that VTK reads. Whatever VTK complains about while it reads is a failure: half a picture is none.
+// Reads any file of an image or an unstructured grid that VTK reads. Whatever VTK complains about while it reads is a failure: half a picture is none.
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
+// The same, of an image.
 vtkSmartPointer<vtkImageData> read_image(const std::string& path);
 
 // The array to draw: `name`, or where it is empty the active scalars, else the first array of one component; points before cells.
-vtkDataArray* choose_array(vtkImageData* image, const std::string& name, bool& on_cells);
+vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells);
 
 // Borrows the array's values. A sheet (an axis with one point) gets the thickness of a cell, or there would be nothing to see.
 stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line: a volume goes in, a picture comes out. `stratus --help` tells the rest.
 #include "camera.h"
+#include "grid.h"
 #include "input.h"
 #include "options.h"
 #include "picture.h"
@@ -55,6 +56,10 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
 
 void render(const cli::options& o)
 {
+  if (cli::is_grid(o.source)) {
+    cli::render_grid(o);
+    return;
+  }
   cli::context core(o.device, o.threads);
   cli::input in(core, o.source, o.array);
   const cli::background behind = cli::parse_background(o.background);

@@ -28,7 +28,7 @@ std::string help()
   stratus --help
 
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel.
+or a scene's name: cloud, plume, fog, haze, peak, voxel; to be drawn also an unstructured grid of tetrahedra (.vtu .pvtu .vtk).
 
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits)
