@@ -55,7 +55,8 @@ struct Plant {
   // A steel frame of two floors with a tank, pipes along and across, and valves on them.
   void AddUnit(double x, double y)
   {
-    static const double steel[3] = { 0.45, 0.5, 0.55 }, tank[3] = { 0.85, 0.82, 0.75 }, pipe[3] = { 0.3, 0.55, 0.75 }, valve[3] = { 0.85, 0.3, 0.15 };
+    static const double steel[3] = { 0.45, 0.5, 0.55 }, tank[3] = { 0.85, 0.82, 0.75 }, pipe[3] = { 0.3, 0.55, 0.75 },
+                        valve[3] = { 0.85, 0.3, 0.15 };
     for (int i = 0; i < 9; ++i) {
       this->Add(this->Cube, x + 4 * (i % 3), y + 4 * (i / 3), 3, 0.25, 0.25, 6, 0, steel);
     }
@@ -167,7 +168,8 @@ static void ColorCells(vtkPolyData* boxes)
   for (vtkIdType cell = 0; cell < boxes->GetNumberOfCells(); ++cell) {
     const int side = static_cast<int>(boxes->GetCellData()->GetArray("Visibility")->GetTuple1(cell));
     const double light = 255 * std::min(1.0, 0.7 + 0.06 * boxes->GetCellData()->GetArray("Level")->GetTuple1(cell));
-    const bool shown = boxes->GetCellData()->GetArray("Split")->GetTuple1(cell) == 0 && boxes->GetCellData()->GetArray("Objects")->GetTuple1(cell) > 0;
+    const double split = boxes->GetCellData()->GetArray("Split")->GetTuple1(cell);
+    const bool shown = split == 0 && boxes->GetCellData()->GetArray("Objects")->GetTuple1(cell) > 0;
     colors->InsertNextTuple4(light * hues[side][0], light * hues[side][1], light * hues[side][2], shown ? 255 : 0);
   }
   boxes->GetCellData()->SetScalars(colors);

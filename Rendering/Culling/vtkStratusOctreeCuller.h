@@ -55,8 +55,8 @@ public:
 
   ///@{
   /**
-   * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside. Coverage is a share of
-   * the wider window. Default 8.
+   * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside. Coverage
+   * is a share of the wider window. Default 8.
    */
   vtkSetClampMacro(Margin, double, 0.0, 1000.0);
   vtkGetMacro(Margin, double);
@@ -97,8 +97,8 @@ public:
   enum StopRuleType { STOP_PIXELS, STOP_MANHATTAN, STOP_EUCLID, STOP_STATIC };
   ///@{
   /**
-   * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor S) < 1 as in
-   * the paper or in straight lines, or all, at once. What is seen depends on none of it.
+   * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor S) < 1
+   * as in the paper or in straight lines, or all, at once. What is seen depends on none of it.
    */
   vtkSetClampMacro(StopRule, int, STOP_PIXELS, STOP_STATIC);
   vtkGetMacro(StopRule, int);
@@ -156,9 +156,9 @@ public:
   ///@}
 
   /**
-   * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int, the root's is 0; the
-   * scalars), "Visibility" (unsigned char: 0 outside the frustum of viewer, 1 at its border, 2 inside), "Split" (unsigned char) and "Objects"
-   * (vtkIdType: props in its own list). False, and the output as it was, for a renderer that this culler has not served.
+   * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int, the
+   * root's is 0; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split" (unsigned char) and
+   * "Objects" (vtkIdType: props in its own list). False, and the output as it was, for a renderer that this culler has not served.
    */
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 

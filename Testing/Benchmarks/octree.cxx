@@ -339,7 +339,8 @@ int octree_main(int argc, char* argv[])
     return 0;
   }
   const options o = parse(argc, argv);
-  const bool actors = std::any_of(o.scenes.begin(), o.scenes.end(), [](const std::string& scene) { return scene.rfind("actors-", 0) == 0; });
+  const bool actors =
+    std::any_of(o.scenes.begin(), o.scenes.end(), [](const std::string& scene) { return scene.rfind("actors-", 0) == 0; });
   if (!o.chart.empty() || actors) {
     ensure_display(argv);
   }

@@ -10,6 +10,7 @@
 #include <vtkFrustumCoverageCuller.h>
 #include <vtkNew.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkPropCollection.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -51,7 +52,8 @@ struct stage {
       actor->SetPosition(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]));
       actor->SetScale(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
       actor->GetProperty()->SetColor(0.3 + 0.1 * static_cast<double>(i % 7), 0.3 + 0.1 * static_cast<double>(i % 5), 0.6);
-      this->renderer->AddActor(actor);
+      this->renderer->GetViewProps()->AddItem(actor); // AddActor() looks through all that are there
+      actor->AddConsumer(this->renderer);
       this->numbers[actor.Get()] = static_cast<uint32_t>(i);
       this->props.push_back(actor.Get());
     }

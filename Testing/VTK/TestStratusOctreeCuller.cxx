@@ -103,8 +103,8 @@ void TestPath(int rule)
   CHECK(w.Culler->GetNumberOfNodes(w.Renderer) > 8, "%d nodes", int(w.Culler->GetNumberOfNodes(w.Renderer)));
 }
 
-// Two windows go through the same frames, one without a culler: a camera learns only when it draws that the window is in stereo, or no more, and which
-// eye it is, so a frame may depend on the one before.
+// Two windows go through the same frames, one without a culler: a camera learns only when it draws that the window is in stereo, or no more, and
+// which eye it is, so a frame may depend on the one before.
 void TestStereo()
 {
   CulledWindow culled, whole;
