@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusPartitionFilter.h"
+
+#include "vtkStratusContext.h"
+#include "vtkStratusTetrahedra.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <limits>
+
+vtkStandardNewMacro(vtkStratusPartitionFilter);
+
+class vtkStratusPartitionFilter::Internals
+{
+public:
+  explicit Internals(vtkStratusPartitionFilter* filter)
+      : Context([filter](double fraction) {
+          filter->UpdateProgress(fraction);
+          return filter->GetAbortExecute() != 0;
+        })
+  {
+  }
+  vtkStratusContext Context;
+};
+
+namespace {
+// Attributes that stay attributes: what is copied under the same name.
+void KeepAttributes(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
+{
+  for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type) {
+    vtkAbstractArray* array = from->GetAbstractAttribute(type);
+    if (array && array->GetName() && type != vtkDataSetAttributes::GLOBALIDS && to->GetAbstractArray(array->GetName())) {
+      to->SetActiveAttribute(array->GetName(), type);
+    }
+  }
+}
+
+bool IsLeftOut(vtkDataSetAttributes* attributes, vtkAbstractArray* array)
+{
+  return array == attributes->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS);
+}
+
+void InterpolatePoints(vtkPointData* from, const stratus_partition_result& cut, vtkPointData* to)
+{
+  const auto old_points = static_cast<vtkIdType>(cut.old_points);
+  const auto points = static_cast<vtkIdType>(cut.point_count);
+  for (int a = 0; a < from->GetNumberOfArrays(); ++a) {
+    vtkAbstractArray* array = from->GetAbstractArray(a);
+    if (IsLeftOut(from, array)) {
+      continue;
+    }
+    auto result = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+    result->SetName(array->GetName());
+    result->SetNumberOfComponents(array->GetNumberOfComponents());
+    result->CopyComponentNames(array);
+    result->SetNumberOfTuples(points);
+    if (old_points > 0) {
+      result->InsertTuples(0, old_points, 0, array);
+    }
+    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(result);
+    const bool flags = ghosts && ghosts == result && std::string(array->GetName() ? array->GetName() : "") == vtkDataSetAttributes::GhostArrayName();
+    for (vtkIdType i = old_points; i < points; ++i) {
+      const vtkIdType p = cut.ends[2 * (i - old_points)], q = cut.ends[2 * (i - old_points) + 1];
+      if (flags) { // what both ends are
+        ghosts->SetValue(i, static_cast<unsigned char>(ghosts->GetValue(p) & ghosts->GetValue(q)));
+      } else {
+        result->InterpolateTuple(i, p, result, q, result, cut.weights[i - old_points]);
+      }
+    }
+    to->AddArray(result);
+  }
+  KeepAttributes(from, to);
+}
+
+void CopyCells(vtkCellData* from, const std::vector<vtkIdType>& origins, vtkCellData* to)
+{
+  const auto cells = static_cast<vtkIdType>(origins.size());
+  for (int a = 0; a < from->GetNumberOfArrays(); ++a) {
+    vtkAbstractArray* array = from->GetAbstractArray(a);
+    if (IsLeftOut(from, array)) {
+      continue;
+    }
+    auto result = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+    result->SetName(array->GetName());
+    result->SetNumberOfComponents(array->GetNumberOfComponents());
+    result->CopyComponentNames(array);
+    result->SetNumberOfTuples(cells);
+    for (vtkIdType i = 0; i < cells; ++i) {
+      result->SetTuple(i, origins[static_cast<size_t>(i)], array);
+    }
+    to->AddArray(result);
+  }
+  KeepAttributes(from, to);
+}
+
+void SetGeometry(const stratus_partition_result& cut, vtkUnstructuredGrid* output)
+{
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(cut.point_count));
+  std::copy(cut.points, cut.points + 3 * cut.point_count, coordinates->GetPointer(0));
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  output->SetPoints(points);
+  vtkNew<vtkIdTypeArray> vertices;
+  vertices->SetNumberOfTuples(static_cast<vtkIdType>(4 * cut.cell_count));
+  std::copy(cut.vertices, cut.vertices + 4 * cut.cell_count, vertices->GetPointer(0));
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(4, vertices);
+  output->SetCells(VTK_TETRA, cells);
+}
+}
+
+vtkStratusPartitionFilter::vtkStratusPartitionFilter() : Growth(std::numeric_limits<double>::infinity()), Internal(new Internals(this)) {}
+
+vtkStratusPartitionFilter::~vtkStratusPartitionFilter() = default;
+
+int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputs[0]);
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
+  std::string error;
+  vtkStratusTetrahedra tetrahedra;
+  if (!tetrahedra.Set(input, error) || (!this->Internal->Context.Get() && !this->Internal->Context.Create("host", 0, error))) {
+    vtkErrorMacro(<< error);
+    return 0;
+  }
+  stratus_partition_options options = stratus_partition_options_default();
+  options.rule = this->Rule == PAPER ? STRATUS_PARTITION_PAPER : STRATUS_PARTITION_MEDIAN;
+  options.depth = this->Depth;
+  options.planes = this->Planes;
+  options.growth = this->Growth;
+  options.imbalance = this->Imbalance;
+  options.rotations = this->Rotations;
+  options.leaf_cells = this->LeafCells;
+  const stratus_mesh mesh = tetrahedra.GetMesh();
+  stratus_context* context = this->Internal->Context.Get();
+  stratus_partition* partition = nullptr;
+  const stratus_status status = stratus_partition_create(context, &mesh, &options, &partition);
+  if (status != STRATUS_OK) {
+    if (status != STRATUS_CANCELLED) {
+      vtkErrorMacro(<< stratus_context_message(context));
+    }
+    return 0;
+  }
+  stratus_partition_result cut;
+  stratus_partition_get(partition, &cut);
+  SetGeometry(cut, output);
+  InterpolatePoints(input->GetPointData(), cut, output->GetPointData());
+  vtkNew<vtkIdTypeArray> original;
+  original->SetName(vtkStratusOriginalCellArray);
+  std::vector<vtkIdType> origins(static_cast<size_t>(cut.cell_count));
+  for (size_t i = 0; i < origins.size(); ++i) {
+    origins[i] = tetrahedra.Cells[static_cast<size_t>(cut.cells[i])];
+    original->InsertNextValue(origins[i]);
+  }
+  CopyCells(input->GetCellData(), origins, output->GetCellData());
+  output->GetCellData()->AddArray(original);
+  output->GetFieldData()->PassData(input->GetFieldData());
+  vtkStratusLeaves::Write(cut.leaves, static_cast<vtkIdType>(cut.cell_count), output);
+  this->NumberOfLeaves = cut.leaves.leaf_count;
+  this->LargestLeaf = static_cast<vtkIdType>(cut.largest_leaf);
+  this->NumberOfTetrahedra = static_cast<vtkIdType>(mesh.cell_count);
+  stratus_partition_destroy(partition);
+  return 1;
+}
+
+void vtkStratusPartitionFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Rule: " << (this->Rule == PAPER ? "paper" : "median") << "\n";
+  os << indent << "Depth: " << this->Depth << "\n";
+  os << indent << "Planes: " << this->Planes << "\n";
+  os << indent << "Growth: " << this->Growth << "\n";
+  os << indent << "Imbalance: " << this->Imbalance << "\n";
+  os << indent << "Rotations: " << this->Rotations << "\n";
+  os << indent << "LeafCells: " << this->LeafCells << "\n";
+  os << indent << "NumberOfLeaves: " << this->NumberOfLeaves << "\n";
+  os << indent << "LargestLeaf: " << this->LargestLeaf << "\n";
+  os << indent << "NumberOfTetrahedra: " << this->NumberOfTetrahedra << "\n";
+}
