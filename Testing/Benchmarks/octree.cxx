@@ -302,7 +302,7 @@ std::vector<chart_mark> marks_of(const std::vector<row>& rows)
     mark.x = r.metric == "cull_ms" ? r.value : mark.x;
     mark.y = r.metric == "bytes" ? r.value : mark.y;
   }
-  std::vector<chart_mark> marks; // a list takes no bytes, and of actors none are told
+  std::vector<chart_mark> marks; // of actors no bytes are told
   for (const auto& entry : found) {
     if (entry.second.x > 0.0 && entry.second.y > 0.0) {
       marks.push_back(entry.second);
