@@ -5,6 +5,7 @@
 #include "input.h"
 #include "options.h"
 #include "picture.h"
+#include "sort.h"
 #include "transfer.h"
 #include "tree.h"
 
@@ -159,6 +160,8 @@ void run(const cli::options& o)
     info(o);
   } else if (o.command == "tree") {
     cli::print_tree(o);
+  } else if (o.command == "sort") {
+    cli::print_sort(o);
   } else if (o.command == "devices") {
     devices();
   } else {

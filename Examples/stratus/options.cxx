@@ -24,6 +24,7 @@ std::string help()
   stratus render INPUT -o OUT.png [options]   draw a picture
   stratus info INPUT [--array NAME]           tell what is in a file or scene
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
+  stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
   stratus devices                             list the OpenCL devices
   stratus --help
 
@@ -64,6 +65,9 @@ Trees
   --method M              )" +
     method_names() + R"( (default hybrid)
   --mode M                composite: blocks of cells for ray casting; first-hit: voxels (default composite)
+
+Orders
+  --depth N               planes between the mesh and a leaf, 0..16 (default 3)
 
 The exit status is 0 only if the picture was written whole; 1 if something failed, 2 if the command was not understood.
 
@@ -156,7 +160,7 @@ stratus_sampling sampling_named(const std::string& text)
 
 void check_complete(const options& o)
 {
-  if (o.command == "render" || o.command == "info" || o.command == "tree") {
+  if (o.command == "render" || o.command == "info" || o.command == "tree" || o.command == "sort") {
     if (o.source.empty()) {
       throw usage(o.command + ": which INPUT?");
     }
@@ -205,6 +209,7 @@ options parse(int argc, char* argv[])
       } },
     { "--structure", [&](const std::string& v) { o.structure = structure_named(v); } },
     { "--threads", [&](const std::string& v) { o.threads = whole_number(v, "--threads", 1, 1024); } },
+    { "--depth", [&](const std::string& v) { o.depth = whole_number(v, "--depth", 0, 16); } },
     { "--up",
       [&](const std::string& v) {
         if (v != "x" && v != "y" && v != "z") {

@@ -9,7 +9,7 @@
 namespace cli {
 
 struct options {
-  std::string command; // render, info, tree, devices, help
+  std::string command; // render, info, tree, sort, devices, help
   std::string source;
   std::string output;
   std::string array;
@@ -26,6 +26,7 @@ struct options {
   int width = 512;
   int height = 512;
   int threads = 0;
+  int depth = 3; // sort: of the K-D tree
   bool parallel = false;
   bool nearest = false;
   bool audit = false;

@@ -45,7 +45,7 @@ void vtkStratusTetrahedra::Divide(const std::vector<Face>& faces, vtkIdType cell
       continue;
     }
     Triangulate(face, [&](vtkIdType p, vtkIdType q, vtkIdType r) {
-      for (const vtkIdType point : { p, q, r, apex }) {
+      for (const vtkIdType point : { p, r, q, apex }) { // faces run anticlockwise as seen from outside
         this->Vertices.push_back(static_cast<int32_t>(point));
       }
       this->Cells.push_back(cell);

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "options.h"
+
+namespace cli {
+
+// `stratus sort`: cuts a grid into leaves, sorts it from the views of record, and asks rays whether the order is right.
+void print_sort(const options& o);
+} // namespace cli
