@@ -43,8 +43,7 @@ typedef struct stratus_hit_functions {
 const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit.c */
 extern const stratus_hit_functions stratus_hit_functions_isa0, stratus_hit_functions_isa1, stratus_hit_functions_isa2;
 
-/* first_hit_exact.c: any tree, one ray, double precision: of all voxels that the ray meets the first that it enters, of those that it enters
- * at once the lowest in (z, y, x). */
+/* first_hit_exact.c: any tree, one ray, double precision: the voxel that the plain walk finds, to the bit of t. */
 void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* ray, stratus_hit* hit);
 /* The hit of a known voxel; t INFINITY if the ray misses it or meets it outside t_min..t_max. from, along: the ray in voxel coordinates. */
 void stratus_hit_of_voxel(

@@ -9,6 +9,18 @@
 /* How far a position may be off, over its size: some ten roundings. */
 #define HAIR 4e-15
 
+/* A crossing of a plane between voxels: crossings come in the order of t, at equal t in that of the axes. axis 3: the ray's own beginning, after all
+ * of the same t. The rule is voxel_walk.c's, and so are the bits of t: of all voxels a ray is in one at a time, in the same order for every tree. */
+typedef struct crossing {
+  double t;
+  int axis;
+} crossing;
+
+static inline bool before(crossing a, crossing b)
+{
+  return a.t < b.t || (a.t == b.t && a.axis < b.axis);
+}
+
 typedef struct walker {
   const stratus_hit_batch* batch;
   const stratus_tree* tree;
@@ -17,39 +29,37 @@ typedef struct walker {
   double hair;                   /* of positions */
   int up[3], octant;
   stratus_hit* hit;
+  crossing first; /* by which the ray enters it */
   uint32_t visited;
 } walker;
 
-void stratus_hit_of_voxel(
-  const stratus_hit_batch* batch, const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], stratus_hit* hit)
+/* Whether the ray ever is in the voxel, and the crossing by which it comes in. */
+static inline bool enters(const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], crossing* entry)
 {
-  double enter = -INFINITY, leave = INFINITY;
-  int face = -1;
-  hit->t = INFINITY;
+  crossing in = { ray->t_min, 3 }, out = { INFINITY, 4 };
   for (int a = 0; a < 3; ++a) {
-    const double near = (double)(along[a] > 0.0 ? voxel[a] : voxel[a] + 1) - from[a];
-    const double far = (double)(along[a] > 0.0 ? voxel[a] + 1 : voxel[a]) - from[a];
     if (along[a] == 0.0) {
-      if (from[a] < voxel[a] || from[a] > voxel[a] + 1) {
-        return;
+      if (floor(from[a]) != (double)voxel[a]) {
+        return false;
       }
       continue;
     }
-    const double t0 = near / along[a], t1 = far / along[a];
-    if (t0 > enter) {
-      enter = t0;
-      face = 2 * a + (along[a] < 0.0);
-    }
-    leave = t1 < leave ? t1 : leave;
+    const crossing first = { ((double)(along[a] > 0.0 ? voxel[a] : voxel[a] + 1) - from[a]) / along[a], a };
+    const crossing last = { ((double)(along[a] > 0.0 ? voxel[a] + 1 : voxel[a]) - from[a]) / along[a], a };
+    in = before(in, first) ? first : in;
+    out = before(last, out) ? last : out;
   }
-  if (enter > leave || leave < ray->t_min || enter > ray->t_max) {
-    return;
-  }
-  hit->t = enter > ray->t_min ? enter : ray->t_min;
-  hit->face = enter > ray->t_min ? face : -1;
+  *entry = in;
+  return before(in, out) && in.t <= ray->t_max && in.t < INFINITY;
+}
+
+static void make_hit(const stratus_hit_batch* batch, const stratus_ray* ray, const double along[3], const int voxel[3], crossing entry, stratus_hit* hit)
+{
+  hit->t = entry.t;
+  hit->face = entry.axis == 3 ? -1 : 2 * entry.axis + (along[entry.axis] < 0.0);
   if (hit->face >= 0) {
     for (int a = 0; a < 3; ++a) {
-      hit->normal[a] = (float)batch->normal[face][a];
+      hit->normal[a] = (float)batch->normal[hit->face][a];
     }
   } else {
     const double* d = ray->direction;
@@ -64,17 +74,24 @@ void stratus_hit_of_voxel(
   }
 }
 
+void stratus_hit_of_voxel(
+  const stratus_hit_batch* batch, const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], stratus_hit* hit)
+{
+  crossing entry;
+  hit->t = INFINITY;
+  if (enters(ray, from, along, voxel, &entry)) {
+    make_hit(batch, ray, along, voxel, entry, hit);
+  }
+}
+
 /* Keeps the hit of an effective voxel if it is the first so far. */
 static void try_voxel(walker* w, int x, int y, int z)
 {
-  stratus_hit hit;
   const int voxel[3] = { x, y, z };
-  const int32_t* best = w->hit->voxel;
-  stratus_hit_of_voxel(w->batch, w->ray, w->o, w->d, voxel, &hit);
-  if (hit.t < w->hit->t ||
-    (hit.t == w->hit->t && hit.t < INFINITY &&
-      (z < best[2] || (z == best[2] && (y < best[1] || (y == best[1] && x < best[0])))))) {
-    *w->hit = hit;
+  crossing entry;
+  if (enters(w->ray, w->o, w->d, voxel, &entry) && before(entry, w->first)) {
+    w->first = entry;
+    make_hit(w->batch, w->ray, w->d, voxel, entry, w->hit);
   }
 }
 
@@ -179,19 +196,21 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
   for (;;) {
     ++w->visited;
     const int32_t leap = look(w, field, voxel);
-    if (leap == -2 || t > leave || t > w->hit->t + w->hair * 4.0) {
-      return;
-    }
     if (leap == 0) {
       try_voxel(w, voxel[0], voxel[1], voxel[2]);
     }
-    try_neighbours(w, field, position, voxel);
+    try_neighbours(w, field, position, voxel); /* where it leaves, too: it may do so by a corner */
+    if (leap == -2 || t > leave || t > w->hit->t) {
+      return;
+    }
     /* On to the border of what is known to be empty. */
     double next = INFINITY, at[3];
     int far[3], near[3];
     for (int a = 0; a < 3; ++a) {
       const int block = voxel[a] >> log2;
-      far[a] = leap <= 0 ? voxel[a] + w->up[a] : (w->up[a] ? block + leap : block + 1 - leap) * (1 << log2);
+      const int first = field->at[a], beyond = first + field->cells[a]; /* nor farther than the field's border */
+      const int up = block + leap < beyond ? block + leap : beyond, down = block + 1 - leap > first ? block + 1 - leap : first;
+      far[a] = leap <= 0 ? voxel[a] + w->up[a] : (w->up[a] ? up : down) * (1 << log2);
       near[a] = leap <= 0 ? voxel[a] : w->up[a] ? block * (1 << log2) : (block + 1) * (1 << log2) - 1;
       at[a] = w->d[a] == 0.0 ? INFINITY : (far[a] - w->o[a]) * w->inverse[a];
       next = at[a] < next ? at[a] : next;
@@ -321,7 +340,7 @@ void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* 
 {
   const double* m = batch->to_voxels;
   const double *o = ray->origin, *d = ray->direction;
-  walker w = { .batch = batch, .tree = batch->tree, .ray = ray, .hit = hit };
+  walker w = { .batch = batch, .tree = batch->tree, .ray = ray, .hit = hit, .first = { INFINITY, 4 } };
   double size = 0.0;
   for (int a = 0; a < 3; ++a) {
     w.o[a] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];

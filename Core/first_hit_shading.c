@@ -188,7 +188,7 @@ static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
     const double d = ray->direction[axis];
     if (d != 0.0) {
       const double at = ((double)voxel[axis] + (d > 0.0 ? -0.5 : 0.5) - ray->origin[axis]) / d;
-      if (at > t) {
+      if (at > t || (at == t && *face >= 0)) { /* as first hits order crossings */
         t = at;
         *face = 2 * axis + (d < 0.0);
       }
