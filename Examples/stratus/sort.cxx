@@ -44,7 +44,7 @@ point minus(const point& a, const point& b)
   return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
-// Where the ray is inside all four faces.
+// Where the ray is inside all four faces. A cell that is flat but for rounding has no inside.
 bool clip(const stratus_mesh& mesh, int64_t cell, const point& origin, const point& direction, stretch& hit)
 {
   hit.low = 0.0;
@@ -54,7 +54,7 @@ bool clip(const stratus_mesh& mesh, int64_t cell, const point& origin, const poi
     const point normal = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0] };
     const double inner = dot(normal, minus(corner(mesh, cell, f), a)), sign = inner > 0.0 ? 1.0 : -1.0;
     const double start = sign * dot(normal, minus(origin, a)), slope = sign * dot(normal, direction);
-    if (inner == 0.0 || (slope == 0.0 && start < 0.0)) {
+    if (std::abs(inner) <= 1e-12 * std::sqrt(dot(normal, normal) * dot(u, u)) || (slope == 0.0 && start < 0.0)) {
       return false;
     }
     if (slope > 0.0) {
