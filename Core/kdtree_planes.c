@@ -79,7 +79,8 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
   }
 }
 
-static void take_best(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, const candidate_set* set, stratus_kdtree_plane* best)
+static void take_best(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, const candidate_set* set,
+  stratus_kdtree_plane* best)
 {
   for (int c = 0; c < set->count; c++) {
     const double below = (double)set->below[c], above = (double)set->above[c];

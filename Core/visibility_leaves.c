@@ -186,7 +186,7 @@ cleanup:
 
 void stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view)
 {
-  /* The far children that are still to come: never more than the tree is deep, and it may be as deep as it has leaves. leaf_output serves as the stack. */
+  /* The far children that are still to come: fewer than there are leaves. leaf_output serves as the stack. */
   int64_t* stack = order->leaf_output;
   int32_t found = 0, pending = 0;
   for (int32_t n = 0; n >= 0;) {

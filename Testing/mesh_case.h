@@ -56,7 +56,8 @@ static inline void mesh_case_free(mesh_case* mesh)
   free(mesh->vertices);
 }
 
-/* n[0]*n[1]*n[2] unit cubes of six cells each (Kuhn): conforming. jitter < .2 moves inner points by as much at most, and keeps every cell's orientation. */
+/* n[0]*n[1]*n[2] unit cubes of six cells each (Kuhn): conforming. jitter < .2 moves inner points by as much at most, and turns no cell inside
+ * out. */
 static inline mesh_case mesh_grid(const int n[3], double jitter, uint32_t seed)
 {
   static const int path[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
@@ -178,8 +179,9 @@ static inline bool mesh_clip_box(const double* box, const double origin[3], cons
   return low <= high;
 }
 
-/* Where origin + t direction, t >= 0, is in the cell: by the planes of its faces, from the cell's own numbers. False where it is not, or nearly not. */
-static inline bool mesh_clip_cell(const mesh_case* mesh, int64_t cell, const double origin[3], const double direction[3], double least, mesh_interval* hit)
+/* Where origin + t direction, t >= 0, is in the cell: by the planes of its faces. False where it is not, or for no longer than `least`. */
+static inline bool mesh_clip_cell(
+  const mesh_case* mesh, int64_t cell, const double origin[3], const double direction[3], double least, mesh_interval* hit)
 {
   const double* p[4];
   hit->low = 0.0;
@@ -226,7 +228,8 @@ static int mesh_compare_intervals(const void* p, const void* q)
 }
 
 /* Rays from the camera's eye (parallel: along its forward) through `rays` random points of random cells. Counts cells that follow one another
- * on a ray and come in the other order in `cells`, and how many did follow one another. Lengths below 1e-9 of the mesh don't count: rounding could have made them. */
+ * on a ray and come in the other order in `cells`, and how many did follow one another. Lengths below 1e-9 of the mesh don't count: rounding
+ * could have made them. */
 static inline int64_t mesh_wrong_pairs(
   const mesh_case* mesh, const stratus_camera* camera, const uint32_t* cells, int rays, uint32_t seed, int64_t* pairs)
 {

@@ -163,7 +163,8 @@ void bounds_of(const stratus_mesh& mesh, double bounds[6])
 }
 
 // One line: a way to sort, over all views.
-void measure(const cli::context& core, const cli::options& o, const char* name, const stratus_mesh& mesh, const stratus_leaves* leaves, stratus_peeling peeling)
+void measure(const cli::context& core, const cli::options& o, const char* name, const stratus_mesh& mesh, const stratus_leaves* leaves,
+  stratus_peeling peeling)
 {
   stratus_visibility_order* made = nullptr;
   core.check(stratus_visibility_order_create(core, &mesh, leaves, &made), "visibility order");
