@@ -149,22 +149,14 @@ static stratus_status update_tree(stratus_ray_caster* caster, stratus_tree_metho
   return STRATUS_OK;
 }
 
-/* A tree that shows more than is asked for would do for ray casting, but its first hits are others: the intervals must be the same, and so
- * few that none were merged. */
 static stratus_status ask_offered(
   stratus_ray_caster* caster, const stratus_volume* plain, const stratus_criterion* criterion, stratus_ray_cast_report* report)
 {
   struct stratus_first_hit* kept = caster->first_hit;
   if (kept->offered_serves < 0) {
     const double start = stratus_now_ms();
-    stratus_origin wanted;
     int covers = 0;
     TRY(stratus_tree_covers(caster->context, kept->offered, plain, criterion, 0, &covers));
-    if (covers) {
-      TRY(stratus_criterion_intervals(caster->context, plain, criterion, 0, &wanted));
-      covers = wanted.intervals < STRATUS_INTERVALS_MAX && wanted.intervals == kept->offered->origin.intervals &&
-        memcmp(wanted.interval, kept->offered->origin.interval, (size_t)wanted.intervals * sizeof *wanted.interval) == 0;
-    }
     kept->offered_serves = covers;
     report->structure_ms += stratus_now_ms() - start;
   }

@@ -240,6 +240,7 @@ static stratus_status update_ranges(
     stratus_release(caster->context, caster->hidden);
     caster->hidden = hidden;
     caster->hidden_by_value = by_value;
+    stratus_ray_tree_dropped(caster);
     ++caster->data_serial;
     if (!same) {
       drop_transfer(caster);

@@ -346,7 +346,7 @@ STRATUS_API const char* stratus_tree_method_name(stratus_tree_method method); /*
 
 typedef struct stratus_tree_options {
   stratus_tree_method method; /* default hybrid */
-  int max_depth;              /* 1..64; default 32. A node at it is a leaf. */
+  int max_depth;              /* 1..64; default 32. A node at it is a leaf; a baseline's is split at the median from there on. */
   int leaf_bricks;            /* bricks (4^3 voxels and a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
   int leaf_voxels;            /* voxels in a leaf of the baselines, 1..64; default 1 */
   int64_t field_bricks;       /* most bricks that a distance-field leaf covers, 1..2^29; default 2^25. hybrid-paper: at most 2^18. */

@@ -148,6 +148,11 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   for (int a = 0; a < 3; a++) {
     fine = fine && h->dimensions[a] >= 1 && h->dimensions[a] <= STRATUS_AXIS_MAX;
   }
+  for (int32_t i = 0; fine && i < h->origin.intervals; i++) {
+    const double* interval = h->origin.interval[i];
+    const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY; /* equal to nobody's */
+    fine = emptied || (interval[0] <= interval[1] && (i == 0 || h->origin.interval[i - 1][1] < interval[0]));
+  }
   return fine ? STRATUS_OK : WRONG("a tree whose header contradicts itself");
 }
 
@@ -161,8 +166,30 @@ static bool box_inside(const stratus_tree_node* node, const int32_t lo[3], const
   return true;
 }
 
+/* A leaf's bricks lie in its box, bit by bit, and are no other leaf's. */
+static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, uint8_t* taken)
+{
+  for (uint32_t b = node->first; b < node->first + stratus_tree_node_count(node); b++) {
+    const stratus_brick* brick = &tree->bricks[b];
+    if (taken[b]) {
+      return false;
+    }
+    taken[b] = 1;
+    for (uint64_t left = brick->mask; left; left &= left - 1) {
+      const int bit = __builtin_ctzll(left);
+      const int32_t voxel[3] = { brick->at[0] * 4 + (bit & 3), brick->at[1] * 4 + (bit >> 2 & 3), brick->at[2] * 4 + (bit >> 4) };
+      for (int a = 0; a < 3; a++) {
+        if (voxel[a] < node->lo[a] || voxel[a] >= node->hi[a]) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 /* Each node but the root the child of one before it, children inside, leaves' bricks and fields one after another. */
-static stratus_status check_nodes(stratus_context* context, const stratus_tree* tree, uint8_t* depth)
+static stratus_status check_nodes(stratus_context* context, const stratus_tree* tree, uint8_t* depth, uint8_t* taken)
 {
   static const int32_t zero[3] = { 0, 0, 0 };
   uint32_t bricks = 0, fields = 0;
@@ -186,8 +213,8 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
         depth[node->first] = depth[node->first + 1] = (uint8_t)(depth[n] + 1);
         break;
       case STRATUS_NODE_BRICKS:
-        if (count == 0 || node->first > tree->brick_count || count > tree->brick_count - node->first) {
-          return WRONG("node %u of the tree has bricks that are not there", n);
+        if (count == 0 || node->first > tree->brick_count || count > tree->brick_count - node->first || !bricks_fit(tree, node, taken)) {
+          return WRONG("node %u of the tree has bricks that are not there, or not its own", n);
         }
         bricks += count;
         break;
@@ -208,12 +235,8 @@ static stratus_status check_bricks(stratus_context* context, const stratus_tree*
 {
   for (uint32_t b = 0; b < tree->brick_count; b++) {
     const stratus_brick* brick = &tree->bricks[b];
-    bool fine = brick->mask != 0 && brick->count == __builtin_popcountll(brick->mask);
-    for (int a = 0; a < 3; a++) {
-      fine = fine && brick->at[a] * 4 < tree->dimensions[a];
-    }
-    if (!fine) {
-      return WRONG("brick %u of the tree is empty or outside the volume", b);
+    if (brick->mask == 0 || brick->count != __builtin_popcountll(brick->mask)) {
+      return WRONG("brick %u of the tree is empty, or has another number of voxels than it says", b);
     }
   }
   return STRATUS_OK;
@@ -255,7 +278,7 @@ static stratus_status check_fields(stratus_context* context, const stratus_tree*
     bool fine = field->first_entry == entries && field->first_row == rows;
     for (int a = 0; a < 3; a++) {
       fine = fine && field->at[a] >= 0 && field->cells[a] >= 1 && field->cells[a] <= STRATUS_AXIS_MAX &&
-        (int64_t)(field->at[a] + field->cells[a] - 1) << tree->cell_log2 < tree->dimensions[a];
+        ((int64_t)field->at[a] + field->cells[a] - 1) << tree->cell_log2 < tree->dimensions[a];
     }
     entries += fine ? (uint64_t)field->cells[0] * (uint64_t)field->cells[1] * (uint64_t)field->cells[2] : 0;
     rows += fine ? (uint64_t)field->cells[1] * (uint64_t)field->cells[2] : 0;
@@ -265,6 +288,39 @@ static stratus_status check_fields(stratus_context* context, const stratus_tree*
     TRY(check_entries(context, tree, field));
   }
   return entries == tree->entry_count ? STRATUS_OK : WRONG("the tree has entries that are no distance field's");
+}
+
+/* Bits of an occupied brick's mask that lie beyond the node's box. */
+static uint64_t bits_outside(const stratus_tree_node* node, const int32_t first[3])
+{
+  uint64_t outside = 0;
+  for (int bit = 0; bit < 64; bit++) {
+    const int32_t voxel[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
+    for (int a = 0; a < 3; a++) {
+      outside |= voxel[a] < node->lo[a] || voxel[a] >= node->hi[a] ? 1ull << bit : 0;
+    }
+  }
+  return outside;
+}
+
+/* No voxel of a field's border bricks lies beyond the node. Entries have been checked. */
+static bool masks_fit(const stratus_tree* tree, const stratus_tree_node* node, const stratus_tree_field* field)
+{
+  const int32_t* n = field->cells;
+  for (int32_t k = 0; k < n[2] && tree->cell_log2; k++) {
+    for (int32_t j = 0; j < n[1]; j++) {
+      const bool whole_row = k == 0 || k == n[2] - 1 || j == 0 || j == n[1] - 1;
+      for (int32_t i = 0; i < n[0]; i += whole_row || n[0] == 1 ? 1 : n[0] - 1) {
+        const int32_t first[3] = { (field->at[0] + i) * 4, (field->at[1] + j) * 4, (field->at[2] + k) * 4 };
+        uint64_t mask;
+        stratus_tree_field_leap(tree, field, 0, i, j, k, &mask);
+        if (mask && (mask & bits_outside(node, first))) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
 }
 
 /* A node of a field covers cells of that field only. */
@@ -278,6 +334,9 @@ static stratus_status check_covers(stratus_context* context, const stratus_tree*
         if (node->lo[a] >> tree->cell_log2 != field->at[a] || (node->hi[a] - 1) >> tree->cell_log2 != field->at[a] + field->cells[a] - 1) {
           return WRONG("node %u of the tree and its distance field lie apart", n);
         }
+      }
+      if (!masks_fit(tree, node, field)) {
+        return WRONG("node %u of the tree has a distance field with voxels beyond its box", n);
       }
     }
   }
@@ -335,8 +394,8 @@ static stratus_status fill_tree(stratus_context* context, const header* h, const
     .dbscan_splits = h->splits[0], .density_splits = h->splits[1], .sah_splits = h->splits[2], .median_splits = h->splits[3] };
   memcpy(s->why, h->why, sizeof s->why);
   TRY(read_arrays(context, h, bytes, tree));
-  TRY(stratus_allocate(context, tree->node_count, 1, &depth));
-  const stratus_status status = check_nodes(context, tree, depth);
+  TRY(stratus_allocate_zero(context, (size_t)tree->node_count + tree->brick_count, 1, &depth));
+  const stratus_status status = check_nodes(context, tree, depth, (uint8_t*)depth + tree->node_count);
   stratus_release(context, depth);
   TRY(status);
   TRY(check_bricks(context, tree));
@@ -383,13 +442,26 @@ stratus_status stratus_tree_covers(
     return WRONG("%s is NULL", tree ? "covers" : "tree");
   }
   TRY(stratus_volume_check(context, volume));
-  memset(&wanted, 0, sizeof wanted);
-  TRY(stratus_criterion_intervals(context, volume, criterion, cells, &wanted));
-  if (tree->origin.hash == 0 || tree->origin.cells != (cells != 0)) {
-    *covers = 0;
+  *covers = 0;
+  if (tree->origin.hash == 0 || tree->origin.cells != (cells != 0) || !stratus_tree_fits(tree, volume)) {
     return STRATUS_OK;
   }
+  memset(&wanted, 0, sizeof wanted);
+  TRY(stratus_criterion_intervals(context, volume, criterion, cells, &wanted));
   TRY(stratus_volume_hash(context, volume, &wanted.hash));
   *covers = stratus_origin_covers(&tree->origin, &wanted);
   return STRATUS_OK;
+}
+
+bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume)
+{
+  int64_t cells[3];
+  stratus_volume_cells(volume, cells);
+  for (int a = 0; a < 3; a++) {
+    const int64_t blocks = ((cells[a] > 0 ? cells[a] : 1) + STRATUS_BRICK - 1) / STRATUS_BRICK;
+    if (tree->dimensions[a] != (tree->origin.cells ? blocks * STRATUS_BRICK : volume->dimensions[a])) {
+      return false;
+    }
+  }
+  return true;
 }

@@ -21,7 +21,7 @@ static inline stratus_tree_options hybrid_options(stratus_tree_method method)
     .max_depth = 32,
     .leaf_bricks = 4,
     .leaf_voxels = 1,
-    .field_bricks = 1 << 22,
+    .field_bricks = 1 << 25,
     .field_emptiness = 64.0,
     .uniform = 0.1,
     .paper_threshold = 8.0,

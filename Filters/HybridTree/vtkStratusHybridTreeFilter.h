@@ -92,7 +92,7 @@ public:
 
   ///@{
   /**
-   * A node this deep is a leaf, 1..64. Default 32.
+   * A node this deep is a leaf, 1..64; hierarchies of voxels are only kept near it, by splits at the median. Default 32.
    */
   vtkSetClampMacro(MaximumDepth, int, 1, 64);
   vtkGetMacro(MaximumDepth, int);
@@ -111,7 +111,7 @@ public:
   ///@{
   /**
    * Most bricks that a leaf of a distance field covers, 1..2^29, and most of them for one that holds anything, at least 1. Values out of range are an
-   * error when building. Default 33554432 and 64.
+   * error when building. Default 33554432 and 512.
    */
   vtkSetMacro(FieldBricks, vtkIdType);
   vtkGetMacro(FieldBricks, vtkIdType);
@@ -188,7 +188,7 @@ protected:
   int LeafBricks = 4;
   int LeafVoxels = 1;
   vtkIdType FieldBricks = 33554432;
-  double FieldEmptiness = 64.0;
+  double FieldEmptiness = 512.0;
   double Uniform = 0.1;
   double PaperThreshold = 8.0;
   double Bandwidth = 0.0;

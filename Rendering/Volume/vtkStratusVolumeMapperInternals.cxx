@@ -21,6 +21,7 @@ vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
     this->Caster = nullptr;
+    this->OfferedTo = nullptr; // the next one may come to the same address
     this->FullMilliseconds = 0.0;
   };
 }

@@ -133,6 +133,45 @@ static void forged_trees_do_no_harm(void** state)
   stratus_context_destroy(context);
 }
 
+static stratus_status save_and_load(stratus_context* context, const stratus_tree* tree, stratus_tree** back)
+{
+  size_t size;
+  void* bytes = save(tree, &size);
+  const stratus_status status = stratus_tree_load(context, bytes, size, back);
+  free(bytes);
+  return status;
+}
+
+static void forged_places_and_intervals_are_refused(void** state)
+{
+  (void)state;
+  uint32_t random = 12;
+  stratus_context* context = open_context();
+  stratus_voxels* voxels;
+  stratus_tree *tree = make_tree(context, STRATUS_TREE_SAH, &random, &voxels), *back = NULL;
+  tree->bricks[5].at[2] = (uint16_t)(tree->bricks[5].at[2] ? 0 : 3); /* in the volume, but not in its leaf */
+  assert_int_equal(save_and_load(context, tree, &back), STRATUS_INVALID_ARGUMENT);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(voxels);
+  tree = make_tree(context, STRATUS_TREE_OCTANT, &random, &voxels);
+  static const double intervals[4][2][2] = { { { NAN, 1 }, { 2, 3 } }, { { 2, 1 }, { 3, 4 } }, { { 0, 2 }, { 1, 3 } }, { { 5, 6 }, { 1, 2 } } };
+  for (int i = 0; i < 4; i++) {
+    tree->origin.intervals = 2;
+    memcpy(tree->origin.interval, intervals[i], sizeof intervals[i]);
+    assert_int_equal(save_and_load(context, tree, &back), STRATUS_INVALID_ARGUMENT);
+  }
+  tree->origin.intervals = 0;
+  assert_int_equal(save_and_load(context, tree, &back), STRATUS_OK);
+  stratus_tree_destroy(back);
+  back = NULL;
+  tree->nodes[0].hi[2] -= 2; /* voxels of the last bricks lie beyond it now */
+  assert_int_equal(save_and_load(context, tree, &back), STRATUS_INVALID_ARGUMENT);
+  assert_null(back);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
 static stratus_volume small_volume(float values[6 * 6 * 6])
 {
   stratus_volume volume = stratus_volume_default();
@@ -177,6 +216,9 @@ static void a_tree_covers_only_what_it_was_made_of(void** state)
     assert_int_equal(stratus_tree_covers(context, tree, &volume, &criterion, cells, &covers), STRATUS_OK);
     assert_int_equal(covers, 0);
     values[100] -= 0.5f;
+    tree->dimensions[1] *= 2; /* a forged one, of the right hash */
+    assert_int_equal(stratus_tree_covers(context, tree, &volume, &criterion, cells, &covers), STRATUS_OK);
+    assert_int_equal(covers, 0);
     stratus_tree_destroy(tree);
     stratus_voxels_destroy(voxels);
   }
@@ -186,6 +228,7 @@ static void a_tree_covers_only_what_it_was_made_of(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(what_is_saved_comes_back), cmocka_unit_test(damaged_bytes_are_refused),
-    cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
+    cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(forged_places_and_intervals_are_refused),
+    cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
