@@ -329,7 +329,7 @@ STRATUS_API stratus_status stratus_field_rgba(const stratus_field* field, const 
 typedef enum stratus_tree_method {
   STRATUS_TREE_HYBRID,       /* default: splits by density only where one distance field would be a waste */
   STRATUS_TREE_HYBRID_PAPER, /* Guo et al. 2025 as written: node test and split at every node, threshold in voxels */
-  STRATUS_TREE_DISTANCE,     /* one distance-field leaf over everything */
+  STRATUS_TREE_DISTANCE,     /* one distance-field leaf over everything; STRATUS_UNSUPPORTED over 2^14 bricks along x */
   STRATUS_TREE_OCTANT,       /* the same with a distance for each of the eight ray octants */
   STRATUS_TREE_SAH,          /* bounding volume hierarchy over voxels, binned surface area heuristic */
   STRATUS_TREE_SWEEP,        /* SAH, every split tried */
@@ -408,13 +408,13 @@ STRATUS_API void stratus_tree_save(const stratus_tree* tree, void* bytes);
 /* STRATUS_INVALID_ARGUMENT for bytes that are cut short, of another version or byte order, or changed. */
 STRATUS_API stratus_status stratus_tree_load(stratus_context* context, const void* bytes, size_t size, stratus_tree** tree);
 /* 1 if the tree may stand in for one of these voxels' making: it was built for the same use (cells or voxels) from a volume with the same
- * values, dimensions and hidden parts, and its criterion covers this one. Reads the whole volume once. */
+ * values, dimensions and hidden parts, and its criterion covers this one. Where the volume lies does not count. Reads the whole volume once. */
 STRATUS_API stratus_status stratus_tree_covers(
   stratus_context* context, const stratus_tree* tree, const stratus_volume* volume, const stratus_criterion* criterion, int cells, int* covers);
 
 typedef struct stratus_ray {
   double origin[3];     /* world */
-  double direction[3];  /* world, any length > 0 */
+  double direction[3];  /* world, any length > 0 (longest component at least 1e-290 voxels) */
   double t_min, t_max;  /* origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
 } stratus_ray;
 
@@ -426,9 +426,10 @@ typedef struct stratus_hit {
   uint32_t visited;   /* nodes and steps in distance fields */
 } stratus_hit;
 
-/* The first effective voxel along each of `count` rays: the same as a walk through all voxels in double precision, but where a ray
- * grazes edges within rounding. Rays with a direction of length 0, or with a number that is not finite (t_max aside): STRATUS_INVALID_ARGUMENT
- * with the first one's index. Threads and device: the context's. */
+/* The first effective voxel along each of `count` rays: that of stratus_voxels_first_hit() to the bit, edges and corners included, for origins up to some
+ * 1e9 voxels away (farther ones may differ where rays graze edges). Rays with a direction of length 0, or with a number that is not finite
+ * (t_max aside): STRATUS_INVALID_ARGUMENT with the first one's index, and `hits` undefined. Threads and device: the context's; trees of one leaf go
+ * in packets, or on the device, others ray by ray on the host. */
 STRATUS_API stratus_status stratus_tree_first_hit(stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count,
   stratus_hit* hits);
 /* The same answer by a plain walk from voxel to voxel in double precision, one thread: slow, and the measure of the other. */
