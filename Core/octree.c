@@ -51,6 +51,14 @@ static stratus_status check_options(stratus_context* context, const stratus_octr
   return STRATUS_OK;
 }
 
+static void forget_hull(stratus_octree* tree)
+{
+  for (int a = 0; a < 3; a++) {
+    tree->hull[2 * a] = INFINITY;
+    tree->hull[2 * a + 1] = -INFINITY;
+  }
+}
+
 stratus_status stratus_octree_create(stratus_context* context, const stratus_octree_options* options, stratus_octree** out)
 {
   if (!context) {
@@ -68,6 +76,7 @@ stratus_status stratus_octree_create(stratus_context* context, const stratus_oct
   tree->options = options ? *options : defaults;
   tree->pad = tree->options.placement == STRATUS_OCTREE_ENCLOSING ? 0.5 * (tree->options.looseness - 1.0) : 0.0;
   tree->free_head = STRATUS_NO_ID;
+  forget_hull(tree);
   stratus_status status = stratus_octree_levels_create(tree);
   if (status == STRATUS_OK) {
     status = stratus_octree_view_create(tree, &tree->walker);
@@ -111,6 +120,7 @@ void stratus_octree_clear(stratus_octree* tree)
   tree->depth = 0;
   tree->rooted = tree->has_origin = false;
   tree->reach = 0.0;
+  forget_hull(tree);
   tree->limit = tree->count = tree->unbounded_count = 0;
   tree->free_head = STRATUS_NO_ID;
 }

@@ -64,6 +64,7 @@ struct stratus_octree {
   double edge;      /* a power of two */
   double first_edge;
   double reach; /* no relative coordinate was ever larger */
+  double hull[6];   /* world: holds every bounded object that there is (and some that were) */
   bool has_origin, changed;
   uint32_t clock;
   uint8_t* octants; /* scratch of splits */
@@ -213,7 +214,7 @@ struct stratus_octree_view {
 /* What is looked for, and how far it is refined. */
 typedef struct stratus_octree_walk {
   const void* self;
-  unsigned mask; /* all planes; not 0 */
+  unsigned mask; /* planes that may cut; 0: all is seen */
   /* Of the eight children about this centre, of half width `quarter` each: the planes that cross it, 0 if it is seen whole, 0x80 if not at all. */
   void (*children)(const stratus_octree* tree, const void* self, unsigned mask, const double center[3], double quarter, uint8_t masks[8]);
   /* The stop rule: true if a node that is seen in part is to be split. Its count, level and depth have been looked at. */

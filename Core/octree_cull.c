@@ -235,6 +235,18 @@ static stratus_status measure_all(stratus_octree_view* view, const stratus_frust
 
 /* ---- one look */
 
+/* The planes that cut through what there is: where all of it is in sight, nothing needs a tree. */
+static unsigned planes_that_cut(const stratus_octree* tree, const stratus_frustum_plan* plan)
+{
+  unsigned mask = plan->used;
+  for (int p = 0; p < STRATUS_PLANES; p++) {
+    if (stratus_plan_side(plan, 1u << p, tree->hull) == STRATUS_SIDE_INSIDE) {
+      mask &= ~(1u << p);
+    }
+  }
+  return mask;
+}
+
 /* Now and then, what no border has crossed for long becomes whole: from below, since a node goes before its parent. */
 static stratus_status collapse_unseen(stratus_octree* tree, uint64_t* collapses)
 {
@@ -253,7 +265,7 @@ static stratus_status look(
 {
   stratus_octree* tree = view->tree;
   looker look = { .plan = plan };
-  stratus_octree_walk walk = { .self = &look, .mask = plan->used, .children = look_at_children, .divides = look_divides };
+  stratus_octree_walk walk = { .self = &look, .mask = planes_that_cut(tree, plan), .children = look_at_children, .divides = look_divides };
   walk.boxes_stick_out = tree->options.placement == STRATUS_OCTREE_TOUCHING;
   walk.test_whole = walk.boxes_stick_out && options->exact;
   walk.budget = tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;

@@ -96,6 +96,7 @@ static void fit_root(stratus_octree* tree)
     }
   }
   for (int a = 0; a < 3; a++) {
+    tree->hull[2 * a] = least[a], tree->hull[2 * a + 1] = greatest[a];
     tree->origin[a] = 0.5 * (least[a] + greatest[a]);
     least[a] = INFINITY, greatest[a] = -INFINITY;
   }

@@ -58,8 +58,9 @@ void stratus_octree_get_statistics(const stratus_octree* tree, stratus_octree_st
   }
   const size_t tested = STRATUS_PACK_FLOATS * sizeof(float) / STRATUS_PACK + sizeof(uint32_t);
   const size_t least = (tree->count - tree->unbounded_count) * tested;
-  s.object_bytes = tree->limit * (sizeof *tree->bounds + sizeof *tree->kind + (tree->turned ? sizeof *tree->turned : 0)) + least;
-  s.bytes = bytes + (lists > least ? lists - least : 0) + tree->limit * sizeof *tree->slot;
+  const size_t given = sizeof *tree->bounds + sizeof *tree->kind + sizeof *tree->slot + (tree->turned ? sizeof *tree->turned : 0);
+  s.object_bytes = tree->limit * given + least;
+  s.bytes = bytes + (lists > least ? lists - least : 0);
   for (int a = 0; a < 3 && tree->rooted; a++) {
     s.root[2 * a] = tree->origin[a] + tree->corner[a];
     s.root[2 * a + 1] = tree->origin[a] + (tree->corner[a] + tree->edge);

@@ -212,6 +212,10 @@ static void store(stratus_octree* tree, uint32_t id, const given* g)
 {
   memcpy(tree->bounds[id], g->bounds, sizeof g->bounds);
   tree->kind[id] = g->kind;
+  for (int a = 0; a < 3 && g->kind != STRATUS_OBJECT_UNBOUNDED; a++) {
+    tree->hull[2 * a] = fmin(tree->hull[2 * a], g->bounds[2 * a]);
+    tree->hull[2 * a + 1] = fmax(tree->hull[2 * a + 1], g->bounds[2 * a + 1]);
+  }
   if (g->kind == STRATUS_OBJECT_TURNED) {
     memcpy(tree->turned[id], g->turned, sizeof *tree->turned);
   }

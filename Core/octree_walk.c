@@ -145,7 +145,7 @@ static size_t enter_children(
 static unsigned root_mask(const stratus_octree* tree, stratus_octree_walk* walk)
 {
   uint8_t masks[8];
-  if (!tree->rooted || tree->options.levels == 0) {
+  if (!tree->rooted || tree->options.levels == 0 || walk->mask == 0) {
     return walk->mask;
   }
   walk->children(tree, walk->self, walk->mask, tree->corner, 0.5 * tree->edge, masks);

@@ -702,8 +702,8 @@ typedef struct stratus_octree_statistics {
   size_t references;         /* objects in nodes' lists: touching placement counts one that is in several lists so many times */
   size_t nodes, split_nodes; /* all slots */
   int depth;                 /* of the deepest node, the root's is 0 */
-  size_t object_bytes;       /* a linear list's: boxes as given, boxes as tested, ids */
-  size_t bytes;              /* what the tree adds: nodes, places, spare room and copies in lists */
+  size_t object_bytes;       /* a linear list's: boxes as given, boxes as tested, ids, and where each id stands */
+  size_t bytes;              /* what the tree adds: nodes, spare room and copies in lists */
   double root[6];            /* bounds; all 0 while everything is in one list */
 } stratus_octree_statistics;
 

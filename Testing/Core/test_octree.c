@@ -309,6 +309,47 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_context_destroy(context);
 }
 
+/* A tree for a scene that is wholly in sight would be built for nothing; one box over the border needs it. */
+static void what_is_wholly_in_sight_needs_no_tree(void** state)
+{
+  (void)state;
+  for (int touching = 0; touching < 2; touching++) {
+    stratus_context* context = make_context("host", 1);
+    stratus_octree_options options = stratus_octree_options_default();
+    options.placement = touching ? STRATUS_OCTREE_TOUCHING : STRATUS_OCTREE_ENCLOSING;
+    options.leaf_objects = 8;
+    double(*boxes)[6] = make_boxes(OBJECTS, 1.0, 5);
+    uint32_t* ids = malloc(OBJECTS * sizeof *ids);
+    stratus_octree* tree = make_tree(context, &options);
+    stratus_octree_view* view = make_view(tree);
+    const stratus_camera camera = {
+      .eye = { 0, 0, 20 }, .forward = { 0, 0, -1 }, .right = { 10, 0, 0 }, .up = { 0, 10, 0 }, .near_k = 1, .far_k = 100, .parallel = 1
+    };
+    const double over_the_border[6] = { 9.5, 10.5, 0, 1, 0, 1 };
+    stratus_frustum frustum;
+    stratus_octree_visible visible;
+    assert_int_equal(stratus_octree_insert(tree, boxes[0], OBJECTS, ids), STRATUS_OK);
+    assert_int_equal(stratus_frustum_from_camera(context, &camera, &frustum), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &visible), STRATUS_OK);
+    assert_int_equal(visible.count, OBJECTS);
+    assert_int_equal(visible.splits + visible.objects_tested + visible.nodes_tested, 0);
+    assert_int_equal(stratus_octree_move(tree, &ids[7], over_the_border, 1), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &visible), STRATUS_OK);
+    assert_int_equal(visible.count, OBJECTS);
+    assert_true(visible.splits > 0);
+    assert_int_equal(stratus_octree_check(tree), STRATUS_OK);
+    stratus_octree_clear(tree);
+    assert_int_equal(stratus_octree_insert(tree, boxes[0], OBJECTS, ids), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &visible), STRATUS_OK);
+    assert_int_equal(visible.splits, 0); /* what was there before clear() is forgotten */
+    free(boxes);
+    free(ids);
+    stratus_octree_view_destroy(view);
+    stratus_octree_destroy(tree);
+    stratus_context_destroy(context);
+  }
+}
+
 /* A cube in the middle of a window of twice its sphere's width, and one that hangs half over its border. */
 static void coverage_is_the_window_s_share(void** state)
 {
@@ -348,6 +389,7 @@ int main(void)
     cmocka_unit_test(threads_change_no_bit_of_the_list),
     cmocka_unit_test(views_share_a_tree),
     cmocka_unit_test(nodes_come_with_the_border_and_go_without_it),
+    cmocka_unit_test(what_is_wholly_in_sight_needs_no_tree),
     cmocka_unit_test(coverage_is_the_window_s_share),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
