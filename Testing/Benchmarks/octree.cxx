@@ -19,8 +19,8 @@ namespace {
 
 const char* const help = R"(stratus-bench octree [options]
 
-  --scene NAME,...     boxes-N, or actors-N: the same boxes as actors of VTK (default: boxes-1000,boxes-9454,boxes-100000,boxes-1000000,
-                       actors-1000,actors-9454,actors-100000)
+  --scene NAME,...     boxes-N; actors-N: the same boxes as actors of VTK; paper: tables 1 to 3 of Li & Huang 2024 (default:
+                       boxes-1000,boxes-9454,boxes-100000,boxes-1000000,actors-1000,actors-9454,actors-100000,paper)
   --path NAME,...      far, near, inside, turn (default: all of them)
   --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static with
                        :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256). With actors
@@ -36,7 +36,8 @@ cull_ms: median over a path's frames, from a tree that has not been looked at; c
 else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own size. nodes, bytes, depth: at the
 path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to
 the depth that the pixel one reached. visible: mean of the frames.
-With actors cull_ms is the whole of Cull(), its look for changes included, and frame_ms the median of up to 24 frames of the path, 512 x 384.
+With actors cull_ms is the whole of Cull(), its look for changes included, and frame_ms the median of up to 24 frames of the path, 512 x 384;
+frame_best_ms, frame_worst_ms: the fastest and the slowest of them. added_bytes: of the tree, in percent of what a list of its objects takes.
 wrong_culls, false_keeps (percent of what was kept): against faces cut by the planes, at 5 frames.
 )";
 
@@ -46,14 +47,7 @@ struct options {
   int frames = 120, threads = 1;
 };
 
-struct closer {
-  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
-  void operator()(stratus_octree* t) const { stratus_octree_destroy(t); }
-  void operator()(stratus_octree_view* v) const { stratus_octree_view_destroy(v); }
-};
 using context_pointer = std::unique_ptr<stratus_context, closer>;
-using tree_pointer = std::unique_ptr<stratus_octree, closer>;
-using view_pointer = std::unique_ptr<stratus_octree_view, closer>;
 
 void need(stratus_context* context, stratus_status status)
 {
@@ -99,28 +93,12 @@ stratus_octree_options method_options(const std::string& method)
 
 // ---- one method on one path
 
-struct run_state {
+struct path_run {
   stratus_context* context;
   const std::vector<box_bounds>& boxes;
   const std::vector<stratus_camera>& cameras;
   int threads;
-  tree_pointer tree; // outlives its view
-  view_pointer view;
-  std::vector<uint32_t> ids;
 };
-
-void open_tree(run_state& run, const stratus_octree_options& o)
-{
-  stratus_octree* tree = nullptr;
-  stratus_octree_view* view = nullptr;
-  need(run.context, stratus_octree_create(run.context, &o, &tree));
-  run.view.reset();
-  run.tree.reset(tree);
-  run.ids.resize(run.boxes.size());
-  need(run.context, stratus_octree_insert(tree, run.boxes[0].data(), run.boxes.size(), run.ids.data()));
-  need(run.context, stratus_octree_view_create(tree, &view));
-  run.view.reset(view);
-}
 
 struct walked {
   std::vector<double> ms;
@@ -128,21 +106,19 @@ struct walked {
   verdict judged;
 };
 
-walked walk_path(run_state& run, bool exact, bool judge)
+walked walk_path(const path_run& run, const octree_run& octree, bool exact, bool judge)
 {
   walked w;
   stratus_octree_cull_options cull = {};
   cull.exact = exact;
   const size_t frames = run.cameras.size(), every = std::max<size_t>(frames / 5, 1);
   for (size_t f = 0; f < frames; ++f) {
-    stratus_frustum frustum;
     stratus_octree_visible visible;
-    need(run.context, stratus_frustum_from_camera(run.context, &run.cameras[f], &frustum));
-    const double start = clock_ms(run.threads);
-    need(run.context, stratus_octree_cull(run.view.get(), &frustum, &cull, &visible));
-    w.ms.push_back(clock_ms(run.threads) - start);
+    w.ms.push_back(octree.look(run.cameras[f], &cull, run.threads, &visible));
     w.visible += static_cast<double>(visible.count) / static_cast<double>(frames);
     if (judge && f % every == every - 1) {
+      stratus_frustum frustum;
+      need(run.context, stratus_frustum_from_camera(run.context, &run.cameras[f], &frustum));
       const verdict v = judge_culling(run.boxes, frustum, run.cameras[f], visible.ids, visible.count);
       w.judged.kept += v.kept;
       w.judged.wrong_culls += v.wrong_culls;
@@ -158,7 +134,7 @@ double false_percent(const verdict& v)
 }
 
 // 1 % of the boxes, here and there, moved by their own size, five times.
-double update_ms(run_state& run)
+double update_ms(const path_run& run, const octree_run& octree)
 {
   std::vector<double> times;
   const size_t count = std::max<size_t>(run.boxes.size() / 100, 1);
@@ -173,31 +149,31 @@ double update_ms(run_state& run)
         box[2 * a] += size;
         box[2 * a + 1] += size;
       }
-      moved.push_back(run.ids[which]);
+      moved.push_back(octree.ids[which]);
       bounds.push_back(box);
     }
     const double start = clock_ms(run.threads);
-    need(run.context, stratus_octree_move(run.tree.get(), moved.data(), bounds[0].data(), count));
+    need(run.context, stratus_octree_move(octree.tree.get(), moved.data(), bounds[0].data(), count));
     times.push_back(clock_ms(run.threads) - start);
   }
   return median(times);
 }
 
-void run_method(run_state& run, const std::string& scene, const std::string& method, int depth, std::vector<row>& rows)
+void run_method(const path_run& run, const std::string& scene, const std::string& method, int depth, std::vector<row>& rows)
 {
   stratus_octree_options o = method_options(method);
   o.levels = o.stop == STRATUS_OCTREE_STOP_STATIC ? depth : o.levels;
-  open_tree(run, o);
-  const walked plain = walk_path(run, false, false);
+  const octree_run octree(run.context, run.boxes, o);
+  const walked plain = walk_path(run, octree, false, false);
   stratus_octree_statistics statistics;
-  stratus_octree_get_statistics(run.tree.get(), &statistics);
-  const walked judged = walk_path(run, false, true), exact = walk_path(run, true, true);
+  stratus_octree_get_statistics(octree.tree.get(), &statistics);
+  const walked judged = walk_path(run, octree, false, true), exact = walk_path(run, octree, true, true);
   const size_t wrong = judged.judged.wrong_culls + exact.judged.wrong_culls;
   const auto add = [&](const char* metric, double value, const char* unit) { rows.push_back({ scene, method, metric, unit, value }); };
   add("cull_ms", median(plain.ms), "ms");
   add("cull_worst_ms", *std::max_element(plain.ms.begin(), plain.ms.end()), "ms");
   add("exact_cull_ms", median(exact.ms), "ms");
-  add("update_ms", update_ms(run), "ms");
+  add("update_ms", update_ms(run, octree), "ms");
   add("nodes", static_cast<double>(statistics.nodes), "1");
   add("depth", statistics.depth, "1");
   add("bytes", static_cast<double>(statistics.bytes), "B");
@@ -214,12 +190,12 @@ void run_method(run_state& run, const std::string& scene, const std::string& met
 }
 
 // How deep the pixel octree becomes on the path: the static one's depth.
-int pixel_depth(run_state& run)
+int pixel_depth(const path_run& run)
 {
   stratus_octree_statistics statistics;
-  open_tree(run, method_options("stratus:octree-pixel"));
-  walk_path(run, false, false);
-  stratus_octree_get_statistics(run.tree.get(), &statistics);
+  const octree_run octree(run.context, run.boxes, method_options("stratus:octree-pixel"));
+  walk_path(run, octree, false, false);
+  stratus_octree_get_statistics(octree.tree.get(), &statistics);
   return std::max(statistics.depth, 1);
 }
 
@@ -238,7 +214,8 @@ std::vector<std::string> parts_of(const std::string& text)
 void check(options& o, const std::vector<std::string>& sweep)
 {
   if (o.scenes.empty()) {
-    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000", "actors-1000", "actors-9454", "actors-100000" };
+    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000", "actors-1000", "actors-9454", "actors-100000",
+      "paper" };
   }
   if (o.methods.empty()) {
     o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:256",
@@ -319,11 +296,15 @@ void run_scene(stratus_context* context, const std::string& scene, const options
     run_actors(context, scene, o.paths, o.frames, others, rows);
     return;
   }
+  if (scene == "paper") {
+    run_paper(context, rows);
+    return;
+  }
   const std::vector<box_bounds> boxes = make_boxes(scene);
   for (const std::string& path : o.paths) {
     std::fprintf(stderr, "%s/%s\n", scene.c_str(), path.c_str());
     const std::vector<stratus_camera> cameras = camera_path(context, path, o.frames);
-    run_state run = { context, boxes, cameras, o.threads, nullptr, nullptr, {} };
+    const path_run run = { context, boxes, cameras, o.threads };
     const int depth = pixel_depth(run);
     for (const std::string& method : of_boxes) {
       run_method(run, scene + '/' + path, method, depth, rows);
@@ -331,6 +312,28 @@ void run_scene(stratus_context* context, const std::string& scene, const options
   }
 }
 } // namespace
+
+octree_run::octree_run(stratus_context* c, const std::vector<box_bounds>& boxes, const stratus_octree_options& options)
+    : context(c), ids(boxes.size())
+{
+  stratus_octree* made = nullptr;
+  stratus_octree_view* looking = nullptr;
+  need(c, stratus_octree_create(c, &options, &made));
+  this->tree.reset(made);
+  need(c, stratus_octree_insert(made, boxes[0].data(), boxes.size(), this->ids.data()));
+  need(c, stratus_octree_view_create(made, &looking));
+  this->view.reset(looking);
+}
+
+double octree_run::look(
+  const stratus_camera& camera, const stratus_octree_cull_options* options, int threads, stratus_octree_visible* visible) const
+{
+  stratus_frustum frustum;
+  need(this->context, stratus_frustum_from_camera(this->context, &camera, &frustum));
+  const double start = clock_ms(threads);
+  need(this->context, stratus_octree_cull(this->view.get(), &frustum, options, visible));
+  return clock_ms(threads) - start;
+}
 
 int octree_main(int argc, char* argv[])
 {

@@ -122,7 +122,7 @@ culled cull_path(
 }
 
 // Every n-th camera, so that few frames still see the whole path; the first look of a culler does not count.
-double frame_ms(stage& s, vtkCuller* culler, const std::vector<stratus_camera>& cameras)
+std::vector<double> frame_times(stage& s, vtkCuller* culler, const std::vector<stratus_camera>& cameras)
 {
   std::vector<double> times;
   const size_t step = std::max<size_t>(cameras.size() / 24, 1);
@@ -140,7 +140,7 @@ double frame_ms(stage& s, vtkCuller* culler, const std::vector<stratus_camera>& 
     spent += times.back();
   }
   s.renderer->RemoveCuller(culler);
-  return median(times);
+  return times;
 }
 } // namespace
 
@@ -163,7 +163,8 @@ void run_actors(stratus_context* context, const std::string& scene, const std::v
     for (const std::string& method : methods) {
       const vtkSmartPointer<vtkCuller> culler = make_culler(method);
       const culled c = cull_path(s, culler, context, boxes, cameras);
-      const double worst = *std::max_element(c.ms.begin(), c.ms.end()), frame = frame_ms(s, culler, cameras);
+      const std::vector<double> frames_ms = frame_times(s, culler, cameras);
+      const double worst = *std::max_element(c.ms.begin(), c.ms.end()), frame = median(frames_ms);
       const double kept = static_cast<double>(std::max<size_t>(c.judged.kept, 1));
       const double falsely = 100.0 * static_cast<double>(c.judged.false_keeps) / kept;
       const auto add = [&](const char* metric, double value, const char* unit) {
@@ -172,6 +173,8 @@ void run_actors(stratus_context* context, const std::string& scene, const std::v
       add("cull_ms", median(c.ms), "ms");
       add("cull_worst_ms", worst, "ms");
       add("frame_ms", frame, "ms");
+      add("frame_best_ms", *std::min_element(frames_ms.begin(), frames_ms.end()), "ms");
+      add("frame_worst_ms", *std::max_element(frames_ms.begin(), frames_ms.end()), "ms");
       add("visible", c.visible, "1");
       add("false_keeps", falsely, "%");
       add("wrong_culls", static_cast<double>(c.judged.wrong_culls), "1");

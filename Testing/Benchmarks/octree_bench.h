@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,30 @@ struct verdict {
 // Every box cut out against the frustum, face by face; ids: what a method kept.
 verdict judge_culling(
   const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
+
+// ---- octree.cxx
+
+struct closer {
+  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
+  void operator()(stratus_octree* t) const { stratus_octree_destroy(t); }
+  void operator()(stratus_octree_view* v) const { stratus_octree_view_destroy(v); }
+};
+
+// A tree of boxes, not looked at yet, and a view of it.
+struct octree_run {
+  octree_run(stratus_context* context, const std::vector<box_bounds>& boxes, const stratus_octree_options& options);
+  // Milliseconds of a call; threads: of the host.
+  double look(const stratus_camera& camera, const stratus_octree_cull_options* options, int threads, stratus_octree_visible* visible) const;
+
+  stratus_context* context;
+  std::unique_ptr<stratus_octree, closer> tree; // outlives its view
+  std::unique_ptr<stratus_octree_view, closer> view;
+  std::vector<uint32_t> ids;
+};
+
+// ---- octree_paper.cxx
+
+void run_paper(stratus_context* context, std::vector<row>& rows);
 
 // ---- octree_actors.cxx
 
