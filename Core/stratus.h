@@ -930,6 +930,22 @@ STRATUS_API stratus_status stratus_voxel_scene_create(
 STRATUS_API void stratus_voxel_scene_release(stratus_context* context, int32_t* positions);
 STRATUS_API stratus_status stratus_voxel_scene_rays(stratus_context* context, const stratus_voxels* voxels, int kind, stratus_ray* rays);
 
+/* Meshes of record that are made: holes (a plate with 24 of them) and wavelet (998,250 tetrahedra of a lattice). */
+typedef struct stratus_mesh_scene {
+  const char* name;
+  stratus_mesh mesh;     /* wavelet: tetrahedra and a float a point. holes: points of a closed surface, no cells and no values */
+  const int32_t* quads;  /* holes: its faces, 4 point numbers each, planar, counterclockwise from outside; else NULL */
+  int64_t quad_count;
+  double maximum_volume; /* of a tetrahedron when a mesher fills the surface: about 800 thousand of them by TetGen; else 0 */
+} stratus_mesh_scene;
+
+STRATUS_API int stratus_mesh_scene_count(void);
+STRATUS_API const char* stratus_mesh_scene_name(int index); /* NULL beyond */
+STRATUS_API stratus_status stratus_mesh_scene_create(stratus_context* context, const char* name, stratus_mesh_scene** scene);
+STRATUS_API void stratus_mesh_scene_destroy(stratus_context* context, stratus_mesh_scene* scene);
+/* The field of a mesh of record, for points that a mesher adds; NaN for an unknown name. */
+STRATUS_API double stratus_mesh_scene_value(const char* name, const double point[3]);
+
 #ifdef __cplusplus
 }
 #endif
