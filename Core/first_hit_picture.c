@@ -28,12 +28,6 @@ typedef struct first_hit_frame {
   int rows; /* a batch, in tiles */
 } first_hit_frame;
 
-const char* stratus_mode_name(stratus_mode mode)
-{
-  static const char* const names[] = { "composite", "first-hit" };
-  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
-}
-
 /* ---- rays */
 
 /* Cuts the ray to where slope*t + height >= 0. What begins there carries `cut`. */

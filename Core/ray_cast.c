@@ -37,19 +37,19 @@ int stratus_ray_cast_type_is_fast(int type)
     type == STRATUS_FLOAT64;
 }
 
-stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preintegrated)
+stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant)
 {
+  typedef stratus_ray_cast_tile* tile_of(int type, stratus_ray_variant variant);
+#if STRATUS_HAVE_X86_ISAS
+  static tile_of* const light[3] = { stratus_ray_cast_tile_isa0, stratus_ray_cast_tile_isa1, stratus_ray_cast_tile_isa2 };
+  static tile_of* const modes[3] = { stratus_ray_modes_tile_isa0, stratus_ray_modes_tile_isa1, stratus_ray_modes_tile_isa2 };
+#else
+  static tile_of* const light[1] = { stratus_ray_cast_tile_isa0 };
+  static tile_of* const modes[1] = { stratus_ray_modes_tile_isa0 };
+#endif
   const int best = stratus_ray_cast_best_isa();
   isa = isa < best ? isa : best;
-#if STRATUS_HAVE_X86_ISAS
-  if (isa == 2) {
-    return stratus_ray_cast_tile_isa2(type, preintegrated);
-  }
-  if (isa == 1) {
-    return stratus_ray_cast_tile_isa1(type, preintegrated);
-  }
-#endif
-  return stratus_ray_cast_tile_isa0(type, preintegrated);
+  return (variant <= STRATUS_RAY_PREINTEGRATED ? light : modes)[isa](type, variant);
 }
 
 /* rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
@@ -68,11 +68,11 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
 }
 
 stratus_status stratus_ray_cast_host(
-  stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
+  stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts)
 {
   const int width = frame->arguments->width, height = frame->arguments->height;
   const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);
-  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(context->isa, type, preintegrated);
+  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(context->isa, type, variant);
   stratus_ray_counts sum = { 0 };
   atomic_int next = 0, cancelled = 0;
   stratus_status status = STRATUS_OK;

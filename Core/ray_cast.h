@@ -7,6 +7,14 @@
 
 #include <stdint.h>
 
+/* Bodies that the traversal is compiled with. */
+typedef enum stratus_ray_variant {
+  STRATUS_RAY_MIDPOINT,
+  STRATUS_RAY_PREINTEGRATED,
+  STRATUS_RAY_BEST, /* maxima and minima */
+  STRATUS_RAY_ADDED /* means and sums */
+} stratus_ray_variant;
+
 typedef struct stratus_ray_counts {
   uint64_t rays, samples, skipped, lookups;
 } stratus_ray_counts;
@@ -29,7 +37,7 @@ typedef struct stratus_ray_cast_frame {
 typedef void stratus_ray_cast_tile(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts);
 
 /* The traversal of this machine's best instruction set (or of `isa` 0..2 if that is less) for stratus_type `type`, -1 the generic one. */
-stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, int preintegrated);
+stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant);
 /* Types that have a fast fetch. */
 int stratus_ray_cast_type_is_fast(int type);
 
@@ -38,8 +46,11 @@ int stratus_ray_cast_best_isa(void);
 const char* stratus_ray_cast_isa(void);
 
 /* One a compiled instruction set. */
-stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, int preintegrated);
-stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, int preintegrated);
-stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, int preintegrated);
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);
 
 #endif

@@ -158,12 +158,17 @@ static const char* obstacle(const stratus_ray_caster* caster)
   return NULL;
 }
 
-static stratus_status find_kernel(stratus_ray_caster* caster, int type, bool preintegrated, bool packets, cl_kernel* kernel)
+static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_ray_variant variant, bool packets, cl_kernel* kernel)
 {
   stratus_context* context = caster->context;
+  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME, [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM };
   char defines[192];
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
-    type, preintegrated, packets ? 16 : 1, TILE, stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  int used = snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
+    type, variant == STRATUS_RAY_PREINTEGRATED, packets ? 16 : 1, TILE,
+    stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  if (modes[variant]) {
+    snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
+  }
   return stratus_device_kernel(context, "ray_cast", defines, "ray_cast", kernel);
 }
 
@@ -206,7 +211,7 @@ static void add_counts(const cl_uint* part, size_t parts, stratus_ray_counts* co
 }
 
 static stratus_status draw_and_count(
-  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts)
+  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts)
 {
   stratus_context* context = caster->context;
   const bool packets = stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
@@ -214,7 +219,7 @@ static stratus_status draw_and_count(
   const size_t parts = packets ? ((width + TILE - 1) / TILE) * ((height + TILE - 1) / TILE) : height;
   cl_kernel kernel;
   void* memory = NULL;
-  TRY(find_kernel(caster, type, preintegrated, packets, &kernel));
+  TRY(find_kernel(caster, type, variant, packets, &kernel));
   TRY(stratus_allocate_zero(context, parts, 4 * sizeof(cl_uint), &memory));
   const stratus_status status = draw(caster, frame, kernel, packets, memory, parts * 4 * sizeof(cl_uint));
   return_lent(caster);
@@ -225,7 +230,7 @@ static stratus_status draw_and_count(
   return status;
 }
 
-stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated,
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant,
   stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
   stratus_context* context = caster->context;
@@ -243,7 +248,7 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
   TRY(upload(caster, frame));
   *upload_ms += stratus_now_ms() - start;
   TRY(stratus_progress(context, "ray cast", 0.0));
-  TRY(draw_and_count(caster, frame, type, preintegrated, counts));
+  TRY(draw_and_count(caster, frame, type, variant, counts));
   *drawn = true;
   return stratus_progress(context, "ray cast", 1.0);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One type's tile of rays on the host: included by ray_cast_host.c with STRATUS_TYPE, STRATUS_PREINTEGRATED and RAY_NAME set. */
+ * One type's tile of rays on the host: included with STRATUS_TYPE, STRATUS_PREINTEGRATED, STRATUS_RAY_MODE (none: light) and RAY_NAME set. */
 #include "../kernels/ray_cast.h"
 
 static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k)
@@ -27,6 +27,9 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
       RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0]);
 #endif
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+#if defined(STRATUS_RAY_MODE)
+        RAY_NAME(ray_finish)(a, frame->table, &k[i]);
+#endif
         store_packet(frame, &k[i], x + i * PACKET_X, y, &mine);
       }
     }

@@ -30,7 +30,8 @@ const char* stratus_sampling_name(stratus_sampling sampling)
 stratus_ray_cast_options stratus_ray_cast_options_default(void)
 {
   return (stratus_ray_cast_options){ .termination = 0.999,
-    .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 } };
+    .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 },
+    .average_range = { -INFINITY, INFINITY } };
 }
 
 stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** out)
@@ -291,10 +292,12 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
     TRY(keep_transfer(caster, transfer));
   }
   const double voxel = stratus_ray_voxel_length(volume);
-  if (!same || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
+  const bool same_mode = stratus_ray_modes_same(&caster->shown, options);
+  if (!same || !same_mode || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
     caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
     stratus_ray_choose(
       caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
+    stratus_ray_modes_choose(options, voxel, &caster->choice);
     caster->voxel_length = voxel;
     caster->interpolation = options->interpolation;
     caster->wanted_sampling = options->sampling;
@@ -302,15 +305,17 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   }
   const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
   const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
-  if (same_kind && caster->table_distance == caster->choice.sample_distance) {
+  if (same_kind && same_mode && caster->table_distance == caster->choice.sample_distance) {
     return STRATUS_OK;
   }
   const stratus_value_range* ranges = caster->ranges;
   const bool any = ranges->whole_lo <= ranges->whole_hi;
   stratus_table* table = NULL;
   TRY(stratus_table_create(caster->context, &caster->transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
-    caster->choice.sampling, caster->choice.sample_distance, &table));
-  if (!same_kind || caster->table->shown != table->shown) {
+    caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
+  stratus_ray_modes_mark(options, ranges->bias, table);
+  caster->shown = stratus_ray_modes_shown(options);
+  if (!same_kind || !same_mode || caster->table->shown != table->shown) {
     drop_occupancy(caster);
   }
   stratus_table_destroy(caster->table);

@@ -18,6 +18,12 @@ typedef struct stratus_ray_choice {
   double sharpness; /* mean change of opacity over a voxel, where something shows */
 } stratus_ray_choice;
 
+/* What of the options decides which values matter, beside the transfer function. */
+typedef struct stratus_ray_shown {
+  stratus_mode mode;
+  double average_range[2];
+} stratus_ray_shown;
+
 struct stratus_ray_caster {
   stratus_context* context;
 
@@ -36,7 +42,8 @@ struct stratus_ray_caster {
   double wanted_distance, voxel_length;
   stratus_ray_choice choice;
   stratus_table* table;
-  double table_distance; /* the sample distance that the table is for */
+  double table_distance;   /* the sample distance that the table is for .. */
+  stratus_ray_shown shown; /* .. and the values */
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
   int tree_serves;      /* whether an offered tree may stand in for a map: 1, 0, or -1 where that is to be asked */
@@ -70,6 +77,20 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);
 void stratus_ray_tree_dropped(stratus_ray_caster* caster); /* another tree is offered, or none: ray_caster.c */
 
+/* ray_modes.c: what other modes than composite ask for. */
+stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options);
+stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options);
+bool stratus_ray_modes_same(const stratus_ray_shown* shown, const stratus_ray_cast_options* options);
+void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice);
+/* The distance that the table's opacity is taken over: alpha of a mode that takes it as it is, not per length, is that over one unit. */
+double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
+/* Marks the entries that the mode can't do without as those that show. */
+void stratus_ray_modes_mark(const stratus_ray_cast_options* options, double bias, stratus_table* table);
+void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
+stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster);
+/* Rays show something wherever they meet the bounds, whatever the values. */
+bool stratus_ray_modes_covers(const stratus_ray_cast_options* options);
+
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
   stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
@@ -91,10 +112,10 @@ void stratus_ray_window(const double eye[3], const double right[3], const double
 
 /* ray_cast.c: all tiles on the host. */
 stratus_status stratus_ray_cast_host(
-  stratus_context* context, const stratus_ray_cast_frame* frame, int type, bool preintegrated, stratus_ray_counts* counts);
+  stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
 
 /* ray_cast_device.c: the same on the OpenCL device. *drawn stays false where the device can't (too large, no double): the host draws then. */
-stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, bool preintegrated,
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant,
   stratus_ray_counts* counts, double* upload_ms, bool* drawn);
 void stratus_ray_device_destroy(stratus_ray_caster* caster);
 

@@ -46,9 +46,9 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
 
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_MODE_FIRST_HIT || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+  if ((unsigned)options->mode > STRATUS_MODE_ADDITIVE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
-      STRATUS_MODE_FIRST_HIT, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+      STRATUS_MODE_ADDITIVE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
   if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
@@ -68,6 +68,7 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
   }
+  TRY(stratus_ray_modes_check(context, options));
   return check_crop(context, options);
 }
 
@@ -91,12 +92,12 @@ static void clear_image(const stratus_image* image)
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
   bool with_map, stratus_ray_counts* counts, double* upload_ms)
 {
-  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  const stratus_ray_variant variant = stratus_ray_modes_variant(caster);
   const stratus_ray_cast_frame frame = { .arguments = arguments,
     .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
-    .table = preintegrated ? (const void*)caster->table->sums : (const void*)caster->table->rgba,
+    .table = variant == STRATUS_RAY_PREINTEGRATED ? (const void*)caster->table->sums : (const void*)caster->table->rgba,
     .opaque_depth = image->opaque_depth,
     .rgba = image->rgba,
     .depth = image->depth,
@@ -105,12 +106,12 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   const int type = stratus_ray_fetch_type(&caster->traversed);
   if (caster->context->device) {
     bool drawn = false;
-    TRY(stratus_ray_cast_device(caster, &frame, type, preintegrated, counts, upload_ms, &drawn));
+    TRY(stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn));
     if (drawn) {
       return STRATUS_OK;
     }
   }
-  return stratus_ray_cast_host(caster->context, &frame, type, preintegrated, counts);
+  return stratus_ray_cast_host(caster->context, &frame, type, variant, counts);
 }
 
 /* Draws again without structure and counts the pixels whose bits differ. */
@@ -191,14 +192,16 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   TRY(stratus_ray_frame_arguments(
     caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
-  const bool with_map = used != STRATUS_STRUCTURE_NONE;
+  const bool covers = stratus_ray_modes_covers(options);
+  const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   const double start = stratus_now_ms();
-  if (empty || caster->table->shown == 0) {
+  if (empty || (caster->table->shown == 0 && !covers)) {
     clear_image(image);
     memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->occupancy->count > 0;
     arguments.has_hidden = caster->hidden != NULL;
+    stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));

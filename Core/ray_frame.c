@@ -334,7 +334,7 @@ void stratus_ray_frame_structures(
   }
   if (map) {
     set_map(occupancy, map, a);
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3 && !a->sum; ++axis) {
       lo[axis] = fmax(lo[axis], (double)a->occupied[0][axis]);
       hi[axis] = fmin(hi[axis], (double)a->occupied[1][axis]);
     }

@@ -117,7 +117,7 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type
 #define STRATUS_GHOST_HIDDEN_POINT 2u /* point: cells that touch it are transparent */
 #define STRATUS_GHOST_HIDDEN_CELL 32u /* cell: transparent */
 
-/* A view of one scalar component on a regular grid.
+/* A view of values on a regular grid.
  * Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: such a voxel). Types of more than 24
  * bits are taken relative to one of their values (the least in magnitude of some thousand), in double, so that an offset costs no digits. */
 typedef struct stratus_volume {
@@ -134,6 +134,8 @@ typedef struct stratus_volume {
   const uint8_t* point_ghosts; /* dimensions[] flags, NULL: none; not used if cell_centered */
   const uint8_t* cell_ghosts;  /* a flag a cell: dimensions-1 (cell_centered: dimensions) along each axis, NULL: none */
   uint64_t revision;           /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
+  int components;              /* 1..4, default 1 (0 is 1): value v's component c is values[v*value_stride + c]. More than 1: ray casts in composite
+                                * mode only; everything else takes component 0. */
 } stratus_volume;
 
 STRATUS_API stratus_volume stratus_volume_default(void);
@@ -148,6 +150,10 @@ typedef struct stratus_transfer {
   size_t color_count;    /* >= 1 */
   double unit_distance;  /* world length that `opacity` is per, > 0. Default 1. */
   int clamp;             /* 1: the end points' opacity holds beyond them. 0: transparent there. Default 1. Colours always hold. */
+  /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1; the ends hold
+   * beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever the volume's matrix. Default NULL, 0: none. */
+  const double* gradient;
+  size_t gradient_count;
 } stratus_transfer;
 
 STRATUS_API stratus_transfer stratus_transfer_default(void);
@@ -454,11 +460,19 @@ typedef enum stratus_interpolation { STRATUS_INTERPOLATION_LINEAR, STRATUS_INTER
 
 typedef enum stratus_mode {
   STRATUS_MODE_COMPOSITE, /* light through the whole of a ray */
-  STRATUS_MODE_FIRST_HIT  /* effective voxels (opacity > 0) as lit solids, opaque. Structure none walks from voxel to voxel, block and distance
+  STRATUS_MODE_FIRST_HIT, /* effective voxels (opacity > 0) as lit solids, opaque. Structure none walks from voxel to voxel, block and distance
                            * read one distance field, octant eight of them, hybrid and auto a hybrid tree: all the same picture. */
+  STRATUS_MODE_MAXIMUM, /* the largest value sampled along the ray, in its colour and its opacity (not per length) */
+  STRATUS_MODE_MINIMUM, /* the smallest */
+  STRATUS_MODE_AVERAGE, /* grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in average_range */
+  STRATUS_MODE_ADDITIVE /* grey: the integral of opacity times value along the ray, lengths in unit_distance */
 } stratus_mode;
 
-STRATUS_API const char* stratus_mode_name(stratus_mode mode); /* "composite", "first-hit" */
+/* Means and sums take a value as a part of the whole volume's range of finite values, are cut off at 1, and are opaque: sums wherever a ray meets the
+ * volume's bounds, means where anything counts. */
+
+/* "composite", "first-hit", "maximum", "minimum", "average", "additive" */
+STRATUS_API const char* stratus_mode_name(stratus_mode mode);
 
 typedef enum stratus_normals {
   STRATUS_NORMALS_FACES,   /* of the voxel's face that the ray enters by */
@@ -473,15 +487,18 @@ typedef struct stratus_light {
   int positional;
 } stratus_light;
 
-/* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power). */
+/* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power).
+ * Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn), and specular where N L > 0
+ * only; N against the gradient by central differences, 0 where that is 0. */
 typedef struct stratus_shading {
-  int on;                /* 0: c = C. Default 1. */
+  int on;                /* first hit; 0: c = C. Default 1. Composite: see stratus_ray_cast_options.shade */
   double ambient;        /* finite and >= 0, as the next three; default .1 */
   double diffuse;        /* default .9 */
   double specular;       /* default 0 */
   double specular_power; /* default 10 */
   int light_count;       /* 0..8, or -1 (default): one white light at the eye (parallel: from its plane) */
   stratus_light lights[STRATUS_LIGHTS_MAX];
+  int one_sided;         /* composite; 1: only sides that face the light, against the gradient, are lit. Default 0: N is turned towards the eye. */
 } stratus_shading;
 
 #define STRATUS_CLIP_PLANES_MAX 6
@@ -500,7 +517,9 @@ typedef struct stratus_ray_cast_options {
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
   stratus_mode mode;       /* default composite */
   stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
-  stratus_shading shading; /* first hit */
+  stratus_shading shading; /* first hit; composite with shade */
+  int shade;               /* composite; 1: samples are lit by `shading`. Default 0 */
+  double average_range[2]; /* average: values that count, ends included, first <= last, infinities allowed. Default: all. */
 } stratus_ray_cast_options;
 
 STRATUS_API stratus_ray_cast_options stratus_ray_cast_options_default(void);
@@ -860,17 +879,32 @@ typedef enum stratus_tetra_mode {
   STRATUS_TETRA_MAXIMUM    /* the largest value on a ray: its colour, at the opacity of one unit distance */
 } stratus_tetra_mode;
 
+/* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same table. They differ by the rounding
+ * of floats, and where the order of cells is not exact (stratus_visibility_order): below .01 of 255 where it is. */
+typedef enum stratus_tetra_method {
+  STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it */
+  STRATUS_TETRA_METHOD_MARCH,  /* rays march from cell to cell */
+  STRATUS_TETRA_METHOD_PROJECT /* cells that can show something are sorted, dealt to tiles of pixels, and composited there */
+} stratus_tetra_method;
+
+STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
+
 typedef struct stratus_tetra_options {
   stratus_tetra_mode mode; /* default composite */
   double termination;      /* a ray ends when its alpha passes this, 0..1; default .999. Not in mode maximum. */
+  stratus_tetra_method method; /* default auto */
+  const stratus_leaves* leaves; /* of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster
+                                 * draws with others or is released. Default NULL: one leaf. */
 } stratus_tetra_options;
 
 STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
 
 typedef struct stratus_tetra_report {
-  uint64_t rays;     /* pixels whose ray meets a cell, in front of the eye or behind it */
-  uint64_t entries;  /* faces through which rays came in from outside */
-  uint64_t segments; /* cells that rays passed, those before the near plane included */
+  stratus_tetra_method method; /* march or project */
+  char why[256];               /* the reason, one sentence */
+  uint64_t rays;     /* march: pixels whose ray meets a cell, in front of the eye or behind it; project: that meet a cell which can show */
+  uint64_t entries;  /* march: faces through which rays came in from outside */
+  uint64_t segments; /* march: cells that rays passed, those before the near plane included; project: pieces of cells that were composited */
   uint64_t stuck;    /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
   int64_t cells, shown_cells;      /* of the mesh; those neither hidden nor of values that are not finite */
   int64_t border_faces;            /* of shown cells */
@@ -878,6 +912,10 @@ typedef struct stratus_tetra_report {
                                                        * the same side */
   uint64_t mesh_builds, table_builds; /* since the caster was created: a camera move raises none */
   double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* of this call; 0: not done */
+  int64_t cells_in_view;               /* project: that can show something in some pixel */
+  uint64_t pairs;                      /* project: of a cell and a tile */
+  int64_t cycles;                      /* project: of the order, see stratus_visibility_result */
+  double sort_ms, bin_ms, project_ms;  /* project: order, outlines and tiles of cells, pixels */
   size_t bytes;      /* of what is kept for the mesh, and a frame's */
 } stratus_tetra_report;
 

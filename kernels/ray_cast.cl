@@ -13,6 +13,9 @@
 #define STRATUS_PREINTEGRATED 0
 #endif
 #define RAY_NAME(x) kernel_##x
+#ifndef STRATUS_RAY_MODE
+#define STRATUS_RAY_MODE 0
+#endif
 /* Pixels along each side of a work item's tile of packets. */
 #ifndef RAY_TILE
 #define RAY_TILE 16
@@ -67,6 +70,9 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
       kernel_ray_march(a, values, hidden, map, table, &k);
     }
   }
+#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
+  kernel_ray_finish(a, table, &k);
+#endif
   store_pixel(a, &to, x, y, (float4)(k.red, k.green, k.blue, 1.0f - k.transparency), k.depth, (uint)k.samples);
   if (k.hits) {
     __global uint* count = counts + 4 * y;
@@ -156,6 +162,9 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
       kernel_ray_march(a, values, hidden, map, table, &k[0]);
 #endif
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
+        kernel_ray_finish(a, table, &k[i]);
+#endif
         store_packet(a, &to, &k[i], x + i * PACKET_X, y);
         rays += (uint)m_count(k[i].hits);
         taken = taken + k[i].samples;

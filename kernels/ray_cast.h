@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The march of one packet of rays through a volume, front to back, leaping over what a distance map tells to be transparent.
- * Included once for each STRATUS_TYPE and STRATUS_PREINTEGRATED (0 or 1); RAY_NAME(x) gives each inclusion its own names.
+ * Included once for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite); RAY_NAME(x) gives each inclusion
+ * its own names.
  *
  * Every structure meets the same samples: the structure only tells which segments need none, and a segment left out would have added exactly
  * zero, so the bits of the picture do not depend on it. */
@@ -10,6 +11,11 @@
 
 #include "ray_segment.h"
 #include "tree_map.h"
+
+#ifndef STRATUS_RAY_MODE
+#define STRATUS_RAY_MODE STRATUS_RAY_COMPOSITE
+#define RAY_MODE_OPEN 1
+#endif
 
 #define fetch_pair RAY_NAME(fetch_pair)
 #define fetch_cell RAY_NAME(fetch_cell)
@@ -25,6 +31,8 @@
 #define ray_skip RAY_NAME(ray_skip)
 #define ray_sample RAY_NAME(ray_sample)
 #define ray_shade RAY_NAME(ray_shade)
+#define ray_finish RAY_NAME(ray_finish)
+#define ray_advance RAY_NAME(ray_advance)
 #define ray_leap RAY_NAME(ray_leap)
 #define ray_march RAY_NAME(ray_march)
 #define ray_march_two RAY_NAME(ray_march_two)
@@ -130,6 +138,9 @@ INLINE stratus_sample ray_sample(
   return sample;
 }
 
+#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
+#include "ray_modes.h"
+#else
 /* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
 INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
@@ -148,6 +159,7 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 #endif
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
+#endif
 
 /* Asks the structure where enough rays need it. False if that was the end of all of them. */
 INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
@@ -206,6 +218,9 @@ INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float*
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+  k->front = v_set(-LARGEST_FLOAT);
+#endif
 }
 
 #undef fetch_pair
@@ -222,7 +237,13 @@ INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float*
 #undef ray_skip
 #undef ray_sample
 #undef ray_shade
+#undef ray_finish
+#undef ray_advance
 #undef ray_leap
 #undef ray_march
 #undef ray_march_two
 #undef ray_load
+#ifdef RAY_MODE_OPEN
+#undef RAY_MODE_OPEN
+#undef STRATUS_RAY_MODE
+#endif

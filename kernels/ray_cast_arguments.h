@@ -8,6 +8,11 @@
 
 #define STRATUS_CLIP_MAX 6
 
+/* What a ray makes of its samples: light behind light; the largest (or smallest) value; a sum of values. */
+#define STRATUS_RAY_COMPOSITE 0
+#define STRATUS_RAY_EXTREME 1
+#define STRATUS_RAY_SUM 2
+
 typedef struct stratus_ray_cast_arguments {
   /* ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward */
   stratus_pair eye[3], forward[3], right[3], up[3];
@@ -48,9 +53,15 @@ typedef struct stratus_ray_cast_arguments {
   int type, stride;         /* of the generic fetch */
   int row_high, slice_high; /* upper 32 bits of row and slice for the generic fetch */
   int bias_low, bias_high;  /* bits of the double that wide types are relative to */
+  /* modes */
+  float sign, top;                   /* extremes: 1 for maxima, -1 for minima, and sign times the value that none passes */
+  float counted_first, counted_last; /* sums: the values that count, ends included */
+  float grey_scale, grey_offset;     /* sums: a value's shade is value * scale + offset */
+  float sum_scale;                   /* sums: of a sum over whole samples; 0: the mean is shown */
+  int sum;                           /* 1: rays show something wherever they meet the bounds */
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8)
 
 #endif

@@ -30,7 +30,7 @@ typedef uint64_t stratus_index;
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat transparency, red, green, blue, depth;
-  vfloat front; /* pre-integrated: value at the segment's front */
+  vfloat front; /* pre-integrated: value at the segment's front; extremes: the best so far; sums: the sum, whose weight is in `red` */
   vint i, last; /* segment, and the end of the ray in whole segments */
   vint run;     /* segments below it need not ask the structure */
   vint octant;  /* offset of the ray's map */
@@ -203,6 +203,17 @@ INLINE vfloat v_reciprocal(vfloat a)
   vfloat r = v_from_bits(vi_set(0x7ef311c7) - v_to_bits(a));
   for (int iteration = 0; iteration < 3; ++iteration) {
     r = v_fma(r, v_fma(v_set(0.0f) - a, r, v_set(1.0f)), r);
+  }
+  return r;
+}
+
+/* The same of 1/sqrt(a). a > 0. */
+INLINE vfloat v_inverse_root(vfloat a)
+{
+  const vfloat half_a = v_set(0.5f) * a;
+  vfloat r = v_from_bits(vi_set(0x5f375a86) - (v_to_bits(a) >> vi_set(1)));
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    r = r * v_fma(v_set(0.0f) - half_a * r, r, v_set(1.5f));
   }
   return r;
 }
