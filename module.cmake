@@ -31,6 +31,7 @@ set_property(GLOBAL PROPERTY _vtk_module_autoinit_include "${VTK_AUTOINIT_INCLUD
 vtk_module_find_modules(stratus_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Filters")
 vtk_module_find_modules(stratus_module_files_rendering "${CMAKE_CURRENT_SOURCE_DIR}/Rendering")
 list(APPEND stratus_module_files ${stratus_module_files_rendering})
+include(cmake/openexr.cmake)
 include(cmake/tetgen.cmake)
 if (NOT stratus_tetgen)
   list(FILTER stratus_module_files EXCLUDE REGEX "/TetGen/vtk.module$")

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is refused and
+// leaves the file that was there. Argument: a folder to write to.
+#include "mapper_testing.h"
+
+#include "vtkStratusEXRWriter.h"
+
+#include "vtkBitArray.h"
+#include "vtkCallbackCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIntArray.h"
+#include "vtkStringArray.h"
+#include "vtkTypeUInt32Array.h"
+#include "vtkTypeUInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <openexr.h>
+
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <sys/resource.h>
+
+namespace {
+std::string Folder;
+
+// What the library finds in a file: rows from the top down.
+struct Picture
+{
+  int Width = 0, Height = 0;
+  exr_compression_t Compression = EXR_COMPRESSION_NONE;
+  std::map<std::string, std::vector<float>> Channels;
+};
+
+bool ReadChunks(exr_context_t file, Picture& picture)
+{
+  int32_t lines = 0;
+  bool good = exr_get_scanlines_per_chunk(file, 0, &lines) == EXR_ERR_SUCCESS;
+  for (int top = 0; good && top < picture.Height; top += lines) {
+    exr_chunk_info_t chunk;
+    exr_decode_pipeline_t pipeline = {};
+    good = exr_read_scanline_chunk_info(file, 0, top, &chunk) == EXR_ERR_SUCCESS &&
+      exr_decoding_initialize(file, 0, &chunk, &pipeline) == EXR_ERR_SUCCESS;
+    for (int16_t c = 0; good && c < pipeline.channel_count; ++c) {
+      exr_coding_channel_info_t& info = pipeline.channels[c];
+      good = info.data_type == EXR_PIXEL_FLOAT;
+      std::vector<float>& values = picture.Channels[info.channel_name];
+      values.resize(static_cast<size_t>(picture.Width) * static_cast<size_t>(picture.Height));
+      info.decode_to_ptr = reinterpret_cast<uint8_t*>(values.data() + static_cast<size_t>(top) * static_cast<size_t>(picture.Width));
+      info.user_data_type = EXR_PIXEL_FLOAT;
+      info.user_bytes_per_element = 4;
+      info.user_pixel_stride = 4;
+      info.user_line_stride = 4 * picture.Width;
+    }
+    good = good && exr_decoding_choose_default_routines(file, 0, &pipeline) == EXR_ERR_SUCCESS &&
+      exr_decoding_run(file, 0, &pipeline) == EXR_ERR_SUCCESS;
+    exr_decoding_destroy(file, &pipeline);
+  }
+  return good;
+}
+
+bool ReadPicture(const std::string& path, Picture& picture)
+{
+  exr_context_t file = nullptr;
+  if (exr_start_read(&file, path.c_str(), nullptr) != EXR_ERR_SUCCESS) {
+    return false;
+  }
+  exr_attr_box2i_t window = {};
+  bool good = exr_get_data_window(file, 0, &window) == EXR_ERR_SUCCESS && window.min.x == 0 && window.min.y == 0 &&
+    exr_get_compression(file, 0, &picture.Compression) == EXR_ERR_SUCCESS;
+  picture.Width = window.max.x + 1;
+  picture.Height = window.max.y + 1;
+  good = good && ReadChunks(file, picture);
+  exr_finish(&file);
+  return good;
+}
+
+std::string ReadText(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+vtkSmartPointer<vtkImageData> MakeImage(int width, int height)
+{
+  vtkSmartPointer<vtkImageData> image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(3, 2 + width, -5, -6 + height, 7, 7); // a picture begins anywhere
+  return image;
+}
+
+// Random values of any bits, or what `make` gives.
+template <typename Array>
+vtkSmartPointer<Array> AddArray(vtkImageData* image, const char* name, int components, typename Array::ValueType (*make)(std::mt19937&))
+{
+  static std::mt19937 random(7);
+  vtkSmartPointer<Array> array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType value = 0; value < array->GetNumberOfValues(); ++value) {
+    array->SetValue(value, make(random));
+  }
+  image->GetPointData()->AddArray(array);
+  return array;
+}
+
+float AnyFloat(std::mt19937& random)
+{
+  const auto bits = static_cast<uint32_t>(random());
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+vtkSmartPointer<vtkFloatArray> AddFloats(vtkImageData* image, const char* name, int components)
+{
+  return AddArray<vtkFloatArray>(image, name, components, AnyFloat);
+}
+
+// The channel is the array's component upside down, bit for bit.
+void CheckChannel(const Picture& picture, const std::string& name, vtkDataArray* array, int component)
+{
+  const auto found = picture.Channels.find(name);
+  CHECK(found != picture.Channels.end(), "%d x %d: there is no channel %s", picture.Width, picture.Height, name.c_str());
+  int differing = 0;
+  for (int y = 0; found != picture.Channels.end() && y < picture.Height; ++y) {
+    for (int x = 0; x < picture.Width; ++x) {
+      const vtkIdType tuple = static_cast<vtkIdType>(picture.Height - 1 - y) * picture.Width + x;
+      const float is = found->second[static_cast<size_t>(y) * static_cast<size_t>(picture.Width) + static_cast<size_t>(x)];
+      if (vtkFloatArray* floats = vtkFloatArray::SafeDownCast(array)) { // by bits: a NaN comes back as it was, and -0
+        const float was = floats->GetTypedComponent(tuple, component);
+        differing += std::memcmp(&was, &is, sizeof was) == 0 ? 0 : 1;
+      } else {
+        differing += static_cast<double>(is) == array->GetComponent(tuple, component) ? 0 : 1;
+      }
+    }
+  }
+  CHECK(differing == 0, "%d x %d: %d values of channel %s differ", picture.Width, picture.Height, differing, name.c_str());
+}
+
+void CheckRoundTrip(int width, int height)
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(width, height);
+  const auto rgba = AddFloats(image, "RGBA", 4);
+  const auto depth = AddFloats(image, "Depth", 1);
+  depth->SetValue(0, std::numeric_limits<float>::infinity());
+  const auto samples = AddArray<vtkTypeUInt32Array>(image, "Samples", 1, [](std::mt19937& random) { return static_cast<vtkTypeUInt32>(random() >> 8); });
+  const auto wide = AddArray<vtkTypeUInt64Array>(image, "wide", 1, [](std::mt19937& random) { return vtkTypeUInt64(random() >> 8) << 40; });
+  const auto bytes = AddArray<vtkUnsignedCharArray>(
+    image, "a name of more than thirty-one characters", 2, [](std::mt19937& random) { return static_cast<unsigned char>(random()); });
+  const auto exact = AddArray<vtkDoubleArray>(
+    image, "exact", 1, [](std::mt19937& random) { return static_cast<double>(static_cast<int>(random() >> 8)) / -1024.0; });
+  vtkNew<vtkStratusEXRWriter> writer;
+  vtkNew<ErrorObserver> errors;
+  writer->AddObserver(vtkCommand::ErrorEvent, errors);
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/all.exr").c_str());
+  CHECK(writer->Write() == 1 && errors->Count == 0 && writer->GetErrorCode() == 0, "%d x %d: %s", width, height, errors->Text.c_str());
+  Picture picture;
+  CHECK(ReadPicture(Folder + "/all.exr", picture), "%d x %d: the library reads it", width, height);
+  CHECK(picture.Width == width && picture.Height == height, "%d x %d came back as %d x %d", width, height, picture.Width, picture.Height);
+  CHECK(picture.Compression == EXR_COMPRESSION_ZIP, "compression %d", static_cast<int>(picture.Compression));
+  CHECK(picture.Channels.size() == 10, "%zu channels", picture.Channels.size());
+  for (int c = 0; c < 4; ++c) {
+    CheckChannel(picture, std::string(1, "RGBA"[c]), rgba, c);
+  }
+  CheckChannel(picture, "Z", depth, 0);
+  CheckChannel(picture, "Samples", samples, 0);
+  CheckChannel(picture, "wide", wide, 0);
+  CheckChannel(picture, "exact", exact, 0);
+  CheckChannel(picture, "a name of more than thirty-one characters.0", bytes, 0);
+  CheckChannel(picture, "a name of more than thirty-one characters.1", bytes, 1);
+}
+
+// Arrays without names, as most image sources give them.
+void UnnamedArrays()
+{
+  const char* const names[] = { "Y", "", "RGB", "RGBA" };
+  for (int components : { 1, 3, 4 }) {
+    vtkSmartPointer<vtkImageData> image = MakeImage(5, 4);
+    const auto array = AddFloats(image, nullptr, components);
+    vtkNew<vtkStratusEXRWriter> writer;
+    writer->SetInputData(image);
+    writer->SetFileName((Folder + "/unnamed.exr").c_str());
+    writer->Write();
+    Picture picture;
+    CHECK(ReadPicture(Folder + "/unnamed.exr", picture) && picture.Channels.size() == static_cast<size_t>(components), "%d components", components);
+    for (int c = 0; c < components; ++c) {
+      CheckChannel(picture, std::string(1, names[components - 1][c]), array, c);
+    }
+  }
+}
+
+// One error of these words; the file that was there stays, and none beside it.
+void CheckRefused(vtkStratusEXRWriter* writer, const char* words)
+{
+  const std::string path = Folder + "/old.exr";
+  std::ofstream(path, std::ios::binary) << "old";
+  vtkNew<ErrorObserver> errors;
+  const unsigned long tag = writer->AddObserver(vtkCommand::ErrorEvent, errors);
+  writer->Write();
+  writer->RemoveObserver(tag);
+  CHECK(errors->Count == 1 && errors->Text.find(words) != std::string::npos, "%d errors, wanted '%s': %s", errors->Count, words, errors->Text.c_str());
+  CHECK(writer->GetErrorCode() != 0 || !writer->GetInput(), "%s: an error code", words);
+  CHECK(ReadText(path) == "old", "%s: the old file is gone", words);
+  CHECK(!std::filesystem::exists(path + ".part"), "%s: half a file was left", words);
+}
+
+void CheckImageRefused(vtkImageData* image, const char* words)
+{
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/old.exr").c_str());
+  CheckRefused(writer, words);
+}
+
+void RefusesImages()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  CheckImageRefused(image, "no channel");
+  image->SetDimensions(4, 3, 2);
+  AddFloats(image, "a", 1);
+  CheckImageRefused(image, "4 x 3 x 2 points");
+  image = MakeImage(4, 3);
+  AddFloats(image, "Depth", 1);
+  AddFloats(image, "Z", 1);
+  CheckImageRefused(image, "two channels have the name 'Z'");
+  image = MakeImage(4, 3);
+  AddFloats(image, std::string(256, 'x').c_str(), 1);
+  CheckImageRefused(image, "256 bytes");
+  image = MakeImage(4, 3);
+  AddFloats(image, "short", 1)->SetNumberOfTuples(11);
+  CheckImageRefused(image, "'short' has 11 tuples");
+}
+
+template <typename Array>
+void CheckTypeRefused(const char* words)
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  vtkNew<Array> array;
+  array->SetName("odd");
+  array->SetNumberOfTuples(12);
+  image->GetPointData()->AddArray(array);
+  CheckImageRefused(image, words);
+}
+
+template <typename Array>
+void CheckValueRefused(typename Array::ValueType value, const char* words)
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  vtkNew<Array> array;
+  array->SetName("odd");
+  array->SetNumberOfTuples(12);
+  array->FillValue(0);
+  array->SetValue(10, value);
+  image->GetPointData()->AddArray(array);
+  CheckImageRefused(image, words);
+}
+
+void RefusesArrays()
+{
+  CheckTypeRefused<vtkStringArray>("'odd' is of type string");
+  CheckTypeRefused<vtkBitArray>("'odd' is of type bit");
+  CheckValueRefused<vtkDoubleArray>(0.1, "'odd' holds 0.100000 in tuple 10");
+  CheckValueRefused<vtkDoubleArray>(1e300, "in tuple 10");
+  CheckValueRefused<vtkIntArray>(16777217, "'odd' holds 16777217 in tuple 10");
+  CheckValueRefused<vtkIntArray>(std::numeric_limits<int>::max(), "'odd' holds 2147483647");
+  CheckValueRefused<vtkTypeUInt64Array>((vtkTypeUInt64(1) << 53) + 1, "'odd' holds 9007199254740993"); // a double would round it to a float's value
+  CheckValueRefused<vtkTypeUInt64Array>(std::numeric_limits<vtkTypeUInt64>::max(), "'odd' holds 18446744073709551615");
+}
+
+void RefusesPaths()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  AddFloats(image, "RGBA", 4);
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetFileName((Folder + "/old.exr").c_str());
+  CheckRefused(writer, "No input");
+  writer->SetInputData(image);
+  writer->SetFileName(nullptr);
+  CheckRefused(writer, "FileName is not set");
+  writer->SetFileName((Folder + "/nowhere/old.exr").c_str());
+  CheckRefused(writer, "can't open");
+  std::filesystem::create_directories(Folder + "/folder.exr/in");
+  writer->SetFileName((Folder + "/folder.exr").c_str());
+  CheckRefused(writer, "folder.exr: Is a directory");
+}
+
+// As a full disk would: the file may have 100 bytes.
+void RefusesFullDisks()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(40, 30);
+  AddFloats(image, "RGBA", 4);
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/old.exr").c_str());
+  struct rlimit before, few;
+  getrlimit(RLIMIT_FSIZE, &before);
+  few = before;
+  few.rlim_cur = 100;
+  std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &few);
+  CheckRefused(writer, "File too large");
+  setrlimit(RLIMIT_FSIZE, &before);
+}
+
+void StopsWhenAborted()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(40, 100);
+  AddFloats(image, "RGBA", 4);
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/old.exr").c_str());
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*) { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  writer->AddObserver(vtkCommand::ProgressEvent, stop);
+  CheckRefused(writer, "was aborted");
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  Folder = std::string(argc > 1 ? argv[1] : ".") + "/exr";
+  std::filesystem::create_directories(Folder);
+  for (const auto& size : { std::pair<int, int>(1, 1), { 1, 40 }, { 53, 1 }, { 37, 15 }, { 37, 16 }, { 37, 17 }, { 128, 100 } }) {
+    CheckRoundTrip(size.first, size.second);
+  }
+  UnnamedArrays();
+  RefusesImages();
+  RefusesArrays();
+  RefusesPaths();
+  RefusesFullDisks();
+  StopsWhenAborted();
+  std::filesystem::remove_all(Folder);
+  return Failures == 0 ? 0 : 1;
+}
