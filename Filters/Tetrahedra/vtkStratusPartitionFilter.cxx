@@ -2,6 +2,7 @@
 #include "vtkStratusPartitionFilter.h"
 
 #include "vtkStratusContext.h"
+#include "vtkStratusLeaves.h"
 #include "vtkStratusTetrahedra.h"
 
 #include "vtkCellArray.h"
@@ -52,7 +53,8 @@ bool IsLeftOut(vtkDataSetAttributes* attributes, vtkAbstractArray* array)
   return array == attributes->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS);
 }
 
-void InterpolatePoints(vtkPointData* from, const stratus_partition_result& cut, vtkPointData* to)
+void InterpolatePoints(
+  vtkPointData* from, const vtkStratusTetrahedra& tetrahedra, const stratus_partition_result& cut, vtkPointData* to)
 {
   const auto old_points = static_cast<vtkIdType>(cut.old_points);
   const auto points = static_cast<vtkIdType>(cut.point_count);
@@ -66,9 +68,7 @@ void InterpolatePoints(vtkPointData* from, const stratus_partition_result& cut, 
     result->SetNumberOfComponents(array->GetNumberOfComponents());
     result->CopyComponentNames(array);
     result->SetNumberOfTuples(points);
-    if (old_points > 0) {
-      result->InsertTuples(0, old_points, 0, array);
-    }
+    tetrahedra.CopyPointValues(array, result);
     auto* ghosts = vtkUnsignedCharArray::SafeDownCast(result);
     const bool flags = ghosts && ghosts == result && std::string(array->GetName() ? array->GetName() : "") == vtkDataSetAttributes::GhostArrayName();
     for (vtkIdType i = old_points; i < points; ++i) {
@@ -158,7 +158,7 @@ int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector
   stratus_partition_result cut;
   stratus_partition_get(partition, &cut);
   SetGeometry(cut, output);
-  InterpolatePoints(input->GetPointData(), cut, output->GetPointData());
+  InterpolatePoints(input->GetPointData(), tetrahedra, cut, output->GetPointData());
   vtkNew<vtkIdTypeArray> original;
   original->SetName(vtkStratusOriginalCellArray);
   std::vector<vtkIdType> origins(static_cast<size_t>(cut.cell_count));

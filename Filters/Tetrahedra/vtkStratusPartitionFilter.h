@@ -3,11 +3,12 @@
  * @class   vtkStratusPartitionFilter
  * @brief   an unstructured grid cut into the leaves of a K-D tree
  *
- * Input: a vtkUnstructuredGrid. Its cells are divided into tetrahedra that meet face to face (linear cells, polyhedra and quadratic
- * tetrahedra; cells without volume's dimension are dropped, other non-linear ones refused), and those are cut by planes, so that each lies
- * in one leaf: Li et al. 2012. Pieces meet in the same points, across leaves, too, and fill what they were cut from.
+ * Input: a vtkUnstructuredGrid. Its cells are divided into tetrahedra that meet face to face (linear and quadratic cells and polyhedra; vertices,
+ * lines and polygons are dropped, cells of higher order refused), and those are cut by planes, so that each lies in one leaf: Li et al. 2012.
+ * Pieces meet in the same points, across leaves, too, and fill what they were cut from.
  *
- * Output: tetrahedra, leaf by leaf. Points keep their numbers, and points on cut edges follow; point data are interpolated, cell data
+ * Output: tetrahedra, leaf by leaf. Points keep their numbers; the middles of quadratic cells that have no point there (all but tetrahedra,
+ * triquadratic hexahedra and pyramids) and points on cut edges follow; point data are interpolated, cell data
  * copied (global ids are dropped, as they would no longer be unique). Cell data "StratusLeaf" and "StratusOriginalCell" and field data
  * "StratusPartition" (the tree) are added; vtkStratusVisibilitySort reads them.
  *

@@ -2,6 +2,7 @@
 #include "vtkStratusVisibilitySort.h"
 
 #include "vtkStratusContext.h"
+#include "vtkStratusLeaves.h"
 #include "vtkStratusTetrahedra.h"
 
 #include "vtkCamera.h"

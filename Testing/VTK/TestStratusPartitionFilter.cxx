@@ -79,7 +79,7 @@ void Carries(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
   }
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i) {
     const Vector p = PointOf(output, i);
-    CHECK(std::abs(vectors->GetComponent(i, 0) - Linear(p)) < 1e-13 && vectors->GetComponent(i, 2) == 1.0 &&
+    CHECK(std::abs(vectors->GetComponent(i, 0) - Linear(p)) < 1e-13 && std::abs(vectors->GetComponent(i, 2) - 1.0) < 1e-15 &&
         std::abs(scalars->GetComponent(i, 0) - Linear(p)) < 1e-5,
       "point %lld: %g is not %g", static_cast<long long>(i), vectors->GetComponent(i, 0), Linear(p));
   }
@@ -142,6 +142,70 @@ void Quadratic()
   CHECK(filter->GetOutput()->GetNumberOfCells() == 8 && std::abs(volume - 1.0 / 6.0) < 1e-15, "parts of volume %.17g", volume);
 }
 
+// Cells of every quadratic type beside one another, straight and bent: their parts fill the box, meet face to face, and a linear field stays one.
+void QuadraticGrids()
+{
+  struct Case
+  {
+    const char* Name;
+    int Hexahedron, Wedge, Pyramid;
+  };
+  static const Case cases[] = { { "serendipity", VTK_QUADRATIC_HEXAHEDRON, VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID },
+    { "triquadratic", VTK_TRIQUADRATIC_HEXAHEDRON, VTK_BIQUADRATIC_QUADRATIC_WEDGE, VTK_TRIQUADRATIC_PYRAMID },
+    { "biquadratic, linear wedges", VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, VTK_QUADRATIC_LINEAR_WEDGE, 0 } };
+  const int n = 3;
+  for (const Case& c : cases) {
+    for (int alone = c.Pyramid ? 0 : 1; alone < (c.Pyramid ? 1 : 3); ++alone) { // these two meet no other type in whole faces
+      for (double bend : { 0.0, 0.04 }) {
+        Grid linear = alone == 0 ? MixedGrid(n) : CubesOf(n, alone == 1 ? VTK_HEXAHEDRON : VTK_WEDGE);
+        Grid grid = Elevated(linear, c.Hexahedron, c.Wedge, c.Pyramid, n, bend);
+        AddArrays(grid);
+        vtkNew<vtkStratusPartitionFilter> filter;
+        filter->SetInputData(grid);
+        filter->SetDepth(0);
+        filter->Update();
+        Fills(filter->GetOutput(), n, c.Name);
+        filter->SetLeafCells(50);
+        filter->SetDepth(3);
+        filter->Update();
+        Carries(grid, filter->GetOutput());
+        double volume = 0.0;
+        for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i) {
+          volume += std::abs(Volume(filter->GetOutput(), i));
+        }
+        CHECK(std::abs(volume - n * n * n) < 1e-12 * n * n * n, "%s, cut: volume %.17g", c.Name, volume);
+        CHECK(filter->GetNumberOfLeaves() > 4, "%s: %d leaves", c.Name, filter->GetNumberOfLeaves());
+      }
+    }
+  }
+}
+
+// A wedge and a pyramid given as hexahedra with corners that are one point: the parts that are none are left out.
+void CornersThatAreOne()
+{
+  auto grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 8; ++i) {
+    points->InsertNextPoint(((i + 1) >> 1) & 1, (i >> 1) & 1, i >> 2);
+  }
+  grid->SetPoints(points);
+  const vtkIdType wedge[8] = { 0, 1, 2, 2, 4, 5, 6, 6 }, pyramid[8] = { 0, 1, 2, 3, 4, 4, 4, 4 };
+  for (const vtkIdType* ids : { wedge, pyramid }) {
+    grid->Reset();
+    grid->Allocate(1);
+    grid->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
+    vtkNew<vtkStratusPartitionFilter> filter;
+    filter->SetInputData(grid);
+    filter->Update();
+    double volume = 0.0;
+    for (vtkIdType c = 0; c < filter->GetOutput()->GetNumberOfCells(); ++c) {
+      CHECK(Volume(filter->GetOutput(), c) > 0.0, "a part without volume");
+      volume += Volume(filter->GetOutput(), c);
+    }
+    CHECK(std::abs(volume - (ids == wedge ? 1.0 / 2.0 : 1.0 / 3.0)) < 1e-15, "volume %.17g", volume);
+  }
+}
+
 void EmptyAndRefused()
 {
   vtkNew<vtkStratusPartitionFilter> filter;
@@ -156,16 +220,29 @@ void EmptyAndRefused()
   points->InsertNextPoint(0, 0, 0);
   points->InsertNextPoint(1, 0, 0);
   points->InsertNextPoint(1, 1, 0);
+  points->InsertNextPoint(1, 1, 1);
   grid->SetPoints(points);
-  const vtkIdType ids[20] = { 0, 1, 2 };
-  grid->InsertNextCell(VTK_TRIANGLE, 3, ids);
-  filter->Modified();
+  const vtkIdType ids[20] = { 0, 1, 2, 3 }, wild[5] = { 0, 1, 2, 3, 4 };
+  const auto refuses = [&](int type, vtkIdType count, const vtkIdType* of, const char* word) {
+    grid->Allocate(1);
+    grid->InsertNextCell(type, count, of);
+    grid->Modified();
+    const int before = errors->Count;
+    filter->Update();
+    CHECK(word ? errors->Count == before + 1 && errors->Has(word) : errors->Count == before, "type %d: '%s'", type, errors->Text.c_str());
+    CHECK(filter->GetOutput()->GetNumberOfCells() == 0, "type %d: cells in the output", type);
+  };
+  refuses(VTK_TRIANGLE, 3, ids, nullptr);
+  refuses(VTK_LAGRANGE_TETRAHEDRON, 4, ids, "(71)");
+  refuses(VTK_HEXAHEDRON, 4, ids, "of 4 points, it must have 8");
+  refuses(VTK_TETRA, 3, ids, "of 3 points, it must have 4");
+  refuses(VTK_PYRAMID, 5, wild, "names point 4, outside 0..3");
+  const vtkIdType faces[] = { 3, 0, 1, 2, 3, 0, 1, 9, 3, 1, 2, 3, 3, 2, 0, 3 };
+  grid->Allocate(1);
+  grid->InsertNextCell(VTK_POLYHEDRON, 4, ids, 4, faces);
+  grid->Modified();
   filter->Update();
-  CHECK(errors->Count == 0 && filter->GetOutput()->GetNumberOfCells() == 0, "a triangle is no tetrahedron: %s", errors->Text.c_str());
-  grid->InsertNextCell(VTK_QUADRATIC_HEXAHEDRON, 20, ids);
-  filter->Modified();
-  filter->Update();
-  CHECK(errors->Count == 1 && errors->Has("type 25"), "'%s'", errors->Text.c_str());
+  CHECK(errors->Has("names point 9, outside 0..3"), "'%s'", errors->Text.c_str());
 }
 } // namespace
 
@@ -173,6 +250,8 @@ int main()
 {
   Cuts();
   Quadratic();
+  QuadraticGrids();
+  CornersThatAreOne();
   EmptyAndRefused();
   return Failures == 0 ? 0 : 1;
 }

@@ -5,7 +5,10 @@
 
 #include "mapper_testing.h"
 
+#include "vtkCell.h"
 #include "vtkCellArray.h"
+#include "vtkGenericCell.h"
+#include "vtkIdList.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -79,6 +82,108 @@ inline Grid MixedGrid(int n)
       }
     }
   }
+  return grid;
+}
+
+// n*n*n unit cubes of one type: hexahedra, or two wedges each.
+inline Grid CubesOf(int n, int type)
+{
+  auto grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int p = 0; p < (n + 1) * (n + 1) * (n + 1); ++p) {
+    points->InsertNextPoint(p % (n + 1), p / (n + 1) % (n + 1), p / (n + 1) / (n + 1));
+  }
+  grid->SetPoints(points);
+  const vtkIdType y = n + 1, z = y * y;
+  for (int cube = 0; cube < n * n * n; ++cube) {
+    const vtkIdType p = cube % n + cube / n % n * y + cube / n / n * z;
+    const vtkIdType c[8] = { p, p + 1, p + 1 + y, p + y, p + z, p + 1 + z, p + 1 + y + z, p + y + z };
+    if (type == VTK_WEDGE) {
+      const vtkIdType wedges[2][6] = { { c[0], c[2], c[1], c[4], c[6], c[5] }, { c[0], c[3], c[2], c[4], c[7], c[6] } };
+      grid->InsertNextCell(VTK_WEDGE, 6, wedges[0]);
+      grid->InsertNextCell(VTK_WEDGE, 6, wedges[1]);
+    } else {
+      grid->InsertNextCell(VTK_HEXAHEDRON, 8, c);
+    }
+  }
+  return grid;
+}
+
+// A grid's cells with points in the middles of edges, faces and cells, as the types that take the place of hexahedra (and voxels), wedges and
+// pyramids want them. Points within the box from 0 to n move, or edges would be straight.
+inline Grid Elevated(vtkUnstructuredGrid* linear, int hexahedron, int wedge, int pyramid, int n, double bend)
+{
+  auto grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  std::map<Vector, vtkIdType> known;
+  const auto middle = [&](const std::vector<Vector>& of) {
+    Vector sum = { 0, 0, 0 };
+    for (const Vector& p : of) {
+      for (size_t a = 0; a < 3; ++a) {
+        sum[a] += p[a] / of.size();
+      }
+    }
+    return sum;
+  };
+  for (vtkIdType c = 0; c < linear->GetNumberOfCells(); ++c) {
+    const int from = linear->GetCellType(c);
+    const int type = from == VTK_WEDGE ? wedge : from == VTK_PYRAMID ? pyramid : hexahedron;
+    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    const vtkIdType count = cell->GetNumberOfPoints();
+    vtkNew<vtkIdList> ids;
+    linear->GetCellPoints(c, ids);
+    if (from == VTK_VOXEL) {
+      std::swap(*ids->GetPointer(2), *ids->GetPointer(3));
+      std::swap(*ids->GetPointer(6), *ids->GetPointer(7));
+    }
+    std::vector<Vector> corners, nodes;
+    for (vtkIdType id : *ids) {
+      corners.push_back(PointOf(linear, id));
+    }
+    nodes.assign(static_cast<size_t>(count), middle(corners));
+    std::copy(corners.begin(), corners.end(), nodes.begin());
+    for (vtkIdType i = 0; i < count; ++i) {
+      cell->GetPointIds()->SetId(i, i);
+    }
+    for (int e = 0; e < cell->GetNumberOfEdges(); ++e) {
+      vtkIdList* edge = cell->GetEdge(e)->GetPointIds();
+      if (edge->GetNumberOfIds() == 3) {
+        nodes[edge->GetId(2)] = middle({ nodes[edge->GetId(0)], nodes[edge->GetId(1)] });
+      }
+    }
+    for (int f = 0; f < cell->GetNumberOfFaces(); ++f) {
+      vtkIdList* face = cell->GetFace(f)->GetPointIds();
+      const vtkIdType of = face->GetNumberOfIds(), sides = of == 9 ? 4 : 3;
+      if (of == 9 || of == 7) {
+        std::vector<Vector> around;
+        for (vtkIdType i = 0; i < sides; ++i) {
+          around.push_back(nodes[face->GetId(i)]);
+        }
+        nodes[face->GetId(of - 1)] = middle(around);
+      }
+    }
+    vtkNew<vtkIdList> result;
+    for (Vector p : nodes) {
+      Vector key;
+      for (size_t a = 0; a < 3; ++a) {
+        key[a] = std::round(p[a] * 3600.0);
+      }
+      const auto found = known.insert({ key, points->GetNumberOfPoints() });
+      if (found.second) {
+        const double inside = std::sin(M_PI * p[0] / n) * std::sin(M_PI * p[1] / n) * std::sin(M_PI * p[2] / n);
+        const bool on = *std::min_element(p.begin(), p.end()) < 1e-9 || *std::max_element(p.begin(), p.end()) > n - 1e-9;
+        for (size_t a = 0; a < 3 && !on; ++a) {
+          p[a] += bend * inside * std::sin(5.0 * p[(a + 1) % 3] + 3.0 * p[a]);
+        }
+        points->InsertNextPoint(p.data());
+      }
+      result->InsertNextId(found.first->second);
+    }
+    grid->InsertNextCell(type, result);
+  }
+  grid->SetPoints(points);
   return grid;
 }
 
