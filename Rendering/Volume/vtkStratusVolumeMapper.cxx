@@ -173,6 +173,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Audit: " << (this->Audit ? "On" : "Off") << "\n";
+  os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";
   os << indent << "Last picture: structure " << this->GetStructureUsedAsString() << ", sampling " << this->GetSamplingUsedAsString()
      << ", sample distance " << this->GetUsedSampleDistance() << ", " << this->GetUsedImageSampleDistance() << " pixels a ray, "
      << this->GetSamplesTaken() << " samples, " << this->GetSamplesSkipped() << " skipped, " << this->GetCastTime() << " ms\n";

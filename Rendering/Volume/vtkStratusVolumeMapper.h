@@ -192,6 +192,15 @@ public:
 
   ///@{
   /**
+   * Also count the values interpolated for each pixel: GetLastImage() then has them as "Samples". Does not change the picture. Default off.
+   */
+  vtkSetClampMacro(CountSamples, vtkTypeBool, 0, 1);
+  vtkGetMacro(CountSamples, vtkTypeBool);
+  vtkBooleanMacro(CountSamples, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Of the last picture drawn: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
    * blocks and how many of them are occupied, and bytes of the structure.
    */
@@ -247,7 +256,7 @@ public:
   /**
    * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4 components,
    * premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
-   * view from its plane, to the first contribution; infinite where there is none). A coarse picture is repeated pixel by pixel. nullptr
+   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with CountSamples. A coarse picture is repeated pixel by pixel. nullptr
    * before the first picture. Copied on each call; it is the mapper's, and the next call overwrites it.
    */
   vtkImageData* GetLastImage();
@@ -285,6 +294,7 @@ protected:
   int BlockSize = 0;
   int NumberOfThreads = 0;
   vtkTypeBool Audit = 0;
+  vtkTypeBool CountSamples = 0;
 
 private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;

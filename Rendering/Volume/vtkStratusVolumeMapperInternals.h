@@ -81,6 +81,7 @@ private:
   bool HasPicture = false;
   std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth;
   std::vector<unsigned char> Bytes;
+  std::vector<uint32_t> Samples; // empty: not counted
   vtkSmartPointer<vtkUnsignedCharArray> Offered; // the tree that the caster was last given ..
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;

@@ -8,6 +8,7 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkTypeUInt32Array.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -133,12 +134,14 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
   this->Depth.resize(pixels);
+  this->Samples.resize(this->Mapper->CountSamples ? pixels : 0);
   stratus_image image = stratus_image();
   image.width = this->Picture.Size[0];
   image.height = this->Picture.Size[1];
   image.rgba = this->Rgba.data();
   image.depth = this->Depth.data();
   image.opaque_depth = opaqueDepth;
+  image.samples = this->Samples.empty() ? nullptr : this->Samples.data();
   image.rgba8 = bytes ? this->Bytes.data() : nullptr;
   this->Renderer = renderer;
   const stratus_status status = stratus_ray_caster_render(
@@ -216,14 +219,19 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
   this->LastImage = vtkSmartPointer<vtkImageData>::New();
   this->LastImage->SetDimensions(width, height, 1);
   vtkNew<vtkFloatArray> rgba, depth;
+  vtkNew<vtkTypeUInt32Array> samples;
+  const bool counted = this->Mapper->CountSamples && (this->Picture.IsEmpty() || !this->Samples.empty());
   rgba->SetName("RGBA");
   rgba->SetNumberOfComponents(4);
   depth->SetName("Depth");
+  samples->SetName("Samples");
   for (vtkFloatArray* array : { rgba.Get(), depth.Get() }) {
     array->SetNumberOfTuples(static_cast<vtkIdType>(width) * height);
   }
   rgba->Fill(0.0);
   depth->Fill(std::numeric_limits<double>::infinity());
+  samples->SetNumberOfTuples(counted ? rgba->GetNumberOfTuples() : 0);
+  samples->Fill(0.0);
   for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
     const size_t row = static_cast<size_t>((j + 0.5) * this->Picture.Size[1] / rectangle[3]) * this->Picture.Size[0];
     for (int i = 0; i < rectangle[2]; ++i) {
@@ -231,9 +239,15 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
       const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
       std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
       depth->SetValue(to, this->Depth[from]);
+      if (counted) {
+        samples->SetValue(to, this->Samples[from]);
+      }
     }
   }
   this->LastImage->GetPointData()->SetScalars(rgba);
   this->LastImage->GetPointData()->AddArray(depth);
+  if (counted) {
+    this->LastImage->GetPointData()->AddArray(samples);
+  }
   return this->LastImage;
 }
