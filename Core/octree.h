@@ -123,6 +123,8 @@ stratus_status stratus_octree_check_ids(const stratus_octree* tree, const uint32
 /* ---- octree_lists.c */
 stratus_status stratus_list_allocate(stratus_context* context, size_t count, stratus_octree_list* list); /* empty, room for count */
 void stratus_list_release(stratus_context* context, stratus_octree_list* list);
+/* Room for so many in all. */
+stratus_status stratus_list_reserve(stratus_context* context, stratus_octree_list* list, size_t needed);
 /* Sets *slot. Grows by half where there is no room. */
 stratus_status stratus_list_append(stratus_context* context, stratus_octree_list* list, const float box[6], uint32_t id, uint32_t* slot);
 /* Before the first box of a pack is set: the lanes behind the last one are tested, too, and their answer is dropped. */

@@ -235,11 +235,11 @@ static stratus_status measure_all(stratus_octree_view* view, const stratus_frust
 
 /* ---- one look */
 
-/* The planes that cut through what there is: where all of it is in sight, nothing needs a tree. */
+/* The planes that cut through what there is: where all of it is in sight, nothing needs a tree. The linear list knows no hull. */
 static unsigned planes_that_cut(const stratus_octree* tree, const stratus_frustum_plan* plan)
 {
   unsigned mask = plan->used;
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES && tree->options.levels > 0; p++) {
     if (stratus_plan_side(plan, 1u << p, tree->hull) == STRATUS_SIDE_INSIDE) {
       mask &= ~(1u << p);
     }
@@ -271,7 +271,9 @@ static stratus_status look(
   walk.budget = tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;
   uint64_t splits = 0, handed_down = 0;
   tree->clock++;
-  stratus_octree_make_root(tree);
+  if (walk.mask || tree->options.stop == STRATUS_OCTREE_STOP_STATIC) {
+    stratus_octree_make_root(tree);
+  }
   if (tree->options.stop == STRATUS_OCTREE_STOP_STATIC && tree->changed) {
     TRY(stratus_octree_split_all(view, &splits, &handed_down));
     tree->changed = false;

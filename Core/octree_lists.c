@@ -51,19 +51,28 @@ void stratus_list_clear_rest(const stratus_octree_list* list, uint32_t slot)
   }
 }
 
+stratus_status stratus_list_reserve(stratus_context* context, stratus_octree_list* list, size_t needed)
+{
+  stratus_octree_list larger;
+  if (needed <= (size_t)list->packs * STRATUS_PACK) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_list_allocate(context, needed, &larger));
+  if (list->count > 0) {
+    memcpy(larger.boxes, list->boxes, list->packs * STRATUS_PACK_FLOATS * sizeof(float));
+    memcpy(stratus_list_ids(&larger), stratus_list_ids(list), list->count * sizeof(uint32_t));
+    memcpy(stratus_list_hints(&larger), stratus_list_hints(list), list->packs);
+  }
+  larger.count = list->count;
+  stratus_release(context, list->boxes);
+  *list = larger;
+  return STRATUS_OK;
+}
+
 stratus_status stratus_list_append(stratus_context* context, stratus_octree_list* list, const float box[6], uint32_t id, uint32_t* slot)
 {
   if (list->count == list->packs * STRATUS_PACK) {
-    stratus_octree_list larger;
-    TRY(stratus_list_allocate(context, (size_t)list->count + list->count / 2 + 1, &larger));
-    if (list->count > 0) {
-      memcpy(larger.boxes, list->boxes, list->packs * STRATUS_PACK_FLOATS * sizeof(float));
-      memcpy(stratus_list_ids(&larger), stratus_list_ids(list), list->count * sizeof(uint32_t));
-      memcpy(stratus_list_hints(&larger), stratus_list_hints(list), list->packs);
-    }
-    larger.count = list->count;
-    stratus_release(context, list->boxes);
-    *list = larger;
+    TRY(stratus_list_reserve(context, list, (size_t)list->count + list->count / 2 + 1));
   }
   *slot = list->count++;
   stratus_list_clear_rest(list, *slot);

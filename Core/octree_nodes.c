@@ -56,8 +56,8 @@ void stratus_octree_get_statistics(const stratus_octree* tree, stratus_octree_st
   if (!tree->rooted) {
     s.nodes = 1;
   }
-  const size_t tested = STRATUS_PACK_FLOATS * sizeof(float) / STRATUS_PACK + sizeof(uint32_t);
-  const size_t least = (tree->count - tree->unbounded_count) * tested;
+  const size_t packs = (tree->count - tree->unbounded_count + STRATUS_PACK - 1) / STRATUS_PACK;
+  const size_t least = stratus_list_bytes(&(stratus_octree_list){ .packs = (uint32_t)packs });
   const size_t given = sizeof *tree->bounds + sizeof *tree->kind + sizeof *tree->slot + (tree->turned ? sizeof *tree->turned : 0);
   s.object_bytes = tree->limit * given + least;
   s.bytes = bytes + (lists > least ? lists - least : 0);

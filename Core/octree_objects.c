@@ -234,6 +234,11 @@ static stratus_status insert(stratus_octree* tree, const double* numbers, size_t
   if (turned && count > 0) {
     TRY(reserve_turned(tree));
   }
+  /* Many at once need no spare room; a few do, or each call would copy the list. */
+  stratus_octree_list* root = &tree->levels[0].nodes[0];
+  if (!tree->rooted && count > root->count / 2) {
+    TRY(stratus_list_reserve(tree->context, root, root->count + count));
+  }
   tree->changed = true;
   for (size_t i = 0; i < count; i++) {
     given g;
