@@ -34,8 +34,10 @@ stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tet
 static void drop_table(stratus_tetra_caster* caster)
 {
   stratus_table_destroy(caster->table);
+  stratus_release(caster->context, caster->march_sums);
   stratus_release(caster->context, caster->transfer_points);
   caster->table = NULL;
+  caster->march_sums = NULL;
   caster->transfer_points = NULL;
 }
 
@@ -128,16 +130,21 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   const stratus_tetra_mesh* mesh = caster->mesh;
   const bool any = mesh->low <= mesh->high;
   stratus_table* table = NULL;
+  int32_t* sums = NULL;
   void* memory = NULL;
   if (same_transfer(caster, transfer) && caster->mode == mode) {
     return STRATUS_OK;
   }
   TRY(stratus_allocate(caster->context, opacity + color, sizeof(double), &memory));
   double* points = memory;
-  const stratus_status status = stratus_table_create(caster->context, transfer, mesh->bias, any ? mesh->low : 0.0f, any ? mesh->high : 0.0f,
+  stratus_status status = stratus_table_create(caster->context, transfer, mesh->bias, any ? mesh->low : 0.0f, any ? mesh->high : 0.0f,
     mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
     mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, &table);
+  if (status == STRATUS_OK) {
+    status = stratus_tetra_sums(caster->context, table, &sums);
+  }
   if (status != STRATUS_OK) {
+    stratus_table_destroy(table);
     stratus_release(caster->context, points);
     return status;
   }
@@ -145,6 +152,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   memcpy(points + opacity, transfer->color, color * sizeof *points);
   drop_table(caster);
   caster->table = table;
+  caster->march_sums = sums;
   caster->mode = mode;
   caster->transfer_points = points;
   caster->transfer = *transfer;
@@ -184,6 +192,7 @@ static void set_shading(
   a->tau_scale = table->sum_scale;
   a->color_slope = PIECES * table->color_slope;
   a->want_depth = image->depth != NULL;
+  a->want_samples = image->samples != NULL;
   a->world_step = 1.0f;
   arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
   a->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
@@ -202,6 +211,7 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, &caster->buffers, &frame));
   frame.table = caster->table;
   frame.sums = caster->table->sums;
+  frame.march_sums = caster->march_sums;
   set_shading(caster->table, options, image, &frame.arguments);
   report->transform_ms = stratus_now_ms() - start;
   TRY(stratus_tetra_march(caster->context, &frame, &caster->buffers, &counts, &report->entries_ms, &report->march_ms));
@@ -225,7 +235,7 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
   report->folded_faces = mesh->folded;
   report->mesh_builds = caster->mesh_builds;
   report->table_builds = caster->table_builds;
-  report->bytes = mesh->bytes + b->points.bytes + b->faces.bytes + b->rects.bytes + b->lines.bytes + b->bin_begin.bytes + b->bins.bytes +
+  report->bytes = mesh->bytes + b->points.bytes + b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes + b->bins.bytes +
     b->first.bytes + b->entries.bytes;
 }
 

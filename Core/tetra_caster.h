@@ -9,9 +9,10 @@
 /* What rays read of a mesh, made once for all views. Only shown cells are linked to each other. */
 typedef struct stratus_tetra_mesh {
   stratus_context* context;
-  int stride;        /* ints a cell: see tetra_arguments.h */
-  int32_t* cells;    /* stride*cell_count */
+  int32_t* cells;    /* TETRA_CELL*cell_count, those near each other in space near each other here */
+  int32_t* names;    /* of each of the mesh's points in `cells` and `faces`, in the order in which cells come to them */
   float* values;     /* a fetched value a point; NULL where cells have them */
+  float* cell_values; /* a fetched value a cell, in the order of `cells`, or NULL */
   uint8_t* shown;    /* a byte a cell */
   stratus_tetra_face* faces;
   size_t face_count;
@@ -30,6 +31,7 @@ struct stratus_tetra_caster {
   stratus_transfer transfer;
   stratus_tetra_mode mode; /* that the table is for */
   stratus_table* table;
+  int32_t* march_sums; /* the table's, four an entry */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
 };
@@ -37,6 +39,12 @@ struct stratus_tetra_caster {
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
+
+/* tetra_order.c: a place for each cell, neighbours in space near each other, and a name for each point by the first cell that has it. */
+stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, int32_t** places, int32_t** names);
+
+/* tetra_march.c: running sums of a table, those of an entry side by side; NULL where it has none. */
+stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
 /* tetra_frame.c: points in the rays' coordinates, rays of rows and columns, border faces by tile. Buffers grow and are kept. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,

@@ -13,11 +13,6 @@
 /* More than an edge is wrong by for the floats' sake: coordinates are below 1 (parallel: what is beyond the window need not be found). */
 #define EDGE_SLACK 1e-5
 
-/* Tiles that a face may cover: columns x0..x1, rows y0..y1; none if x0 > x1; x0 < 0: any. */
-typedef struct face_rect {
-  int32_t x0, x1, y0, y1;
-} face_rect;
-
 typedef struct frame_build {
   stratus_context* context;
   const stratus_tetra_mesh* tetra;
@@ -26,7 +21,7 @@ typedef struct frame_build {
   double matrix[16]; /* local -> a, b, c */
   double scale;      /* of what the floats hold; parallel: of z alone */
   bool mirrored;
-  face_rect* rects;
+  stratus_tetra_border_face* faces;
 } frame_build;
 
 stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size)
@@ -46,8 +41,8 @@ stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buf
 
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers)
 {
-  stratus_tetra_buffer* all[] = { &buffers->points, &buffers->faces, &buffers->rects, &buffers->lines, &buffers->bin_begin, &buffers->bins,
-    &buffers->first, &buffers->entries };
+  stratus_tetra_buffer* all[] = { &buffers->points, &buffers->places, &buffers->faces, &buffers->lines, &buffers->ends,
+    &buffers->bin_begin, &buffers->bins, &buffers->first, &buffers->entries };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
     stratus_release(context, all[i]->memory);
     *all[i] = (stratus_tetra_buffer){ 0 };
@@ -115,7 +110,8 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
 {
   const stratus_mesh* mesh = build->mesh;
   TRY(stratus_tetra_reserve(build->context, &buffers->points, (size_t)mesh->point_count, 4 * sizeof(float)));
-  float* points = buffers->points.memory;
+  TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));
+  float *points = buffers->points.memory, *places = buffers->places.memory;
   const float* values = build->tetra->values;
   const double scale = build->scale, lateral = build->frame->camera.parallel ? 1.0 : scale, middle = build->frame->middle;
 #pragma omp parallel for num_threads(build->context->threads)
@@ -126,8 +122,10 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
     points[4 * i + 1] = (float)(p[1] * lateral);
     points[4 * i + 2] = (float)((p[2] - middle) * scale);
     points[4 * i + 3] = values && isfinite(values[i]) ? values[i] : 0.0f;
+    memcpy(places + 4 * (size_t)build->tetra->names[i], points + 4 * i, 4 * sizeof *points);
   }
   build->frame->points = points;
+  build->frame->places = places;
   return STRATUS_OK;
 }
 
@@ -136,7 +134,7 @@ static stratus_status place_lines(frame_build* build, stratus_tetra_buffers* buf
 {
   stratus_tetra_frame* frame = build->frame;
   const int sides[2] = { frame->image.width, frame->image.height };
-  const size_t padded[2] = { (size_t)sides[0] + TETRA_TILE + TETRA_WIDTH_MOST, (size_t)sides[1] + TETRA_TILE + TETRA_WIDTH_MOST };
+  const size_t padded[2] = { (size_t)sides[0] + TETRA_PADDING, (size_t)sides[1] + TETRA_PADDING };
   TRY(stratus_tetra_reserve(build->context, &buffers->lines, 2 * (padded[0] + padded[1]), sizeof(float)));
   float* lines = buffers->lines.memory;
   float* places[2][2] = { { lines, lines + padded[0] }, { lines + 2 * padded[0], lines + 2 * padded[0] + padded[1] } };
@@ -155,37 +153,85 @@ static stratus_status place_lines(frame_build* build, stratus_tetra_buffers* buf
   return STRATUS_OK;
 }
 
+/* What is seen of a ray, in z: from the near plane to the far one or to what is opaque; and its length. */
+static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buffers)
+{
+  stratus_tetra_frame* frame = build->frame;
+  stratus_tetra_arguments* a = &frame->arguments;
+  const stratus_camera* c = &frame->camera;
+  const stratus_image* image = &frame->image;
+  const double *f = c->forward, *r = c->right, *u = c->up, square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  const double products[6] = { square, 2.0 * (f[0] * r[0] + f[1] * r[1] + f[2] * r[2]), 2.0 * (f[0] * u[0] + f[1] * u[1] + f[2] * u[2]),
+    r[0] * r[0] + r[1] * r[1] + r[2] * r[2], 2.0 * (r[0] * u[0] + r[1] * u[1] + r[2] * u[2]), u[0] * u[0] + u[1] * u[1] + u[2] * u[2] };
+  for (int i = 0; i < 6; ++i) {
+    a->square[i] = (float)(products[i] / square);
+  }
+  a->per_z = (float)(sqrt(square) * frame->per_z);
+  a->per_frame = (float)(sqrt(square) * frame->middle);
+  a->begin = (float)((c->near_k - frame->middle) / frame->per_z);
+  a->end = (float)fmin((c->far_k - frame->middle) / frame->per_z, 1e30);
+  a->has_ends = image->opaque_depth != NULL;
+  if (!image->opaque_depth) {
+    return STRATUS_OK;
+  }
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  TRY(stratus_tetra_reserve(build->context, &buffers->ends, pixels, sizeof(float)));
+  float* ends = buffers->ends.memory;
+  const double range = c->far_k - c->near_k;
+#pragma omp parallel for num_threads(build->context->threads)
+  for (size_t i = 0; i < pixels; ++i) {
+    const double extent = (double)image->opaque_depth[i] * range;
+    const double end = c->parallel ? c->near_k + extent : c->near_k * c->far_k / (c->far_k - extent);
+    ends[i] = (float)fmin((end - frame->middle) / frame->per_z, 1e30);
+  }
+  frame->ends = ends;
+  return STRATUS_OK;
+}
+
 static void face_points(const stratus_tetra_frame* frame, const stratus_tetra_face* face, double p[3][3])
 {
   for (int i = 0; i < 3; ++i) {
-    const float* point = frame->points + 4 * (size_t)face->point[i];
+    const float* point = frame->places + 4 * (size_t)face->point[i];
     p[i][0] = (double)point[0];
     p[i][1] = (double)point[1];
     p[i][2] = (double)frame->arguments.middle + (double)frame->arguments.shear * (double)point[2];
   }
 }
 
-/* First and last tile along a side of `pixels`, of what spans lo..hi in -1..1, a pixel more each way. False: outside. */
-static bool tile_span(double lo, double hi, int pixels, int32_t span[2])
+/* First and last pixel along a side of `pixels`, of what spans lo..hi in -1..1, a pixel more each way. False: outside. */
+static bool pixel_span(double lo, double hi, int pixels, uint16_t span[2])
 {
   const double first = floor(0.5 * (lo + 1.0) * pixels - 1.5), last = ceil(0.5 * (hi + 1.0) * pixels + 0.5);
   if (!(last >= 0.0) || !(first < pixels)) {
     return false;
   }
-  span[0] = (first > 0.0 ? (int32_t)first : 0) / TETRA_TILE;
-  span[1] = (last < pixels ? (int32_t)last : pixels - 1) / TETRA_TILE;
+  span[0] = (uint16_t)(first > 0.0 ? (int)first : 0);
+  span[1] = (uint16_t)(last < pixels ? (int)last : pixels - 1);
   return true;
 }
 
-static face_rect outline(const stratus_tetra_frame* frame, const stratus_tetra_face* face)
+/* Whether rays surely come out of the mesh by the face, if any pass it: its points turn the other way, seen from the eye. In front of the eye,
+ * the edges times depths sum up to this determinant; each edge is off by less than a millionth of the face's extent. */
+static bool faces_away(const double p[3][3])
 {
-  const face_rect nowhere = { 1, 0, 1, 0 }, anywhere = { -1, -1, -1, -1 };
+  double extent = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    extent = fmax(extent, fmax(fmax(fabs(p[1][i] - p[0][i]), fabs(p[2][i] - p[0][i])), fabs(p[2][i] - p[1][i])));
+  }
+  const double *a = p[0], b[3] = { p[1][0] - a[0], p[1][1] - a[1], p[1][2] - a[2] }, c[3] = { p[2][0] - a[0], p[2][1] - a[1], p[2][2] - a[2] };
+  const double det = a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  return det < -1e-6 * extent;
+}
+
+/* The pixels that a face may cover. False: none. */
+static bool outline(const stratus_tetra_frame* frame, stratus_tetra_border_face* face)
+{
   double p[3][3], lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
-  int32_t x[2], y[2];
-  face_points(frame, face, p);
+  face_points(frame, &face->face, p);
   const double nearest = fmin(fmin(p[0][2], p[1][2]), p[2][2]), farthest = fmax(fmax(p[0][2], p[1][2]), p[2][2]);
-  if (nearest < NEAREST_OUTLINE && farthest > -NEAREST_OUTLINE) {
-    return anywhere;
+  face->anywhere = nearest < NEAREST_OUTLINE && farthest > -NEAREST_OUTLINE;
+  if (face->anywhere) {
+    return true;
   }
   for (int i = 0; i < 3; ++i) {
     for (int side = 0; side < 2; ++side) {
@@ -193,10 +239,8 @@ static face_rect outline(const stratus_tetra_frame* frame, const stratus_tetra_f
       hi[side] = fmax(hi[side], p[i][side] / p[i][2]);
     }
   }
-  if (!tile_span(lo[0], hi[0], frame->image.width, x) || !tile_span(lo[1], hi[1], frame->image.height, y)) {
-    return nowhere;
-  }
-  return (face_rect){ x[0], x[1], y[0], y[1] };
+  return !(nearest > 0.0 && faces_away((const double(*)[3])p)) && pixel_span(lo[0], hi[0], frame->image.width, face->columns) &&
+    pixel_span(lo[1], hi[1], frame->image.height, face->rows);
 }
 
 /* Whether some ray of the tile may pass the face turned as it is: none does if an edge is negative in all four corners. */
@@ -218,17 +262,20 @@ static bool tile_may_meet(const stratus_tetra_frame* frame, const double p[3][3]
 static uint64_t deal_face(const frame_build* build, size_t i, uint32_t* begin, int32_t* bins)
 {
   const stratus_tetra_frame* frame = build->frame;
-  face_rect rect = build->rects[i];
-  double p[3][3];
-  const bool anywhere = rect.x0 < 0;
+  const stratus_tetra_border_face* face = build->faces + i;
+  int columns[2] = { face->columns[0] / TETRA_TILE, face->columns[1] / TETRA_TILE };
+  int rows[2] = { face->rows[0] / TETRA_TILE, face->rows[1] / TETRA_TILE };
+  double p[3][3] = { { 0.0 } };
   uint64_t count = 0;
-  if (anywhere) {
-    rect = (face_rect){ 0, frame->columns - 1, 0, frame->rows - 1 };
-    face_points(frame, frame->faces + i, p);
+  if (face->anywhere) {
+    columns[0] = rows[0] = 0;
+    columns[1] = frame->columns - 1;
+    rows[1] = frame->rows - 1;
+    face_points(frame, &face->face, p);
   }
-  for (int row = rect.y0; row <= rect.y1; ++row) {
-    for (int column = rect.x0; column <= rect.x1; ++column) {
-      if (!anywhere || tile_may_meet(frame, (const double(*)[3])p, column, row)) {
+  for (int row = rows[0]; row <= rows[1]; ++row) {
+    for (int column = columns[0]; column <= columns[1]; ++column) {
+      if (!face->anywhere || tile_may_meet(frame, (const double(*)[3])p, column, row)) {
         const int tile = row * frame->columns + column;
         if (bins) {
           bins[begin[tile]] = (int32_t)i;
@@ -245,20 +292,23 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
 {
   stratus_tetra_frame* frame = build->frame;
   const size_t count = build->tetra->face_count, tiles = (size_t)frame->columns * (size_t)frame->rows;
-  TRY(stratus_tetra_reserve(build->context, &buffers->faces, count, sizeof(stratus_tetra_face)));
-  TRY(stratus_tetra_reserve(build->context, &buffers->rects, count, sizeof(face_rect)));
+  TRY(stratus_tetra_reserve(build->context, &buffers->faces, count, sizeof(stratus_tetra_border_face)));
   TRY(stratus_tetra_reserve(build->context, &buffers->bin_begin, tiles + 1, sizeof(uint32_t)));
-  stratus_tetra_face* faces = buffers->faces.memory;
+  stratus_tetra_border_face* faces = buffers->faces.memory;
   uint32_t* begin = buffers->bin_begin.memory;
-  build->rects = buffers->rects.memory;
+  build->faces = faces;
   frame->faces = faces;
   frame->face_count = count;
 #pragma omp parallel for num_threads(build->context->threads)
   for (size_t i = 0; i < count; ++i) {
     const stratus_tetra_face* face = build->tetra->faces + i;
     const int32_t* p = face->point;
-    faces[i] = (stratus_tetra_face){ face->cell, { p[0], build->mirrored ? p[2] : p[1], build->mirrored ? p[1] : p[2] } };
-    build->rects[i] = outline(frame, faces + i);
+    faces[i] = (stratus_tetra_border_face){
+      .face = { { p[0], p[build->mirrored ? 2 : 1], p[build->mirrored ? 1 : 2] }, face->fourth, face->cell } };
+    if (!outline(frame, faces + i)) {
+      faces[i].columns[0] = UINT16_MAX; /* none */
+      faces[i].columns[1] = 0;
+    }
   }
   memset(begin, 0, (tiles + 1) * sizeof *begin);
   uint64_t total = 0;
@@ -296,12 +346,16 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   frame->columns = (image->width + TETRA_TILE - 1) / TETRA_TILE;
   frame->rows = (image->height + TETRA_TILE - 1) / TETRA_TILE;
   frame->cells = tetra->cells;
-  frame->arguments.stride = tetra->stride;
+  frame->cell_values = tetra->cell_values;
+  frame->arguments.table.width = image->width;
+  frame->arguments.table.height = image->height;
+  frame->arguments.columns = frame->columns;
   frame->arguments.cell_values = tetra->values == NULL;
   frame->arguments.steps_most = (int)(tetra->cell_count + 1);
   TRY(find_matrix(&build));
   TRY(find_scale(&build));
   TRY(place_points(&build, buffers));
   TRY(place_lines(&build, buffers));
+  TRY(place_ends(&build, buffers));
   return bin_faces(&build, buffers);
 }

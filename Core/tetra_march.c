@@ -92,11 +92,29 @@ stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame
     return stratus_fail(context, STRATUS_OVERFLOW, "rays come into the mesh %llu times, at most %lu", (unsigned long long)total,
       (unsigned long)UINT32_MAX);
   }
-  TRY(stratus_tetra_reserve(context, &buffers->entries, (size_t)total, sizeof(stratus_tetra_entry)));
+  TRY(stratus_tetra_reserve(context, &buffers->entries, (size_t)total, 2 * sizeof(int32_t)));
   frame->entries = buffers->entries.memory;
   const double marching = stratus_now_ms();
   TRY(each_tile(context, frame, false, counts));
   *entries_ms += marching - start;
   *march_ms = stratus_now_ms() - marching;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums)
+{
+  const size_t row = (size_t)table->size + 1;
+  void* memory = NULL;
+  *sums = NULL;
+  if (!table->sums) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(context, 4 * row, sizeof(int32_t), &memory));
+  *sums = memory;
+  for (size_t entry = 0; entry < row; ++entry) {
+    for (size_t which = 0; which < 4; ++which) {
+      (*sums)[4 * entry + which] = table->sums[which * row + entry];
+    }
+  }
   return STRATUS_OK;
 }

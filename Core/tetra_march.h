@@ -9,15 +9,16 @@
 
 /* A face of one shown cell only, turned so that a ray that enters the cell by it sees its points turn from right to up. */
 typedef struct stratus_tetra_face {
-  int32_t cell; /* where its ints begin */
-  int32_t point[3];
+  int32_t point[3], fourth; /* of the cell */
+  int32_t cell;             /* where its ints begin */
 } stratus_tetra_face;
 
-/* Where a ray comes in from outside. Those of a pixel lie together, nearest first. */
-typedef struct stratus_tetra_entry {
-  float z;
-  int32_t face;
-} stratus_tetra_entry;
+/* The same in a frame, as kernels/tetra_arguments.h has it. */
+typedef struct stratus_tetra_border_face {
+  stratus_tetra_face face;
+  uint16_t columns[2], rows[2]; /* first and last of pixels */
+  int32_t anywhere;
+} stratus_tetra_border_face;
 
 typedef struct stratus_tetra_buffer {
   void* memory;
@@ -26,7 +27,7 @@ typedef struct stratus_tetra_buffer {
 
 /* Memory of a frame, kept for the next one. */
 typedef struct stratus_tetra_buffers {
-  stratus_tetra_buffer points, faces, rects, lines, bin_begin, bins, first, entries;
+  stratus_tetra_buffer points, places, faces, lines, ends, bin_begin, bins, first, entries;
 } stratus_tetra_buffers;
 
 typedef struct stratus_tetra_counts {
@@ -37,22 +38,24 @@ typedef struct stratus_tetra_frame {
   stratus_tetra_arguments arguments;
   const int32_t* cells;
   const float* points;             /* x, y, z, value each */
-  const stratus_tetra_face* faces; /* turned for this camera */
+  const float* places;             /* the same in the order of the cells' points: tetra_mesh.c */
+  const float* cell_values;        /* a cell each in the order of `cells`, or NULL */
+  const stratus_tetra_border_face* faces; /* turned for this camera */
   size_t face_count;
   const float *us, *uw, *vs, *vw;  /* a column each, a row each: STRATUS_WIDTH_MOST of them beyond the picture */
   int columns, rows;               /* of tiles */
   const uint32_t* bin_begin;       /* columns*rows + 1 places in bins */
   const int32_t* bins;             /* faces that may cover a tile, rising */
   uint32_t* first;                 /* entries of tile t's pixel p begin at first[256 t + p] */
-  stratus_tetra_entry* entries;
+  int32_t* entries;                /* z's bits and the face: where rays come in. Those of a pixel lie together, nearest first */
+  const float* ends;               /* a pixel each, what is opaque in z, or NULL */
   const int32_t* sums;             /* of the table */
+  const int32_t* march_sums;       /* the same, four an entry */
   const stratus_table* table;
   stratus_camera camera;
   double middle, per_z;            /* k = middle + per_z*z */
   stratus_image image;
 } stratus_tetra_frame;
-
-#define TETRA_WIDTH_MOST 16
 
 /* counting: writes how many entries each pixel of the tile has to first[]; else fills the entries, marches and stores the pixels. */
 typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts);

@@ -8,7 +8,6 @@
 
 #define CELL_INTS_MOST INT32_MAX
 #define POINTS_MOST ((int64_t)1 << 30)
-#define POINT_INTS 5 /* of a cell with values at its points: four neighbours, and its points' exclusive or */
 
 /* Values as volumes have them, so that fetching is the same. */
 static stratus_volume values_of(const stratus_mesh* mesh)
@@ -106,29 +105,42 @@ static int32_t shown_neighbour(const stratus_tetra_mesh* tetra, const stratus_ad
   return other >= 0 && tetra->shown[other] ? other : -1;
 }
 
-static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+/* For each of the cell's points, lowest name first, the next cell opposite and the point by which that one is more than the face between. */
+static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places,
+  int64_t cell, int32_t ints[TETRA_CELL])
 {
-#pragma omp parallel for num_threads(tetra->context->threads)
-  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
-    const int32_t* v = mesh->vertices + 4 * cell;
-    int32_t* ints = tetra->cells + tetra->stride * cell;
-    for (int f = 0; f < 4; ++f) {
-      int rank = 0; /* cells whose points are not four have no neighbours: any place will do */
-      for (int i = 0; i < 4; ++i) {
-        rank += v[i] < v[f] || (v[i] == v[f] && i < f);
-      }
-      const int32_t other = shown_neighbour(tetra, adjacency, cell, f);
-      ints[rank] = other < 0 ? -1 : (int32_t)(tetra->stride * other);
+  const int32_t* v = mesh->vertices + 4 * cell;
+  const int32_t all = v[0] ^ v[1] ^ v[2] ^ v[3];
+  for (int f = 0; f < 4; ++f) {
+    int rank = 0; /* cells whose points are not four have no neighbours: any place will do */
+    for (int i = 0; i < 4; ++i) {
+      rank += tetra->names[v[i]] < tetra->names[v[f]] || (v[i] == v[f] && i < f);
     }
-    ints[4] = v[0] ^ v[1] ^ v[2] ^ v[3];
-    if (mesh->cell_values) {
-      const float value = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
-      memcpy(ints + POINT_INTS, &value, sizeof value);
+    const int32_t other = shown_neighbour(tetra, adjacency, cell, f);
+    ints[2 * rank] = -1;
+    ints[2 * rank + 1] = 0;
+    if (other >= 0) {
+      const int32_t* w = mesh->vertices + 4 * (int64_t)other;
+      ints[2 * rank] = TETRA_CELL * places[other];
+      ints[2 * rank + 1] = tetra->names[w[0] ^ w[1] ^ w[2] ^ w[3] ^ all ^ v[f]];
     }
   }
 }
 
-static size_t list_faces(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, stratus_tetra_face* faces)
+static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency,
+  const int32_t* places)
+{
+#pragma omp parallel for num_threads(tetra->context->threads)
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    pack_cell(tetra, mesh, adjacency, places, cell, tetra->cells + TETRA_CELL * (int64_t)places[cell]);
+    if (mesh->cell_values) {
+      tetra->cell_values[places[cell]] = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
+    }
+  }
+}
+
+static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places,
+  stratus_tetra_face* faces)
 {
   size_t count = 0;
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
@@ -141,9 +153,11 @@ static size_t list_faces(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, co
         break;
       }
       if (faces) {
+        const int32_t* v = mesh->vertices + 4 * cell;
         int32_t p[3];
-        const bool right = stratus_face_points(mesh->vertices + 4 * cell, f, p) * nominal > 0;
-        faces[count] = (stratus_tetra_face){ (int32_t)(tetra->stride * cell), { p[0], right ? p[1] : p[2], right ? p[2] : p[1] } };
+        const bool right = stratus_face_points(v, f, p) * nominal > 0;
+        faces[count] = (stratus_tetra_face){ { tetra->names[p[0]], tetra->names[p[right ? 1 : 2]], tetra->names[p[right ? 2 : 1]] },
+          tetra->names[v[f]], TETRA_CELL * places[cell] };
       }
       ++count;
     }
@@ -151,34 +165,46 @@ static size_t list_faces(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, co
   return count;
 }
 
-static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency)
+static stratus_status fetch_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume)
+{
+  void* memory = NULL;
+  if (mesh->cell_values) {
+    TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, sizeof(float), &memory));
+    tetra->cell_values = memory;
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(tetra->context, (size_t)mesh->point_count, sizeof(float), &memory));
+  tetra->values = memory;
+#pragma omp parallel for num_threads(tetra->context->threads)
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
+    tetra->values[i] = stratus_volume_fetch(volume, tetra->bias, (size_t)i);
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status build(
+  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places)
 {
   const stratus_volume volume = values_of(mesh);
   void* memory = NULL;
   tetra->bias = stratus_volume_bias(&volume);
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, 1, &memory));
   tetra->shown = memory;
-  if (!mesh->cell_values) {
-    TRY(stratus_allocate(tetra->context, (size_t)mesh->point_count, sizeof(float), &memory));
-    tetra->values = memory;
-#pragma omp parallel for num_threads(tetra->context->threads)
-    for (int64_t i = 0; i < mesh->point_count; ++i) {
-      tetra->values[i] = stratus_volume_fetch(&volume, tetra->bias, (size_t)i);
-    }
-  }
+  TRY(fetch_values(tetra, mesh, &volume));
   find_shown(tetra, mesh, &volume, adjacency);
   find_bounds(tetra, mesh);
-  TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, (size_t)tetra->stride * sizeof(int32_t), &memory));
+  TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, TETRA_CELL * sizeof(int32_t), &memory));
   tetra->cells = memory;
-  pack_cells(tetra, mesh, &volume, adjacency);
-  tetra->face_count = list_faces(tetra, mesh, adjacency, NULL);
+  pack_cells(tetra, mesh, &volume, adjacency, places);
+  tetra->face_count = list_faces(tetra, mesh, adjacency, places, NULL);
   TRY(stratus_allocate(tetra->context, tetra->face_count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
-  (void)list_faces(tetra, mesh, adjacency, tetra->faces);
+  (void)list_faces(tetra, mesh, adjacency, places, tetra->faces);
   stratus_release(tetra->context, tetra->shown);
   tetra->shown = NULL;
-  tetra->bytes = (size_t)mesh->cell_count * (size_t)tetra->stride * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
-    (tetra->values ? (size_t)mesh->point_count * sizeof(float) : 0);
+  const size_t values = (size_t)(mesh->cell_values ? mesh->cell_count : mesh->point_count);
+  tetra->bytes = (size_t)mesh->cell_count * TETRA_CELL * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
+    (size_t)mesh->point_count * sizeof(int32_t) + values * sizeof(float);
   return STRATUS_OK;
 }
 
@@ -187,26 +213,27 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   stratus_status status = STRATUS_OK;
   stratus_adjacency* adjacency = NULL;
   void* memory = NULL;
-  const int stride = mesh->cell_values ? POINT_INTS + 1 : POINT_INTS;
-  if (mesh->cell_count > CELL_INTS_MOST / (POINT_INTS + 1) || mesh->point_count > POINTS_MOST) {
+  int32_t* places = NULL;
+  if (mesh->cell_count > CELL_INTS_MOST / TETRA_CELL || mesh->point_count > POINTS_MOST) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh of %lld cells and %lld points is too large to draw: at most %d and %lld",
-      (long long)mesh->cell_count, (long long)mesh->point_count, CELL_INTS_MOST / (POINT_INTS + 1), (long long)POINTS_MOST);
+      (long long)mesh->cell_count, (long long)mesh->point_count, CELL_INTS_MOST / TETRA_CELL, (long long)POINTS_MOST);
   }
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_mesh), &memory));
   stratus_tetra_mesh* tetra = memory;
   tetra->context = context;
-  tetra->stride = stride;
   tetra->cell_count = mesh->cell_count;
   TRY_CLEANUP(stratus_adjacency_create(context, mesh, &adjacency));
   tetra->flat = adjacency->flat;
   tetra->inverted = adjacency->inverted;
   tetra->broken = adjacency->broken_faces;
   tetra->folded = adjacency->folded_faces;
-  TRY_CLEANUP(build(tetra, mesh, adjacency));
+  TRY_CLEANUP(stratus_tetra_order(context, mesh, &places, &tetra->names));
+  TRY_CLEANUP(build(tetra, mesh, adjacency, places));
   *out = tetra;
   tetra = NULL;
 
 cleanup:
+  stratus_release(context, places);
   stratus_adjacency_destroy(adjacency);
   stratus_tetra_mesh_destroy(tetra);
   return status;
@@ -217,6 +244,8 @@ void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
   if (mesh) {
     stratus_release(mesh->context, mesh->cells);
     stratus_release(mesh->context, mesh->values);
+    stratus_release(mesh->context, mesh->cell_values);
+    stratus_release(mesh->context, mesh->names);
     stratus_release(mesh->context, mesh->shown);
     stratus_release(mesh->context, mesh->faces);
     stratus_release(mesh->context, mesh);

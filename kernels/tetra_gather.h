@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a ray through tetrahedra reads, several ints from one place a lane: a lane's ints lie in one cache line, and two of them come with one
+ * load. Lanes outside the mask read nothing and get 0. */
+#ifndef STRATUS_TETRA_GATHER_H
+#define STRATUS_TETRA_GATHER_H
+
+#include "gather.h"
+
+#ifdef STRATUS_DEVICE
+INLINE float scalar_from_bits(int bits) { return as_float(bits); }
+INLINE int scalar_bits(float value) { return as_int(value); }
+#if STRATUS_WIDTH == 1
+INLINE vfloat v_load_global(GLOBAL const float* p) { return *p; }
+#else
+INLINE vfloat v_load_global(GLOBAL const float* p) { return vload16(0, p); }
+#endif
+#else
+INLINE float scalar_from_bits(int bits)
+{
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+INLINE int scalar_bits(float value)
+{
+  int bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+INLINE vfloat v_load_global(const float* p) { return v_load(p); }
+#endif
+
+/* The ints base[at] and base[at + 1]. */
+INLINE void gather_pair(GLOBAL const int* base, vint at, vmask mask, vint out[2])
+{
+#if STRATUS_WIDTH > 1 && defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  const int16 low = STRATUS_GATHER_LONG(base, at.lo, (uchar)mask, 4), high = STRATUS_GATHER_LONG(base, at.hi, (uchar)(mask >> 8), 4);
+  out[0] = (int16)(low.even, high.even);
+  out[1] = (int16)(low.odd, high.odd);
+#elif !defined(STRATUS_DEVICE) && STRATUS_WIDTH == 16
+  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31), zero = _mm512_setzero_si512();
+  const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256((__m512i)at), base, 4);
+  const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64((__m512i)at, 1), base, 4);
+  out[0] = (vint)_mm512_permutex2var_epi32(low, even, high);
+  out[1] = (vint)_mm512_permutex2var_epi32(low, odd, high);
+#else
+  out[0] = v_gather_ints(base, at, mask);
+  out[1] = v_gather_ints(base, at + vi_set(1), mask);
+#endif
+}
+
+/* One float a lane. */
+INLINE vfloat gather_float(GLOBAL const float* base, vint at, vmask mask)
+{
+#if STRATUS_WIDTH == 16
+  return v_from_bits(v_gather_ints((GLOBAL const int*)base, at, mask));
+#else
+  float lv[STRATUS_WIDTH];
+  int li[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, at, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    lv[lane] = li[lane] >= 0 ? base[li[lane]] : 0.0f;
+  }
+  return v_load(lv);
+#endif
+}
+
+/* The ints base[4 entry .. 4 entry + 3]. */
+INLINE void gather_four_ints(GLOBAL const int* base, vint entry, vmask mask, vint out[4])
+{
+  const vint at = entry << vi_set(2);
+  gather_pair(base, at, mask, out);
+  gather_pair(base + 2, at, mask, out + 2);
+}
+
+INLINE void gather_four_floats(GLOBAL const float* base, vint entry, vmask mask, vfloat out[4])
+{
+#if STRATUS_WIDTH == 16
+  vint bits[4];
+  gather_four_ints((GLOBAL const int*)base, entry, mask, bits);
+  for (int i = 0; i < 4; ++i) {
+    out[i] = v_from_bits(bits[i]);
+  }
+#else
+  float lv[4][STRATUS_WIDTH];
+  int li[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, entry, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    for (int i = 0; i < 4; ++i) {
+      lv[i][lane] = li[lane] >= 0 ? base[4 * li[lane] + i] : 0.0f;
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    out[i] = v_load(lv[i]);
+  }
+#endif
+}
+
+#endif

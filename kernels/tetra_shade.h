@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Light of a stretch of a ray between two values, the field taken as linear in between: from running sums over the table's entries, of which a
+ * ray keeps those at the value where it is, so that each cell reads them at one place only. */
+#ifndef STRATUS_TETRA_SHADE_H
+#define STRATUS_TETRA_SHADE_H
+
+#include "ray_segment.h"
+#include "tetra_arguments.h"
+#include "tetra_gather.h"
+
+/* What a ray has gathered. */
+typedef struct stratus_tetra_light {
+  vfloat red, green, blue, transparency, depth;
+  vfloat most; /* maximum: the largest value */
+} stratus_tetra_light;
+
+/* A value in the table: its entry, and the sums (red, green, blue times tau, and tau) over the entries below it. */
+typedef struct stratus_tetra_place {
+  vint entry, sum[4];
+} stratus_tetra_place;
+
+INLINE stratus_tetra_place tetra_place(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, vfloat value, vmask mask)
+{
+  stratus_tetra_place place;
+  place.entry = table_entry(&a->table, value);
+  gather_four_ints(sums, place.entry, mask, place.sum);
+  return place;
+}
+
+INLINE stratus_tetra_place tetra_place_select(vmask mask, const stratus_tetra_place* a, const stratus_tetra_place* b)
+{
+  stratus_tetra_place place;
+  place.entry = vi_select(mask, a->entry, b->entry);
+  for (int c = 0; c < 4; ++c) {
+    place.sum[c] = vi_select(mask, a->sum[c], b->sum[c]);
+  }
+  return place;
+}
+
+/* (1 - exp(-x)) / x, x >= 0: what each bit of optical depth absorbs, on the mean, of the light that comes in. To 4e-7 of its value. */
+INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
+{
+  const vfloat one = v_set(1.0f), minus = -v_min(x, one);
+  vfloat share = v_set(1.0f / 362880.0f);
+  share = v_fma(share, minus, v_set(1.0f / 40320.0f));
+  share = v_fma(share, minus, v_set(1.0f / 5040.0f));
+  share = v_fma(share, minus, v_set(1.0f / 720.0f));
+  share = v_fma(share, minus, v_set(1.0f / 120.0f));
+  share = v_fma(share, minus, v_set(1.0f / 24.0f));
+  share = v_fma(share, minus, v_set(1.0f / 6.0f));
+  share = v_fma(share, minus, v_set(0.5f));
+  share = v_fma(share, minus, one);
+  const vmask deep = mask & v_lt(one, x);
+  if (m_any(deep)) {
+    share = v_select(deep, v_absorbed(v_select(deep, x, one)) * v_reciprocal(v_max(x, one)), share);
+  }
+  return share;
+}
+
+/* Puts the light between two places of the table behind what the rays have; weight: length times the optical depth of one unit of the sums. */
+INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near)
+{
+  const vint rise = to->entry - from->entry, one = vi_set(1);
+  const vmask level = mask & vi_zero(rise);
+  vint beyond[4];
+  for (int c = 0; c < 4; ++c) {
+    beyond[c] = to->sum[c];
+  }
+  if (m_any(level)) { /* within one entry: that entry */
+    vint next[4];
+    gather_four_ints(sums, to->entry + one, level, next);
+    for (int c = 0; c < 4; ++c) {
+      beyond[c] = vi_select(level, next[c], beyond[c]);
+    }
+  }
+  /* sums never fall: differences have the sign of `rise` */
+  const vfloat tau = v_abs(v_from_int(beyond[3] - from->sum[3]));
+  mask = mask & v_lt(v_set(0.0f), tau);
+  if (!m_any(mask)) {
+    return;
+  }
+  const vfloat per_entry = weight * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise))));
+  const vfloat depth = tau * per_entry, share = v_absorbed_share(depth, mask);
+  const vfloat scale = v_select(mask, light->transparency * (per_entry * share), v_set(0.0f));
+  light->red = v_fma(scale, v_abs(v_from_int(beyond[0] - from->sum[0])), light->red);
+  light->green = v_fma(scale, v_abs(v_from_int(beyond[1] - from->sum[1])), light->green);
+  light->blue = v_fma(scale, v_abs(v_from_int(beyond[2] - from->sum[2])), light->blue);
+  const vfloat alpha = v_select(mask, v_min(depth * share, v_set(1.0f)), v_set(0.0f));
+  light->transparency = v_fma(-light->transparency, alpha, light->transparency);
+  if (a->table.want_depth) {
+    const vmask hit = v_lt(v_set(0.0f), alpha) & v_le(v_set(LARGEST_FLOAT), light->depth);
+    light->depth = v_select(hit, near, light->depth);
+  }
+}
+
+/* A stretch from `first` at place `from` to `last` at place `to`, in pieces where averaging colours would show. */
+INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vfloat first,
+  vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
+{
+  const vfloat one = v_set(1.0f), weight = length * v_set(a->table.tau_scale);
+  const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* of as many entries as the stretch spans */
+  const vmask several = mask & v_lt(one, depth * v_set(a->table.color_slope));
+  if (!m_any(several)) {
+    tetra_composite(a, sums, light, mask, from, to, weight, near);
+    return;
+  }
+  const vfloat pieces = v_select(several, segment_pieces(&a->table, depth, one), one), share = v_select(several, v_reciprocal(pieces), one);
+  vfloat piece = v_set(0.0f);
+  stratus_tetra_place begin = *from;
+  do {
+    piece = piece + one;
+    const vmask more = mask & v_lt(piece, pieces);
+    stratus_tetra_place end = *to; /* the last piece ends where the stretch does */
+    if (m_any(more)) {
+      const stratus_tetra_place middle = tetra_place(a, sums, v_fma(last - first, piece * share, first), more);
+      end = tetra_place_select(more, &middle, to);
+    }
+    tetra_composite(a, sums, light, mask, &begin, &end, weight * share, near);
+    begin = end;
+    mask = more;
+  } while (m_any(mask));
+}
+
+#endif

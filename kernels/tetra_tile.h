@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The rays of a tile of pixels: where they come into the mesh, and their march. A lane whose ray has ended takes another pixel, so that packets
+ * stay full; what a ray does depends on nothing but the ray. */
+#ifndef STRATUS_TETRA_TILE_H
+#define STRATUS_TETRA_TILE_H
+
+#include "tetra_march.h"
+
+#define TETRA_PIXELS (TETRA_TILE * TETRA_TILE)
+/* So many lanes wait before new rays are taken: that costs as much for one as for all. */
+#define TETRA_REFILL (STRATUS_WIDTH / 4 > 0 ? STRATUS_WIDTH / 4 : 1)
+
+/* What a frame has besides the scene. Tile t's pixel p comes in by entries first[TETRA_PIXELS t + p] .. first[TETRA_PIXELS t + p + 1] - 1. */
+typedef struct stratus_tetra_view {
+  stratus_tetra_scene scene;
+  GLOBAL const float* lines;    /* us, uw of all columns, vs, vw of all rows */
+  GLOBAL const float* ends;     /* a pixel each, in z; read only if the arguments say so */
+  GLOBAL const int* faces;      /* TETRA_FACE ints each */
+  GLOBAL const uint* bin_begin; /* faces that may cover tile t: bins[bin_begin[t]] .. bins[bin_begin[t + 1] - 1] */
+  GLOBAL const int* bins;
+  GLOBAL uint* first;
+  GLOBAL int* entries;          /* z's bits and the face, nearest first */
+  GLOBAL const float* colors;   /* maximum: of the table's entries */
+  GLOBAL float* rgba;
+  GLOBAL float* depth;          /* with `samples`: read only if the arguments want them */
+  GLOBAL uint* samples;
+} stratus_tetra_view;
+
+typedef struct stratus_tetra_found {
+  uint rays, entries, segments, stuck;
+} stratus_tetra_found;
+
+/* ---- where rays come in */
+
+/* Of one border face: what all rows of a tile share, for the rays of one packet's columns. */
+typedef struct stratus_tetra_border {
+  float point[3][4];
+  vfloat x[3], wide;
+} stratus_tetra_border;
+
+INLINE void border_columns(const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, int x, stratus_tetra_border* b)
+{
+  const int padded = a->table.width + TETRA_PADDING;
+  const vfloat us = v_load_global(v->lines + x), uw = v_load_global(v->lines + padded + x);
+  for (int i = 0; i < 3; ++i) {
+    b->x[i] = v_fma(-us, v_set(b->point[i][2]), v_set(b->point[i][0]) - uw);
+  }
+  b->wide = v_max(v_abs(b->x[1] - b->x[0]), v_abs(b->x[2] - b->x[0]));
+}
+
+/* The rays of row y that come in by the face, and where. */
+INLINE vmask border_row(
+  const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, const stratus_tetra_border* b, int y, vfloat* at)
+{
+  const vfloat zero = v_set(0.0f);
+  GLOBAL const float* lines = v->lines + 2 * (a->table.width + TETRA_PADDING) + y;
+  const vfloat vs = v_set(lines[0]), vw = v_set(lines[a->table.height + TETRA_PADDING]);
+  vfloat py[3], edge[3], z[3], value[3], unused;
+  for (int i = 0; i < 3; ++i) {
+    z[i] = value[i] = v_set(b->point[i][2]);
+    py[i] = v_fma(-vs, z[i], v_set(b->point[i][1]) - vw);
+  }
+  vmask outside = m_none();
+  for (int i = 0; i < 3; ++i) {
+    const int p = (i + 1) % 3, q = (i + 2) % 3;
+    edge[i] = tetra_edge(b->x[p], py[p], b->x[q], py[q]);
+    outside = outside | tetra_negative(edge[i], b->x[p], py[p], b->x[q], py[q]);
+  }
+  /* three points in one count as no face */
+  const vfloat wide = v_max(b->wide, v_max(v_abs(py[1] - py[0]), v_abs(py[2] - py[0])));
+  const vmask met = m_andnot(v_lt(zero, wide), outside);
+  if (m_any(met)) {
+    tetra_cross(edge, z, value, at, &unused);
+  }
+  return met;
+}
+
+INLINE void insert_entry(GLOBAL int* entries, uint count, int z, int face)
+{
+  const float near = scalar_from_bits(z);
+  while (count > 0 && scalar_from_bits(entries[2 * count - 2]) > near) {
+    entries[2 * count] = entries[2 * count - 2];
+    entries[2 * count + 1] = entries[2 * count - 1];
+    --count;
+  }
+  entries[2 * count] = z;
+  entries[2 * count + 1] = face;
+}
+
+/* Of the tile's pixels from..beyond-1 (whole rows, or one pixel where packets are as wide), each one's entries are counted, or put in order of
+ * depth, then of the face's number. found: a pixel each, 0 before. */
+INLINE void find_entries(const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, int tile, int from, int beyond, int counting,
+  GLOBAL uint* found)
+{
+  const int x0 = tile % a->columns * TETRA_TILE, y0 = tile / a->columns * TETRA_TILE;
+  const int rows = a->table.height - y0 < TETRA_TILE ? a->table.height - y0 : TETRA_TILE;
+  const int row_from = from / TETRA_TILE, row_beyond = (beyond - 1) / TETRA_TILE + 1 < rows ? (beyond - 1) / TETRA_TILE + 1 : rows;
+  const int column_from = from % TETRA_TILE, column_beyond = (beyond - 1) % TETRA_TILE + 1;
+  for (uint bin = v->bin_begin[tile]; bin < v->bin_begin[tile + 1]; ++bin) {
+    const int number = v->bins[bin];
+    GLOBAL const int* face = v->faces + TETRA_FACE * number;
+    stratus_tetra_border border;
+    for (int i = 0; i < 12; ++i) {
+      border.point[i / 4][i % 4] = v->scene.points[4 * face[i / 4] + i % 4];
+    }
+    const int anywhere = face[7], first_row = (face[6] & 0xffff) - y0, last_row = (int)((uint)face[6] >> 16) - y0;
+    const int begin = anywhere || first_row < row_from ? row_from : first_row,
+              end = anywhere || last_row >= row_beyond ? row_beyond : last_row + 1;
+    for (int x = column_from; x < column_beyond; x += STRATUS_WIDTH) {
+      if (!anywhere && (x0 + x > (int)((uint)face[5] >> 16) || x0 + x + STRATUS_WIDTH <= (face[5] & 0xffff))) {
+        continue;
+      }
+      border_columns(v, a, x0 + x, &border);
+      for (int y = begin; y < end; ++y) {
+        vfloat at = v_set(0.0f);
+        int hit[STRATUS_WIDTH];
+        float z[STRATUS_WIDTH];
+        const vmask mask = border_row(v, a, &border, y0 + y, &at);
+        if (!m_any(mask)) {
+          continue;
+        }
+        vi_store(hit, vi_select(mask, vi_set(1), vi_set(0)));
+        v_store(z, at);
+        for (int lane = 0; lane < STRATUS_WIDTH && x0 + x + lane < a->table.width; ++lane) {
+          const int pixel = y * TETRA_TILE + x + lane;
+          if (hit[lane] && !counting) {
+            insert_entry(v->entries + 2 * (size_t)v->first[TETRA_PIXELS * tile + pixel], found[pixel], scalar_bits(z[lane]), number);
+          }
+          found[pixel] += (uint)hit[lane];
+        }
+      }
+    }
+  }
+}
+
+/* ---- lanes */
+
+typedef struct stratus_tetra_lanes {
+  stratus_tetra_ray ray;
+  stratus_tetra_light light;
+  vint pixel, entry, beyond; /* entries that the ray has not come in by */
+  vint steps, segments;      /* of this way, of all ways before */
+  vmask live, done;          /* done: their way has ended; neither: there is no pixel for them */
+} stratus_tetra_lanes;
+
+typedef struct stratus_tetra_walk {
+  const stratus_tetra_view* view;
+  CONSTANT stratus_tetra_arguments* arguments;
+  int tile, x0, y0, next, count; /* of `pixels` */
+  stratus_tetra_found found;
+  ushort pixels[STRATUS_WIDTH > 1 ? TETRA_PIXELS : 1]; /* that cells cover */
+} stratus_tetra_walk;
+
+INLINE vfloat v_root(vfloat a)
+{
+  vfloat r = v_from_bits(vi_set(0x5f375a86) - (v_to_bits(a) >> vi_set(1)));
+  const vfloat half = v_set(0.5f) * a;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    r = r * v_fma(half * r, -r, v_set(1.5f));
+  }
+  return a * r;
+}
+
+/* The rays of lanes that have a new pixel. */
+INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
+{
+  const stratus_tetra_view* v = t->view;
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  stratus_tetra_ray* r = &k->ray;
+  const vint zero = vi_set(0), row = pixel >> vi_set(TETRA_TILE_LOG2);
+  const vint x = pixel - (row << vi_set(TETRA_TILE_LOG2)) + vi_set(t->x0), y = row + vi_set(t->y0);
+  GLOBAL const float* rows = v->lines + 2 * (a->table.width + TETRA_PADDING);
+  r->us = v_select(mask, gather_float(v->lines, x, mask), r->us);
+  r->uw = v_select(mask, gather_float(v->lines + a->table.width + TETRA_PADDING, x, mask), r->uw);
+  r->vs = v_select(mask, gather_float(rows, y, mask), r->vs);
+  r->vw = v_select(mask, gather_float(rows + a->table.height + TETRA_PADDING, y, mask), r->vw);
+  const vfloat u = r->us, w = r->vs;
+  const vfloat square = v_fma(u, v_fma(u, v_set(a->square[3]), v_fma(w, v_set(a->square[4]), v_set(a->square[1]))),
+    v_fma(w, v_fma(w, v_set(a->square[5]), v_set(a->square[2])), v_set(a->square[0])));
+  const vfloat length = v_root(square);
+  r->length = v_select(mask, length * v_set(a->per_z), r->length);
+  r->offset = v_select(mask, length * v_set(a->per_frame), r->offset);
+  r->begin = v_set(a->begin);
+  r->end = a->has_ends ? v_select(mask, gather_float(v->ends, x + y * vi_set(a->table.width), mask), r->end) : v_set(a->end);
+  const vint place = pixel + vi_set(TETRA_PIXELS * t->tile);
+  k->pixel = vi_select(mask, pixel, k->pixel);
+  k->entry = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place, mask), k->entry);
+  k->beyond = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place + vi_set(1), mask), k->beyond);
+  k->segments = vi_select(mask, zero, k->segments);
+  const vfloat none = v_set(0.0f);
+  k->light.red = v_select(mask, none, k->light.red);
+  k->light.green = v_select(mask, none, k->light.green);
+  k->light.blue = v_select(mask, none, k->light.blue);
+  k->light.transparency = v_select(mask, v_set(1.0f), k->light.transparency);
+  k->light.depth = v_select(mask, v_set(LARGEST_FLOAT), k->light.depth);
+  k->light.most = v_select(mask, v_set(-LARGEST_FLOAT), k->light.most);
+}
+
+/* Rays come in by their next entry. */
+INLINE void lanes_enter(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
+{
+  const stratus_tetra_view* v = t->view;
+  stratus_tetra_ray* r = &k->ray;
+  vint entry[2], name[4], cell[2];
+  gather_pair(v->entries, k->entry + k->entry, mask, entry);
+  k->entry = vi_select(mask, k->entry + vi_set(1), k->entry);
+  gather_four_ints(v->faces, entry[1] + entry[1], mask, name);
+  gather_pair(v->faces + 4, entry[1] << vi_set(3), mask, cell);
+  for (int i = 0; i < 3; ++i) {
+    vfloat p[4];
+    gather_four_floats(v->scene.points, name[i], mask, p);
+    r->x[i] = v_select(mask, v_fma(-r->us, p[2], p[0] - r->uw), r->x[i]);
+    r->y[i] = v_select(mask, v_fma(-r->vs, p[2], p[1] - r->vw), r->y[i]);
+    r->z[i] = v_select(mask, p[2], r->z[i]);
+    r->s[i] = v_select(mask, p[3], r->s[i]);
+    r->name[i] = vi_select(mask, name[i], r->name[i]);
+  }
+  r->fourth = vi_select(mask, name[3], r->fourth);
+  r->cell = vi_select(mask, cell[0], r->cell);
+  tetra_enter(t->arguments, &v->scene, r, mask);
+  k->steps = vi_select(mask, vi_set(0), k->steps);
+  t->found.entries += (uint)m_count(mask);
+}
+
+INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba[4], float depth, int segments)
+{
+  const stratus_tetra_view* v = t->view;
+  const int x = t->x0 + pixel % TETRA_TILE, y = t->y0 + pixel / TETRA_TILE;
+  const size_t at = (size_t)y * (size_t)t->arguments->table.width + (size_t)x;
+  for (int c = 0; c < 4; ++c) {
+    v->rgba[4 * at + (size_t)c] = rgba[c];
+  }
+  if (t->arguments->table.want_depth) {
+    v->depth[at] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;
+  }
+  if (t->arguments->table.want_samples) {
+    v->samples[at] = (uint)segments;
+  }
+}
+
+/* Pixels of lanes whose ray has ended. */
+INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vmask mask)
+{
+  float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], most[STRATUS_WIDTH];
+  int pixel[STRATUS_WIDTH], segments[STRATUS_WIDTH], entry[STRATUS_WIDTH];
+  v_store(channel[0], k->light.red);
+  v_store(channel[1], k->light.green);
+  v_store(channel[2], k->light.blue);
+  v_store(channel[3], v_set(1.0f) - k->light.transparency);
+  v_store(depth, k->light.depth);
+  v_store(most, k->light.most);
+  vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));
+  vi_store(segments, k->segments);
+  if (t->arguments->maximum) {
+    vi_store(entry, table_entry(&t->arguments->table, k->light.most));
+  }
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    float rgba[4];
+    if (pixel[lane] < 0) {
+      continue;
+    }
+    for (int c = 0; c < 4; ++c) {
+      rgba[c] = channel[c][lane];
+      if (t->arguments->maximum) {
+        rgba[c] = most[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
+      }
+    }
+    store_pixel(t, pixel[lane], rgba, depth[lane], segments[lane]);
+    t->found.segments += (uint)segments[lane];
+  }
+}
+
+/* Lanes whose way has ended: their next way if there is one that they can see, else the next pixel. */
+INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
+{
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  vint entry[2];
+  const vint none = vi_set(0);
+  const vmask stuck = k->done & (vi_lt(k->ray.cell, vi_set(-1)) | (vi_ge(k->ray.cell, none) & vi_ge(k->steps, vi_set(a->steps_most))));
+  t->found.stuck += (uint)m_count(stuck);
+  k->segments = vi_select(k->done, k->segments + k->steps, k->segments);
+  vmask again = m_andnot(k->done & vi_lt(k->entry, k->beyond), v_lt(k->light.transparency, v_set(a->table.termination)));
+  if (m_any(again)) {
+    gather_pair(t->view->entries, k->entry + k->entry, again, entry);
+    again = again & v_lt(v_from_bits(entry[0]), k->ray.end);
+  }
+  const vmask ended = m_andnot(k->done, again);
+  vmask taken = m_none();
+  if (m_any(ended)) {
+    int pixel[STRATUS_WIDTH];
+    lanes_store(t, k, ended);
+    vi_store(pixel, vi_select(ended, none, vi_set(-1)));
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      pixel[lane] = pixel[lane] < 0 || t->next >= t->count ? -1 : (int)t->pixels[t->next++];
+    }
+    const vint next = vi_load(pixel);
+    taken = vi_ge(next, none);
+    if (m_any(taken)) {
+      lanes_take(t, k, taken, next);
+    }
+  }
+  const vmask entering = again | taken;
+  k->live = k->live | entering;
+  k->done = m_none();
+  if (m_any(entering)) {
+    lanes_enter(t, k, entering);
+  }
+}
+
+INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
+{
+  const vfloat zero = v_set(0.0f);
+  const vint none = vi_set(0), outside = vi_set(-1);
+  stratus_tetra_ray* r = &k->ray;
+  r->us = r->uw = r->vs = r->vw = r->begin = r->end = r->length = r->offset = r->at = r->value = zero;
+  for (int i = 0; i < 3; ++i) {
+    r->x[i] = r->y[i] = r->z[i] = r->s[i] = r->edge[i] = zero;
+    r->name[i] = none;
+  }
+  r->fourth = r->place.entry = r->place.sum[0] = r->place.sum[1] = r->place.sum[2] = r->place.sum[3] = none;
+  r->cell = k->pixel = outside;
+  k->light.red = k->light.green = k->light.blue = k->light.transparency = k->light.depth = k->light.most = zero;
+  k->entry = k->beyond = k->steps = k->segments = none;
+  k->live = m_none();
+  k->done = vi_ge(none, none);
+  lanes_go_on(t, k);
+}
+
+INLINE int lanes_ready(const stratus_tetra_lanes* k)
+{
+  return m_any(k->done) && (m_count(k->done) >= TETRA_REFILL || !m_any(k->live));
+}
+
+/* Ends the ways that have passed as many cells as there are. Returns in how many steps the first of the others may. */
+INLINE int lanes_give_up(stratus_tetra_lanes* k, int most)
+{
+  int steps[STRATUS_WIDTH], least = most;
+  const vmask lost = k->live & vi_ge(k->steps, vi_set(most));
+  k->done = k->done | lost;
+  k->live = m_andnot(k->live, lost);
+  vi_store(steps, vi_select(k->live, k->steps, vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    least = most - steps[lane] < least ? most - steps[lane] : least;
+  }
+  return least;
+}
+
+/* Marches all rays of `t`. */
+INLINE void march_lanes(stratus_tetra_walk* t)
+{
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  const stratus_tetra_scene* scene = &t->view->scene;
+  stratus_tetra_lanes k[PACKETS_TOGETHER];
+  int check = a->steps_most, any = 0;
+  for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+    lanes_begin(t, k + i);
+    any |= m_any(k[i].live);
+  }
+  while (any) {
+    int ready = 0;
+    do {
+      stratus_tetra_passage passage[PACKETS_TOGETHER];
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        passage[i] = tetra_pass(a, scene, &k[i].ray, k[i].live);
+      }
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        const vmask done = tetra_shade(a, scene, &k[i].ray, &k[i].light, passage + i, k[i].live);
+        k[i].steps = vi_select(k[i].live, k[i].steps + vi_set(1), k[i].steps);
+        k[i].done = k[i].done | done;
+        k[i].live = m_andnot(k[i].live, done);
+      }
+      if (--check <= 0) {
+        check = a->steps_most;
+        for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+          const int left = lanes_give_up(k + i, a->steps_most);
+          check = left < check ? left : check;
+        }
+      }
+      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        ready |= lanes_ready(k + i);
+      }
+    } while (!ready);
+    any = 0;
+    for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+      if (lanes_ready(k + i)) {
+        lanes_go_on(t, k + i);
+      }
+      any |= m_any(k[i].live) || m_any(k[i].done);
+    }
+  }
+}
+
+/* Draws the tile's pixels from..beyond-1. */
+INLINE stratus_tetra_found draw_tile(
+  const stratus_tetra_view* view, CONSTANT stratus_tetra_arguments* arguments, int tile, int from, int beyond)
+{
+  const float nothing[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+  stratus_tetra_walk t;
+  t.view = view;
+  t.arguments = arguments;
+  t.tile = tile;
+  t.x0 = tile % arguments->columns * TETRA_TILE;
+  t.y0 = tile / arguments->columns * TETRA_TILE;
+  t.next = t.count = 0;
+  t.found.entries = t.found.segments = t.found.stuck = 0;
+  for (int pixel = from; pixel < beyond; ++pixel) {
+    const int place = TETRA_PIXELS * tile + pixel;
+    if (t.x0 + pixel % TETRA_TILE >= arguments->table.width || t.y0 + pixel / TETRA_TILE >= arguments->table.height) {
+      continue;
+    }
+    if (view->first[place] < view->first[place + 1]) {
+      t.pixels[t.count++] = (ushort)pixel;
+    } else {
+      store_pixel(&t, pixel, nothing, LARGEST_FLOAT, 0);
+    }
+  }
+  t.found.rays = (uint)t.count;
+  if (t.count > 0) {
+    march_lanes(&t);
+  }
+  return t.found;
+}
+
+#endif
