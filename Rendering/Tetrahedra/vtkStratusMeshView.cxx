@@ -2,15 +2,12 @@
 #include "vtkStratusMeshView.h"
 
 #include "vtkCellData.h"
-#include "vtkCellTypes.h"
-#include "vtkDataArray.h"
-#include "vtkIdList.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
 {
@@ -18,39 +15,41 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
   if (this->Grid != grid || this->Time != time) {
     this->Grid = grid;
     this->Time = time;
+    this->Divided = nullptr;
     this->Refusal.clear();
-    this->Accepted = this->CopyCells(grid, this->Refusal) && this->CopyHidden(grid, this->Refusal);
-    if (this->Accepted) {
-      this->CopyPoints(grid);
+    this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
+    if (this->Accepted && this->Tetrahedra.Vertices.empty()) {
+      this->Refusal = this->Tetrahedra.TellLeftOut();
+      this->Accepted = false;
     }
   }
   if (!this->Accepted) {
     error = this->Refusal;
     return false;
   }
-  const vtkIdType count = cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
-  if (array->GetNumberOfTuples() < count) {
-    error = "the scalar array has " + std::to_string(array->GetNumberOfTuples()) + " values, the grid has " + std::to_string(count) +
+  const vtkIdType expected = cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
+  if (array->GetNumberOfTuples() < expected) {
+    error = "the scalar array has " + std::to_string(array->GetNumberOfTuples()) + " values, the grid has " + std::to_string(expected) +
       (cells ? " cells" : " points");
     return false;
   }
+  const bool whole = this->Tetrahedra.CellByCell;
+  vtkDataArray* values_of = whole ? array : this->Spread(array, cells);
+  this->Mesh = this->Tetrahedra.GetMesh();
+  const int64_t count = cells ? this->Mesh.cell_count : this->Mesh.point_count;
   if (this->Carrier->GetNumberOfPoints() != count) {
     this->Carrier->SetDimensions(static_cast<int>(count), 1, 1);
   }
-  if (!this->Values.Set(this->Carrier, array, false, nullptr, error)) {
+  if (!this->Values.Set(this->Carrier, values_of, false, nullptr, error)) {
     return false;
   }
   const stratus_volume& values = this->Values.GetVolume();
-  this->Mesh = stratus_mesh_default();
-  this->Mesh.points = this->Points.data();
-  this->Mesh.point_count = static_cast<int64_t>(this->Points.size() / 3);
-  this->Mesh.vertices = this->Vertices.data();
-  this->Mesh.cell_count = static_cast<int64_t>(this->Vertices.size() / 4);
+  const std::vector<uint8_t>& hidden = whole ? this->Hidden : this->DividedHidden;
   this->Mesh.values = values.values;
   this->Mesh.type = values.type;
   this->Mesh.value_stride = values.value_stride;
   this->Mesh.cell_values = cells ? 1 : 0;
-  this->Mesh.hidden = this->Hidden.empty() ? nullptr : this->Hidden.data();
+  this->Mesh.hidden = hidden.empty() ? nullptr : hidden.data();
   this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(time) * UINT64_C(0x9E3779B97F4A7C15));
   if (matrix) {
     std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Mesh.matrix);
@@ -59,50 +58,8 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
   return true;
 }
 
-bool vtkStratusMeshView::CopyCells(vtkUnstructuredGrid* grid, std::string& error)
-{
-  const vtkIdType cells = grid->GetNumberOfCells();
-  constexpr vtkIdType most = std::numeric_limits<int32_t>::max();
-  this->Vertices.clear();
-  if (grid->GetNumberOfPoints() > most || cells > most) {
-    error = "the grid has " + std::to_string(grid->GetNumberOfPoints()) + " points and " + std::to_string(cells) + " cells, at most " +
-      std::to_string(most) + " of each are supported";
-    return false;
-  }
-  this->Vertices.resize(4 * static_cast<size_t>(cells));
-  vtkNew<vtkIdList> list;
-  for (vtkIdType cell = 0; cell < cells; ++cell) {
-    const int type = grid->GetCellType(cell);
-    grid->GetCellPoints(cell, list);
-    const vtkIdType count = list->GetNumberOfIds();
-    if (type != VTK_TETRA || count != 4) {
-      error = "cell " + std::to_string(cell) + " is a " + vtkCellTypes::GetClassNameFromTypeId(type) + " of " + std::to_string(count) +
-        " points, only tetrahedra (vtkTetra) are supported: vtkDataSetTriangleFilter makes them";
-      return false;
-    }
-    for (int i = 0; i < 4; ++i) {
-      const vtkIdType point = list->GetId(i);
-      if (point < 0 || point >= grid->GetNumberOfPoints()) {
-        error = "cell " + std::to_string(cell) + " names point " + std::to_string(point) + ", outside 0.." +
-          std::to_string(grid->GetNumberOfPoints() - 1);
-        return false;
-      }
-      this->Vertices[4 * static_cast<size_t>(cell) + i] = static_cast<int32_t>(point);
-    }
-  }
-  return true;
-}
-
-void vtkStratusMeshView::CopyPoints(vtkUnstructuredGrid* grid)
-{
-  this->Points.resize(3 * static_cast<size_t>(grid->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
-    grid->GetPoint(i, &this->Points[3 * static_cast<size_t>(i)]);
-  }
-}
-
 // Cells that another piece owns, blanked ones, and those that touch a blanked point.
-bool vtkStratusMeshView::CopyHidden(vtkUnstructuredGrid* grid, std::string& error)
+bool vtkStratusMeshView::SetHidden(vtkUnstructuredGrid* grid, std::string& error)
 {
   vtkUnsignedCharArray* points = grid->GetPointGhostArray();
   vtkUnsignedCharArray* cells = grid->GetCellGhostArray();
@@ -115,15 +72,79 @@ bool vtkStratusMeshView::CopyHidden(vtkUnstructuredGrid* grid, std::string& erro
   if (!points && !cells) {
     return true;
   }
-  this->Hidden.resize(this->Vertices.size() / 4);
-  for (size_t cell = 0; cell < this->Hidden.size(); ++cell) {
-    bool hidden = cells && (cells->GetValue(static_cast<vtkIdType>(cell)) & (STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_CELL));
+  const vtkStratusTetrahedra& parts = this->Tetrahedra;
+  this->Hidden.resize(parts.Cells.size());
+  for (size_t part = 0; part < this->Hidden.size(); ++part) {
+    bool hidden = cells && (cells->GetValue(parts.Cells[part]) & (STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_CELL));
     for (size_t i = 0; points && i < 4; ++i) {
-      hidden = hidden || (points->GetValue(this->Vertices[4 * cell + i]) & STRATUS_GHOST_HIDDEN_POINT);
+      const vtkIdType point = parts.Vertices[4 * part + i];
+      hidden = hidden || (point < parts.GridPoints && (points->GetValue(point) & STRATUS_GHOST_HIDDEN_POINT));
     }
-    this->Hidden[cell] = hidden ? 1 : 0;
+    this->Hidden[part] = hidden ? 1 : 0;
   }
+  this->HideWhole(this->Hidden);
   return true;
+}
+
+// A cell with a hidden part is hidden: its parts follow one another.
+void vtkStratusMeshView::HideWhole(std::vector<uint8_t>& hidden) const
+{
+  const std::vector<vtkIdType>& cells = this->Tetrahedra.Cells;
+  for (size_t begin = 0, end; begin < cells.size(); begin = end) {
+    uint8_t any = 0;
+    for (end = begin; end < cells.size() && cells[end] == cells[begin]; ++end) {
+      any = std::max(any, hidden[end]);
+    }
+    std::fill(hidden.begin() + static_cast<std::ptrdiff_t>(begin), hidden.begin() + static_cast<std::ptrdiff_t>(end), any);
+  }
+}
+
+// The array's values for the tetrahedra and points that cells were divided into, made anew when the grid or the array has changed.
+vtkDataArray* vtkStratusMeshView::Spread(vtkDataArray* array, bool cells)
+{
+  if (this->Divided && this->Source == array && this->DividedCells == cells && this->DividedTime == array->GetMTime()) {
+    return this->Divided;
+  }
+  const vtkStratusTetrahedra& parts = this->Tetrahedra;
+  this->Source = array;
+  this->DividedCells = cells;
+  this->DividedTime = array->GetMTime();
+  this->Divided = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+  this->Divided->SetName(array->GetName());
+  this->Divided->SetNumberOfComponents(array->GetNumberOfComponents());
+  if (cells) {
+    this->Divided->SetNumberOfTuples(static_cast<vtkIdType>(parts.Cells.size()));
+    for (size_t part = 0; part < parts.Cells.size(); ++part) {
+      this->Divided->SetTuple(static_cast<vtkIdType>(part), parts.Cells[part], array);
+    }
+  } else {
+    this->Divided->SetNumberOfTuples(static_cast<vtkIdType>(parts.Points.size() / 3));
+    parts.CopyPointValues(array, this->Divided);
+  }
+  this->DividedHidden = this->Hidden;
+  if (!cells) {
+    this->HideNotFinite();
+  }
+  return this->Divided;
+}
+
+// The core hides tetrahedra with such a corner; here the cell that they are parts of is.
+void vtkStratusMeshView::HideNotFinite()
+{
+  std::vector<uint8_t> bad(static_cast<size_t>(this->Divided->GetNumberOfTuples()));
+  for (size_t i = 0; i < bad.size(); ++i) {
+    bad[i] = std::isfinite(this->Divided->GetComponent(static_cast<vtkIdType>(i), 0)) ? 0 : 1;
+  }
+  if (std::find(bad.begin(), bad.end(), 1) == bad.end()) {
+    return;
+  }
+  this->DividedHidden.resize(this->Tetrahedra.Cells.size());
+  for (size_t i = 0; i < this->Tetrahedra.Vertices.size(); ++i) {
+    if (bad[static_cast<size_t>(this->Tetrahedra.Vertices[i])]) {
+      this->DividedHidden[i / 4] = 1;
+    }
+  }
+  this->HideWhole(this->DividedHidden);
 }
 
 stratus_volume vtkStratusMeshView::GetBox() const

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A grid of tetrahedra as what the core takes. Private to the module.
+// A grid, its cells divided into tetrahedra, as what the core takes. Private to the module.
 #ifndef vtkStratusMeshView_h
 #define vtkStratusMeshView_h
 
 #include "stratus.h"
 
 #include "vtkStratusInput.h"
+#include "vtkStratusTetrahedra.h"
 
+#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
@@ -23,13 +25,15 @@ public:
   // when it changes only.
   bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
   const stratus_mesh& GetMesh() const { return this->Mesh; }
+  vtkIdType GetLeftOut() const { return this->Tetrahedra.LeftOut; }
   // A box about it, for who only needs to know where it is.
   stratus_volume GetBox() const;
 
 private:
-  bool CopyCells(vtkUnstructuredGrid* grid, std::string& error);
-  void CopyPoints(vtkUnstructuredGrid* grid);
-  bool CopyHidden(vtkUnstructuredGrid* grid, std::string& error);
+  bool SetHidden(vtkUnstructuredGrid* grid, std::string& error);
+  vtkDataArray* Spread(vtkDataArray* array, bool cells);
+  void HideNotFinite();
+  void HideWhole(std::vector<uint8_t>& hidden) const;
 
   stratus_mesh Mesh;
   double Bounds[6] = { 0, 1, 0, 1, 0, 1 };
@@ -37,10 +41,15 @@ private:
   vtkMTimeType Time = 0;
   bool Accepted = false;
   std::string Refusal;
-  std::vector<double> Points;
-  std::vector<int32_t> Vertices;
-  std::vector<uint8_t> Hidden;
-  vtkNew<vtkImageData> Carrier; // as long as the array: values are viewed as an image's are
+  vtkStratusTetrahedra Tetrahedra;
+  std::vector<uint8_t> Hidden; // a tetrahedron, by ghosts and blanking
+  // Where cells are divided: a value for each tetrahedron, or for their points.
+  vtkSmartPointer<vtkDataArray> Source;
+  vtkSmartPointer<vtkDataArray> Divided;
+  vtkMTimeType DividedTime = 0;
+  bool DividedCells = false;
+  std::vector<uint8_t> DividedHidden; // by values that are not finite, too
+  vtkNew<vtkImageData> Carrier;       // as long as the array: values are viewed as an image's are
   vtkStratusImageView Values;
 };
 

@@ -65,6 +65,16 @@ vtkIdType vtkStratusTetrahedraMapper::GetNumberOfEntries()
   return static_cast<vtkIdType>(this->Internal->Report.entries);
 }
 
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfTetrahedra()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.cells);
+}
+
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfIgnoredCells()
+{
+  return this->Internal->GetNumberOfIgnoredCells();
+}
+
 vtkImageData* vtkStratusTetrahedraMapper::GetLastImage()
 {
   return this->Internal->GetLastImage();
@@ -78,6 +88,8 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "March Milliseconds: " << report.march_ms << "\n";
   os << indent << "Build Milliseconds: " << report.build_ms << "\n";
+  os << indent << "Tetrahedra: " << report.cells << "\n";
+  os << indent << "Ignored Cells: " << this->Internal->GetNumberOfIgnoredCells() << "\n";
   os << indent << "Segments: " << report.segments << "\n";
   os << indent << "Entries: " << report.entries << "\n";
 }

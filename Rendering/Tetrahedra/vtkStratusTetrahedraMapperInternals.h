@@ -26,6 +26,7 @@ public:
   // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   vtkImageData* GetLastImage();
+  vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
 
   vtkStratusTetrahedraMapper* Mapper;
   stratus_tetra_caster* Caster = nullptr;

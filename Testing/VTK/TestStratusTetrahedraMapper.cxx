@@ -1,111 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkStratusTetrahedraMapper: the same picture as the image mapper's where the field is the same, what the window shows, opaque geometry, matrices,
 // scalars of cells, ghosts, both blend modes, and what is refused.
-#include "mapper_testing.h"
-#include "vtkStratusTetrahedraMapper.h"
+#include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
-#include "vtkCellType.h"
 #include "vtkPlane.h"
 #include "vtkPlaneSource.h"
-#include "vtkPoints.h"
 #include "vtkPolyDataMapper.h"
-#include "vtkUnstructuredGrid.h"
 
 namespace {
-// A cube of 6^3 boxes, six cells each about the boxes' diagonals; values fall and rise with x and z alone, linearly within each box: both
-// ways of interpolating agree then.
-constexpr int Boxes = 6;
-
-float FieldAt(int i, int k)
-{
-  return static_cast<float>(0.1 * i + 0.05 * k);
-}
-
-void MakeGrid(vtkUnstructuredGrid* grid)
-{
-  static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
-  const vtkIdType side = Boxes + 1;
-  const vtkIdType step[3] = { 1, side, side * side };
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkFloatArray> values;
-  values->SetName("density");
-  for (int k = 0; k < side; ++k) {
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        points->InsertNextPoint(i, j, k);
-        values->InsertNextValue(FieldAt(i, k));
-      }
-    }
-  }
-  grid->SetPoints(points);
-  grid->Allocate(6 * Boxes * Boxes * Boxes);
-  for (vtkIdType k = 0; k < Boxes; ++k) {
-    for (vtkIdType j = 0; j < Boxes; ++j) {
-      for (vtkIdType i = 0; i < Boxes; ++i) {
-        const vtkIdType corner = (k * side + j) * side + i;
-        for (const auto& way : path) {
-          const vtkIdType a = corner + step[way[0]], b = a + step[way[1]];
-          const vtkIdType cell[4] = { corner, a, b, corner + step[0] + step[1] + step[2] };
-          grid->InsertNextCell(VTK_TETRA, 4, cell);
-        }
-      }
-    }
-  }
-  grid->GetPointData()->SetScalars(values);
-}
-
-// The grid in the place of Scene's image.
-struct GridScene : Scene {
-  GridScene()
-  {
-    MakeGrid(this->Grid);
-    this->Tetrahedra->SetInputData(this->Grid);
-    this->Tetrahedra->AddObserver(vtkCommand::ErrorEvent, this->GridErrors);
-    this->Image->SetDimensions(Boxes + 1, Boxes + 1, Boxes + 1);
-    this->Image->SetSpacing(1, 1, 1);
-    vtkNew<vtkFloatArray> values;
-    values->DeepCopy(this->Grid->GetPointData()->GetScalars());
-    this->Image->GetPointData()->SetScalars(values);
-    this->Mapper->SetSampleDistance(0.02);
-    this->Volume->SetMapper(this->Tetrahedra);
-    this->Look(35, 20);
-  }
-
-  std::vector<float> GridPicture()
-  {
-    this->Render();
-    vtkImageData* image = this->Tetrahedra->GetLastImage();
-    const float* rgba = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA"))->GetPointer(0) : nullptr;
-    return rgba ? std::vector<float>(rgba, rgba + 4 * this->Pixels()) : std::vector<float>();
-  }
-  double GridLight()
-  {
-    double sum = 0.0;
-    for (float value : this->GridPicture()) {
-      sum += value;
-    }
-    return sum;
-  }
-  // The image mapper's picture of the same scene against ours, PSNR in dB.
-  double Psnr()
-  {
-    const std::vector<float> ours = this->GridPicture();
-    this->Volume->SetMapper(this->Mapper);
-    const std::vector<float> theirs = this->Picture();
-    this->Volume->SetMapper(this->Tetrahedra);
-    CHECK(ours.size() == theirs.size() && !ours.empty(), "%zu and %zu values", ours.size(), theirs.size());
-    return ours.size() == theirs.size() && !ours.empty() ? reference_psnr(ours.data(), theirs.data(), this->Pixels()) : 0.0;
-  }
-
-  vtkNew<vtkUnstructuredGrid> Grid;
-  vtkNew<vtkStratusTetrahedraMapper> Tetrahedra;
-  vtkNew<ErrorObserver> GridErrors;
-};
-
-// Image samples .02 apart err by about 1e-4 where the function bends, and by what a first or last sample covers too much or little.
-constexpr double SamePicture = 62.0;
-
 void TestAgainstTheImageMapper()
 {
   GridScene scene;
@@ -234,10 +137,9 @@ void TestRefusals()
   scene.Tetrahedra->AddClippingPlane(plane);
   refuses("clipping planes");
   scene.Tetrahedra->RemoveAllClippingPlanes();
-  const vtkIdType triangle[3] = { 0, 1, 2 };
-  scene.Grid->InsertNextCell(VTK_TRIANGLE, 3, triangle);
+  scene.Grid->InsertNextCell(VTK_LAGRANGE_TETRAHEDRON, 4, scene.Grid->GetCell(0)->GetPointIds()->GetPointer(0));
   scene.Grid->Modified();
-  refuses("vtkTriangle");
+  refuses("(71)");
   vtkNew<vtkUnstructuredGrid> empty;
   scene.Tetrahedra->SetInputData(empty);
   const int before = scene.GridErrors->Count;
