@@ -2,8 +2,8 @@
 #include "grid.h"
 
 #include "camera.h"
+#include "frame.h"
 #include "input.h"
-#include "picture.h"
 #include "transfer.h"
 
 #include <vtkCellTypes.h>
@@ -137,7 +137,7 @@ void render_grid(const options& o)
   mesh m;
   read_mesh(o.source, o.array, m);
   core.check(stratus_mesh_check(core, &m.view), "'" + o.source + "'");
-  const background behind = parse_background(o.background);
+  frame picture(o);
   stratus_volume box = box_of(m);
   const transfer look = make_transfer(box, nullptr, o.opacity, o.color, o.unit_distance);
   const stratus_transfer view = look.view();
@@ -152,11 +152,7 @@ void render_grid(const options& o)
   const stratus_camera camera = place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
   output_file out(o.output); // before the work: a path that cannot be written is told at once
 
-  std::vector<float> rgba(4 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
-  stratus_image image = {};
-  image.width = o.width;
-  image.height = o.height;
-  image.rgba = rgba.data();
+  stratus_image image = picture.view();
   stratus_tetra_report report = {};
   stratus_tetra_caster* caster = nullptr;
   core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
@@ -177,7 +173,10 @@ void render_grid(const options& o)
       grouped(report.rays).c_str()));
   row("cells passed", grouped(report.segments) + ", in from outside " + grouped(report.entries) + " times");
   row("flat", grouped(static_cast<unsigned long long>(report.flat)) + " cells have no volume");
-  out.write(encode_png(to_bytes(rgba, o.width, o.height, behind), o.width, o.height));
+  if (image.samples) {
+    row("a pixel", picture.describe_samples());
+  }
+  picture.write(out);
   out.commit();
   row("picture", o.output);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line: a volume goes in, a picture comes out. `stratus --help` tells the rest.
 #include "camera.h"
+#include "frame.h"
 #include "grid.h"
 #include "input.h"
 #include "options.h"
@@ -63,18 +64,14 @@ void render(const cli::options& o)
   }
   cli::context core(o.device, o.threads);
   cli::input in(core, o.source, o.array);
-  const cli::background behind = cli::parse_background(o.background);
+  cli::frame frame(o);
   const cli::transfer transfer = cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance);
   const stratus_transfer view = transfer.view();
   core.check(stratus_transfer_check(core, &view), "transfer function");
   const stratus_camera camera = cli::place_camera(core, o, in.volume, view, o.up.empty() ? in.up_axis : o.up[0] - 'x');
   cli::output_file out(o.output); // before the work: a path that cannot be written is told at once
 
-  std::vector<float> rgba(4 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
-  stratus_image image = {};
-  image.width = o.width;
-  image.height = o.height;
-  image.rgba = rgba.data();
+  stratus_image image = frame.view();
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
   cast.mode = o.mode;
   cast.normals = o.normals;
@@ -93,7 +90,10 @@ void render(const cli::options& o)
   std::printf("%s\n", o.source.c_str());
   row("volume", cli::describe(in.volume) + ", array '" + in.array_name + "'");
   print_report(core, o, report, transfer.origin);
-  out.write(cli::encode_png(cli::to_bytes(rgba, o.width, o.height, behind), o.width, o.height));
+  if (image.samples) {
+    row("a pixel", frame.describe_samples());
+  }
+  frame.write(out);
   out.commit();
   row("picture", o.output);
   if (o.audit && report.differing_pixels > 0) {

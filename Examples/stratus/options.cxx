@@ -21,7 +21,7 @@ std::string help()
 {
   return R"(stratus - draws volumes
 
-  stratus render INPUT -o OUT.png [options]   draw a picture
+  stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus info INPUT [--array NAME]           tell what is in a file or scene
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
@@ -58,6 +58,7 @@ How
   --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
+  --show samples          a heat map of the samples that each pixel took, with a scale, in place of the picture; --color has its colours
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
 Trees
@@ -187,6 +188,13 @@ options parse(int argc, char* argv[])
     { "--color", [&](const std::string& v) { o.color = v; } },
     { "--background", [&](const std::string& v) { o.background = v; } },
     { "--device", [&](const std::string& v) { o.device = v; } },
+    { "--show",
+      [&](const std::string& v) {
+        if (v != "picture" && v != "samples") {
+          throw usage("--show: '" + v + "' is none of picture, samples");
+        }
+        o.shows_samples = v == "samples";
+      } },
     { "--unit-distance", [&](const std::string& v) { o.unit_distance = positive(v, "--unit-distance"); } },
     { "--size", [&](const std::string& v) { set_size(o, v); } },
     { "--azimuth", [&](const std::string& v) { o.azimuth = number(v, "--azimuth"); } },

@@ -30,6 +30,7 @@ struct options {
   bool parallel = false;
   bool nearest = false;
   bool audit = false;
+  bool shows_samples = false; // render: how many samples each pixel took, in place of what it shows
   bool has_range = false; // tree: of values, lower..upper
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is refused and
 // leaves the file that was there. Argument: a folder to write to.
+#include "Testing/exr_reading.h"
 #include "mapper_testing.h"
 
 #include "vtkStratusEXRWriter.h"
@@ -15,70 +16,16 @@
 #include "vtkTypeUInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <openexr.h>
-
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <random>
 #include <sys/resource.h>
 
 namespace {
 std::string Folder;
-
-// What the library finds in a file: rows from the top down.
-struct Picture
-{
-  int Width = 0, Height = 0;
-  exr_compression_t Compression = EXR_COMPRESSION_NONE;
-  std::map<std::string, std::vector<float>> Channels;
-};
-
-bool ReadChunks(exr_context_t file, Picture& picture)
-{
-  int32_t lines = 0;
-  bool good = exr_get_scanlines_per_chunk(file, 0, &lines) == EXR_ERR_SUCCESS;
-  for (int top = 0; good && top < picture.Height; top += lines) {
-    exr_chunk_info_t chunk;
-    exr_decode_pipeline_t pipeline = {};
-    good = exr_read_scanline_chunk_info(file, 0, top, &chunk) == EXR_ERR_SUCCESS &&
-      exr_decoding_initialize(file, 0, &chunk, &pipeline) == EXR_ERR_SUCCESS;
-    for (int16_t c = 0; good && c < pipeline.channel_count; ++c) {
-      exr_coding_channel_info_t& info = pipeline.channels[c];
-      good = info.data_type == EXR_PIXEL_FLOAT;
-      std::vector<float>& values = picture.Channels[info.channel_name];
-      values.resize(static_cast<size_t>(picture.Width) * static_cast<size_t>(picture.Height));
-      info.decode_to_ptr = reinterpret_cast<uint8_t*>(values.data() + static_cast<size_t>(top) * static_cast<size_t>(picture.Width));
-      info.user_data_type = EXR_PIXEL_FLOAT;
-      info.user_bytes_per_element = 4;
-      info.user_pixel_stride = 4;
-      info.user_line_stride = 4 * picture.Width;
-    }
-    good = good && exr_decoding_choose_default_routines(file, 0, &pipeline) == EXR_ERR_SUCCESS &&
-      exr_decoding_run(file, 0, &pipeline) == EXR_ERR_SUCCESS;
-    exr_decoding_destroy(file, &pipeline);
-  }
-  return good;
-}
-
-bool ReadPicture(const std::string& path, Picture& picture)
-{
-  exr_context_t file = nullptr;
-  if (exr_start_read(&file, path.c_str(), nullptr) != EXR_ERR_SUCCESS) {
-    return false;
-  }
-  exr_attr_box2i_t window = {};
-  bool good = exr_get_data_window(file, 0, &window) == EXR_ERR_SUCCESS && window.min.x == 0 && window.min.y == 0 &&
-    exr_get_compression(file, 0, &picture.Compression) == EXR_ERR_SUCCESS;
-  picture.Width = window.max.x + 1;
-  picture.Height = window.max.y + 1;
-  good = good && ReadChunks(file, picture);
-  exr_finish(&file);
-  return good;
-}
 
 std::string ReadText(const std::string& path)
 {
@@ -123,7 +70,7 @@ vtkSmartPointer<vtkFloatArray> AddFloats(vtkImageData* image, const char* name, 
 }
 
 // The channel is the array's component upside down, bit for bit.
-void CheckChannel(const Picture& picture, const std::string& name, vtkDataArray* array, int component)
+void CheckChannel(const ExrPicture& picture, const std::string& name, vtkDataArray* array, int component)
 {
   const auto found = picture.Channels.find(name);
   CHECK(found != picture.Channels.end(), "%d x %d: there is no channel %s", picture.Width, picture.Height, name.c_str());
@@ -161,8 +108,8 @@ void CheckRoundTrip(int width, int height)
   writer->SetInputData(image);
   writer->SetFileName((Folder + "/all.exr").c_str());
   CHECK(writer->Write() == 1 && errors->Count == 0 && writer->GetErrorCode() == 0, "%d x %d: %s", width, height, errors->Text.c_str());
-  Picture picture;
-  CHECK(ReadPicture(Folder + "/all.exr", picture), "%d x %d: the library reads it", width, height);
+  ExrPicture picture;
+  CHECK(ReadExr(Folder + "/all.exr", picture), "%d x %d: the library reads it", width, height);
   CHECK(picture.Width == width && picture.Height == height, "%d x %d came back as %d x %d", width, height, picture.Width, picture.Height);
   CHECK(picture.Compression == EXR_COMPRESSION_ZIP, "compression %d", static_cast<int>(picture.Compression));
   CHECK(picture.Channels.size() == 10, "%zu channels", picture.Channels.size());
@@ -188,8 +135,8 @@ void UnnamedArrays()
     writer->SetInputData(image);
     writer->SetFileName((Folder + "/unnamed.exr").c_str());
     writer->Write();
-    Picture picture;
-    CHECK(ReadPicture(Folder + "/unnamed.exr", picture) && picture.Channels.size() == static_cast<size_t>(components), "%d components", components);
+    ExrPicture picture;
+    CHECK(ReadExr(Folder + "/unnamed.exr", picture) && picture.Channels.size() == static_cast<size_t>(components), "%d components", components);
     for (int c = 0; c < components; ++c) {
       CheckChannel(picture, std::string(1, names[components - 1][c]), array, c);
     }
