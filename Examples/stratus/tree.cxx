@@ -41,10 +41,6 @@ tree_pointer build(const cli::context& core, const cli::options& o, const cli::i
   const voxels_pointer owner(voxels, &stratus_voxels_destroy);
   stratus_tree_options options = stratus_tree_options_default();
   options.method = o.method;
-  if (o.method == STRATUS_TREE_HYBRID_PAPER) {
-    options.exact_density = 1;
-    options.density_per_node = 1;
-  }
   stratus_tree* tree = nullptr;
   core.check(stratus_tree_create(core, voxels, &options, &tree), "tree");
   return tree_pointer(tree, &stratus_tree_destroy);

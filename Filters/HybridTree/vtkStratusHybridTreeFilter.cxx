@@ -102,8 +102,8 @@ stratus_tree_options vtkStratusHybridTreeFilter::Internals::GetOptions() const
   options.uniform = filter->Uniform;
   options.paper_threshold = filter->PaperThreshold;
   options.bandwidth = filter->Bandwidth;
-  options.exact_density = filter->ExactDensity || filter->Method == HYBRID_PAPER ? 1 : 0;
-  options.density_per_node = filter->DensityPerNode || filter->Method == HYBRID_PAPER ? 1 : 0;
+  options.exact_density = filter->ExactDensity ? 1 : 0;
+  options.density_per_node = filter->DensityPerNode ? 1 : 0;
   return options;
 }
 

@@ -2,11 +2,8 @@
  * Morton codes and hierarchies made by an OpenCL device, equal to the bit to the host's; and a device that fails on the way.
  * Only GPUs are asked to build: a device on a CPU is taken for one here. */
 #include "boxes.h"
-#include "device_state.h"
 
-#include <stdio.h>
-
-static stratus_context *device, *host_context;
+#include "device_pair.h"
 
 static void the_device_builds_only_on_a_gpu(void** state)
 {
@@ -102,10 +99,9 @@ static void a_lost_device_is_a_clean_error(void** state)
   free(boxes);
 }
 
-int main(void)
+int main(int argc, char** argv)
 {
-  if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+  if (no_device(argc, argv)) {
     return 77;
   }
   const struct CMUnitTest tests[] = {
@@ -114,12 +110,5 @@ int main(void)
     cmocka_unit_test(trees_equal_the_hosts),
     cmocka_unit_test(a_lost_device_is_a_clean_error),
   };
-  device = make_context("0", 2);
-  host_context = make_context("host", 2);
-  device->device->is_cpu = false;
-  printf("device: %s\n", stratus_context_device(device));
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  stratus_context_destroy(device);
-  stratus_context_destroy(host_context);
-  return failed;
+  return cmocka_run_group_tests(tests, open_device_as_gpu, close_device);
 }

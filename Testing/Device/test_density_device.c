@@ -5,13 +5,9 @@
 
 #include "density.h"
 #include "device.h"
-#include "device_state.h"
+#include "device_pair.h"
 #include "tree.h"
 
-#include <stdio.h>
-
-static stratus_context *device, *host_context;
-static bool tiny;
 static voxel_set set;
 
 static void compare_sums(const stratus_voxels* voxels, double bandwidth, int exact)
@@ -89,34 +85,9 @@ static void a_gpu_is_asked_and_its_field_is_the_hosts(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-static int open_device(void** state)
-{
-  (void)state;
-  stratus_context_options options = stratus_context_options_default();
-  char message[1024];
-  options.device = "0";
-  if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {
-    fprintf(stderr, "%s\n", message);
-    return -1;
-  }
-  printf("device: %s\n", stratus_context_device(device));
-  host_context = make_context("host", 2);
-  return 0;
-}
-
-static int close_device(void** state)
-{
-  (void)state;
-  stratus_context_destroy(device);
-  stratus_context_destroy(host_context);
-  return 0;
-}
-
 int main(int argc, char** argv)
 {
-  tiny = argc > 1 && strcmp(argv[1], "tiny") == 0;
-  if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+  if (no_device(argc, argv)) {
     return 77;
   }
   const struct CMUnitTest tests[] = {

@@ -4,13 +4,8 @@
 #include "fields.h"
 
 #include "device.h"
-#include "device_state.h"
+#include "device_pair.h"
 #include "jump_flooding.h"
-
-#include <stdio.h>
-
-static stratus_context *device, *host_context;
-static bool tiny;
 
 static void compare_reports(stratus_field_report* a, stratus_field_report* b)
 {
@@ -115,35 +110,9 @@ static void a_device_that_is_lost_is_reported_and_nothing_leaks(void** state)
   free_set(&s);
 }
 
-static int open_device(void** state)
-{
-  (void)state;
-  stratus_context_options options = stratus_context_options_default();
-  char message[1024];
-  options.device = "0";
-  if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {
-    fprintf(stderr, "%s\n", message);
-    return -1;
-  }
-  printf("device: %s\n", stratus_context_device(device));
-  device->device->is_cpu = false;
-  host_context = make_context("host", 2);
-  return 0;
-}
-
-static int close_device(void** state)
-{
-  (void)state;
-  stratus_context_destroy(device);
-  stratus_context_destroy(host_context);
-  return 0;
-}
-
 int main(int argc, char** argv)
 {
-  tiny = argc > 1 && strcmp(argv[1], "tiny") == 0;
-  if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+  if (no_device(argc, argv)) {
     return 77;
   }
   const struct CMUnitTest tests[] = {
@@ -151,5 +120,5 @@ int main(int argc, char** argv)
     cmocka_unit_test(squares_beyond_32_bits_equal_the_hosts),
     cmocka_unit_test(a_device_that_is_lost_is_reported_and_nothing_leaks),
   };
-  return cmocka_run_group_tests(tests, open_device, close_device);
+  return cmocka_run_group_tests(tests, open_device_as_gpu, close_device);
 }

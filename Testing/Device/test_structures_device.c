@@ -5,12 +5,8 @@
 #include "structures.h"
 
 #include "device.h"
+#include "device_pair.h"
 #include "structures_device.h"
-
-#include <stdio.h>
-
-static stratus_context *device, *host_context;
-static bool tiny;
 
 /* The same object with its own arrays, full of something else, for the device to fill. */
 static stratus_value_range blank_ranges(const stratus_value_range* host)
@@ -173,34 +169,9 @@ static void only_a_gpu_is_asked_to_build(void** state)
   assert_int_equal(stratus_structures_on_device(device), !stratus_device_is_cpu(device->device));
 }
 
-static int open_device(void** state)
-{
-  (void)state;
-  stratus_context_options options = stratus_context_options_default();
-  char message[1024];
-  options.device = "0";
-  if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {
-    fprintf(stderr, "%s\n", message);
-    return -1;
-  }
-  printf("device: %s\n", stratus_context_device(device));
-  host_context = make_context("host", 2);
-  return 0;
-}
-
-static int close_device(void** state)
-{
-  (void)state;
-  stratus_context_destroy(device);
-  stratus_context_destroy(host_context);
-  return 0;
-}
-
 int main(int argc, char** argv)
 {
-  tiny = argc > 1 && strcmp(argv[1], "tiny") == 0;
-  if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+  if (no_device(argc, argv)) {
     return 77;
   }
   const struct CMUnitTest tests[] = {
