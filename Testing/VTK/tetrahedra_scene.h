@@ -110,6 +110,7 @@ struct GridScene : Scene {
 struct Stretch
 {
   double From, To, First, Last; // along the ray, and the field there
+  vtkIdType Cell;
 };
 
 inline double Determinant(const Vector& a, const Vector& b, const Vector& c, const Vector& d)
@@ -141,7 +142,7 @@ inline bool Meets(const Vector corners[4], const double values[4], const Vector&
   if (whole == 0.0 || !(from < to)) {
     return false;
   }
-  stretch = { from, to, 0.0, 0.0 };
+  stretch = { from, to, 0.0, 0.0, 0 };
   for (int i = 0; i < 4; ++i) {
     stretch.First += values[i] * (start[i] + from * rise[i]);
     stretch.Last += values[i] * (start[i] + to * rise[i]);
@@ -149,8 +150,9 @@ inline bool Meets(const Vector corners[4], const double values[4], const Vector&
   return true;
 }
 
-// A grid of tetrahedra as the scene looks at it. values: of its points, or of its cells where there are as many.
-inline std::vector<double> TetraReference(Scene& scene, vtkUnstructuredGrid* grid, vtkDataArray* values, bool ofCells)
+// A grid of tetrahedra as the scene looks at it. values: of its points, or cells. order: of all cells, in place of each ray's own.
+inline std::vector<double> TetraReference(
+  Scene& scene, vtkUnstructuredGrid* grid, vtkDataArray* values, bool ofCells, const std::vector<vtkIdType>* order = nullptr)
 {
   constexpr int steps = 100;
   const stratus_camera camera = ReferenceCamera(scene.Renderer);
@@ -184,10 +186,13 @@ inline std::vector<double> TetraReference(Scene& scene, vtkUnstructuredGrid* gri
       }
       Stretch stretch;
       if (finite && Meets(corners, field, along, camera.near_k, camera.far_k, stretch)) {
+        stretch.Cell = cell;
         met.push_back(stretch);
       }
     }
-    std::sort(met.begin(), met.end(), [](const Stretch& a, const Stretch& b) { return a.From < b.From; });
+    std::sort(met.begin(), met.end(), [&](const Stretch& a, const Stretch& b) {
+      return order ? (*order)[static_cast<size_t>(a.Cell)] < (*order)[static_cast<size_t>(b.Cell)] : a.From < b.From;
+    });
     double* rgba = &picture[4 * pixel];
     for (const Stretch& s : met) {
       for (int i = 0; i < steps; ++i) {
