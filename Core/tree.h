@@ -136,6 +136,8 @@ int32_t stratus_tree_field_leap(
 /* ---- tree.c */
 stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tree); /* the statistics that follow from nodes and leaves */
 size_t stratus_tree_memory(const stratus_tree* tree);
+/* tree_arrays_check.c: nodes, bricks, fields and masks lead nowhere but to each other; the header has been looked at. */
+stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus_tree* tree);
 /* tree_bytes.c: whether the tree's dimensions are those of a tree of this volume. */
 bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
 
