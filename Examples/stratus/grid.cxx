@@ -165,6 +165,7 @@ void render_grid(const options& o)
     grouped(static_cast<unsigned long long>(report.cells)) + " tetrahedra, " +
       grouped(static_cast<unsigned long long>(m.view.point_count)) + " points, array '" + m.array_name + "' on " +
       (m.view.cell_values ? "cells" : "points"));
+  row("camera", describe(camera));
   row("opacity", look.origin);
   row("device", stratus_context_device(core));
   row("build", format("%.2f ms: cells and border %.2f, table %.2f", report.build_ms + report.table_ms, report.build_ms, report.table_ms));

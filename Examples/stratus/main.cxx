@@ -89,6 +89,7 @@ void render(const cli::options& o)
 
   std::printf("%s\n", o.source.c_str());
   row("volume", cli::describe(in.volume) + ", array '" + in.array_name + "'");
+  row("camera", cli::describe(camera));
   print_report(core, o, report, transfer.origin);
   if (image.samples) {
     row("a pixel", frame.describe_samples());
