@@ -91,4 +91,13 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
   }
   return camera;
 }
+
+std::string describe(const stratus_camera& camera)
+{
+  const double half = std::sqrt(camera.up[0] * camera.up[0] + camera.up[1] * camera.up[1] + camera.up[2] * camera.up[2]);
+  const double degree = std::acos(-1.0) / 180.0;
+  return format("eye %.9g %.9g %.9g, forward %.9g %.9g %.9g, up %.9g %.9g %.9g, %s %.9g", camera.eye[0], camera.eye[1], camera.eye[2],
+    camera.forward[0], camera.forward[1], camera.forward[2], camera.up[0] / half, camera.up[1] / half, camera.up[2] / half,
+    camera.parallel ? "parallel scale" : "angle", camera.parallel ? half : 2.0 * std::atan(half) / degree);
+}
 } // namespace cli
