@@ -4,6 +4,7 @@
 #include "distance.h"
 #include "octree_bench.h"
 #include "rate.h"
+#include "tetra_bench.h"
 #include "tree_methods.h"
 
 #include <cstdio>
@@ -32,7 +33,8 @@ update_ms: from a change of the transfer function to the next picture, median ov
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
-stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling.
+stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling,
+stratus-bench tetra --help of tetrahedra.
 )";
 
 struct options {
@@ -183,6 +185,9 @@ int main(int argc, char* argv[])
     }
     if (argc > 1 && std::strcmp(argv[1], "tree") == 0) {
       return bench::tree_main(argc, argv);
+    }
+    if (argc > 1 && std::strcmp(argv[1], "tetra") == 0) {
+      return bench::tetra_main(argc, argv);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stratus-bench: %s\n", error.what());

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whole frames of every mapper in one window, in turns, so that all of them see the same machine.
+#include "tetra_bench.h"
+
+#include "vtkStratusPartitionFilter.h"
+#include "vtkStratusTetrahedraMapper.h"
+#include "vtkStratusVisibilitySort.h"
+
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
+#include <vtkProjectedTetrahedraMapper.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGridVolumeRayCastMapper.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace bench {
+
+namespace {
+
+constexpr double slow_ms = 1500.0; // frames that take longer are drawn once a view
+
+using mapper_pointer = vtkSmartPointer<vtkUnstructuredGridVolumeMapper>;
+
+mapper_pointer make_march(const tetra_mesh& mesh)
+{
+  auto mapper = vtkSmartPointer<vtkStratusTetrahedraMapper>::New();
+  mapper->SetInputData(mesh.grid);
+  return mapper;
+}
+
+// VTK's own settings; the sorter is vtkCellCenterDepthSort then.
+mapper_pointer make_projected(const tetra_mesh& mesh)
+{
+  auto mapper = vtkSmartPointer<vtkProjectedTetrahedraMapper>::New();
+  mapper->SetInputData(mesh.grid);
+  return mapper;
+}
+
+mapper_pointer make_projected_sorted(const tetra_mesh& mesh, int depth)
+{
+  auto mapper = vtkSmartPointer<vtkProjectedTetrahedraMapper>::New();
+  vtkNew<vtkStratusVisibilitySort> sort;
+  mapper->SetVisibilitySort(sort);
+  mapper->SetInputData(mesh.grid);
+  if (depth > 0) {
+    vtkNew<vtkStratusPartitionFilter> filter;
+    filter->SetInputData(mesh.grid);
+    filter->SetDepth(depth);
+    filter->Update();
+    mapper->SetInputData(filter->GetOutput());
+  }
+  return mapper;
+}
+
+mapper_pointer make_projected_leaves(const tetra_mesh& mesh)
+{
+  return make_projected_sorted(mesh, 3);
+}
+
+mapper_pointer make_projected_one_leaf(const tetra_mesh& mesh)
+{
+  return make_projected_sorted(mesh, 0);
+}
+
+// A ray a pixel, always.
+mapper_pointer make_ray_cast(const tetra_mesh& mesh)
+{
+  auto mapper = vtkSmartPointer<vtkUnstructuredGridVolumeRayCastMapper>::New();
+  mapper->AutoAdjustSampleDistancesOff();
+  mapper->SetImageSampleDistance(1.0f);
+  mapper->SetInputData(mesh.grid);
+  return mapper;
+}
+
+// A line a method.
+const struct {
+  const char* name;
+  mapper_pointer (*make)(const tetra_mesh& mesh);
+  const char* sorter;
+} recipes[] = {
+  { "stratus:march", make_march, "" },
+  { "vtk:projected", make_projected, "vtk:depthsort" },
+  { "vtk:projected+stratus-sort", make_projected_leaves, "stratus:sort" },
+  { "vtk:projected+stratus-sort-1", make_projected_one_leaf, "stratus:sort-1" },
+  { "vtk:raycast", make_ray_cast, "" },
+};
+
+class stage
+{
+public:
+  stage(stratus_context* context, const tetra_mesh& mesh, const transfer& t, int size) : Context(context), Mesh(mesh), Size(size)
+  {
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetMultiSamples(0);
+    this->Window->SetAlphaBitPlanes(1);
+    this->Window->SetSize(size, size);
+    this->Window->AddRenderer(this->Renderer);
+    this->Renderer->SetBackground(0, 0, 0);
+    this->Renderer->SetBackgroundAlpha(0.0);
+    vtkNew<vtkPiecewiseFunction> opacity;
+    vtkNew<vtkColorTransferFunction> color;
+    for (size_t i = 0; i < t.opacity.size(); i += 2) {
+      opacity->AddPoint(t.opacity[i], t.opacity[i + 1]);
+    }
+    for (size_t i = 0; i < t.color.size(); i += 4) {
+      color->AddRGBPoint(t.color[i], t.color[i + 1], t.color[i + 2], t.color[i + 3]);
+    }
+    this->Property->SetScalarOpacity(opacity);
+    this->Property->SetColor(color);
+    this->Property->SetScalarOpacityUnitDistance(t.unit_distance);
+    this->Property->SetInterpolationTypeToLinear();
+    this->Property->ShadeOff();
+    this->Window->Render(); // the window's own beginnings are no method's
+  }
+
+  void add(const mapper_pointer& mapper)
+  {
+    vtkNew<vtkVolume> volume;
+    volume->SetMapper(mapper);
+    volume->SetProperty(this->Property);
+    volume->VisibilityOff();
+    this->Renderer->AddVolume(volume);
+    this->Volumes.emplace_back(volume);
+  }
+
+  // ms of a whole frame; turned: degrees off the view of record, so that no order is the last one's.
+  double render(size_t method, int view, double turned)
+  {
+    stratus_camera at;
+    if (stratus_scene_camera(this->Context, this->Mesh.bounds, 2, view, 0, 1.0, &at) != STRATUS_OK) {
+      throw failure(stratus_context_message(this->Context));
+    }
+    const double* b = this->Mesh.bounds;
+    vtkCamera* camera = this->Renderer->GetActiveCamera();
+    camera->SetPosition(at.eye);
+    camera->SetFocalPoint(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]));
+    camera->SetViewUp(0, 0, 1);
+    camera->SetViewAngle(21.6);
+    camera->Azimuth(turned);
+    for (size_t i = 0; i < this->Volumes.size(); ++i) {
+      this->Volumes[i]->SetVisibility(i == method);
+    }
+    this->Renderer->ResetCameraClippingRange();
+    const double start = now_ms();
+    this->Window->Render();
+    this->Window->WaitForCompletion();
+    return now_ms() - start;
+  }
+
+  tetra_picture read(vtkUnstructuredGridVolumeMapper* mapper) const
+  {
+    tetra_picture picture;
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetRGBACharPixelData(0, 0, this->Size - 1, this->Size - 1, 0, pixels);
+    picture.bytes.assign(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
+    if (auto* ours = vtkStratusTetrahedraMapper::SafeDownCast(mapper)) {
+      vtkImageData* image = ours->GetLastImage();
+      auto* array = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA")) : nullptr;
+      if (!array || array->GetNumberOfValues() != pixels->GetNumberOfValues()) {
+        throw failure("the mapper drew nothing");
+      }
+      picture.rgba.assign(array->GetPointer(0), array->GetPointer(0) + array->GetNumberOfValues());
+    }
+    return picture;
+  }
+
+private:
+  stratus_context* Context;
+  const tetra_mesh& Mesh;
+  int Size;
+  vtkNew<vtkRenderWindow> Window;
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkVolumeProperty> Property;
+  std::vector<vtkSmartPointer<vtkVolume>> Volumes;
+};
+
+void check_drawn(const frame_result& r, int view)
+{
+  const std::vector<uint8_t>& bytes = r.pictures.back().bytes;
+  if (std::all_of(bytes.begin(), bytes.end(), [](uint8_t b) { return b == 0; })) {
+    throw failure(r.method + " shows nothing in view " + std::to_string(view));
+  }
+}
+
+// Bytes that our mappers' picture rests on, without the grid and the window.
+void add_bytes(const tetra_mesh& mesh, const transfer& function, int size, sorter_metrics& m)
+{
+  counted_context counted(0);
+  const size_t before = counted.live();
+  const stratus_mesh view = mesh.view();
+  const stratus_transfer t = function.view();
+  std::vector<float> rgba(4 * static_cast<size_t>(size) * static_cast<size_t>(size));
+  stratus_tetra_caster* made = nullptr;
+  stratus_tetra_report report;
+  stratus_camera camera;
+  stratus_image image = {};
+  image.width = image.height = size;
+  image.rgba = rgba.data();
+  if (stratus_tetra_caster_create(counted, &made) != STRATUS_OK ||
+    stratus_scene_camera(counted, mesh.bounds, 2, 0, 0, 1.0, &camera) != STRATUS_OK) {
+    throw failure(stratus_context_message(counted));
+  }
+  const std::unique_ptr<stratus_tetra_caster, decltype(&stratus_tetra_caster_destroy)> caster(made, &stratus_tetra_caster_destroy);
+  if (stratus_tetra_caster_render(made, &view, &t, &camera, nullptr, &image, &report) != STRATUS_OK) {
+    throw failure(stratus_context_message(counted));
+  }
+  const auto after = static_cast<double>(counted.live() - before), peak = static_cast<double>(counted.peak() - before);
+  const auto cells = static_cast<double>(view.cell_count);
+  m["cells"] = { cells, "1" };
+  m["build_ms"] = { report.build_ms, "ms" };
+  m["bytes"] = { after, "B" };
+  m["peak_bytes"] = { peak, "B" };
+  m["bytes_per_cell"] = { after / cells, "B" };
+  m["peak_bytes_per_cell"] = { peak / cells, "B" };
+}
+} // namespace
+
+const std::vector<std::string>& tetra_mappers()
+{
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& r : recipes) {
+      all.emplace_back(r.name);
+    }
+    return all;
+  }();
+  return names;
+}
+
+std::string sorter_of(const std::string& method)
+{
+  for (const auto& r : recipes) {
+    if (method == r.name) {
+      return r.sorter;
+    }
+  }
+  return "";
+}
+
+std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh& mesh, const transfer& function,
+  const std::vector<std::string>& methods, int size, int repeats)
+{
+  stage s(context, mesh, function, size);
+  std::vector<mapper_pointer> mappers;
+  std::vector<frame_result> results;
+  for (const std::string& method : methods) {
+    for (const auto& r : recipes) {
+      if (method == r.name) {
+        mappers.push_back(r.make(mesh));
+        s.add(mappers.back());
+        results.emplace_back();
+        results.back().method = method;
+      }
+    }
+  }
+  for (size_t m = 0; m < mappers.size(); ++m) {
+    results[m].first_ms = s.render(m, 0, 1.0);
+  }
+  std::vector<std::vector<double>> frames(mappers.size());
+  for (int view = 0; view < views; ++view) {
+    std::vector<std::vector<double>> times(mappers.size());
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      for (size_t m = 0; m < mappers.size(); ++m) {
+        const bool last = repeat + 1 == repeats;
+        if (last || results[m].first_ms < slow_ms) {
+          times[m].push_back(s.render(m, view, 0.05 * (repeats - 1 - repeat)));
+        }
+        if (last) {
+          results[m].pictures.push_back(s.read(mappers[m]));
+          check_drawn(results[m], view);
+        }
+      }
+    }
+    for (size_t m = 0; m < mappers.size(); ++m) {
+      frames[m].push_back(median(times[m]));
+    }
+  }
+  for (size_t m = 0; m < mappers.size(); ++m) {
+    results[m].frame_ms = median(frames[m]);
+    if (results[m].method.rfind("stratus:", 0) == 0) {
+      add_bytes(mesh, function, size, results[m].more);
+    }
+  }
+  return results;
+}
+} // namespace bench
