@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of unstructured grids of tetrahedra.
+// Pictures of unstructured grids, and what is in them.
 #pragma once
 
 #include "options.h"
 
 namespace cli {
 
-// A file that says so by its name (.vtu, .pvtu) or its first lines (.vtk).
-bool is_grid(const std::string& path);
 void render_grid(const options& o);
+void print_grid(const options& o); // info
 } // namespace cli

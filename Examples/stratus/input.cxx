@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
+#include "vtkStratusTetGenReader.h"
+
 #include <vtkAlgorithmOutput.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -114,6 +116,9 @@ vtkSmartPointer<vtkAlgorithm> choose_reader(const std::string& path)
   if (extension == ".pvtu") {
     return reader_for<vtkXMLPUnstructuredGridReader>(path);
   }
+  if (cli::is_tetgen(path)) {
+    return reader_for<vtkStratusTetGenReader>(path);
+  }
   if (extension == ".vtk") {
     return reader_for<vtkDataSetReader>(path);
   }
@@ -195,13 +200,19 @@ std::string scene_names()
 
 namespace cli {
 
+bool is_tetgen(const std::string& path)
+{
+  const std::string extension = extension_of(path);
+  return extension == ".node" || extension == ".ele" || extension == ".face" || extension == ".edge" || extension == ".neigh";
+}
+
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
 {
   check_file(path);
   listening listener;
   vtkSmartPointer<vtkAlgorithm> reader = choose_reader(path);
   if (!reader) {
-    throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...)");
+    throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) and no grid (.vtu .pvtu .vtk .node .ele)");
   }
   reader->Update();
   const std::string heard = listener.heard();

@@ -11,9 +11,11 @@ class vtkDataArray;
 
 namespace cli {
 
-// Reads any file of an image or an unstructured grid that VTK reads. Whatever VTK complains about while it reads is a failure: half a picture is none.
+// Reads any file of an image or an unstructured grid that VTK reads, and TetGen's. Whatever VTK complains about while it reads is a failure: half a picture is none.
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
-// The same, of an image.
+// A file of TetGen's, by its name: .node, .ele, .face, .edge, .neigh.
+bool is_tetgen(const std::string& path);
+// What read_data() does, of an image.
 vtkSmartPointer<vtkImageData> read_image(const std::string& path);
 
 // The array to draw: `name`, or where it is empty the active scalars, else the first array of one component; points before cells.

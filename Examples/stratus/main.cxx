@@ -4,6 +4,7 @@
 #include "frame.h"
 #include "grid.h"
 #include "input.h"
+#include "mesh.h"
 #include "options.h"
 #include "picture.h"
 #include "sort.h"
@@ -117,6 +118,10 @@ void list_arrays(vtkImageData* image)
 
 void info(const cli::options& o)
 {
+  if (cli::is_grid(o.source)) {
+    cli::print_grid(o);
+    return;
+  }
   cli::context core("host", o.threads);
   cli::input in(core, o.source, o.array);
   const cli::histogram h = cli::histogram_of(in.volume);

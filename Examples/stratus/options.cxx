@@ -22,14 +22,15 @@ std::string help()
   return R"(stratus - draws volumes
 
   stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
-  stratus info INPUT [--array NAME]           tell what is in a file or scene
+  stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
   stratus devices                             list the OpenCL devices
   stratus --help
 
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel; to be drawn also an unstructured grid of tetrahedra (.vtu .pvtu .vtk).
+or a scene's name: cloud, plume, fog, haze, peak, voxel; to be drawn, told of or sorted also an unstructured grid (.vtu .pvtu .vtk, TetGen's
+.node .ele), whose cells are divided into tetrahedra.
 
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits)

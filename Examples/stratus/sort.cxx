@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sort.h"
 
-#include "input.h"
+#include "mesh.h"
 #include "support.h"
 
 #include "vtkStratusTetrahedra.h"
-
-#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <array>
@@ -202,11 +200,7 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
 void cli::print_sort(const options& o)
 {
   context core("host", o.threads);
-  const vtkSmartPointer<vtkDataObject> data = read_data(o.source);
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
-  if (!grid) {
-    throw failure("'" + o.source + "' holds " + (data ? data->GetClassName() : "nothing") + ", not an unstructured grid");
-  }
+  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   vtkStratusTetrahedra tetrahedra;
   std::string error;
   if (!tetrahedra.Set(grid, error)) {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stratus info` of an unstructured grid: its cells, points and arrays, what the tetrahedra that they are divided into are like, and what would be drawn.
+#include "grid.h"
+
+#include "input.h"
+#include "mesh.h"
+#include "transfer.h"
+
+#include "vtkStratusTetrahedra.h"
+
+#include <vtkCellData.h>
+#include <vtkCellTypes.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace {
+
+std::string count(vtkIdType number)
+{
+  return cli::grouped(static_cast<unsigned long long>(number));
+}
+
+void print_cells(vtkUnstructuredGrid* grid)
+{
+  std::array<vtkIdType, 256> of_type = {};
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    ++of_type[static_cast<size_t>(grid->GetCellType(cell)) % of_type.size()];
+  }
+  for (size_t type = 0; type < of_type.size(); ++type) {
+    if (of_type[type] > 0) {
+      cli::row("", count(of_type[type]) + " " + vtkCellTypes::GetClassNameFromTypeId(static_cast<int>(type)) + cli::format(" (%zu)", type));
+    }
+  }
+}
+
+void print_array(const char* where, vtkAbstractArray* array)
+{
+  std::string text = cli::format("'%s', %s, %d component%s", array->GetName() ? array->GetName() : "", array->GetDataTypeAsString(),
+    array->GetNumberOfComponents(), array->GetNumberOfComponents() == 1 ? "" : "s");
+  vtkDataArray* numbers = vtkDataArray::SafeDownCast(array);
+  if (numbers && numbers->GetNumberOfComponents() == 1 && numbers->GetNumberOfTuples() > 0) {
+    double low = INFINITY, high = -INFINITY;
+    vtkIdType not_finite = 0;
+    for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i) {
+      const double value = numbers->GetComponent(i, 0);
+      low = std::isfinite(value) ? std::min(low, value) : low;
+      high = std::isfinite(value) ? std::max(high, value) : high;
+      not_finite += std::isfinite(value) ? 0 : 1;
+    }
+    text += low <= high ? cli::format(", %.9g .. %.9g", low, high) : std::string();
+    text += not_finite > 0 ? ", " + count(not_finite) + " not finite" : std::string();
+  }
+  cli::row(where, text);
+}
+
+void print_arrays(vtkUnstructuredGrid* grid)
+{
+  for (bool cells : { false, true }) {
+    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+      print_array(cells ? "cell array" : "point array", data->GetAbstractArray(i));
+    }
+  }
+}
+
+// A picture of one pixel: the report tells what the caster found on the way.
+stratus_tetra_report look_at(const cli::context& core, const stratus_mesh& mesh)
+{
+  const double opacity[4] = { 0.0, 0.0, 1.0, 1.0 }, color[4] = { 0.0, 1.0, 1.0, 1.0 };
+  stratus_transfer transfer = stratus_transfer_default();
+  transfer.opacity = opacity;
+  transfer.opacity_count = 2;
+  transfer.color = color;
+  transfer.color_count = 1;
+  stratus_camera camera = {};
+  camera.forward[2] = camera.right[0] = camera.up[1] = 1.0;
+  camera.far_k = INFINITY;
+  camera.parallel = 1;
+  float pixel[4];
+  stratus_image image = {};
+  image.width = image.height = 1;
+  image.rgba = pixel;
+  stratus_tetra_report report = {};
+  stratus_tetra_caster* caster = nullptr;
+  core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
+  const stratus_status status = stratus_tetra_caster_render(caster, &mesh, &transfer, &camera, nullptr, &image, &report);
+  stratus_tetra_caster_destroy(caster);
+  core.check(status, "look at the tetrahedra");
+  return report;
+}
+
+void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
+{
+  vtkStratusTetrahedra parts;
+  std::string error;
+  if (!parts.Set(grid, error)) {
+    cli::row("tetrahedra", "none: " + error);
+    return;
+  }
+  stratus_mesh mesh = parts.GetMesh();
+  std::vector<bool> used(static_cast<size_t>(mesh.point_count));
+  for (int32_t point : parts.Vertices) {
+    used[static_cast<size_t>(point)] = true;
+  }
+  vtkIdType unused = 0;
+  for (vtkIdType point = 0; point < parts.GridPoints; ++point) {
+    unused += used[static_cast<size_t>(point)] ? 0 : 1;
+  }
+  const std::vector<uint8_t> values(static_cast<size_t>(mesh.cell_count) + 1, 0); // which ones does not count here
+  mesh.values = values.data();
+  mesh.type = STRATUS_UINT8;
+  mesh.cell_values = 1;
+  core.check(stratus_mesh_check(core, &mesh), "the grid");
+  const stratus_tetra_report report = look_at(core, mesh);
+  cli::row("tetrahedra",
+    count(report.cells) + (parts.CellByCell ? ", the cells themselves; " : " that the cells are divided into; ") + count(parts.LeftOut) +
+      " vertices, lines and polygons ignored");
+  cli::row("border", count(report.border_faces) + " faces");
+  cli::row("shape",
+    count(report.flat) + " without volume, " + count(report.inverted) + " of negative orientation, " + count(report.folded_faces) +
+      " faces folded, " + count(report.broken_faces) + " shared by more than two");
+  cli::row("unused", count(unused) + " points");
+}
+} // namespace
+
+void cli::print_grid(const options& o)
+{
+  context core("host", o.threads);
+  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
+  double b[6] = { 0, 0, 0, 0, 0, 0 };
+  std::printf("%s\n", o.source.c_str());
+  row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(grid->GetNumberOfPoints()) + " points");
+  print_cells(grid);
+  if (grid->GetNumberOfPoints() > 0) {
+    grid->GetBounds(b);
+    row("bounds", format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", b[0], b[1], b[2], b[3], b[4], b[5]));
+  }
+  print_arrays(grid);
+  print_tetrahedra(core, grid);
+  try {
+    const mesh m(grid, o.array, o.source);
+    core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
+    const stratus_tetra_report report = look_at(core, m.view());
+    row("drawn",
+      "'" + m.array_name + "' on " + (m.view().cell_values ? "cells" : "points") + ", " + count(report.shown_cells) + " of " +
+        count(report.cells) + " tetrahedra" + (report.shown_cells < report.cells ? ", the others hidden or with values that are not finite" : ""));
+    row("opacity", make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance).origin);
+  } catch (const failure& reason) {
+    if (!o.array.empty()) { // asked for
+      throw;
+    }
+    row("drawn", std::string("nothing: ") + reason.what());
+  }
+}
