@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A frame of tetrahedra before its rays march: points in the rays' coordinates (kernels/tetra_arguments.h), a line for each row and column of
- * pixels, and for each tile the border faces that may cover it. */
+ * A frame of tetrahedra before its rays march: points in the rays' coordinates (kernels/tetra_arguments.h), a line for each row and
+ * column of pixels, and for each tile the border faces that may cover it. */
 #include "tetra_caster.h"
 
 #include "ray_caster.h"
@@ -41,8 +41,8 @@ stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buf
 
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers)
 {
-  stratus_tetra_buffer* all[] = { &buffers->points, &buffers->places, &buffers->faces, &buffers->lines, &buffers->ends,
-    &buffers->bin_begin, &buffers->bins, &buffers->first, &buffers->entries };
+  stratus_tetra_buffer* all[] = { &buffers->points, &buffers->places, &buffers->faces, &buffers->lines, &buffers->ends, &buffers->bin_begin,
+    &buffers->bins, &buffers->first, &buffers->entries };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
     stratus_release(context, all[i]->memory);
     *all[i] = (stratus_tetra_buffer){ 0 };
@@ -99,7 +99,8 @@ static stratus_status find_scale(frame_build* build)
   build->frame->middle = middle;
   build->frame->per_z = 1.0 / build->scale;
   if (!isfinite(middle) || !isfinite(largest) || !(build->scale > 0.0) || !isfinite(build->scale)) {
-    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "mesh lies at depths %g..%g before the camera: out of range", nearest, farthest);
+    return stratus_fail(
+      build->context, STRATUS_INVALID_ARGUMENT, "mesh lies at depths %g..%g before the camera: out of range", nearest, farthest);
   }
   build->frame->arguments.middle = parallel ? 1.0f : (float)(middle * build->scale);
   build->frame->arguments.shear = parallel ? 0.0f : 1.0f;
@@ -210,15 +211,16 @@ static bool pixel_span(double lo, double hi, int pixels, uint16_t span[2])
   return true;
 }
 
-/* Whether rays surely come out of the mesh by the face, if any pass it: its points turn the other way, seen from the eye. In front of the eye,
- * the edges times depths sum up to this determinant; each edge is off by less than a millionth of the face's extent. */
+/* Whether rays surely come out of the mesh by the face, if any pass it: its points turn the other way, seen from the eye. In front of the
+ * eye, the edges times depths sum up to this determinant; each edge is off by less than a millionth of the face's extent. */
 static bool faces_away(const double p[3][3])
 {
   double extent = 0.0;
   for (int i = 0; i < 3; ++i) {
     extent = fmax(extent, fmax(fmax(fabs(p[1][i] - p[0][i]), fabs(p[2][i] - p[0][i])), fabs(p[2][i] - p[1][i])));
   }
-  const double *a = p[0], b[3] = { p[1][0] - a[0], p[1][1] - a[1], p[1][2] - a[2] }, c[3] = { p[2][0] - a[0], p[2][1] - a[1], p[2][2] - a[2] };
+  const double *a = p[0], b[3] = { p[1][0] - a[0], p[1][1] - a[1], p[1][2] - a[2] },
+               c[3] = { p[2][0] - a[0], p[2][1] - a[1], p[2][2] - a[2] };
   const double det = a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   return det < -1e-6 * extent;
 }
@@ -303,8 +305,8 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
   for (size_t i = 0; i < count; ++i) {
     const stratus_tetra_face* face = build->tetra->faces + i;
     const int32_t* p = face->point;
-    faces[i] = (stratus_tetra_border_face){
-      .face = { { p[0], p[build->mirrored ? 2 : 1], p[build->mirrored ? 1 : 2] }, face->fourth, face->cell } };
+    faces[i] =
+      (stratus_tetra_border_face){ .face = { { p[0], p[build->mirrored ? 2 : 1], p[build->mirrored ? 1 : 2] }, face->fourth, face->cell } };
     if (!outline(frame, faces + i)) {
       faces[i].columns[0] = UINT16_MAX; /* none */
       faces[i].columns[1] = 0;
@@ -316,8 +318,8 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
     total += deal_face(build, i, begin, NULL);
   }
   if (total >= UINT32_MAX) {
-    return stratus_fail(build->context, STRATUS_OVERFLOW, "%zu border faces cover %d x %d pixels too often", count, frame->image.width,
-      frame->image.height);
+    return stratus_fail(
+      build->context, STRATUS_OVERFLOW, "%zu border faces cover %d x %d pixels too often", count, frame->image.width, frame->image.height);
   }
   TRY(stratus_tetra_reserve(build->context, &buffers->bins, (size_t)total, sizeof(int32_t)));
   uint32_t place = 0;
@@ -345,6 +347,10 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   frame->image = *image;
   frame->columns = (image->width + TETRA_TILE - 1) / TETRA_TILE;
   frame->rows = (image->height + TETRA_TILE - 1) / TETRA_TILE;
+  if ((int64_t)frame->columns * frame->rows > INT32_MAX / (TETRA_TILE * TETRA_TILE)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "image of %d x %d pixels is too large to draw tetrahedra in: at most %d pixels",
+      image->width, image->height, INT32_MAX);
+  }
   frame->cells = tetra->cells;
   frame->cell_values = tetra->cell_values;
   frame->arguments.table.width = image->width;

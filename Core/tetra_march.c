@@ -25,21 +25,6 @@ static stratus_tetra_tile* tile_for(int isa)
   return stratus_tetra_tile_isa0;
 }
 
-static void round_tile(const stratus_tetra_frame* frame, int tile)
-{
-  const stratus_image* image = &frame->image;
-  const int x0 = tile % frame->columns * TETRA_TILE, y0 = tile / frame->columns * TETRA_TILE;
-  const int x1 = x0 + TETRA_TILE < image->width ? x0 + TETRA_TILE : image->width;
-  const int y1 = y0 + TETRA_TILE < image->height ? y0 + TETRA_TILE : image->height;
-  for (int y = y0; image->rgba8 && y < y1; ++y) {
-    const size_t begin = 4 * ((size_t)y * (size_t)image->width + (size_t)x0), end = begin + 4 * (size_t)(x1 - x0);
-    for (size_t i = begin; i < end; ++i) {
-      const float value = image->rgba[i] * 255.0f + 0.5f;
-      image->rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
-    }
-  }
-}
-
 static stratus_status each_tile(stratus_context* context, const stratus_tetra_frame* frame, bool counting, stratus_tetra_counts* counts)
 {
   const int tiles = frame->columns * frame->rows;
@@ -52,9 +37,6 @@ static stratus_status each_tile(stratus_context* context, const stratus_tetra_fr
     stratus_tetra_counts mine = { 0 };
     for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
       work(frame, tile, counting, &mine);
-      if (!counting) {
-        round_tile(frame, tile);
-      }
       if (omp_get_thread_num() == 0 && context->options.progress) {
         status = stratus_progress(context, counting ? "entry faces" : "march", (double)(tile + 1) / tiles);
         if (status != STRATUS_OK) {
@@ -74,6 +56,22 @@ static stratus_status each_tile(stratus_context* context, const stratus_tetra_fr
   return status;
 }
 
+stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra_frame* frame, size_t pixels, size_t* total)
+{
+  uint64_t sum = 0;
+  for (size_t i = 0; i <= pixels; ++i) {
+    const uint32_t here = i < pixels ? frame->first[i] : 0;
+    frame->first[i] = (uint32_t)sum;
+    sum += here;
+  }
+  if (sum > INT32_MAX / 2) {
+    return stratus_fail(
+      context, STRATUS_OVERFLOW, "rays come into the mesh %llu times, at most %d", (unsigned long long)sum, INT32_MAX / 2);
+  }
+  *total = (size_t)sum;
+  return STRATUS_OK;
+}
+
 stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
   stratus_tetra_counts* counts, double* entries_ms, double* march_ms)
 {
@@ -82,17 +80,9 @@ stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame
   TRY(stratus_tetra_reserve(context, &buffers->first, pixels + 1, sizeof(uint32_t)));
   frame->first = buffers->first.memory;
   TRY(each_tile(context, frame, true, counts));
-  uint64_t total = 0;
-  for (size_t i = 0; i <= pixels; ++i) {
-    const uint32_t here = i < pixels ? frame->first[i] : 0;
-    frame->first[i] = (uint32_t)total;
-    total += here;
-  }
-  if (total > UINT32_MAX) {
-    return stratus_fail(context, STRATUS_OVERFLOW, "rays come into the mesh %llu times, at most %lu", (unsigned long long)total,
-      (unsigned long)UINT32_MAX);
-  }
-  TRY(stratus_tetra_reserve(context, &buffers->entries, (size_t)total, 2 * sizeof(int32_t)));
+  size_t total = 0;
+  TRY(stratus_tetra_sum_entries(context, frame, pixels, &total));
+  TRY(stratus_tetra_reserve(context, &buffers->entries, total, 2 * sizeof(int32_t)));
   frame->entries = buffers->entries.memory;
   const double marching = stratus_now_ms();
   TRY(each_tile(context, frame, false, counts));

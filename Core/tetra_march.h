@@ -37,23 +37,23 @@ typedef struct stratus_tetra_counts {
 typedef struct stratus_tetra_frame {
   stratus_tetra_arguments arguments;
   const int32_t* cells;
-  const float* points;             /* x, y, z, value each */
-  const float* places;             /* the same in the order of the cells' points: tetra_mesh.c */
-  const float* cell_values;        /* a cell each in the order of `cells`, or NULL */
+  const float* points;                    /* x, y, z, value each */
+  const float* places;                    /* the same in the order of the cells' points: tetra_mesh.c */
+  const float* cell_values;               /* a cell each in the order of `cells`, or NULL */
   const stratus_tetra_border_face* faces; /* turned for this camera */
   size_t face_count;
-  const float *us, *uw, *vs, *vw;  /* a column each, a row each: STRATUS_WIDTH_MOST of them beyond the picture */
-  int columns, rows;               /* of tiles */
-  const uint32_t* bin_begin;       /* columns*rows + 1 places in bins */
-  const int32_t* bins;             /* faces that may cover a tile, rising */
-  uint32_t* first;                 /* entries of tile t's pixel p begin at first[256 t + p] */
-  int32_t* entries;                /* z's bits and the face: where rays come in. Those of a pixel lie together, nearest first */
-  const float* ends;               /* a pixel each, what is opaque in z, or NULL */
-  const int32_t* sums;             /* of the table */
-  const int32_t* march_sums;       /* the same, four an entry */
+  const float *us, *uw, *vs, *vw; /* a column each, a row each: STRATUS_WIDTH_MOST of them beyond the picture */
+  int columns, rows;              /* of tiles */
+  const uint32_t* bin_begin;      /* columns*rows + 1 places in bins */
+  const int32_t* bins;            /* faces that may cover a tile, rising */
+  uint32_t* first;                /* entries of tile t's pixel p begin at first[256 t + p] */
+  int32_t* entries;               /* z's bits and the face: where rays come in. Those of a pixel lie together, nearest first */
+  const float* ends;              /* a pixel each, what is opaque in z, or NULL */
+  const int32_t* sums;            /* of the table */
+  const int32_t* march_sums;      /* the same, four an entry */
   const stratus_table* table;
   stratus_camera camera;
-  double middle, per_z;            /* k = middle + per_z*z */
+  double middle, per_z; /* k = middle + per_z*z */
   stratus_image image;
 } stratus_tetra_frame;
 
@@ -62,7 +62,9 @@ typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool
 
 stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tetra_tile_isa2;
 
-/* tetra_march.c: all tiles. */
+/* tetra_march.c: counts of entries a pixel in frame->first, `pixels` of them and one more, become where each pixel's begin. */
+stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra_frame* frame, size_t pixels, size_t* total);
+/* All tiles. */
 stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
   stratus_tetra_counts* counts, double* entries_ms, double* march_ms);
 

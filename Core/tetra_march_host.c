@@ -28,6 +28,7 @@ static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
     .entries = frame->entries,
     .colors = frame->table->rgba,
     .rgba = frame->image.rgba,
+    .rgba8 = frame->image.rgba8,
     .depth = frame->image.depth,
     .samples = frame->image.samples };
 }
@@ -35,10 +36,9 @@ static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
 void TILE_ISA(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
 {
   const stratus_tetra_view view = view_of(frame);
-  uint32_t filled[TETRA_PIXELS] = { 0 };
+  uint32_t filled[TETRA_PIXELS];
   uint32_t* first = frame->first + (size_t)tile * TETRA_PIXELS;
   if (counting) {
-    memset(first, 0, sizeof filled);
     find_entries(&view, &frame->arguments, tile, 0, TETRA_PIXELS, 1, first);
     return;
   }

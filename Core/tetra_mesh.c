@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What rays read of a mesh of tetrahedra: a few ints a cell, packed from its neighbours, and the faces by which rays come in. Cells that show
- * nothing (hidden, or with a value that is not finite) are left out, as if there were a hollow. */
+ * What rays read of a mesh of tetrahedra: a few ints a cell, packed from its neighbours, and the faces by which rays come in. Cells that
+ * show nothing (hidden, or with a value that is not finite) are left out, as if there were a hollow. */
 #include "mesh.h"
 #include "tetra_caster.h"
 
 #include <string.h>
 
 #define CELL_INTS_MOST INT32_MAX
-#define POINTS_MOST ((int64_t)1 << 30)
+#define POINTS_MOST (INT32_MAX / 4) /* four floats each */
 
 /* Values as volumes have them, so that fetching is the same. */
 static stratus_volume values_of(const stratus_mesh* mesh)
@@ -21,7 +21,8 @@ static stratus_volume values_of(const stratus_mesh* mesh)
   return volume;
 }
 
-static void find_shown(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+static void find_shown(
+  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
 {
   int64_t shown = 0;
   float low = INFINITY, high = -INFINITY;
@@ -105,7 +106,8 @@ static int32_t shown_neighbour(const stratus_tetra_mesh* tetra, const stratus_ad
   return other >= 0 && tetra->shown[other] ? other : -1;
 }
 
-/* For each of the cell's points, lowest name first, the next cell opposite and the point by which that one is more than the face between. */
+/* For each of the cell's points, lowest name first, the next cell opposite and the point by which that one is more than the face between.
+ * */
 static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places,
   int64_t cell, int32_t ints[TETRA_CELL])
 {
@@ -127,8 +129,8 @@ static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   }
 }
 
-static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency,
-  const int32_t* places)
+static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume,
+  const stratus_adjacency* adjacency, const int32_t* places)
 {
 #pragma omp parallel for num_threads(tetra->context->threads)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
@@ -139,8 +141,8 @@ static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, cons
   }
 }
 
-static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places,
-  stratus_tetra_face* faces)
+static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency,
+  const int32_t* places, stratus_tetra_face* faces)
 {
   size_t count = 0;
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
@@ -182,8 +184,7 @@ static stratus_status fetch_values(stratus_tetra_mesh* tetra, const stratus_mesh
   return STRATUS_OK;
 }
 
-static stratus_status build(
-  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places)
+static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places)
 {
   const stratus_volume volume = values_of(mesh);
   void* memory = NULL;
@@ -197,6 +198,10 @@ static stratus_status build(
   tetra->cells = memory;
   pack_cells(tetra, mesh, &volume, adjacency, places);
   tetra->face_count = list_faces(tetra, mesh, adjacency, places, NULL);
+  if (tetra->face_count > INT32_MAX / TETRA_FACE) {
+    return stratus_fail(tetra->context, STRATUS_UNSUPPORTED, "mesh with %zu border faces is too large to draw: at most %d",
+      tetra->face_count, INT32_MAX / TETRA_FACE);
+  }
   TRY(stratus_allocate(tetra->context, tetra->face_count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
   (void)list_faces(tetra, mesh, adjacency, places, tetra->faces);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The order in which a mesh's cells and points lie in memory for rays: along a Morton curve, so that what rays of a tile pass one after the other
- * shares cache lines, whatever order a mesh generator wrote. */
+ * The order in which a mesh's cells and points lie in memory for rays: along a Morton curve, so that what rays of a tile pass one after
+ * the other shares cache lines, whatever order a mesh generator wrote. */
 #include "bvh.h"
 #include "tetra_caster.h"
 

@@ -55,7 +55,7 @@ foreach (kernel IN LISTS kernels)
   if (name STREQUAL "ray_cast")
     stratus_add_test(kernel_${name}_pairs kernels ${compile} -DSTRATUS_WIDTH=1 -DSTRATUS_REAL_PAIR=1)
   endif ()
-  if (name STREQUAL "ray_cast" OR name STREQUAL "first_hit")
+  if (name STREQUAL "ray_cast" OR name STREQUAL "first_hit" OR name STREQUAL "tetra_march")
     stratus_add_test(kernel_${name}_packets kernels ${compile} -DSTRATUS_WIDTH=16)
     stratus_add_test(kernel_${name}_packets_avx512 kernels ${compile} -DSTRATUS_WIDTH=16 -mavx512f)
   endif ()
@@ -63,7 +63,7 @@ endforeach ()
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}" "${stratus_test_folder}/test_device_tiny")
-foreach (kind IN ITEMS density distance_field first_hit)
+foreach (kind IN ITEMS density distance_field first_hit tetra_march)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     "${stratus_test_folder}/test_${kind}_device" tiny)
 endforeach ()

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray through tetrahedra reads, several ints from one place a lane: a lane's ints lie in one cache line, and two of them come with one
- * load. Lanes outside the mask read nothing and get 0. */
+ * What a ray through tetrahedra reads, several ints from one place a lane: a lane's ints lie in one cache line, and two of them come with
+ * one load. Lanes outside the mask read nothing and get 0. */
 #ifndef STRATUS_TETRA_GATHER_H
 #define STRATUS_TETRA_GATHER_H
 
@@ -47,6 +47,21 @@ INLINE void gather_pair(GLOBAL const int* base, vint at, vmask mask, vint out[2]
 #else
   out[0] = v_gather_ints(base, at, mask);
   out[1] = v_gather_ints(base, at + vi_set(1), mask);
+#endif
+}
+
+/* Asks for the cache lines of base[at], so that they are there when a step later they are read. */
+INLINE void prefetch_ints(GLOBAL const int* base, vint at)
+{
+#if !defined(STRATUS_DEVICE) && STRATUS_WIDTH == 16
+  int place[STRATUS_WIDTH];
+  vi_store(place, at);
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    __builtin_prefetch(base + place[lane]);
+  }
+#else
+  (void)base;
+  (void)at;
 #endif
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Rays that march from cell to cell through faces. A ray holds the three points of the face by which it entered, in its own coordinates
- * (tetra_arguments.h), and knows the fourth point of the cell: with it the face by which it leaves, and by that the next cell and its fourth point.
+ * (tetra_arguments.h), and knows the fourth point of the cell: with it the face by which it leaves, and by that the next cell and its
+ * fourth point.
  *
- * Whether a ray passes a face depends on the signs of its edges alone, found exactly and the same from either side; zero counts as if all points
- * were moved by (e, e^2), e vanishing. So a ray passes none or two faces of each cell, whatever its shape, and a way through cells
+ * Whether a ray passes a face depends on the signs of its edges alone, found exactly and the same from either side; zero counts as if all
+ * points were moved by (e, e^2), e vanishing. So a ray passes none or two faces of each cell, whatever its shape, and a way through cells
  * that begins at a border face ends at another. */
 #ifndef STRATUS_TETRA_MARCH_H
 #define STRATUS_TETRA_MARCH_H
@@ -12,21 +13,21 @@
 
 /* What all rays read. */
 typedef struct stratus_tetra_scene {
-  GLOBAL const int* cells;          /* eight ints a cell: for each of its points, lowest name first, the next cell opposite and its fourth point */
-  GLOBAL const float* points;       /* x, y, z, value each */
-  GLOBAL const int* sums;           /* four an entry */
-  GLOBAL const float* cell_values;  /* if the arguments say so */
+  GLOBAL const int* cells; /* eight ints a cell: for each of its points, lowest name first, the next cell opposite and its fourth point */
+  GLOBAL const float* points;      /* x, y, z, value each */
+  GLOBAL const int* sums;          /* four an entry */
+  GLOBAL const float* cell_values; /* if the arguments say so */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
-  vfloat us, uw, vs, vw;        /* x = (a - uw) - us z, y = (b - vw) - vs z */
-  vfloat begin, end;            /* what is seen of it, in z */
-  vfloat length, offset;        /* world distance = offset + length z */
+  vfloat us, uw, vs, vw;         /* x = (a - uw) - us z, y = (b - vw) - vs z */
+  vfloat begin, end;             /* what is seen of it, in z */
+  vfloat length, offset;         /* world distance = offset + length z */
   vfloat x[3], y[3], z[3], s[3]; /* the face's points, and their values; turning from the first to the second and third is positive */
-  vfloat edge[3];               /* opposite each: twice the area that the others and the ray span, >= 0 */
+  vfloat edge[3];                /* opposite each: twice the area that the others and the ray span, >= 0 */
   vint name[3], fourth;
-  vint cell; /* where its ints begin; negative: outside */
-  vfloat at, value; /* where the ray entered the cell, and the field there */
+  vint cell;                 /* where its ints begin; negative: outside */
+  vfloat at, value;          /* where the ray entered the cell, and the field there */
   stratus_tetra_place place; /* of the value in the table */
 } stratus_tetra_ray;
 
@@ -62,7 +63,8 @@ INLINE vmask tetra_negative(vfloat edge, vfloat px, vfloat py, vfloat qx, vfloat
   return negative;
 }
 
-/* Where the ray passes the face, and the field there: weights are the edges, with a hair of each so that a face seen edge-on has a middle. */
+/* Where the ray passes the face, and the field there: weights are the edges, with a hair of each so that a face seen edge-on has a
+ * middle. */
 INLINE void tetra_cross(const vfloat edge[3], const vfloat z[3], const vfloat s[3], vfloat* at, vfloat* value)
 {
   const vfloat zero = v_set(0.0f), hair = v_set(1e-30f);
@@ -138,6 +140,7 @@ INLINE stratus_tetra_passage tetra_pass(
   r->value = passage.last;
   r->fourth = next[1];
   r->cell = vi_select(passage.seen, next[0], vi_select(live, vi_set(-2), r->cell));
+  prefetch_ints(scene->cells, r->cell);
   return passage;
 }
 
@@ -150,8 +153,8 @@ INLINE void tetra_maximum(stratus_tetra_light* light, vmask mask, vfloat first, 
   light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
 }
 
-/* Light of a cell that was passed, cut to what is seen. Returns the lanes that are done with their way: outside, hidden by what lies in front, or
- * beyond what is seen. */
+/* Light of a cell that was passed, cut to what is seen. Returns the lanes that are done with their way: outside, hidden by what lies in
+ * front, or beyond what is seen. */
 INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vmask live)
 {
@@ -179,8 +182,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     }
     tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
   }
-  return live &
-    (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->table.termination)) | v_le(r->end, passage->to));
+  return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->table.termination)) | v_le(r->end, passage->to));
 }
 
 /* A ray comes in by a face whose points it has: what it finds there. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light of a stretch of a ray between two values, the field taken as linear in between: from running sums over the table's entries, of which a
- * ray keeps those at the value where it is, so that each cell reads them at one place only. */
+ * Light of a stretch of a ray between two values, the field taken as linear in between: from running sums over the table's entries, of
+ * which a ray keeps those at the value where it is, so that each cell reads them at one place only. */
 #ifndef STRATUS_TETRA_SHADE_H
 #define STRATUS_TETRA_SHADE_H
 
@@ -57,7 +57,8 @@ INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
   return share;
 }
 
-/* Puts the light between two places of the table behind what the rays have; weight: length times the optical depth of one unit of the sums. */
+/* Puts the light between two places of the table behind what the rays have; weight: length times the optical depth of one unit of the
+ * sums. */
 INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near)
 {
@@ -95,8 +96,8 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
 }
 
 /* A stretch from `first` at place `from` to `last` at place `to`, in pieces where averaging colours would show. */
-INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vfloat first,
-  vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
+INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+  vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
   const vfloat one = v_set(1.0f), weight = length * v_set(a->table.tau_scale);
   const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* of as many entries as the stretch spans */

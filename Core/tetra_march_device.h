@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Marching through tetrahedra on the context's OpenCL device: kernels/tetra_march.cl. */
+#ifndef STRATUS_TETRA_MARCH_DEVICE_H
+#define STRATUS_TETRA_MARCH_DEVICE_H
+
+#include "tetra_march.h"
+
+typedef struct stratus_tetra_device stratus_tetra_device;
+
+/* Copies (where the device lends memory, none) of what a caster keeps, and which build of it they are of: numbers > 0 that rise. Mesh and
+ * table must not be freed before the device, or the copies of the table by stratus_tetra_device_drop_table(). */
+typedef struct stratus_tetra_device_source {
+  uint64_t mesh, table;
+  int64_t cell_count, point_count;
+} stratus_tetra_device_source;
+
+/* stratus_tetra_march() on the device. *device NULL: it is made. *drawn false: the device can't, a warning says why, and nothing was
+ * done. */
+stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts,
+  double* entries_ms, double* march_ms, bool* drawn);
+void stratus_tetra_device_drop_table(stratus_tetra_device* device);                        /* takes NULL */
+void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device); /* takes NULL */
+
+#endif

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Pictures of tetrahedra drawn by an OpenCL device: in packets of 16, as on a CPU, and one ray a work item, as on a GPU. The same as the
+ * host's, to the bit. A device that disappears at any call leaves an error, and the picture right once it is back. */
+#include "tetra_case.h"
+
+#include "device_state.h"
+
+#define CALLS_MAX 500
+
+static tetra_picture ours, theirs;
+static int seeds = 12, edge = 4; /* cases, and boxes along a mesh's edges */
+
+static stratus_context* open_context(const char* name, int as_gpu)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = name;
+  options.threads = 2;
+  if (stratus_context_create(&options, &context, NULL, 0) == STRATUS_OK && as_gpu) {
+    context->device->is_cpu = false;
+  }
+  return context;
+}
+
+static void assert_same(void)
+{
+  assert_memory_equal(ours.rgba, theirs.rgba, sizeof ours.rgba);
+  assert_memory_equal(ours.depth, theirs.depth, sizeof ours.depth);
+  assert_memory_equal(ours.rgba8, theirs.rgba8, sizeof ours.rgba8);
+  assert_memory_equal(ours.samples, theirs.samples, sizeof ours.samples);
+  assert_int_equal(ours.report.rays, theirs.report.rays);
+  assert_int_equal(ours.report.entries, theirs.report.entries);
+  assert_int_equal(ours.report.segments, theirs.report.segments);
+  assert_int_equal(ours.report.stuck, theirs.report.stuck);
+}
+
+/* A mesh, a function and a view at random, each kind of option among them. */
+static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, const float* opaque)
+{
+  tetra_create(c, edge, 0.2, seed % 3 == 0 ? 0.3 : 0.0, seed);
+  tetra_look(context, c, edge, (int)(seed % 8), seed & 1);
+  c->options.mode = seed % 6 == 4 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+  c->options.termination = seed & 2 ? 0.9 : 1.0;
+  c->mesh.cell_values = seed % 6 == 5;
+  if (seed % 4 == 3) {
+    c->opaque_depth = opaque;
+    c->camera.near_k = 2.0 * edge;
+    c->camera.far_k = 5.0 * edge;
+  }
+  if (seed % 5 == 2 && !c->opaque_depth) { /* the eye in the mesh */
+    for (int axis = 0; axis < 3; ++axis) {
+      c->camera.eye[axis] = 0.5 * edge + 0.1 * axis;
+    }
+    c->camera.near_k = 0.3;
+  }
+  if (seed % 7 == 3) { /* deep segments, in many pieces */
+    c->transfer.unit_distance = 0.02;
+  }
+}
+
+static void device_and_host_draw_the_same(void** state)
+{
+  const int as_gpu = *(const int*)*state;
+  static float opaque[TETRA_PIXELS];
+  stratus_context *host = open_context("host", 0), *device = open_context("0", as_gpu);
+  assert_non_null(device);
+  print_message("on %s\n", stratus_context_device(device));
+  for (uint32_t seed = 0; seed < (uint32_t)seeds; ++seed) {
+    tetra_case c;
+    uint32_t random = seed;
+    for (int i = 0; i < TETRA_PIXELS; ++i) {
+      opaque[i] = (float)tetra_uniform(&random, 0.0, 1.0);
+    }
+    make_case(host, &c, seed, opaque);
+    tetra_draw(host, &c, &theirs);
+    assert_true(theirs.report.segments > 0);
+    tetra_draw(device, &c, &ours);
+    assert_same();
+    tetra_destroy(&c);
+  }
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+/* What the device keeps is replaced when it has to be, and pictures are those of a new caster. */
+static void a_caster_that_drew_before(void** state)
+{
+  stratus_context* device = open_context("0", *(const int*)*state);
+  stratus_tetra_caster* caster = NULL;
+  tetra_case c;
+  assert_non_null(device);
+  tetra_create(&c, 3, 0.2, 0.2, 2);
+  assert_int_equal(stratus_tetra_caster_create(device, &caster), STRATUS_OK);
+  const stratus_image image = {
+    .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba, .depth = ours.depth, .rgba8 = ours.rgba8, .samples = ours.samples
+  };
+  for (int step = 0; step < 6; ++step) {
+    tetra_look(device, &c, 3, step, step & 1);
+    if (step == 1) {
+      c.opacity[5] = 0.3;
+    } else if (step == 2) {
+      c.options.mode = STRATUS_TETRA_MAXIMUM;
+    } else if (step == 3) {
+      c.values[30] = 0.9f;
+      ++c.mesh.revision;
+    } else if (step == 4) {
+      c.options.mode = STRATUS_TETRA_COMPOSITE;
+    } else if (step == 5) {
+      stratus_tetra_caster_release(caster);
+    }
+    assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &ours.report), STRATUS_OK);
+    tetra_draw(device, &c, &theirs);
+    assert_same();
+  }
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+  stratus_context_destroy(device);
+}
+
+static void the_loss_of_the_device_at_any_call(void** state)
+{
+  stratus_context* device = open_context("0", *(const int*)*state);
+  stratus_tetra_caster* caster = NULL;
+  tetra_case c;
+  int calls = 0;
+  assert_non_null(device);
+  tetra_create(&c, 2, 0.2, 0.0, 4);
+  tetra_look(device, &c, 2, 1, 0);
+  tetra_draw(device, &c, &theirs);
+  const stratus_image image = {
+    .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba, .depth = ours.depth, .rgba8 = ours.rgba8, .samples = ours.samples
+  };
+  for (stratus_status status = STRATUS_DEVICE_ERROR; status != STRATUS_OK; ++calls) {
+    assert_true(calls < CALLS_MAX);
+    assert_int_equal(stratus_tetra_caster_create(device, &caster), STRATUS_OK);
+    stratus_device_fail_after(device->device, calls, CL_DEVICE_NOT_AVAILABLE);
+    status = stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &ours.report);
+    stratus_device_fail_after(device->device, -1, 0);
+    if (status != STRATUS_OK) {
+      assert_int_equal(status, STRATUS_DEVICE_ERROR);
+      assert_non_null(strstr(stratus_context_message(device), "CL_DEVICE_NOT_AVAILABLE"));
+      assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &ours.report), STRATUS_OK);
+    }
+    assert_same();
+    stratus_tetra_caster_destroy(caster);
+  }
+  assert_true(calls > 30); /* buffers, arguments, launches and reads */
+  tetra_destroy(&c);
+  stratus_context_destroy(device);
+}
+
+/* tiny: two small meshes, for a simulator that checks each access. */
+int main(int argc, char** argv)
+{
+  int as_cpu = 0, as_gpu = 1;
+  const struct CMUnitTest few[] = {
+    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_gpu),
+  };
+  const struct CMUnitTest all[] = {
+    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_cpu),
+    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_gpu),
+    cmocka_unit_test_prestate(a_caster_that_drew_before, &as_cpu),
+    cmocka_unit_test_prestate(a_caster_that_drew_before, &as_gpu),
+    cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_cpu),
+    cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_gpu),
+  };
+  if (stratus_device_count() == 0) {
+    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
+    return 77;
+  }
+  if (argc > 1 && strcmp(argv[1], "tiny") == 0) {
+    seeds = 2;
+    edge = 1;
+    return cmocka_run_group_tests(few, NULL, NULL);
+  }
+  return cmocka_run_group_tests(all, NULL, NULL);
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Entry points of the march through tetrahedra: a tile of pixels a work item, in packets, as on the host, where STRATUS_WIDTH is 16 (a
+ * CPU); else a pixel (a GPU). First the faces by which rays come in are counted, then, their places known, they are put in order and rays
+ * march. */
+#ifndef STRATUS_DEVICE
+#define STRATUS_DEVICE 1
+#endif
+#ifndef STRATUS_WIDTH
+#define STRATUS_WIDTH 1
+#endif
+
+#include "tetra_tile.h"
+
+/* The tile and the pixels of it that are this work item's; false: beyond the picture. */
+static bool my_pixels(__constant stratus_tetra_arguments* a, int* tile, int* from, int* beyond)
+{
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+#if STRATUS_WIDTH == 1
+  const int column = x / TETRA_PIXELS;
+  *from = x % TETRA_PIXELS;
+  *beyond = *from + 1;
+#else
+  const int column = x;
+  *from = 0;
+  *beyond = TETRA_PIXELS;
+#endif
+  *tile = y * a->columns + column;
+  return column < a->columns && y * TETRA_TILE < a->table.height;
+}
+
+__kernel void tetra_count(__constant stratus_tetra_arguments* a, __global const float* points, __global const float* lines,
+  __global const int* faces, __global const uint* bin_begin, __global const int* bins, __global uint* found)
+{
+  const stratus_tetra_view view = { .scene = { .points = points }, .lines = lines, .faces = faces, .bin_begin = bin_begin, .bins = bins };
+  int tile, from, beyond;
+  if (my_pixels(a, &tile, &from, &beyond)) {
+    find_entries(&view, a, tile, from, beyond, 1, found + TETRA_PIXELS * (size_t)tile);
+  }
+}
+
+/* found: as many numbers as pixels of tiles, to work with. counts: rays, entries, segments, stuck of each tile, 0 before. */
+__kernel void tetra_march(__constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values,
+  __global const int* sums, __global const float* colors, __global const float* points, __global const float* lines,
+  __global const float* ends, __global const int* faces, __global const uint* bin_begin, __global const int* bins,
+  __global const uint* first, __global int* entries, __global uint* found, __global float* rgba, __global uchar* rgba8,
+  __global float* depth, __global uint* samples, __global uint* counts)
+{
+  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values },
+    .lines = lines,
+    .ends = ends,
+    .faces = faces,
+    .bin_begin = bin_begin,
+    .bins = bins,
+    .first = first,
+    .entries = entries,
+    .colors = colors,
+    .rgba = rgba,
+    .rgba8 = rgba8,
+    .depth = depth,
+    .samples = samples };
+  int tile, from, beyond;
+  if (my_pixels(a, &tile, &from, &beyond)) {
+    find_entries(&view, a, tile, from, beyond, 0, found + TETRA_PIXELS * (size_t)tile);
+    const stratus_tetra_found mine = draw_tile(&view, a, tile, from, beyond);
+    __global uint* sum = counts + 4 * (size_t)tile;
+    atomic_add(sum, mine.rays);
+    atomic_add(sum + 1, mine.entries);
+    atomic_add(sum + 2, mine.segments);
+    atomic_add(sum + 3, mine.stuck);
+  }
+}
