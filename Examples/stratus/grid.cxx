@@ -60,6 +60,7 @@ void render_grid(const options& o)
   if (m.ignored() > 0) {
     row("ignored", grouped(static_cast<unsigned long long>(m.ignored())) + " vertices, lines and polygons");
   }
+  row("camera", describe(camera));
   row("opacity", look.origin);
   row("device", stratus_context_device(core));
   row("build", format("%.2f ms: cells and border %.2f, table %.2f", report.build_ms + report.table_ms, report.build_ms, report.table_ms));
