@@ -11,6 +11,12 @@
 /* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the error. */
 #define PIECES 4.0f
 
+const char* stratus_tetra_method_name(stratus_tetra_method method)
+{
+  static const char* const names[] = { "auto", "march", "project" };
+  return (unsigned)method < sizeof names / sizeof *names ? names[method] : "unknown";
+}
+
 stratus_tetra_options stratus_tetra_options_default(void)
 {
   return (stratus_tetra_options){ .termination = 0.999 };
@@ -44,9 +50,9 @@ static void drop_table(stratus_tetra_caster* caster)
 
 static void drop_mesh(stratus_tetra_caster* caster)
 {
-  drop_table(caster);                                            /* it spans the mesh's values */
-  stratus_tetra_device_destroy(caster->context, caster->device); /* it may read the mesh in place */
-  caster->device = NULL;
+  drop_table(caster); /* it spans the mesh's values */
+  stratus_tetra_projector_destroy(caster->projector);
+  caster->projector = NULL;
   stratus_tetra_mesh_destroy(caster->mesh);
   caster->mesh = NULL;
 }
@@ -84,6 +90,10 @@ static stratus_status check_options(stratus_context* context, const stratus_tetr
   if ((unsigned)options->mode > STRATUS_TETRA_MAXIMUM) {
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_MAXIMUM);
+  }
+  if ((unsigned)options->method > STRATUS_TETRA_METHOD_PROJECT) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "method %d of tetrahedra outside 0..%d", (int)options->method, STRATUS_TETRA_METHOD_PROJECT);
   }
   if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
@@ -196,48 +206,51 @@ static void set_shading(
   a->color_slope = PIECES * table->color_slope;
   a->want_depth = image->depth != NULL;
   a->want_samples = image->samples != NULL;
-  a->want_bytes = image->rgba8 != NULL;
   a->world_step = 1.0f;
   arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
   a->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
 }
 
-/* On the device if there is one that can. */
-static stratus_status march_rays(
-  stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_counts* counts, stratus_tetra_report* report)
+static stratus_status march(stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_report* report)
 {
-  const stratus_tetra_device_source source = { caster->mesh_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count };
-  bool drawn = false;
-  if (caster->context->device) {
-    TRY(stratus_tetra_march_device(
-      caster->context, &caster->device, &source, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms, &drawn));
+  stratus_tetra_counts counts = { 0 };
+  TRY(stratus_tetra_march(caster->context, frame, &caster->buffers, &counts, &report->entries_ms, &report->march_ms));
+  report->rays = counts.rays;
+  report->entries = counts.entries;
+  report->segments = counts.segments;
+  report->stuck = counts.stuck;
+  return STRATUS_OK;
+}
+
+static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_leaves* leaves,
+  const stratus_tetra_frame* frame, stratus_tetra_report* report)
+{
+  const double start = stratus_now_ms();
+  if (!caster->projector) {
+    TRY(stratus_tetra_projector_create(caster->context, mesh, caster->mesh->values, caster->mesh->bias, &caster->projector));
+    report->build_ms += stratus_now_ms() - start;
   }
-  return drawn ? STRATUS_OK : stratus_tetra_march(caster->context, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms);
+  return stratus_tetra_project(caster->projector, mesh, frame, leaves, report);
 }
 
 static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
   const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   stratus_tetra_frame frame;
-  stratus_tetra_counts counts = { 0 };
   const double start = stratus_now_ms();
+  report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
   if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
     clear_image(image);
     return STRATUS_OK;
   }
-  TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, &caster->buffers, &frame));
+  const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
+  TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
   frame.table = caster->table;
   frame.sums = caster->table->sums;
   frame.march_sums = caster->march_sums;
   set_shading(caster->table, options, image, &frame.arguments);
   report->transform_ms = stratus_now_ms() - start;
-  TRY(march_rays(caster, &frame, &counts, report));
-  report->rays = counts.rays;
-  report->entries = counts.entries;
-  report->segments = counts.segments;
-  report->stuck = counts.stuck;
-  return STRATUS_OK;
+  return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
 
 static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report* report)
@@ -253,8 +266,9 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
   report->folded_faces = mesh->folded;
   report->mesh_builds = caster->mesh_builds;
   report->table_builds = caster->table_builds;
-  report->bytes = mesh->bytes + b->points.bytes + b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes +
-    b->bins.bytes + b->first.bytes + b->entries.bytes;
+  report->bytes += (caster->projector ? stratus_tetra_projector_bytes(caster->projector) : 0) + mesh->bytes + b->points.bytes +
+    b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes + b->bins.bytes +
+    b->first.bytes + b->entries.bytes;
 }
 
 stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,

@@ -5,7 +5,7 @@
 
 #include "internal.h"
 #include "tetra_march.h"
-#include "tetra_march_device.h"
+#include "tetra_project.h"
 
 /* What rays read of a mesh, made once for all views. Only shown cells are linked to each other. */
 typedef struct stratus_tetra_mesh {
@@ -28,12 +28,12 @@ struct stratus_tetra_caster {
   stratus_context* context;
   stratus_mesh view; /* what `mesh` was made from */
   stratus_tetra_mesh* mesh;
+  stratus_tetra_projector* projector; /* NULL until something is projected */
   double* transfer_points; /* the transfer function's, copied: opacity, then colour */
   stratus_transfer transfer;
   stratus_tetra_mode mode; /* that the table is for */
   stratus_table* table;
   int32_t* march_sums; /* the table's, four an entry */
-  stratus_tetra_device* device; /* copies on the OpenCL device, NULL on the host */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
 };
@@ -48,9 +48,9 @@ stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh*
 /* tetra_march.c: running sums of a table, those of an entry side by side; NULL where it has none. */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
-/* tetra_frame.c: points in the rays' coordinates, rays of rows and columns, border faces by tile. Buffers grow and are kept. */
+/* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
-  const stratus_camera* camera, const stratus_image* image, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
+  const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);
 /* At least `count` elements of `size` bytes in *memory, whose old contents are lost. */
 stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size);

@@ -339,7 +339,7 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
 }
 
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
-  const stratus_camera* camera, const stratus_image* image, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame)
+  const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame)
 {
   frame_build build = { .context = context, .tetra = tetra, .mesh = mesh, .frame = frame };
   memset(frame, 0, sizeof *frame);
@@ -363,5 +363,5 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   TRY(place_points(&build, buffers));
   TRY(place_lines(&build, buffers));
   TRY(place_ends(&build, buffers));
-  return bin_faces(&build, buffers);
+  return march ? bin_faces(&build, buffers) : STRATUS_OK;
 }

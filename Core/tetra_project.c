@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Projection of tetrahedra on the host: the cells in view, in order of visibility, dealt to tiles so that each tile has its own nearest first;
+ * then all tiles, in parallel. Which thread does what changes nothing: a tile's cells come in the one order. */
+#include "tetra_caster.h"
+
+#include "ray_caster.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#define CELLS_AT_ONCE 4096
+
+static int best_isa(const stratus_context* context)
+{
+  const int best = stratus_ray_cast_best_isa();
+  return context->isa < best ? context->isa : best;
+}
+
+static stratus_tetra_outlines* outlines_for(int isa)
+{
+#if STRATUS_HAVE_X86_ISAS
+  if (isa > 0) {
+    return isa == 2 ? stratus_tetra_outlines_isa2 : stratus_tetra_outlines_isa1;
+  }
+#endif
+  (void)isa;
+  return stratus_tetra_outlines_isa0;
+}
+
+static stratus_tetra_project_tile* tile_for(int isa)
+{
+#if STRATUS_HAVE_X86_ISAS
+  if (isa > 0) {
+    return isa == 2 ? stratus_tetra_project_tile_isa2 : stratus_tetra_project_tile_isa1;
+  }
+#endif
+  (void)isa;
+  return stratus_tetra_project_tile_isa0;
+}
+
+/* ---- of a mesh */
+
+static void find_shown(stratus_tetra_projector* projector, const stratus_mesh* mesh, const float* values, double bias)
+{
+  stratus_volume volume = stratus_volume_default();
+  volume.values = mesh->values;
+  volume.type = mesh->type;
+  volume.value_stride = mesh->value_stride;
+#pragma omp parallel for num_threads(projector->context->threads)
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    const int32_t* v = mesh->vertices + 4 * cell;
+    bool finite = !(mesh->hidden && mesh->hidden[cell]);
+    if (values) {
+      finite = finite && isfinite(values[v[0]]) && isfinite(values[v[1]]) && isfinite(values[v[2]]) && isfinite(values[v[3]]);
+    } else {
+      projector->cell_values[cell] = stratus_volume_fetch(&volume, bias, (size_t)cell);
+      finite = finite && isfinite(projector->cell_values[cell]);
+    }
+    projector->shown[cell] = finite;
+  }
+}
+
+stratus_status stratus_tetra_projector_create(
+  stratus_context* context, const stratus_mesh* mesh, const float* values, double bias, stratus_tetra_projector** out)
+{
+  stratus_status status = STRATUS_OK;
+  const size_t cells = (size_t)mesh->cell_count;
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_projector), &memory));
+  stratus_tetra_projector* projector = memory;
+  projector->context = context;
+  projector->cell_count = mesh->cell_count;
+  TRY_CLEANUP(stratus_allocate(context, cells, 1, &memory));
+  projector->shown = memory;
+  if (!values) {
+    TRY_CLEANUP(stratus_allocate(context, cells, sizeof(float), &memory));
+    projector->cell_values = memory;
+  }
+  find_shown(projector, mesh, values, bias);
+  projector->bytes = cells * (values ? 1 : 1 + sizeof(float));
+  *out = projector;
+  projector = NULL;
+
+cleanup:
+  stratus_tetra_projector_destroy(projector);
+  return status;
+}
+
+void stratus_tetra_projector_destroy(stratus_tetra_projector* projector)
+{
+  if (projector) {
+    stratus_context* context = projector->context;
+    stratus_visibility_order_destroy(projector->order);
+    stratus_release(context, projector->shown);
+    stratus_release(context, projector->cell_values);
+    stratus_release(context, projector->rects.memory);
+    stratus_release(context, projector->bin_begin.memory);
+    stratus_release(context, projector->bins.memory);
+    stratus_release(context, projector);
+  }
+}
+
+size_t stratus_tetra_projector_bytes(const stratus_tetra_projector* projector)
+{
+  return projector->bytes + projector->rects.bytes + projector->bin_begin.bytes + projector->bins.bytes;
+}
+
+/* ---- of a frame */
+
+static bool same_leaves(const stratus_leaves* a, const stratus_leaves* b)
+{
+  return a->nodes == b->nodes && a->node_count == b->node_count && a->leaf_count == b->leaf_count && a->leaf == b->leaf &&
+    memcmp(a->frame, b->frame, sizeof a->frame) == 0;
+}
+
+static stratus_status sort_cells(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_leaves* leaves, const uint32_t** cells, stratus_tetra_report* report)
+{
+  const stratus_leaves none = { .nodes = NULL };
+  stratus_visibility_result result;
+  const double start = stratus_now_ms();
+  leaves = leaves ? leaves : &none;
+  if (projector->order && !same_leaves(&projector->leaves, leaves)) {
+    stratus_visibility_order_destroy(projector->order);
+    projector->order = NULL;
+  }
+  if (!projector->order) {
+    TRY(stratus_visibility_order_create(projector->context, mesh, leaves->nodes ? leaves : NULL, &projector->order));
+    projector->leaves = *leaves;
+    report->build_ms += stratus_now_ms() - start;
+  }
+  const double sorting = stratus_now_ms();
+  TRY(stratus_visibility_order_sort(projector->order, camera, mesh->matrix, STRATUS_PEELING_NEAREST, &result));
+  *cells = result.cells;
+  report->sort_ms = stratus_now_ms() - sorting;
+  report->cycles = result.cycles;
+  report->bytes += result.bytes;
+  return STRATUS_OK;
+}
+
+/* Where each cell may show. */
+static int64_t find_rects(const stratus_context* context, stratus_tetra_projection* projection)
+{
+  stratus_tetra_outlines* const work = outlines_for(best_isa(context));
+  const int64_t parts = (projection->cell_count + CELLS_AT_ONCE - 1) / CELLS_AT_ONCE;
+  int64_t found = 0;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(context->threads) reduction(+ : found)
+  for (int64_t part = 0; part < parts; ++part) {
+    const int64_t beyond = (part + 1) * CELLS_AT_ONCE;
+    found += work(projection, part * CELLS_AT_ONCE, beyond < projection->cell_count ? beyond : projection->cell_count);
+  }
+  return found;
+}
+
+/* Counts the cells first..beyond-1 of the order in each of their tiles, or puts them there. */
+static uint64_t deal_cells(
+  const stratus_tetra_projection* projection, const uint32_t* cells, int64_t first, int64_t beyond, uint32_t* begin, uint32_t* bins)
+{
+  uint64_t count = 0;
+  for (int64_t i = first; i < beyond; ++i) {
+    const uint32_t cell = cells ? cells[i] : (uint32_t)i;
+    const stratus_tetra_rect rect = projection->rects[cell];
+    if (rect.x0 > rect.x1) {
+      continue;
+    }
+    for (int row = rect.y0 / PROJECT_TILE; row <= rect.y1 / PROJECT_TILE; ++row) {
+      for (int column = rect.x0 / PROJECT_TILE; column <= rect.x1 / PROJECT_TILE; ++column) {
+        uint32_t* place = begin + (size_t)row * (size_t)projection->columns + (size_t)column;
+        if (bins) {
+          bins[*place] = cell;
+        }
+        ++*place;
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+/* Each part of the order counts for itself; then its places follow those of the parts before it, tile by tile. */
+static stratus_status bin_cells(
+  stratus_tetra_projector* projector, stratus_tetra_projection* projection, const uint32_t* cells, uint64_t* pairs)
+{
+  stratus_context* context = projector->context;
+  const size_t tiles = (size_t)projection->columns * (size_t)projection->rows, parts = (size_t)context->threads;
+  const int64_t count = projection->cell_count;
+  uint64_t total = 0;
+  TRY(stratus_tetra_reserve(context, &projector->bin_begin, (parts + 1) * (tiles + 1), sizeof(uint32_t)));
+  uint32_t* begin = projector->bin_begin.memory;
+  uint32_t* places = begin + tiles + 1;
+  memset(places, 0, parts * tiles * sizeof *places);
+#pragma omp parallel for schedule(static, 1) num_threads(context->threads) reduction(+ : total)
+  for (size_t part = 0; part < parts; ++part) {
+    const int64_t first = count * (int64_t)part / (int64_t)parts, beyond = count * ((int64_t)part + 1) / (int64_t)parts;
+    total += deal_cells(projection, cells, first, beyond, places + part * tiles, NULL);
+  }
+  if (total >= UINT32_MAX) {
+    return stratus_fail(context, STRATUS_OVERFLOW, "%lld cells cover %d x %d pixels too often", (long long)count,
+      projection->frame->image.width, projection->frame->image.height);
+  }
+  TRY(stratus_tetra_reserve(context, &projector->bins, (size_t)total, sizeof(uint32_t)));
+  uint32_t* bins = projector->bins.memory;
+  uint32_t place = 0;
+  for (size_t tile = 0; tile < tiles; ++tile) {
+    begin[tile] = place;
+    for (size_t part = 0; part < parts; ++part) {
+      const uint32_t here = places[part * tiles + tile];
+      places[part * tiles + tile] = place;
+      place += here;
+    }
+  }
+  begin[tiles] = place;
+#pragma omp parallel for schedule(static, 1) num_threads(context->threads)
+  for (size_t part = 0; part < parts; ++part) {
+    const int64_t first = count * (int64_t)part / (int64_t)parts, beyond = count * ((int64_t)part + 1) / (int64_t)parts;
+    (void)deal_cells(projection, cells, first, beyond, places + part * tiles, bins);
+  }
+  projection->bin_begin = begin;
+  projection->bins = bins;
+  *pairs = total;
+  return STRATUS_OK;
+}
+
+static stratus_status draw_tiles(
+  stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
+{
+  const int tiles = projection->columns * projection->rows;
+  stratus_tetra_project_tile* const work = tile_for(best_isa(context));
+  uint64_t rays = 0, segments = 0, again = 0;
+  atomic_int next = 0, cancelled = 0;
+  stratus_status status = STRATUS_OK;
+#pragma omp parallel num_threads(context->threads) reduction(+ : rays, segments, again)
+  {
+    stratus_tetra_project_counts mine = { 0 };
+    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
+      work(projection, tile, &mine);
+      if (omp_get_thread_num() == 0 && context->options.progress) {
+        status = stratus_progress(context, "project", (double)(tile + 1) / tiles);
+        if (status != STRATUS_OK) {
+          atomic_store(&cancelled, 1);
+        }
+      }
+    }
+    rays += mine.rays;
+    segments += mine.segments;
+    again += mine.again;
+  }
+  *counts = (stratus_tetra_project_counts){ rays, segments, again };
+  return status;
+}
+
+stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_tetra_frame* frame,
+  const stratus_leaves* leaves, stratus_tetra_report* report)
+{
+  stratus_context* context = projector->context;
+  stratus_tetra_project_counts counts = { 0 };
+  const uint32_t* cells = NULL;
+  stratus_tetra_projection projection = { .frame = frame,
+    .vertices = mesh->vertices,
+    .cell_values = projector->cell_values,
+    .shown = projector->shown,
+    .cell_count = mesh->cell_count,
+    .begin = (float)((frame->camera.near_k - frame->middle) / frame->per_z),
+    .end = (float)fmin((frame->camera.far_k - frame->middle) / frame->per_z, 1e30),
+    .columns = (frame->image.width + PROJECT_TILE - 1) / PROJECT_TILE,
+    .rows = (frame->image.height + PROJECT_TILE - 1) / PROJECT_TILE };
+  if (!frame->arguments.maximum) { /* the largest value is the same in any order */
+    TRY(sort_cells(projector, mesh, &frame->camera, leaves, &cells, report));
+  }
+  const double start = stratus_now_ms();
+  TRY(stratus_tetra_reserve(context, &projector->rects, (size_t)mesh->cell_count, sizeof(stratus_tetra_rect)));
+  projection.rects = projector->rects.memory;
+  report->cells_in_view = find_rects(context, &projection);
+  TRY(bin_cells(projector, &projection, cells, &report->pairs));
+  const double drawing = stratus_now_ms();
+  TRY(draw_tiles(context, &projection, &counts));
+  report->bin_ms = drawing - start;
+  report->project_ms = stratus_now_ms() - drawing;
+  report->rays = counts.rays;
+  report->segments = counts.segments;
+  report->again = counts.again;
+  return STRATUS_OK;
+}

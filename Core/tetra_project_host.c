@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Projection of tetrahedra for one instruction set, STRATUS_ISA: outlines of cells, a cell a lane; then the cells of a tile, a pixel a lane. What a
+ * pixel shows depends on its cells and their order alone, not on how many lanes there are. Where cells come in a wrong order (across gaps, in
+ * cycles, where they overlap) it shows: a piece begins before the last one ends. Such pixels are drawn again, nearest pieces first. */
+#include "tetra_project_cells.h"
+
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-function" /* the headers have more words than this file needs */
+#endif
+
+#if STRATUS_ISA == 2
+#define OUTLINES_ISA stratus_tetra_outlines_isa2
+#define TILE_ISA stratus_tetra_project_tile_isa2
+#elif STRATUS_ISA == 1
+#define OUTLINES_ISA stratus_tetra_outlines_isa1
+#define TILE_ISA stratus_tetra_project_tile_isa1
+#else
+#define OUTLINES_ISA stratus_tetra_outlines_isa0
+#define TILE_ISA stratus_tetra_project_tile_isa0
+#endif
+
+/* ---- outlines, a cell a lane */
+
+static vmask transparent(const stratus_tetra_projection* projection, vmask mask, vfloat lo, vfloat hi)
+{
+  const stratus_table* table = projection->frame->table;
+  const stratus_ray_cast_arguments* a = &projection->frame->arguments.table;
+  /* widened by more than interpolation can round, as in stratus_table_shows() */
+  const vfloat slack = v_set(1e-6f) * v_max(v_abs(lo), v_abs(hi));
+  const vint first = table_entry(a, lo - slack), last = table_entry(a, hi + slack);
+  return mask & vi_lt(last, v_gather_ints(table->next_shown, first, mask));
+}
+
+/* Smallest and largest pixel whose middle may lie within lo..hi, of -1..1. */
+static void pixel_span(vfloat lo, vfloat hi, int pixels, vint* first, vint* last)
+{
+  const vfloat half = v_set(0.5f * (float)pixels), shift = v_set(0.5f * (float)pixels - 0.5f), slack = v_set(1e-3f + 2e-6f * (float)pixels);
+  const vfloat low = v_clamp(v_fma(lo, half, shift) - slack, 0.0f, (float)pixels), high = v_fma(hi, half, shift) + slack;
+  *first = v_to_int(low);
+  *first = vi_select(v_lt(v_from_int(*first), low), *first + vi_set(1), *first);
+  *last = v_to_int(v_clamp(high, 0.0f, (float)(pixels - 1)));
+  *last = vi_select(v_lt(high, v_set(0.0f)), vi_set(-1), *last);
+}
+
+int64_t OUTLINES_ISA(const stratus_tetra_projection* projection, int64_t first, int64_t beyond)
+{
+  const stratus_tetra_frame* frame = projection->frame;
+  const vfloat middle = v_set(frame->arguments.middle), shear = v_set(frame->arguments.shear);
+  const stratus_tetra_rect nowhere = { 1, 0, 1, 0, 0.0f };
+  int64_t found = 0;
+  for (int64_t cell = first; cell < beyond; cell += WIDTH) {
+    const int64_t left = beyond - cell;
+    const vint lane = vi_min(vi_lanes(), vi_set(left < WIDTH ? (int)left - 1 : WIDTH - 1)), at = vi_set((int)cell) + lane;
+    vfloat lo[2], hi[2], near = v_set(LARGEST_FLOAT), far = v_set(-LARGEST_FLOAT), least = near, most = far, nearest = near;
+    vmask on;
+    int shown[WIDTH], covered[WIDTH], behind[WIDTH], x0[WIDTH], x1[WIDTH], y0[WIDTH], y1[WIDTH];
+    lo[0] = lo[1] = near;
+    hi[0] = hi[1] = far;
+    for (int l = 0; l < WIDTH; ++l) {
+      shown[l] = l < left ? projection->shown[cell + l] : 0;
+    }
+    on = vi_lt(vi_set(0), vi_load(shown));
+    if (!m_any(on)) {
+      for (int l = 0; l < WIDTH && l < left; ++l) {
+        projection->rects[cell + l] = nowhere;
+      }
+      continue;
+    }
+    for (int i = 0; i < 4; ++i) {
+      vfloat p[4];
+      gather_four(frame->points, v_gather_ints(projection->vertices, (at << vi_set(2)) + vi_set(i), on), on, p);
+      const vfloat w = v_fma(shear, p[2], middle);
+      near = v_min(near, p[2]);
+      far = v_max(far, p[2]);
+      nearest = v_min(nearest, w);
+      least = v_min(least, p[3]);
+      most = v_max(most, p[3]);
+      for (int side = 0; side < 2; ++side) {
+        const vfloat u = p[side] / w;
+        lo[side] = v_min(lo[side], u);
+        hi[side] = v_max(hi[side], u);
+      }
+    }
+    if (projection->cell_values) {
+      float value[WIDTH];
+      for (int l = 0; l < WIDTH; ++l) {
+        value[l] = shown[l] ? projection->cell_values[cell + l] : 0.0f;
+      }
+      least = most = v_load(value);
+    }
+    on = on & v_lt(v_set(projection->begin), far) & v_lt(near, v_set(projection->end));
+    if (!frame->arguments.maximum) {
+      on = m_andnot(on, transparent(projection, on, least, most));
+    }
+    const vmask crossing = on & v_lt(nearest, v_set(NEAREST_OUTLINE));
+    vint span[4];
+    pixel_span(lo[0], hi[0], frame->image.width, span, span + 1);
+    pixel_span(lo[1], hi[1], frame->image.height, span + 2, span + 3);
+    float nearest_z[WIDTH];
+    v_store(nearest_z, near);
+    vi_store(x0, span[0]);
+    vi_store(x1, span[1]);
+    vi_store(y0, span[2]);
+    vi_store(y1, span[3]);
+    vi_store(covered, vi_select(on, vi_set(1), vi_set(0)));
+    vi_store(behind, vi_select(crossing, vi_set(1), vi_set(0)));
+    for (int l = 0; l < WIDTH && l < left; ++l) {
+      stratus_tetra_rect rect = nowhere;
+      if (behind[l]) {
+        rect = stratus_tetra_outline_cut(projection, cell + l);
+      } else if (covered[l] && x0[l] <= x1[l] && y0[l] <= y1[l]) {
+        rect = (stratus_tetra_rect){ (uint16_t)x0[l], (uint16_t)x1[l], (uint16_t)y0[l], (uint16_t)y1[l], nearest_z[l] };
+      }
+      projection->rects[cell + l] = rect;
+      found += rect.x0 <= rect.x1;
+    }
+  }
+  return found;
+}
+
+/* ---- cells of a tile */
+
+/* The lanes of `mask` go to `place`, side by side; up to WIDTH places are written to. */
+INLINE void put_floats(float* place, vmask mask, vfloat value)
+{
+#if STRATUS_ISA == 2
+  _mm512_storeu_ps(place, _mm512_maskz_compress_ps(mask, value));
+#else
+  float lanes[WIDTH];
+  int on[WIDTH];
+  v_store(lanes, value);
+  vi_store(on, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int l = 0, n = 0; l < WIDTH; n += on[l++]) {
+    place[n] = lanes[l];
+  }
+#endif
+}
+
+INLINE void put_piece(project_tile* t, vmask mask, const ray_piece* piece, int place)
+{
+  put_floats(t->at + t->count, mask, piece->at);
+  put_floats(t->to + t->count, mask, piece->to);
+  put_floats(t->first + t->count, mask, piece->first);
+  put_floats(t->last + t->count, mask, piece->last);
+  put_floats((float*)(void*)(t->pixel + t->count), mask, v_from_bits(vi_lanes() + vi_set(place)));
+  t->count += m_count(mask);
+  if (t->count >= PIECES) {
+    flush(t);
+  }
+}
+
+/* Packets that a cell may cover. */
+typedef struct span {
+  int x0, x1, y0, y1;
+} span;
+
+static span span_of(const project_tile* t, const stratus_tetra_rect* rect)
+{
+  const int x0 = rect->x0 > t->x0 ? rect->x0 - t->x0 : 0, x1 = rect->x1 - t->x0 < t->width ? rect->x1 - t->x0 : t->width - 1;
+  const int y0 = rect->y0 > t->y0 ? rect->y0 - t->y0 : 0, y1 = rect->y1 - t->y0 < t->height ? rect->y1 - t->y0 : t->height - 1;
+  return (span){ x0 / PACKET_X, x1 / PACKET_X, y0 / PACKET_Y, y1 / PACKET_Y };
+}
+
+static void draw_any_cell(project_tile* t, uint32_t cell)
+{
+  const stratus_tetra_rect* rect = t->projection->rects + cell;
+  const span s = span_of(t, rect);
+  const vfloat near = v_set(rect->near);
+  cell_points c;
+  load_points(t->projection, cell, &c);
+  for (int row = s.y0; row <= s.y1; ++row) {
+    for (int column = s.x0; column <= s.x1; ++column) {
+      const int place = (row * ACROSS + column) * WIDTH;
+      const vmask live = v_lt(near, v_load(t->open + place));
+      ray_piece piece;
+      if (m_any(live)) {
+        const vmask met =
+          pass_cell(&c, v_load(t->us[column]), v_load(t->uw[column]), v_load(t->vs[row]), v_load(t->vw[row]), live, &piece);
+        if (m_any(met)) {
+          put_piece(t, met, &piece, place);
+        }
+      }
+    }
+  }
+}
+
+/* The loops are compiled for each number of planes that face the eye. */
+INLINE void draw_by_planes(project_tile* t, const one_cell* c, int fronts, const stratus_tetra_rect* rect)
+{
+  const span s = span_of(t, rect);
+  const vfloat nearest = v_set(rect->near);
+  for (int row = s.y0; row <= s.y1; ++row) {
+    const vfloat dy = v_load(t->dy[row]);
+    vfloat rows[4];
+    for (int k = 0; k < 4; ++k) {
+      rows[k] = v_fma(c->b[k], dy, c->c[k]);
+    }
+    for (int column = s.x0; column <= s.x1; ++column) {
+      const int place = (row * ACROSS + column) * WIDTH;
+      const vfloat dx = v_load(t->dx[column]);
+      vfloat near, far;
+      const vmask met = meet_planes(c, fronts, rows, dx, &near, &far) & v_lt(nearest, v_load(t->open + place));
+      if (m_any(met)) {
+        ray_piece piece;
+        cut_piece(c, dx, dy, near, far, &piece);
+        put_piece(t, met, &piece, place);
+      }
+    }
+  }
+}
+
+static void draw_cell(project_tile* t, const cell_planes* planes, int l, uint32_t cell)
+{
+  const stratus_tetra_rect* rect = t->projection->rects + cell;
+  one_cell c;
+  if (planes->fronts[l] == 0) {
+    draw_any_cell(t, cell);
+    return;
+  }
+  take_cell(t, planes, l, &c);
+  if (c.fronts == 1) {
+    draw_by_planes(t, &c, 1, rect);
+  } else if (c.fronts == 2) {
+    draw_by_planes(t, &c, 2, rect);
+  } else {
+    draw_by_planes(t, &c, 3, rect);
+  }
+}
+
+/* How far anything can still count: beyond what the farthest pixel shows, once all are opaque. */
+static float farthest_open(const project_tile* t)
+{
+  float farthest = -LARGEST_FLOAT;
+  for (int p = 0; p < PIXELS; ++p) {
+    farthest = fmaxf(farthest, t->open[p]);
+  }
+  return farthest;
+}
+
+static void draw_cells(project_tile* t, const uint32_t* cells, uint32_t count)
+{
+  cell_planes planes;
+  float open = LARGEST_FLOAT;
+  for (uint32_t i = 0; i < count;) {
+    int batch[WIDTH], found = 0;
+    if (t->alive == 0 && open >= LARGEST_FLOAT) {
+      open = farthest_open(t);
+    }
+    for (; found < WIDTH && i < count; ++i) {
+      batch[found] = (int)cells[i];
+      found += t->projection->rects[cells[i]].near < open;
+    }
+    for (int l = found; l < WIDTH; ++l) {
+      batch[l] = found ? batch[found - 1] : (int)cells[0];
+    }
+    if (found) {
+      find_planes(t, batch, &planes);
+    }
+    for (int l = 0; l < found; ++l) {
+      draw_cell(t, &planes, l, (uint32_t)batch[l]);
+    }
+  }
+  flush(t);
+}
+
+/* ---- what came out of order, again */
+
+#define KEPT 64 /* pieces a pixel, nearest first */
+
+typedef struct nearest_pieces {
+  int count[WIDTH], lost[WIDTH]; /* lost: there are more than KEPT */
+  float at[WIDTH][KEPT], to[WIDTH][KEPT], first[WIDTH][KEPT], last[WIDTH][KEPT];
+  uint32_t rank[WIDTH][KEPT];                       /* of the cell, for equal depths */
+  float after[WIDTH];
+  uint32_t after_rank[WIDTH]; /* only what comes behind these counts */
+} nearest_pieces;
+
+static bool comes_before(float at, uint32_t rank, float other, uint32_t other_rank)
+{
+  return at < other || (at <= other && rank < other_rank);
+}
+
+static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint32_t rank)
+{
+  if (n->count[l] == KEPT) {
+    n->lost[l] = 1;
+    if (!comes_before(piece[0], rank, n->at[l][KEPT - 1], n->rank[l][KEPT - 1])) {
+      return;
+    }
+    --n->count[l];
+  }
+  int i = n->count[l]++;
+  for (; i > 0 && comes_before(piece[0], rank, n->at[l][i - 1], n->rank[l][i - 1]); --i) {
+    n->at[l][i] = n->at[l][i - 1];
+    n->to[l][i] = n->to[l][i - 1];
+    n->first[l][i] = n->first[l][i - 1];
+    n->last[l][i] = n->last[l][i - 1];
+    n->rank[l][i] = n->rank[l][i - 1];
+  }
+  n->at[l][i] = piece[0];
+  n->to[l][i] = piece[1];
+  n->first[l][i] = piece[2];
+  n->last[l][i] = piece[3];
+  n->rank[l][i] = rank;
+}
+
+/* The nearest pieces of a packet's wrong pixels behind those that they have had. */
+static void collect_nearest(project_tile* t, int packet, const uint32_t* cells, uint32_t count, nearest_pieces* n)
+{
+  const int row = packet / ACROSS, column = packet % ACROSS;
+  int wrong[WIDTH];
+  for (int l = 0; l < WIDTH; ++l) {
+    wrong[l] = t->wrong[packet * WIDTH + l];
+  }
+  const vmask inside = vi_lt(vi_set(0), vi_load(wrong));
+  for (uint32_t i = 0; i < count; ++i) {
+    const span s = span_of(t, t->projection->rects + cells[i]);
+    float lanes[4][WIDTH];
+    int met[WIDTH];
+    cell_points c;
+    ray_piece piece;
+    if (column < s.x0 || column > s.x1 || row < s.y0 || row > s.y1) {
+      continue;
+    }
+    load_points(t->projection, cells[i], &c);
+    vi_store(met, vi_select(pass_cell(&c, v_load(t->us[column]), v_load(t->uw[column]), v_load(t->vs[row]), v_load(t->vw[row]), inside, &piece),
+                    vi_set(1), vi_set(0)));
+    v_store(lanes[0], piece.at);
+    v_store(lanes[1], piece.to);
+    v_store(lanes[2], piece.first);
+    v_store(lanes[3], piece.last);
+    for (int l = 0; l < WIDTH; ++l) {
+      const float values[4] = { lanes[0][l], lanes[1][l], lanes[2][l], lanes[3][l] };
+      if (met[l] && comes_before(n->after[l], n->after_rank[l], values[0], i + 1)) {
+        keep_piece(n, l, values, i + 1);
+      }
+    }
+  }
+}
+
+static void draw_again(project_tile* t, int packet, const uint32_t* cells, uint32_t count)
+{
+  nearest_pieces n;
+  bool more = true;
+  for (int l = 0; l < WIDTH; ++l) {
+    if (t->wrong[packet * WIDTH + l]) {
+      clear_pixel(t, packet * WIDTH + l, true);
+      ++t->counts->again;
+    }
+    n.after[l] = -LARGEST_FLOAT;
+    n.after_rank[l] = 0;
+  }
+  while (more) {
+    more = false;
+    memset(n.count, 0, sizeof n.count);
+    memset(n.lost, 0, sizeof n.lost);
+    collect_nearest(t, packet, cells, count, &n);
+    for (int l = 0; l < WIDTH; ++l) {
+      for (int i = 0; i < n.count[l]; ++i) {
+        t->at[t->count] = n.after[l] = n.at[l][i];
+        t->to[t->count] = n.to[l][i];
+        t->first[t->count] = n.first[l][i];
+        t->last[t->count] = n.last[l][i];
+        t->pixel[t->count++] = packet * WIDTH + l;
+        n.after_rank[l] = n.rank[l][i];
+        if (t->count >= PIECES) {
+          flush(t);
+        }
+      }
+      more = more || (n.lost[l] && t->transparency[packet * WIDTH + l] >= t->projection->frame->arguments.table.termination);
+    }
+    flush(t);
+  }
+}
+
+void TILE_ISA(const stratus_tetra_projection* projection, int tile, stratus_tetra_project_counts* counts)
+{
+  const uint32_t begin = projection->bin_begin[tile], count = projection->bin_begin[tile + 1] - begin;
+  project_tile t; /* cleared by what follows */
+  t.projection = projection;
+  t.counts = counts;
+  begin_tile(&t, tile);
+  draw_cells(&t, projection->bins + begin, count);
+  for (int packet = 0; packet < PIXELS / WIDTH; ++packet) {
+    if (memchr(t.wrong + packet * WIDTH, 1, WIDTH)) {
+      draw_again(&t, packet, projection->bins + begin, count);
+    }
+  }
+  store_tile(&t);
+}
