@@ -50,7 +50,9 @@ static void drop_table(stratus_tetra_caster* caster)
 
 static void drop_mesh(stratus_tetra_caster* caster)
 {
-  drop_table(caster); /* it spans the mesh's values */
+  drop_table(caster);                                            /* it spans the mesh's values */
+  stratus_tetra_device_destroy(caster->context, caster->device); /* it may read the mesh in place */
+  caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
   caster->projector = NULL;
   stratus_tetra_mesh_destroy(caster->mesh);
@@ -206,15 +208,30 @@ static void set_shading(
   a->color_slope = PIECES * table->color_slope;
   a->want_depth = image->depth != NULL;
   a->want_samples = image->samples != NULL;
+  a->want_bytes = image->rgba8 != NULL;
   a->world_step = 1.0f;
   arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
   a->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
 }
 
+/* On the device if there is one that can. */
+static stratus_status march_rays(
+  stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_counts* counts, stratus_tetra_report* report)
+{
+  const stratus_tetra_device_source source = { caster->mesh_builds, caster->table_builds, caster->view.cell_count,
+    caster->view.point_count };
+  bool drawn = false;
+  if (caster->context->device) {
+    TRY(stratus_tetra_march_device(
+      caster->context, &caster->device, &source, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms, &drawn));
+  }
+  return drawn ? STRATUS_OK : stratus_tetra_march(caster->context, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms);
+}
+
 static stratus_status march(stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_report* report)
 {
   stratus_tetra_counts counts = { 0 };
-  TRY(stratus_tetra_march(caster->context, frame, &caster->buffers, &counts, &report->entries_ms, &report->march_ms));
+  TRY(march_rays(caster, frame, &counts, report));
   report->rays = counts.rays;
   report->entries = counts.entries;
   report->segments = counts.segments;

@@ -5,6 +5,7 @@
 
 #include "internal.h"
 #include "tetra_march.h"
+#include "tetra_march_device.h"
 #include "tetra_project.h"
 
 /* What rays read of a mesh, made once for all views. Only shown cells are linked to each other. */
@@ -34,6 +35,7 @@ struct stratus_tetra_caster {
   stratus_tetra_mode mode; /* that the table is for */
   stratus_table* table;
   int32_t* march_sums; /* the table's, four an entry */
+  stratus_tetra_device* device; /* copies on the OpenCL device, NULL on the host */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
 };
