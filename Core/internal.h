@@ -107,6 +107,8 @@ typedef struct stratus_table {
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
   stratus_sampling sampling, double sample_distance, stratus_table** table);
 void stratus_table_destroy(stratus_table* table);
+/* The function at one value: colour, not multiplied by it, and opacity. */
+void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4]);
 
 static inline int stratus_table_entry(const stratus_table* table, float value)
 {
@@ -134,6 +136,8 @@ struct stratus_occupancy {
 
 /* With pre-integration a block with gaps counts as occupied if anything shows at all: two blocks whose shared layer is not finite may lie on
  * both sides of a peak. (Blocks without gaps share finite voxels, so a cube of empty ones has one connected, transparent hull.) */
+/* What is occupied in either; of the same blocks. */
+void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other);
 stratus_status stratus_occupancy_build(
   stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy** occupancy);
 

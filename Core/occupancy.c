@@ -156,6 +156,15 @@ cleanup:
   return status;
 }
 
+void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other)
+{
+  const int64_t blocks = occupancy->blocks[0] * occupancy->blocks[1] * occupancy->blocks[2];
+  for (int64_t b = 0; b < blocks; b++) {
+    occupancy->occupied[b] |= other->occupied[b];
+  }
+  test_rows(occupancy->context, NULL, NULL, occupancy); /* counts and bounds */
+}
+
 stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges, const stratus_transfer* transfer,
   stratus_sampling sampling, stratus_occupancy** out)
 {

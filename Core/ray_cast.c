@@ -43,13 +43,15 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_
 #if STRATUS_HAVE_X86_ISAS
   static tile_of* const light[3] = { stratus_ray_cast_tile_isa0, stratus_ray_cast_tile_isa1, stratus_ray_cast_tile_isa2 };
   static tile_of* const modes[3] = { stratus_ray_modes_tile_isa0, stratus_ray_modes_tile_isa1, stratus_ray_modes_tile_isa2 };
+  static tile_of* const looks[3] = { stratus_ray_looks_tile_isa0, stratus_ray_looks_tile_isa1, stratus_ray_looks_tile_isa2 };
 #else
   static tile_of* const light[1] = { stratus_ray_cast_tile_isa0 };
   static tile_of* const modes[1] = { stratus_ray_modes_tile_isa0 };
+  static tile_of* const looks[1] = { stratus_ray_looks_tile_isa0 };
 #endif
   const int best = stratus_ray_cast_best_isa();
   isa = isa < best ? isa : best;
-  return (variant <= STRATUS_RAY_PREINTEGRATED ? light : modes)[isa](type, variant);
+  return (variant <= STRATUS_RAY_PREINTEGRATED ? light : variant < STRATUS_RAY_LOOKS_MIDPOINT ? modes : looks)[isa](type, variant);
 }
 
 /* rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */

@@ -12,7 +12,10 @@ typedef enum stratus_ray_variant {
   STRATUS_RAY_MIDPOINT,
   STRATUS_RAY_PREINTEGRATED,
   STRATUS_RAY_BEST, /* maxima and minima */
-  STRATUS_RAY_ADDED /* means and sums */
+  STRATUS_RAY_ADDED, /* means and sums */
+  STRATUS_RAY_CONTOURS, /* isosurfaces */
+  STRATUS_RAY_LOOKS_MIDPOINT, /* samples that are lit, .. */
+  STRATUS_RAY_LOOKS_PREINTEGRATED
 } stratus_ray_variant;
 
 typedef struct stratus_ray_counts {
@@ -49,8 +52,14 @@ const char* stratus_ray_cast_isa(void);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_surface_tile_isa0(int type);
+stratus_ray_cast_tile* stratus_ray_surface_tile_isa1(int type);
+stratus_ray_cast_tile* stratus_ray_surface_tile_isa2(int type);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_looks_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_looks_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_looks_tile_isa2(int type, stratus_ray_variant variant);
 
 #endif

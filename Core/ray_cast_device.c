@@ -57,34 +57,39 @@ static stratus_status replace(stratus_ray_caster* caster, buffer_name name, cons
   return STRATUS_OK;
 }
 
-static size_t value_bytes(const stratus_volume* volume)
+static size_t value_bytes(const stratus_ray_caster* caster)
 {
+  const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
-  return ((values - 1) * (size_t)volume->value_stride + 1) * stratus_type_size(volume->type);
+  const size_t components = (size_t)stratus_volume_components(volume);
+  if (volume->values == caster->fetched) { /* one component after the other */
+    return values * components * sizeof(float);
+  }
+  return ((values - 1) * (size_t)volume->value_stride + components) * stratus_type_size(volume->type);
 }
 
 static size_t hidden_bytes(const stratus_ray_caster* caster)
 {
-  size_t bytes = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const size_t n = (size_t)caster->volume.dimensions[axis];
-    bytes *= caster->hidden_by_value ? n : n > 1 ? n - 1 : 1;
-  }
-  return bytes;
+  const int64_t* n = caster->volume.dimensions;
+  const size_t values = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+  return (caster->hides & HIDDEN_BY_MASK ? values : 0) +
+    (caster->hides & HIDDEN_CELLS ? stratus_ray_hidden_cells(&caster->volume, caster->hidden_by_value) : 0);
 }
 
 static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame)
 {
   stratus_ray_device* d = caster->device;
   if (d->data_serial != caster->data_serial) {
-    TRY(replace(caster, VALUES, frame->values, value_bytes(&caster->traversed)));
+    TRY(replace(caster, VALUES, frame->values, value_bytes(caster)));
     TRY(replace(caster, HIDDEN, frame->hidden, frame->hidden ? hidden_bytes(caster) : 0));
     d->data_serial = caster->data_serial;
   }
-  if (d->table_serial != caster->table_serial) {
+  const uint64_t table_serial = 2 * caster->table_serial + caster->looks; /* with looks it is another table */
+  if (d->table_serial != table_serial) {
     const size_t entries = (size_t)caster->table->size;
-    TRY(replace(caster, TABLE, frame->table, caster->table->rgba ? 8 * entries * sizeof(float) : 4 * (entries + 1) * sizeof(int32_t)));
-    d->table_serial = caster->table_serial;
+    const size_t bytes = caster->table->rgba ? 8 * entries * sizeof(float) : 4 * (entries + 1) * sizeof(int32_t);
+    TRY(replace(caster, TABLE, frame->table, caster->looks ? caster->look_tables.bytes : bytes));
+    d->table_serial = table_serial;
   }
   const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* without a map, none may stay borrowed */
   if (!d->buffers[MAP] || d->map_serial != map_serial) {
@@ -146,7 +151,7 @@ static const char* obstacle(const stratus_ray_caster* caster)
 {
   const stratus_device* device = caster->context->device;
   const size_t largest = stratus_device_largest_allocation(device);
-  if (value_bytes(&caster->traversed) > largest) {
+  if (value_bytes(caster) > largest) {
     return "the volume is larger than the device's largest allocation";
   }
   if (caster->map && caster->map->bytes_size > largest) {
@@ -161,10 +166,11 @@ static const char* obstacle(const stratus_ray_caster* caster)
 static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_ray_variant variant, bool packets, cl_kernel* kernel)
 {
   stratus_context* context = caster->context;
-  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME, [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM };
+  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME, [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM, [STRATUS_RAY_CONTOURS] = STRATUS_RAY_SURFACE,
+    [STRATUS_RAY_LOOKS_MIDPOINT] = STRATUS_RAY_LOOKS, [STRATUS_RAY_LOOKS_PREINTEGRATED] = STRATUS_RAY_LOOKS };
   char defines[192];
   int used = snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
-    type, variant == STRATUS_RAY_PREINTEGRATED, packets ? 16 : 1, TILE,
+    type, variant == STRATUS_RAY_PREINTEGRATED || variant == STRATUS_RAY_LOOKS_PREINTEGRATED, packets ? 16 : 1, TILE,
     stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);

@@ -2,12 +2,13 @@
  * One type's tile of rays on the host: included with STRATUS_TYPE, STRATUS_PREINTEGRATED, STRATUS_RAY_MODE (none: light) and RAY_NAME set. */
 #include "../kernels/ray_cast.h"
 
-static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k)
+static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
   if (packet_outside(frame->arguments, x, y)) {
     packet_nothing(k);
+    crop->all = m_none();
   } else {
-    RAY_NAME(ray_load)(frame->arguments, frame->opaque_depth, x, y, k);
+    RAY_NAME(ray_load)(frame->arguments, frame->opaque_depth, x, y, k, crop);
   }
 }
 
@@ -15,17 +16,24 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
 {
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
+  const int pieces = a->crop_regions ? CROP_PIECES : 1;
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
       stratus_packet k[PACKETS_TOGETHER];
+      stratus_crop crop[PACKETS_TOGETHER];
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
-        RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i]); /* beyond the picture: no live ray, nothing stored */
+        RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
       }
+      for (int piece = 0; piece < pieces; ++piece) {
+        for (int i = 0; a->crop_regions && i < PACKETS_TOGETHER; ++i) {
+          crop_enter(a, &crop[i], piece, &k[i]);
+        }
 #if PACKETS_TOGETHER == 2
-      RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0], &k[1]);
+        RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0], &k[1]);
 #else
-      RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0]);
+        RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0]);
 #endif
+      }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if defined(STRATUS_RAY_MODE)
         RAY_NAME(ray_finish)(a, frame->table, &k[i]);

@@ -31,7 +31,8 @@ stratus_ray_cast_options stratus_ray_cast_options_default(void)
 {
   return (stratus_ray_cast_options){ .termination = 0.999,
     .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 },
-    .average_range = { -INFINITY, INFINITY } };
+    .average_range = { -INFINITY, INFINITY },
+    .crop_regions = STRATUS_CROP_INSIDE };
 }
 
 stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** out)
@@ -98,6 +99,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     caster->hidden = NULL;
     drop_fetched(caster);
     stratus_first_hit_release(caster);
+    stratus_ray_looks_release(caster);
     stratus_ray_device_destroy(caster);
   }
 }
@@ -118,6 +120,7 @@ static bool same_data(const stratus_ray_caster* caster, const stratus_volume* vo
   const stratus_volume* old = &caster->volume;
   return caster->ranges && caster->ranges->block_size == block_size && old->values == volume->values && old->type == volume->type &&
     memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
+    stratus_volume_components(old) == stratus_volume_components(volume) &&
     old->cell_centered == volume->cell_centered && old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts &&
     old->revision == volume->revision;
 }
@@ -187,28 +190,43 @@ static stratus_status update_fetched(stratus_ray_caster* caster)
 {
   const stratus_volume* volume = &caster->volume;
   const int type = stratus_ray_fetch_type(volume);
+  const int components = stratus_volume_components(volume);
   const bool slow = type < 0 || type == STRATUS_FLOAT64;
+  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* each component has an offset of its own */
   caster->traversed = *volume;
-  if (!slow || !is_regular(volume)) {
+  if (!slow || (!is_regular(volume) && !must)) {
     return STRATUS_OK;
   }
   const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
+  const bool fits = slice * slices <= FETCHED_BYTES_MOST / sizeof(float) / (size_t)components;
+  if (must && !fits) {
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d components of %zu values each of 32 bits and more: together at most %zu values",
+      components, slice * slices, FETCHED_BYTES_MOST / sizeof(float));
+  }
   if (!caster->fetched) {
-    if (caster->samples_since_data < slice * slices || slice * slices > FETCHED_BYTES_MOST / sizeof(float)) {
+    if (!must && (caster->samples_since_data < slice * slices || !fits)) {
       return STRATUS_OK;
     }
     void* memory = NULL;
-    if (stratus_allocate(caster->context, slice * slices, sizeof(float), &memory) != STRATUS_OK) {
+    const stratus_status status = stratus_allocate(caster->context, slice * slices * (size_t)components, sizeof(float), &memory);
+    if (status != STRATUS_OK && must) {
+      return status;
+    }
+    if (status != STRATUS_OK) {
       stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
       caster->samples_since_data = 0; /* tried again when as many more have been read */
       return STRATUS_OK;
     }
     float* fetched = memory;
-    const double bias = caster->ranges->bias;
+    for (int c = 0; c < components; ++c) {
+      const stratus_volume view = stratus_volume_component(volume, c);
+      const double bias = stratus_volume_bias(&view);
+      float* plane = fetched + (size_t)c * slice * slices;
 #pragma omp parallel for num_threads(caster->context->threads)
-    for (size_t k = 0; k < slices; ++k) {
-      for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
-        fetched[i] = stratus_volume_fetch(volume, bias, i);
+      for (size_t k = 0; k < slices; ++k) {
+        for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
+          plane[i] = stratus_volume_fetch(&view, bias, i);
+        }
       }
     }
     caster->fetched = fetched;
@@ -226,11 +244,15 @@ static stratus_status update_ranges(
   const int block_size = chosen_block_size(volume, options->block_size);
   const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
   const bool same = same_data(caster, volume, block_size);
-  if (!same || caster->hidden_by_value != by_value) {
+  if (!same || caster->hidden_by_value != by_value || !stratus_ray_mask_same(caster, options)) {
     const double start = stratus_now_ms();
     stratus_value_range* ranges = NULL;
     uint8_t* hidden = NULL;
+    int hides = 0;
     stratus_status status = make_hidden(caster->context, volume, by_value, &hidden);
+    if (status == STRATUS_OK) {
+      status = stratus_ray_mask_join(caster->context, volume, options->mask, by_value, &hidden, &hides);
+    }
     if (status == STRATUS_OK && !same) {
       status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
     }
@@ -241,6 +263,9 @@ static stratus_status update_ranges(
     stratus_release(caster->context, caster->hidden);
     caster->hidden = hidden;
     caster->hidden_by_value = by_value;
+    caster->hides = hides;
+    caster->mask = options->mask;
+    caster->mask_revision = options->mask_revision;
     stratus_ray_tree_dropped(caster);
     ++caster->data_serial;
     if (!same) {
@@ -256,28 +281,55 @@ static stratus_status update_ranges(
   return update_fetched(caster);
 }
 
-static bool same_transfer(const stratus_ray_caster* caster, const stratus_transfer* transfer)
+static bool same_function(const stratus_transfer* old, const stratus_transfer* transfer)
 {
-  const stratus_transfer* old = &caster->transfer;
-  return caster->points && old->opacity_count == transfer->opacity_count && old->color_count == transfer->color_count &&
-    old->clamp == transfer->clamp && old->unit_distance == transfer->unit_distance &&
-    memcmp(old->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0 &&
-    memcmp(old->color, transfer->color, 4 * sizeof(double) * transfer->color_count) == 0;
+  return old->opacity_count == transfer->opacity_count && old->color_count == transfer->color_count &&
+    old->gradient_count == transfer->gradient_count && old->clamp == transfer->clamp && old->unit_distance == transfer->unit_distance &&
+    old->weight == transfer->weight && memcmp(old->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0 &&
+    memcmp(old->color, transfer->color, 4 * sizeof(double) * transfer->color_count) == 0 &&
+    (transfer->gradient_count == 0 || memcmp(old->gradient, transfer->gradient, 2 * sizeof(double) * transfer->gradient_count) == 0);
 }
 
-static stratus_status keep_transfer(stratus_ray_caster* caster, const stratus_transfer* transfer)
+static bool same_transfer(const stratus_ray_caster* caster, const stratus_transfer* transfer, int count, bool dependent)
 {
-  const size_t opacity = 2 * transfer->opacity_count, color = 4 * transfer->color_count;
+  bool same = caster->points && caster->transfer_count == count && caster->dependent == dependent;
+  for (int i = 0; same && i < count; ++i) {
+    same = same_function(caster->transfers + i, transfer + i);
+  }
+  return same;
+}
+
+static const double* keep_points(double** end, const double* points, size_t count)
+{
+  double* kept = *end;
+  if (count > 0) {
+    memcpy(kept, points, count * sizeof *points);
+  }
+  *end += count;
+  return kept;
+}
+
+static stratus_status keep_transfer(stratus_ray_caster* caster, const stratus_transfer* transfer, int count, bool dependent)
+{
+  size_t numbers = 0;
   void* memory = NULL;
-  TRY(stratus_allocate(caster->context, opacity + color, sizeof(double), &memory));
-  double* points = memory;
-  memcpy(points, transfer->opacity, opacity * sizeof *points);
-  memcpy(points + opacity, transfer->color, color * sizeof *points);
+  for (int i = 0; i < count; ++i) {
+    numbers += 2 * transfer[i].opacity_count + 4 * transfer[i].color_count + 2 * transfer[i].gradient_count;
+  }
+  TRY(stratus_allocate(caster->context, numbers, sizeof(double), &memory));
   drop_transfer(caster);
-  caster->points = points;
-  caster->transfer = *transfer;
-  caster->transfer.opacity = points;
-  caster->transfer.color = points + opacity;
+  caster->points = memory;
+  double* end = memory;
+  for (int i = 0; i < count; ++i) {
+    stratus_transfer* kept = &caster->transfers[i];
+    *kept = transfer[i];
+    kept->opacity = keep_points(&end, transfer[i].opacity, 2 * transfer[i].opacity_count);
+    kept->color = keep_points(&end, transfer[i].color, 4 * transfer[i].color_count);
+    kept->gradient = keep_points(&end, transfer[i].gradient, 2 * transfer[i].gradient_count);
+  }
+  caster->transfer = caster->transfers[0];
+  caster->transfer_count = count;
+  caster->dependent = dependent;
   caster->lookups_since_edit = 0;
   return STRATUS_OK;
 }
@@ -287,17 +339,20 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   const stratus_ray_cast_options* options, double* ms)
 {
   const double start = stratus_now_ms();
-  const bool same = same_transfer(caster, transfer);
+  const int media = stratus_ray_looks_media(volume, options);
+  const bool same = same_transfer(caster, transfer, media, options->dependent != 0);
   if (!same) {
-    TRY(keep_transfer(caster, transfer));
+    TRY(keep_transfer(caster, transfer, media, options->dependent != 0));
   }
   const double voxel = stratus_ray_voxel_length(volume);
-  const bool same_mode = stratus_ray_modes_same(&caster->shown, options);
+  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  const bool same_mode = stratus_ray_modes_same(&caster->shown, &shown);
   if (!same || !same_mode || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
     caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
     stratus_ray_choose(
       caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
     stratus_ray_modes_choose(options, voxel, &caster->choice);
+    stratus_ray_looks_choose(caster, voxel, transfer, options);
     caster->voxel_length = voxel;
     caster->interpolation = options->interpolation;
     caster->wanted_sampling = options->sampling;
@@ -313,9 +368,9 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   stratus_table* table = NULL;
   TRY(stratus_table_create(caster->context, &caster->transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
     caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
-  stratus_ray_modes_mark(options, ranges->bias, table);
-  caster->shown = stratus_ray_modes_shown(options);
-  if (!same_kind || !same_mode || caster->table->shown != table->shown) {
+  stratus_ray_modes_mark(&shown, &caster->transfer, ranges->bias, table);
+  caster->shown = shown;
+  if (!same_kind || !same_mode || caster->table->shown != table->shown || caster->look_tables.components > 1) {
     drop_occupancy(caster);
   }
   stratus_table_destroy(caster->table);
@@ -330,8 +385,11 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
 {
+  caster->looks = stratus_ray_looks_wanted(volume, transfer, options);
   TRY(update_ranges(caster, volume, options, &report->range_ms));
-  return update_table(caster, volume, transfer, options, &report->table_ms);
+  TRY(stratus_ray_looks_ranges(caster));
+  TRY(update_table(caster, volume, transfer, options, &report->table_ms));
+  return caster->looks ? stratus_ray_looks_tables(caster, caster->dependent) : STRATUS_OK;
 }
 
 /* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit. */
@@ -403,7 +461,11 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
   }
   if (!caster->occupancy) {
     const double start = stratus_now_ms();
-    TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
+    if (caster->look_tables.components > 1) {
+      TRY(stratus_ray_looks_occupancy(caster));
+    } else {
+      TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
+    }
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }

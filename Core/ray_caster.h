@@ -22,7 +22,24 @@ typedef struct stratus_ray_choice {
 typedef struct stratus_ray_shown {
   stratus_mode mode;
   double average_range[2];
+  int contour_count;
+  double contours[STRATUS_CONTOURS_MAX];
 } stratus_ray_shown;
+
+/* Steps of a gradient opacity function, between which it is taken as linear. */
+#define STRATUS_LOOK_FACTORS 4096
+
+/* What samples that are more than one value's colour and opacity are looked up in: ray_looks_table.c. */
+typedef struct stratus_ray_look_tables {
+  int components;                 /* of the volume */
+  stratus_value_range* ranges[4]; /* of components 1 .. */
+  stratus_table* tables[4];       /* of several components: where each has one */
+  void* memory;                   /* all tables, and gradient opacity, as rays read them */
+  size_t bytes;
+  int first[4], factor_first[4]; /* in floats; factor_first -1: none */
+  float factor_scale[4];         /* entries per magnitude, which is in parts of the value range */
+  uint64_t range_builds, table_builds; /* the caster's, that they belong to */
+} stratus_ray_look_tables;
 
 struct stratus_ray_caster {
   stratus_context* context;
@@ -35,8 +52,13 @@ struct stratus_ray_caster {
   stratus_value_range* ranges;
   uint8_t* hidden; /* in the form that traversal reads, or NULL */
   bool hidden_by_value;
-  double* points; /* the transfer function's, copied: opacity, then colour */
-  stratus_transfer transfer;
+  int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK: what `hidden` holds */
+  const uint8_t* mask; /* that it was made from, or NULL */
+  uint64_t mask_revision;
+  double* points; /* the transfer functions', copied: opacity, then colour, then gradient opacity, of each */
+  stratus_transfer transfer;     /* the first, or only, .. */
+  stratus_transfer transfers[4]; /* .. of these */
+  int transfer_count;
   stratus_interpolation interpolation; /* with the next three: what the choice was made for */
   stratus_sampling wanted_sampling;
   double wanted_distance, voxel_length;
@@ -44,6 +66,8 @@ struct stratus_ray_caster {
   stratus_table* table;
   double table_distance;   /* the sample distance that the table is for .. */
   stratus_ray_shown shown; /* .. and the values */
+  bool looks, dependent; /* of the render at hand: stratus_ray_looks_wanted() */
+  stratus_ray_look_tables look_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
   int tree_serves;      /* whether an offered tree may stand in for a map: 1, 0, or -1 where that is to be asked */
@@ -79,17 +103,45 @@ void stratus_ray_tree_dropped(stratus_ray_caster* caster); /* another tree is of
 
 /* ray_modes.c: what other modes than composite ask for. */
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options);
+/* The options' part that decides it, with what the mode does not use left out. */
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options);
-bool stratus_ray_modes_same(const stratus_ray_shown* shown, const stratus_ray_cast_options* options);
+bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown* b);
 void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice);
 /* The distance that the table's opacity is taken over: alpha of a mode that takes it as it is, not per length, is that over one unit. */
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
 /* Marks the entries that the mode can't do without as those that show. */
-void stratus_ray_modes_mark(const stratus_ray_cast_options* options, double bias, stratus_table* table);
+void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table);
 void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster);
 /* Rays show something wherever they meet the bounds, whatever the values. */
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options);
+
+/* ray_looks.c: samples that are more than their value's colour and opacity. */
+stratus_status stratus_ray_looks_check(stratus_context* context, const stratus_ray_cast_options* options);
+bool stratus_ray_looks_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
+
+/* ray_looks_table.c */
+int stratus_volume_components(const stratus_volume* volume);
+stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* as a volume of its own */
+int stratus_ray_looks_media(const stratus_volume* volume, const stratus_ray_cast_options* options); /* transfer functions that the render takes */
+stratus_status stratus_ray_looks_check_volume(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster); /* of the components beside the first */
+void stratus_ray_looks_choose(
+  stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent); /* after caster->table */
+bool stratus_ray_looks_show(const stratus_ray_caster* caster); /* anything at all */
+stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
+void stratus_ray_looks_release(stratus_ray_caster* caster);
+
+/* ray_mask.c: whether the mask is the one that caster->hidden was made from; and one put before the bytes of cells (NULL: none are hidden). */
+bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options);
+stratus_status stratus_ray_mask_join(
+  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool by_value, uint8_t** hidden, int* hides);
+/* Bytes a cell, as traversal reads them. */
+size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value);
 
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,

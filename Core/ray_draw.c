@@ -46,9 +46,9 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
 
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_MODE_ADDITIVE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+  if ((unsigned)options->mode > STRATUS_MODE_ISOSURFACE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
-      STRATUS_MODE_ADDITIVE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+      STRATUS_MODE_ISOSURFACE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
   if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
@@ -69,6 +69,7 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
   }
   TRY(stratus_ray_modes_check(context, options));
+  TRY(stratus_ray_looks_check(context, options));
   return check_crop(context, options);
 }
 
@@ -92,12 +93,14 @@ static void clear_image(const stratus_image* image)
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
   bool with_map, stratus_ray_counts* counts, double* upload_ms)
 {
-  const stratus_ray_variant variant = stratus_ray_modes_variant(caster);
+  const stratus_ray_variant light = caster->table->sums ? STRATUS_RAY_LOOKS_PREINTEGRATED : STRATUS_RAY_LOOKS_MIDPOINT;
+  const stratus_ray_variant variant = caster->looks ? light : stratus_ray_modes_variant(caster);
+  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
   const stratus_ray_cast_frame frame = { .arguments = arguments,
     .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
-    .table = variant == STRATUS_RAY_PREINTEGRATED ? (const void*)caster->table->sums : (const void*)caster->table->rgba,
+    .table = caster->looks ? caster->look_tables.memory : table,
     .opaque_depth = image->opaque_depth,
     .rgba = image->rgba,
     .depth = image->depth,
@@ -195,13 +198,14 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   const bool covers = stratus_ray_modes_covers(options);
   const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   const double start = stratus_now_ms();
-  if (empty || (caster->table->shown == 0 && !covers)) {
+  if (empty || (!stratus_ray_looks_show(caster) && !covers)) {
     clear_image(image);
     memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->occupancy->count > 0;
-    arguments.has_hidden = caster->hidden != NULL;
+    arguments.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
+    stratus_ray_looks_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
@@ -234,6 +238,7 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   options = options ? options : &defaults;
   TRY(stratus_volume_check(caster->context, volume));
   TRY(stratus_transfer_check(caster->context, transfer));
+  TRY(stratus_ray_looks_check_volume(caster->context, volume, transfer, options));
   TRY(check_options(caster->context, options));
   TRY(check_image(caster->context, image));
   mine.window[1] = image->width;

@@ -115,7 +115,7 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
   for (int axis = 0; axis < 3; ++axis) {
     const double last = (double)(volume->dimensions[axis] - 1), margin = fmax(BOUNDS_MARGIN, last * FLOAT_COARSENESS);
     double lo = volume->cell_centered ? -0.5 : margin, hi = volume->cell_centered ? last + 0.5 : last - margin;
-    if (options->crop) {
+    if (options->crop && options->crop_regions == STRATUS_CROP_INSIDE) {
       const double* bounds = options->crop_bounds + 2 * axis;
       lo = fmax(lo, (bounds[0] - volume->origin[axis]) / volume->spacing[axis] - half);
       hi = fmin(hi, (bounds[1] - volume->origin[axis]) / volume->spacing[axis] - half);
@@ -128,6 +128,21 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
     a->last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`: the cell there, and its block, must exist */
   }
   return true;
+}
+
+/* Any other regions than the inside: false if none is shown. */
+static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
+{
+  const double half = volume->cell_centered ? 0.5 : 0.0;
+  if (!options->crop || options->crop_regions == STRATUS_CROP_INSIDE || options->crop_regions == STRATUS_CROP_ALL) {
+    return true;
+  }
+  a->crop_regions = (int)options->crop_regions;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    a->crop_plane[axis][side % 2] = stratus_pair_of((options->crop_bounds[side] - volume->origin[axis]) / volume->spacing[axis] - half);
+  }
+  return a->crop_regions != 0;
 }
 
 static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* a)
@@ -244,7 +259,9 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   memcpy(&bits, &bias, sizeof bits);
   a->bias_low = (int)(uint32_t)bits;
   a->bias_high = (int)(uint32_t)(bits >> 32);
-  *empty = !set_box(volume, options, a) || !set_piece(volume, a);
+  a->jitter = options->jitter != 0;
+  a->seed = (int)options->jitter_seed;
+  *empty = !set_box(volume, options, a) || !set_piece(volume, a) || !set_regions(volume, options, a);
   return STRATUS_OK;
 }
 

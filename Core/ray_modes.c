@@ -7,7 +7,7 @@
 
 const char* stratus_mode_name(stratus_mode mode)
 {
-  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive" };
+  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -21,24 +21,74 @@ static bool is_sum(stratus_mode mode)
   return mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE;
 }
 
+static stratus_status check_contours(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  if (options->contour_count < 1 || options->contour_count > STRATUS_CONTOURS_MAX) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "%d contour values, an isosurface needs 1..%d", options->contour_count, STRATUS_CONTOURS_MAX);
+  }
+  for (int n = 0; n < options->contour_count; ++n) {
+    if (!isfinite(options->contours[n])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "contour %d has value %g, must be finite", n, options->contours[n]);
+    }
+  }
+  if (options->interpolation == STRATUS_INTERPOLATION_NEAREST) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "isosurfaces of values taken as they are (nearest) are not supported, only linear interpolation is");
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
   const double* range = options->average_range;
   if (!(range[0] <= range[1])) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "average range %g..%g is reversed or no number", range[0], range[1]);
   }
-  return STRATUS_OK;
+  if (options->crop_regions > STRATUS_CROP_ALL) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "crop regions 0x%x, must be 0..0x%x", (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_ALL);
+  }
+  if (options->mode == STRATUS_MODE_FIRST_HIT && (options->mask || (options->crop && options->crop_regions != STRATUS_CROP_INSIDE))) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "first hits with %s are not supported",
+      options->mask ? "a mask" : "crop regions other than the inside");
+  }
+  return options->mode == STRATUS_MODE_ISOSURFACE ? check_contours(context, options) : STRATUS_OK;
 }
 
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options)
 {
-  return (stratus_ray_shown){ .mode = options->mode, .average_range = { options->average_range[0], options->average_range[1] } };
+  stratus_ray_shown shown = { .mode = options->mode };
+  if (options->mode == STRATUS_MODE_AVERAGE) {
+    shown.average_range[0] = options->average_range[0];
+    shown.average_range[1] = options->average_range[1];
+  }
+  for (int n = 0; options->mode == STRATUS_MODE_ISOSURFACE && n < options->contour_count; ++n) { /* by rising values, each once */
+    const double contour = options->contours[n];
+    int at = shown.contour_count;
+    while (at > 0 && shown.contours[at - 1] >= contour) {
+      --at;
+    }
+    if (at < shown.contour_count && shown.contours[at] == contour) {
+      continue;
+    }
+    for (int moved = shown.contour_count; moved > at; --moved) {
+      shown.contours[moved] = shown.contours[moved - 1];
+    }
+    shown.contours[at] = contour;
+    ++shown.contour_count;
+  }
+  return shown;
 }
 
-bool stratus_ray_modes_same(const stratus_ray_shown* shown, const stratus_ray_cast_options* options)
+bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown* b)
 {
-  const bool same_range = shown->average_range[0] == options->average_range[0] && shown->average_range[1] == options->average_range[1];
-  return shown->mode == options->mode && (same_range || options->mode != STRATUS_MODE_AVERAGE);
+  bool same = a->mode == b->mode && a->average_range[0] == b->average_range[0] && a->average_range[1] == b->average_range[1] &&
+    a->contour_count == b->contour_count;
+  for (int n = 0; same && n < a->contour_count; ++n) {
+    same = a->contours[n] == b->contours[n];
+  }
+  return same;
 }
 
 void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice)
@@ -49,11 +99,14 @@ void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double vo
   if (is_extreme(options->mode) && !(options->sample_distance > 0.0)) {
     choice->sample_distance = EXTREME_STEP * voxel;
   }
+  if (options->mode == STRATUS_MODE_ISOSURFACE) {
+    choice->sample_distance = voxel; /* only a unit of length: rays go from cell to cell */
+  }
 }
 
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance)
 {
-  return is_extreme(options->mode) || is_sum(options->mode) ? transfer->unit_distance : sample_distance;
+  return options->mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
 }
 
 /* Entries first..last show, and no others. */
@@ -66,14 +119,34 @@ static void show_only(stratus_table* table, int first, int last)
   }
 }
 
-void stratus_ray_modes_mark(const stratus_ray_cast_options* options, double bias, stratus_table* table)
+/* Entries of contours that are not transparent. A block whose range holds a contour has its entry between those of the range's ends. */
+static void show_contours(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table)
 {
-  const double* range = options->average_range;
-  if (options->mode == STRATUS_MODE_MAXIMUM) { /* a maximum below all that shows is as good as none */
+  show_only(table, table->size, -1);
+  for (int n = shown->contour_count - 1; n >= 0; --n) {
+    const int entry = stratus_table_entry(table, (float)(shown->contours[n] - bias));
+    double rgba[4];
+    stratus_transfer_at(transfer, shown->contours[n], rgba);
+    if (rgba[3] > 0.0) {
+      for (int e = entry; e >= 0; --e) {
+        table->next_shown[e] = entry;
+      }
+      table->last_shown = table->last_shown < entry ? entry : table->last_shown;
+      ++table->shown;
+    }
+  }
+}
+
+void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table)
+{
+  const double* range = shown->average_range;
+  if (shown->mode == STRATUS_MODE_ISOSURFACE) {
+    show_contours(shown, transfer, bias, table);
+  } else if (shown->mode == STRATUS_MODE_MAXIMUM) { /* a maximum below all that shows is as good as none */
     show_only(table, table->next_shown[0], table->size - 1);
-  } else if (options->mode == STRATUS_MODE_MINIMUM) {
+  } else if (shown->mode == STRATUS_MODE_MINIMUM) {
     show_only(table, 0, table->last_shown);
-  } else if (options->mode == STRATUS_MODE_AVERAGE) { /* transparent values count as much as others */
+  } else if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count as much as others */
     show_only(table, stratus_table_entry(table, (float)(range[0] - bias)), stratus_table_entry(table, (float)(range[1] - bias)));
   }
 }
@@ -102,11 +175,27 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->grey_offset = a->grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->sum_scale = additive ? (float)(caster->choice.sample_distance / caster->transfer.unit_distance) : 0.0f;
+  a->contour_count = 0;
+  for (int n = 0; n < caster->shown.contour_count; ++n) {
+    double rgba[4];
+    stratus_transfer_at(&caster->transfer, caster->shown.contours[n], rgba);
+    if (rgba[3] > 0.0) { /* one that is transparent is none */
+      float* contour = a->contour[a->contour_count++];
+      contour[0] = (float)(caster->shown.contours[n] - ranges->bias);
+      contour[4] = (float)rgba[3];
+      for (int c = 0; c < 3; ++c) {
+        contour[1 + c] = (float)(rgba[c] * rgba[3]);
+      }
+    }
+  }
 }
 
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 {
   const stratus_mode mode = caster->shown.mode;
+  if (mode == STRATUS_MODE_ISOSURFACE) {
+    return STRATUS_RAY_CONTOURS;
+  }
   if (is_extreme(mode) || is_sum(mode)) {
     return is_sum(mode) ? STRATUS_RAY_ADDED : STRATUS_RAY_BEST;
   }

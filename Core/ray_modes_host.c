@@ -43,10 +43,13 @@
 
 #if STRATUS_ISA == 2
 #define MODES_ISA stratus_ray_modes_tile_isa2
+#define SURFACE_ISA stratus_ray_surface_tile_isa2
 #elif STRATUS_ISA == 1
 #define MODES_ISA stratus_ray_modes_tile_isa1
+#define SURFACE_ISA stratus_ray_surface_tile_isa1
 #else
 #define MODES_ISA stratus_ray_modes_tile_isa0
+#define SURFACE_ISA stratus_ray_surface_tile_isa0
 #endif
 
 stratus_ray_cast_tile* MODES_ISA(int type, stratus_ray_variant variant)
@@ -57,5 +60,5 @@ stratus_ray_cast_tile* MODES_ISA(int type, stratus_ray_variant variant)
     { tile_sum_any, tile_sum_any, tile_sum_uint8, tile_sum_int16, tile_sum_uint16, tile_sum_any, tile_sum_any, tile_sum_any, tile_sum_any,
       tile_sum_float32, tile_sum_any },
   };
-  return tiles[variant == STRATUS_RAY_ADDED][type + 1];
+  return variant == STRATUS_RAY_CONTOURS ? SURFACE_ISA(type) : tiles[variant == STRATUS_RAY_ADDED][type + 1];
 }

@@ -14,7 +14,8 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 {
   const stratus_tree* tree = offered_tree(caster);
   *serves = false;
-  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE) { /* what other modes need is not what the opacity shows */
+  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || caster->look_tables.components > 1) {
+    /* what other modes need is not what the opacity shows */
     return STRATUS_OK;
   }
   if (caster->tree_serves < 0) {

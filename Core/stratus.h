@@ -112,6 +112,8 @@ typedef enum stratus_type {
 
 STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type */
 
+#define STRATUS_COMPONENTS_MAX 4
+
 /* vtkDataSetAttributes' ghost bits, as far as they matter here. */
 #define STRATUS_GHOST_DUPLICATE 1u    /* point or cell: another piece owns it */
 #define STRATUS_GHOST_HIDDEN_POINT 2u /* point: cells that touch it are transparent */
@@ -154,6 +156,7 @@ typedef struct stratus_transfer {
    * beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever the volume's matrix. Default NULL, 0: none. */
   const double* gradient;
   size_t gradient_count;
+  double weight; /* independent components: what their optical depth is multiplied by, 0..1. Default 1. */
 } stratus_transfer;
 
 STRATUS_API stratus_transfer stratus_transfer_default(void);
@@ -465,13 +468,15 @@ typedef enum stratus_mode {
   STRATUS_MODE_MAXIMUM, /* the largest value sampled along the ray, in its colour and its opacity (not per length) */
   STRATUS_MODE_MINIMUM, /* the smallest */
   STRATUS_MODE_AVERAGE, /* grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in average_range */
-  STRATUS_MODE_ADDITIVE /* grey: the integral of opacity times value along the ray, lengths in unit_distance */
+  STRATUS_MODE_ADDITIVE, /* grey: the integral of opacity times value along the ray, lengths in unit_distance */
+  STRATUS_MODE_ISOSURFACE /* surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind the other.
+                           * Linear interpolation only. Exact: the field is a cubic along the ray in each cell, and all its roots are met. */
 } stratus_mode;
 
 /* Means and sums take a value as a part of the whole volume's range of finite values, are cut off at 1, and are opaque: sums wherever a ray meets the
  * volume's bounds, means where anything counts. */
 
-/* "composite", "first-hit", "maximum", "minimum", "average", "additive" */
+/* "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" */
 STRATUS_API const char* stratus_mode_name(stratus_mode mode);
 
 typedef enum stratus_normals {
@@ -502,6 +507,9 @@ typedef struct stratus_shading {
 } stratus_shading;
 
 #define STRATUS_CLIP_PLANES_MAX 6
+#define STRATUS_CONTOURS_MAX 16
+#define STRATUS_CROP_INSIDE 0x2000u
+#define STRATUS_CROP_ALL 0x7ffffffu
 
 typedef struct stratus_ray_cast_options {
   stratus_structure structure; /* default auto: the cheapest that the scene needs, told in the report */
@@ -510,8 +518,10 @@ typedef struct stratus_ray_cast_options {
   double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
   double termination;     /* a ray ends when its alpha passes this, 0..1; default .999 */
   int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4. More where the maps would outgrow 2e9 bytes. */
-  int crop;               /* 1: only inside crop_bounds. Default 0. */
+  int crop;               /* 1: only the regions of crop_regions. Default 0. */
   double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
+  uint32_t crop_regions;  /* of the 27 that the bounds' six planes divide space into: bit x + 3 y + 9 z is set where region (x, y, z) is shown, each 0
+                           * (below the lower plane), 1 (between the planes) or 2. Default STRATUS_CROP_INSIDE: between all planes. */
   int clip_plane_count;   /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: a x + b y + c z + d >= 0 is kept */
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
@@ -519,7 +529,20 @@ typedef struct stratus_ray_cast_options {
   stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
   stratus_shading shading; /* first hit; composite with shade */
   int shade;               /* composite; 1: samples are lit by `shading`. Default 0 */
+  int dependent;           /* composite, volumes of several components. 0 (default): each is a medium of its own, with a transfer function each; where they
+                            * mix, their optical depths add up, and so does the light that they send. 1: together they are one medium: of 2, the first
+                            * has the colour and the second the opacity of the one transfer function; of 4 (STRATUS_UINT8 only), the first three are
+                            * red, green, blue in 0..255, and the fourth has its opacity. The last one's gradient counts. */
   double average_range[2]; /* average: values that count, ends included, first <= last, infinities allowed. Default: all. */
+  int contour_count;       /* isosurface: 1..16; other modes: not used. Default 0. */
+  double contours[STRATUS_CONTOURS_MAX]; /* finite, in any order */
+  /* A byte a value of the volume, NULL: none. A sample is transparent where the byte of the nearest value is 0; pre-integrated, a segment is where one
+   * of its ends is. Not for first hits. Copied when it, its revision or the volume's data changes. */
+  const uint8_t* mask;
+  uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
+  int jitter;             /* 1: each ray's samples are moved along it by 0..1 sample distances, by a number from pixel and jitter_seed, so that wood grain
+                           * turns into noise. Default 0. */
+  uint32_t jitter_seed;   /* default 0 */
 } stratus_ray_cast_options;
 
 STRATUS_API stratus_ray_cast_options stratus_ray_cast_options_default(void);

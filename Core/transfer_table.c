@@ -19,7 +19,7 @@
 
 stratus_transfer stratus_transfer_default(void)
 {
-  return (stratus_transfer){ .unit_distance = 1.0, .clamp = 1 };
+  return (stratus_transfer){ .unit_distance = 1.0, .clamp = 1, .weight = 1.0 };
 }
 
 static stratus_status check_points(stratus_context* context, const char* what, const double* points, size_t count, size_t width)
@@ -53,6 +53,9 @@ stratus_status stratus_transfer_check(stratus_context* context, const stratus_tr
   }
   TRY(check_points(context, "opacity", transfer->opacity, transfer->opacity_count, 2));
   TRY(check_points(context, "colour", transfer->color, transfer->color_count, 4));
+  if (transfer->gradient_count > 0) {
+    TRY(check_points(context, "gradient opacity", transfer->gradient, transfer->gradient_count, 2));
+  }
   if (!(transfer->unit_distance > 0.0 && isfinite(transfer->unit_distance))) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unit distance %g, must be positive and finite", transfer->unit_distance);
   }
@@ -80,6 +83,15 @@ static double walk(const double* points, size_t count, size_t width, size_t comp
 static bool outside(const stratus_transfer* transfer, double x)
 {
   return !transfer->clamp && (x < transfer->opacity[0] || x > transfer->opacity[2 * (transfer->opacity_count - 1)]);
+}
+
+void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4])
+{
+  ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
+  for (size_t c = 0; c < 3; ++c) {
+    rgba[c] = walk(transfer->color, transfer->color_count, 4, c + 1, value, &color_at[c]);
+  }
+  rgba[3] = outside(transfer, value) ? 0.0 : walk(transfer->opacity, transfer->opacity_count, 2, 1, value, &at);
 }
 
 /* Optical depth per world unit. */

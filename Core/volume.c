@@ -40,7 +40,7 @@ bool stratus_type_is_wide(stratus_type type)
 
 stratus_volume stratus_volume_default(void)
 {
-  stratus_volume volume = { .type = STRATUS_FLOAT32, .dimensions = { 1, 1, 1 }, .value_stride = 1, .spacing = { 1, 1, 1 } };
+  stratus_volume volume = { .type = STRATUS_FLOAT32, .dimensions = { 1, 1, 1 }, .value_stride = 1, .spacing = { 1, 1, 1 }, .components = 1 };
   memcpy(volume.direction, identity3, sizeof identity3);
   memcpy(volume.matrix, identity4, sizeof identity4);
   return volume;
@@ -254,6 +254,10 @@ stratus_status stratus_volume_check(stratus_context* context, const stratus_volu
   }
   if (!volume->values) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume values is NULL");
+  }
+  if (volume->components < 0 || volume->components > 4 || volume->components > volume->value_stride) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume of %d components, must be 1..4 and at most the value stride %lld",
+      volume->components, (long long)volume->value_stride);
   }
   TRY(check_sizes(context, volume));
   return check_geometry(context, volume);

@@ -3,6 +3,8 @@
  * cells in which every value maps to an opacity of zero. */
 #include "reference.h"
 
+#include "reference_looks.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -28,7 +30,7 @@ typedef struct cell {
   bool shown;
 } cell;
 
-static double read_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k)
+double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k)
 {
   const int64_t* n = volume->dimensions;
   const size_t at = (size_t)(((k * n[1] + j) * n[0] + i) * volume->value_stride);
@@ -57,7 +59,7 @@ static double read_value(const stratus_volume* volume, int64_t i, int64_t j, int
   return (double)NAN;
 }
 
-static double opacity_at(const stratus_transfer* transfer, double value)
+double reference_opacity(const stratus_transfer* transfer, double value)
 {
   const double* p = transfer->opacity;
   const size_t n = transfer->opacity_count;
@@ -72,7 +74,7 @@ static double opacity_at(const stratus_transfer* transfer, double value)
   return p[2 * n - 1];
 }
 
-static void color_at(const stratus_transfer* transfer, double value, double rgb[3])
+void reference_color(const stratus_transfer* transfer, double value, double rgb[3])
 {
   const double* p = transfer->color;
   const size_t n = transfer->color_count;
@@ -96,7 +98,7 @@ static bool transparent_on(const stratus_transfer* transfer, double lo, double h
   if (lo > hi) {
     return true;
   }
-  if (opacity_at(transfer, lo) > 0.0 || opacity_at(transfer, hi) > 0.0) {
+  if (reference_opacity(transfer, lo) > 0.0 || reference_opacity(transfer, hi) > 0.0) {
     return false;
   }
   for (size_t i = 0; i < transfer->opacity_count; ++i) {
@@ -113,9 +115,9 @@ static int64_t clamp_index(int64_t i, int64_t n)
   return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-static void find_shown_blocks(const grid* g, const stratus_transfer* transfer)
+/* Adds the blocks in which the transfer function shows anything of the volume. */
+static void find_shown_blocks(const grid* g, const stratus_volume* volume, const stratus_transfer* transfer)
 {
-  const stratus_volume* volume = g->volume;
   const int64_t* n = volume->dimensions;
   const int64_t count = g->blocks[0] * g->blocks[1] * g->blocks[2];
 #pragma omp parallel for schedule(dynamic, 16)
@@ -127,7 +129,7 @@ static void find_shown_blocks(const grid* g, const stratus_transfer* transfer)
     for (int64_t k = at[2] - 1; k <= at[2] + BLOCK + 1; ++k) {
       for (int64_t j = at[1] - 1; j <= at[1] + BLOCK + 1; ++j) {
         for (int64_t i = at[0] - 1; i <= at[0] + BLOCK + 1; ++i) {
-          const double value = read_value(volume, clamp_index(i, n[0]), clamp_index(j, n[1]), clamp_index(k, n[2]));
+          const double value = reference_value(volume, clamp_index(i, n[0]), clamp_index(j, n[1]), clamp_index(k, n[2]));
           if (isfinite(value)) {
             lo = value < lo ? value : lo;
             hi = value > hi ? value : hi;
@@ -135,7 +137,7 @@ static void find_shown_blocks(const grid* g, const stratus_transfer* transfer)
         }
       }
     }
-    g->shown[b] = (uint8_t)!transparent_on(transfer, lo, hi);
+    g->shown[b] |= (uint8_t)!transparent_on(transfer, lo, hi);
   }
 }
 
@@ -188,7 +190,12 @@ static int make_grid(const reference_scene* scene, grid* g)
     free(g->shown);
     return -1;
   }
-  find_shown_blocks(g, scene->transfer);
+  memset(g->shown, 0, (size_t)(g->blocks[0] * g->blocks[1] * g->blocks[2]));
+  const int components = reference_components(v);
+  for (int c = scene->dependent ? components - 1 : 0; c < components; ++c) {
+    const stratus_volume view = reference_component(v, c);
+    find_shown_blocks(g, &view, scene->dependent ? scene->transfer : scene->transfer + c);
+  }
   return 0;
 }
 
@@ -228,7 +235,7 @@ static void load_cell(const grid* g, const int64_t at[3], cell* c)
   memcpy(c->at, at, sizeof c->at);
   c->shown = !((g->volume->point_ghosts || g->volume->cell_ghosts) && cell_hidden(g, at));
   for (int k = 0; k < 8; ++k) {
-    c->corner[k] = read_value(
+    c->corner[k] = reference_value(
       g->volume, clamp_index(at[0] + (k & 1), n[0]), clamp_index(at[1] + (k >> 1 & 1), n[1]), clamp_index(at[2] + (k >> 2), n[2]));
     c->shown = c->shown && (!g->linear || isfinite(c->corner[k]));
   }
@@ -359,13 +366,42 @@ static int64_t past_block(const grid* g, const ray* r, const double p[3], int64_
   return next > i ? next : i + 1;
 }
 
+/* Opacity of a step, and its colour, where a sample is more than one value's colour and opacity. */
+static double look(
+  const reference_scene* scene, const grid* g, const ray* r, double s, const double p[3], cell* c, double step, double rgb[3])
+{
+  reference_place place;
+  double values[REFERENCE_COMPONENTS_MAX], tau = 0.0, glow[3];
+  memcpy(place.to_index, g->to_index, sizeof place.to_index);
+  memcpy(place.direction, r->direction, sizeof place.direction);
+  for (int a = 0; a < 3; ++a) {
+    place.index[a] = fmin(fmax(p[a], 0.0), (double)(g->volume->dimensions[a] - 1));
+    place.world[a] = r->origin[a] + s * r->direction[a];
+  }
+  for (int i = 0; i < reference_components(scene->volume); ++i) {
+    const stratus_volume view = reference_component(scene->volume, i);
+    grid part = *g;
+    part.volume = &view;
+    values[i] = sample(&part, p, &c[i]);
+  }
+  reference_look(scene, &place, values, &tau, glow);
+  for (int a = 0; a < 3; ++a) {
+    rgb[a] = tau > 0.0 ? glow[a] / tau : 0.0;
+  }
+  return -expm1(-tau * step);
+}
+
 static double trace(const reference_scene* scene, const grid* g, const ray* r, double longest_step, float pixel[4])
 {
   const double length = r->end - r->begin;
   const int64_t count = (int64_t)ceil(length / longest_step);
   const double step = length / (double)count;
   const double share = step / scene->transfer->unit_distance;
-  cell c = { .at = { -1, -1, -1 } };
+  const bool looks = reference_has_looks(scene);
+  cell c[REFERENCE_COMPONENTS_MAX];
+  for (int i = 0; i < REFERENCE_COMPONENTS_MAX; ++i) {
+    c[i] = (cell){ .at = { -1, -1, -1 } };
+  }
   double left = 1.0;
   double sum[3] = { 0.0, 0.0, 0.0 };
   double first = (double)INFINITY;
@@ -381,12 +417,17 @@ static double trace(const reference_scene* scene, const grid* g, const ray* r, d
       continue;
     }
     ++i;
-    const double value = sample(g, p, &c);
-    const double opacity = isnan(value) ? 0.0 : opacity_at(scene->transfer, value);
-    if (opacity > 0.0) {
-      double rgb[3];
-      color_at(scene->transfer, value, rgb);
-      const double kept = opacity < 1.0 ? -expm1(share * log1p(-opacity)) : 1.0;
+    double kept = 0.0, rgb[3] = { 0.0, 0.0, 0.0 };
+    if (looks) {
+      kept = look(scene, g, r, s, p, c, step, rgb);
+    } else {
+      const double value = sample(g, p, c), opacity = isnan(value) ? 0.0 : reference_opacity(scene->transfer, value);
+      kept = opacity < 1.0 ? -expm1(share * log1p(-opacity)) : 1.0;
+      if (opacity > 0.0) {
+        reference_color(scene->transfer, value, rgb);
+      }
+    }
+    if (kept > 0.0) {
       for (int a = 0; a < 3; ++a) {
         sum[a] += left * kept * rgb[a];
       }

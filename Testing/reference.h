@@ -13,7 +13,7 @@ extern "C" {
 
 typedef struct reference_scene {
   const stratus_volume* volume;
-  const stratus_transfer* transfer;
+  const stratus_transfer* transfer; /* of independent components: one each */
   const stratus_camera* camera;
   stratus_interpolation interpolation;
   const float* opaque_depth; /* window depths, as in stratus_image; may be NULL */
@@ -21,6 +21,8 @@ typedef struct reference_scene {
   double crop_bounds[6];
   int clip_plane_count;
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4];
+  const stratus_shading* shading; /* NULL: unlit */
+  int dependent;                  /* as in stratus_ray_cast_options */
 } reference_scene;
 
 /* Draws into rgba (width*height*4 floats, premultiplied, bottom row first). step: length of a step in units of the shortest edge of a voxel

@@ -65,9 +65,16 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
   stratus_packet k;
   packet_nothing(&k);
   if (!packet_outside(a, x, y)) {
-    kernel_ray_load(a, opaque_depth, x, y, &k);
-    if (m_any(k.live)) {
-      kernel_ray_march(a, values, hidden, map, table, &k);
+    stratus_crop crop;
+    const int pieces = a->crop_regions ? CROP_PIECES : 1;
+    kernel_ray_load(a, opaque_depth, x, y, &k, &crop);
+    for (int piece = 0; piece < pieces; ++piece) {
+      if (a->crop_regions) {
+        crop_enter(a, &crop, piece, &k);
+      }
+      if (m_any(k.live)) {
+        kernel_ray_march(a, values, hidden, map, table, &k);
+      }
     }
   }
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
@@ -144,23 +151,31 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
   const int x1 = min(x0 + RAY_TILE, a->width), y1 = min(y0 + RAY_TILE, a->height);
+  const int pieces = a->crop_regions ? CROP_PIECES : 1;
   vint taken = vi_set(0), skipped = vi_set(0), lookups = vi_set(0);
   uint rays = 0;
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
       stratus_packet k[PACKETS_TOGETHER];
+      stratus_crop crop[PACKETS_TOGETHER];
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
         if (packet_outside(a, x + i * PACKET_X, y)) {
           packet_nothing(&k[i]);
+          crop[i].all = m_none();
         } else {
-          kernel_ray_load(a, opaque_depth, x + i * PACKET_X, y, &k[i]); /* beyond the picture: no live ray, nothing stored */
+          kernel_ray_load(a, opaque_depth, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
         }
       }
+      for (int piece = 0; piece < pieces; ++piece) {
+        for (int i = 0; a->crop_regions && i < PACKETS_TOGETHER; ++i) {
+          crop_enter(a, &crop[i], piece, &k[i]);
+        }
 #if PACKETS_TOGETHER == 2
-      kernel_ray_march_two(a, values, hidden, map, table, &k[0], &k[1]);
+        kernel_ray_march_two(a, values, hidden, map, table, &k[0], &k[1]);
 #else
-      kernel_ray_march(a, values, hidden, map, table, &k[0]);
+        kernel_ray_march(a, values, hidden, map, table, &k[0]);
 #endif
+      }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
         kernel_ray_finish(a, table, &k[i]);

@@ -9,6 +9,7 @@
 #error "RAY_NAME is not set"
 #endif
 
+#include "ray_crop.h"
 #include "ray_segment.h"
 #include "tree_map.h"
 
@@ -33,6 +34,15 @@
 #define ray_shade RAY_NAME(ray_shade)
 #define ray_finish RAY_NAME(ray_finish)
 #define ray_advance RAY_NAME(ray_advance)
+#define fetch_two RAY_NAME(fetch_two)
+#define voxel_gradient RAY_NAME(voxel_gradient)
+#define ray_gradient RAY_NAME(ray_gradient)
+#define ray_look RAY_NAME(ray_look)
+#define shade_components RAY_NAME(shade_components)
+#define add_dependent RAY_NAME(add_dependent)
+#define add_independent RAY_NAME(add_independent)
+#define component_value RAY_NAME(component_value)
+#define ray_add_medium RAY_NAME(ray_add_medium)
 #define ray_leap RAY_NAME(ray_leap)
 #define ray_march RAY_NAME(ray_march)
 #define ray_march_two RAY_NAME(ray_march_two)
@@ -135,10 +145,16 @@ INLINE stratus_sample ray_sample(
   sample.value = ray_value(a, values, hidden, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
+  sample.values = values;
+  sample.hidden = hidden;
   return sample;
 }
 
-#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
+#if STRATUS_RAY_MODE == STRATUS_RAY_LOOKS
+#include "ray_looks.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_SURFACE
+#include "ray_surface.h"
+#elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
 #include "ray_modes.h"
 #else
 /* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
@@ -161,6 +177,7 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 }
 #endif
 
+#if STRATUS_RAY_MODE != STRATUS_RAY_SURFACE
 /* Asks the structure where enough rays need it. False if that was the end of all of them. */
 INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
@@ -196,12 +213,14 @@ INLINE void ray_march_two(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
   ray_march(a, values, hidden, map, table, m_any(left->live) ? left : right);
 }
 #endif
+#endif
 
-/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look. */
-INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k)
+/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look; `crop` is set where the frame has any. */
+INLINE void ray_load(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
   const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
-  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH];
+  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH], fw[STRATUS_WIDTH];
   stratus_rays rays;
   v_store(fx, v_from_int(px));
   v_store(fy, v_from_int(py));
@@ -211,13 +230,21 @@ INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float*
       fz[lane] = lx < a->width && ly < a->height ? opaque_depth[(size_t)ly * (size_t)a->width + (size_t)lx] : 1.0f;
     }
   }
+  if (a->jitter) {
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->seed);
+    }
+  }
   for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
-    ray_setup_part(a, fx + part, fy + part, fz + part, part, &rays);
+    ray_setup_part(a, fx + part, fy + part, fz + part, fw + part, part, &rays);
   }
   packet_begin(a, &rays, vi_lt(px, vi_set(a->width)) & vi_lt(py, vi_set(a->height)), k);
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
+  if (a->crop_regions) {
+    crop_begin(a, &rays, k, crop);
+  }
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
   k->front = v_set(-LARGEST_FLOAT);
 #endif
@@ -239,6 +266,15 @@ INLINE void ray_load(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float*
 #undef ray_shade
 #undef ray_finish
 #undef ray_advance
+#undef fetch_two
+#undef voxel_gradient
+#undef ray_gradient
+#undef ray_look
+#undef shade_components
+#undef add_dependent
+#undef add_independent
+#undef component_value
+#undef ray_add_medium
 #undef ray_leap
 #undef ray_march
 #undef ray_march_two

@@ -42,6 +42,8 @@ typedef struct stratus_packet {
 /* What one sample of every ray finds in the segment [lo, lo + weight]. */
 typedef struct stratus_sample {
   vfloat value, lo, weight;
+  GLOBAL const void* values; /* of the volume that it is from */
+  GLOBAL const uchar* hidden;
 } stratus_sample;
 
 #if STRATUS_WIDTH > 1 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
@@ -171,8 +173,22 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   k->live = k->live & vi_lt(k->i, k->last);
 }
 
-/* value, or a NaN where the cell (nearest: the voxel) is hidden. */
-INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask, vfloat value)
+/* Which byte of one a cell, or (by_value) a value, is that of the cell, or the nearest value, at index coordinates x, y, z. */
+INLINE size_t hidden_place(CONSTANT stratus_ray_cast_arguments* a, int by_value, float x, float y, float z)
+{
+  const float place[3] = { x, y, z };
+  size_t cell = 0;
+  for (int axis = 2; axis >= 0; --axis) {
+    const int between = a->dimensions[axis] > 1 ? a->dimensions[axis] - 1 : 1, cells = by_value ? a->dimensions[axis] : between;
+    const int at = (int)(by_value ? place[axis] + 0.5f : place[axis]);
+    cell = cell * (size_t)cells + (size_t)(at < cells ? at : cells - 1);
+  }
+  return cell;
+}
+
+/* value, or a NaN where `what` of HIDDEN_CELLS and HIDDEN_BY_MASK takes it out. */
+INLINE vfloat ray_hide_by(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, int what, const vfloat x[3], vmask mask, vfloat value)
 {
   float lx[3][STRATUS_WIDTH], lv[STRATUS_WIDTH];
   int lm[STRATUS_WIDTH];
@@ -183,18 +199,25 @@ INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
   }
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     if (lm[lane]) {
-      /* a byte a cell between values; a byte a value where those of cells are taken as they are */
-      const int by_value = a->clamp && a->nearest;
-      size_t cell = 0;
-      for (int axis = 2; axis >= 0; --axis) {
-        const int between = a->dimensions[axis] > 1 ? a->dimensions[axis] - 1 : 1, cells = by_value ? a->dimensions[axis] : between;
-        const int at = (int)(by_value ? lx[axis][lane] + 0.5f : lx[axis][lane]);
-        cell = cell * (size_t)cells + (size_t)(at < cells ? at : cells - 1);
+      const float x0 = lx[0][lane], x1 = lx[1][lane], x2 = lx[2][lane];
+      size_t masked = 0; /* bytes of the mask, which come first */
+      if (a->has_hidden & HIDDEN_BY_MASK) {
+        masked = (size_t)a->dimensions[0] * (size_t)a->dimensions[1] * (size_t)a->dimensions[2];
       }
-      lv[lane] = hidden[cell] ? NAN : lv[lane];
+      if (what & HIDDEN_BY_MASK) {
+        lv[lane] = hidden[hidden_place(a, 1, x0, x1, x2)] ? lv[lane] : NAN;
+      }
+      if (what & HIDDEN_CELLS) { /* a byte a cell between values; a byte a value where those of cells are taken as they are */
+        lv[lane] = hidden[masked + hidden_place(a, a->clamp && a->nearest, x0, x1, x2)] ? NAN : lv[lane];
+      }
     }
   }
   return v_load(lv);
+}
+
+INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask, vfloat value)
+{
+  return ray_hide_by(a, hidden, a->has_hidden, x, mask, value);
 }
 
 /* 1/a to a rounding or two, by Newton's iteration from the bits: the same on every device, as a division is not. a > 0. */
@@ -299,13 +322,10 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
   k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
 }
 
-/* Midpoint rule. table: colour times alpha and alpha of a whole segment, an entry each; then the entries' optical depths. */
-INLINE void shade_sample(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+/* Layers of whole segments made those of a part of the optical depth: `weight` of it. */
+INLINE void shorten_layer(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])
 {
-  const vint entry = table_entry(a, value);
-  vfloat layer[4];
-  gather_four(table, entry, mask, layer);
   const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
   if (m_any(part)) { /* the ends of a ray */
     vfloat last[4];
@@ -316,6 +336,28 @@ INLINE void shade_sample(
       layer[c] = layer[c] * ratio;
     }
   }
+}
+
+/* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A specular. */
+typedef struct stratus_look {
+  vfloat factor, diffuse[3], specular[3];
+} stratus_look;
+
+INLINE void light_layer(const stratus_look* look, vfloat layer[4])
+{
+  for (int c = 0; c < 3; ++c) {
+    layer[c] = v_fma(layer[c], look->diffuse[c], layer[3] * look->specular[c]);
+  }
+}
+
+/* Midpoint rule. table: colour times alpha and alpha of a whole segment, an entry each; then the entries' optical depths. */
+INLINE void shade_sample(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  const vint entry = table_entry(a, value);
+  vfloat layer[4];
+  gather_four(table, entry, mask, layer);
+  shorten_layer(a, table, entry, mask, weight, layer);
   composite(a, k, mask, layer, lo);
 }
 
@@ -356,10 +398,17 @@ INLINE vfloat segment_pieces(CONSTANT stratus_ray_cast_arguments* a, vfloat dept
   return pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero);
 }
 
+/* Of lanes in the mask, those whose segments show anything. */
+INLINE vmask segment_shows(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
+{
+  const vint entry = table_entry(a, value), front = table_entry(a, k->front);
+  return mask & v_lt(v_set(0.0f), sum_between(a, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
+}
+
 /* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
- * green, blue times tau, and tau. */
-INLINE void integrate_segment(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+ * green, blue times tau, and tau. look: 0 where there is no more to a sample than its value. */
+INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
+  vfloat weight, vfloat lo, const stratus_look* look)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   const vfloat place = table_place(a, value), front_place = table_place(a, k->front);
@@ -404,10 +453,19 @@ INLINE void integrate_segment(
       for (int c = 0; c < 3; ++c) {
         layer[c] = sum_between(a, sums, c, low, beyond, lit) * per_tau;
       }
+      if (look) {
+        light_layer(look, layer);
+      }
       composite(a, k, lit, layer, lo);
     }
     mask = mask & several & v_lt(piece, pieces);
   } while (m_any(mask));
+}
+
+INLINE void integrate_segment(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  integrate_look(a, sums, k, mask, value, weight, lo, 0);
 }
 
 #endif

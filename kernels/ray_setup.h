@@ -13,6 +13,7 @@ typedef struct stratus_rays {
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
   float first[STRATUS_WIDTH];                                 /* lattice index of segment 0, for depth */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* owned part, in samples */
+  float crossing[3][2][STRATUS_WIDTH]; /* of the planes between the crop's regions, in samples */
 } stratus_rays;
 
 /* Smallest displacement a sample along an axis, voxels: keeps reciprocals finite and moves no ray by a thousandth of a voxel. */
@@ -49,9 +50,19 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
   *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_number(-1e30f), *end)));
 }
 
-/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; `part` is where they stand in the packet. */
-INLINE void ray_setup_part(
-  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, int part, stratus_rays* rays)
+/* How far the lattice of the ray through pixel (x, y) is moved, in 0..1 of a sample: the same wherever it is computed. */
+INLINE float ray_jitter(int x, int y, int seed)
+{
+  uint h = (uint)x * 0x9e3779b1u ^ (uint)y * 0x85ebca77u ^ (uint)seed * 0xc2b2ae3du;
+  h = (h ^ h >> 16) * 0x85ebca6bu; /* Murmur3's finalizer (Appleby) */
+  h = (h ^ h >> 13) * 0xc2b2ae35u;
+  h ^= h >> 16;
+  return (float)(int)(h >> 8) * 0x1p-24f;
+}
+
+/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; w: their jitter; `part` is where they stand in the packet. */
+INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part,
+  stratus_rays* rays)
 {
   const real zero = r_number(0.0f), half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
   const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->pixel[0])), one);
@@ -98,6 +109,15 @@ INLINE void ray_setup_part(
   for (int axis = 0; axis < 3; ++axis) {
     ray_clip_slab(origin[axis], inverse[axis], a->box[0][axis], a->box[1][axis], &begin, &end);
   }
+  real shift = zero;
+  if (a->jitter) { /* the same line, counted from a shorter way off */
+    shift = r_load(w);
+    begin = r_add(begin, shift);
+    end = r_add(end, shift);
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = r_sub(origin[axis], r_mul(shift, direction[axis]));
+    }
+  }
   /* rays that miss may have any numbers, but small ones */
   const rmask miss = r_lt(end, begin);
   begin = r_select(miss, zero, begin);
@@ -105,7 +125,12 @@ INLINE void ray_setup_part(
   const real first = r_floor(begin);
   r_store(rays->begin + part, r_sub(begin, first));
   r_store(rays->end + part, r_sub(end, first));
-  r_store(rays->first + part, first);
+  r_store(rays->first + part, a->jitter ? r_sub(first, shift) : first);
+  for (int side = 0; a->crop_regions && side < 6; ++side) {
+    const int axis = side / 2;
+    const real crossing = r_mul(r_sub(r_of(a->crop_plane[axis][side % 2]), origin[axis]), inverse[axis]);
+    r_store(rays->crossing[axis][side % 2] + part, r_sub(crossing, first));
+  }
   if (a->has_piece) {
     real piece_begin = r_neg(one), piece_end = r_add(r_sub(end, first), one);
     piece_begin = r_add(piece_begin, first);

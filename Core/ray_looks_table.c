@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What samples of looks are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a table
+ * each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
+#include "ray_caster.h"
+
+#include <string.h>
+
+/* Optical depth over a sample of what is opaque. */
+#define OPAQUE_DEPTH 16.0f
+
+int stratus_volume_components(const stratus_volume* volume)
+{
+  return volume->components > 1 ? volume->components : 1;
+}
+
+stratus_volume stratus_volume_component(const stratus_volume* volume, int component)
+{
+  stratus_volume view = *volume;
+  view.values = (const char*)volume->values + (size_t)component * stratus_type_size(volume->type);
+  view.components = 1;
+  return view;
+}
+
+int stratus_ray_looks_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  return options->dependent ? 1 : stratus_volume_components(volume);
+}
+
+/* ---- checks */
+
+stratus_status stratus_ray_looks_check_volume(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const int components = stratus_volume_components(volume);
+  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d components: only composite takes more than 1",
+      stratus_mode_name(options->mode), components);
+  }
+  if (options->dependent && components == 3) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "3 dependent components, must be 2 or 4");
+  }
+  if (options->dependent && components == 4 && volume->type != STRATUS_UINT8) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
+  }
+  for (int c = 0; c < stratus_ray_looks_media(volume, options); ++c) {
+    TRY(stratus_transfer_check(context, transfer + c));
+    const double weight = transfer[c].weight;
+    if (components > 1 && !options->dependent && !(weight >= 0.0 && weight <= 1.0)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* ---- ranges and choice */
+
+void stratus_ray_looks_release(stratus_ray_caster* caster)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  for (int c = 0; c < 4; ++c) {
+    stratus_value_range_destroy(looks->ranges[c]);
+    stratus_table_destroy(looks->tables[c]);
+  }
+  stratus_release(caster->context, looks->memory);
+  memset(looks, 0, sizeof *looks);
+}
+
+stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  const int components = stratus_volume_components(&caster->volume);
+  if (looks->range_builds == caster->range_builds && looks->components == components) {
+    return STRATUS_OK;
+  }
+  stratus_ray_looks_release(caster);
+  for (int c = 1; c < components; ++c) {
+    const stratus_volume view = stratus_volume_component(&caster->volume, c);
+    TRY(stratus_value_range_create(caster->context, &view, caster->ranges->block_size, &looks->ranges[c]));
+  }
+  looks->components = components;
+  looks->range_builds = caster->range_builds;
+  return STRATUS_OK;
+}
+
+static const stratus_value_range* range_of(const stratus_ray_caster* caster, int c)
+{
+  return c == 0 ? caster->ranges : caster->look_tables.ranges[c];
+}
+
+void stratus_ray_looks_choose(stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const int components = stratus_volume_components(&caster->volume), media = stratus_ray_looks_media(&caster->volume, options);
+  if (components == 1) {
+    return;
+  }
+  for (int m = 0; m < media; ++m) {
+    stratus_ray_choice choice;
+    stratus_ray_choose(range_of(caster, media == 1 ? components - 1 : m), voxel, transfer + m, options->interpolation,
+      STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
+    if (m == 0 || choice.sample_distance < caster->choice.sample_distance) {
+      caster->choice = choice;
+    }
+  }
+}
+
+/* ---- tables */
+
+/* Entries of color times optical depth, and optical depth, from those of color times alpha, and alpha. */
+static void thicken(const stratus_table* table, float* out)
+{
+  for (size_t e = 0; e < (size_t)table->size; ++e) {
+    const float* entry = table->rgba + 4 * e;
+    const float alpha = entry[3], depth = table->rgba[4 * ((size_t)table->size + e)];
+    const float thick = alpha >= 1.0f && depth < OPAQUE_DEPTH ? OPAQUE_DEPTH : depth;
+    for (size_t i = 0; i < 3; ++i) {
+      out[4 * e + i] = alpha > 0.0f ? entry[i] / alpha * thick : 0.0f;
+    }
+    out[4 * e + 3] = alpha > 0.0f ? thick : 0.0f;
+  }
+}
+
+static stratus_status create_table(
+  stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
+{
+  const stratus_value_range* ranges = range_of(caster, c);
+  const bool any = ranges->whole_lo <= ranges->whole_hi;
+  return stratus_table_create(caster->context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
+    STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
+}
+
+/* A table for each component that has one: media, and the colour that goes with a dependent opacity. */
+static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  const int last = looks->components - 1;
+  for (int c = 0; c <= last; ++c) {
+    stratus_table_destroy(looks->tables[c]);
+    looks->tables[c] = NULL;
+  }
+  if (last == 0) {
+    return STRATUS_OK;
+  }
+  if (!dependent) {
+    for (int c = 0; c <= last; ++c) {
+      TRY(create_table(caster, caster->transfers + c, c, &looks->tables[c]));
+    }
+    return STRATUS_OK;
+  }
+  if (last == 1) {
+    stratus_transfer color = caster->transfers[0];
+    const double opaque[2] = { color.color[0], 1.0 };
+    color.opacity = opaque;
+    color.opacity_count = 1;
+    color.clamp = 1;
+    TRY(create_table(caster, &color, 0, &looks->tables[0]));
+  }
+  return create_table(caster, caster->transfers, last, &looks->tables[last]);
+}
+
+/* The function over magnitudes from 0 to its last point, magnitudes as parts of the value range. */
+static void fill_factors(const stratus_transfer* transfer, float* out)
+{
+  const stratus_transfer function = { .opacity = transfer->gradient,
+    .opacity_count = transfer->gradient_count,
+    .color = transfer->color,
+    .color_count = transfer->color_count,
+    .clamp = 1 };
+  const double most = transfer->gradient[2 * (transfer->gradient_count - 1)];
+  double rgba[4];
+  for (int e = 0; e < STRATUS_LOOK_FACTORS + 2; ++e) {
+    const int at = e < STRATUS_LOOK_FACTORS ? e : STRATUS_LOOK_FACTORS;
+    stratus_transfer_at(&function, most > 0.0 ? most * at / STRATUS_LOOK_FACTORS : most, rgba);
+    out[e] = (float)rgba[3];
+  }
+}
+
+static double value_extent(const stratus_value_range* ranges)
+{
+  const double extent = (double)ranges->whole_hi - (double)ranges->whole_lo;
+  return extent > 0.0 && isfinite(extent) ? extent : 1.0;
+}
+
+static size_t usual_words(const stratus_table* table)
+{
+  return table->rgba ? 8 * (size_t)table->size : 4 * ((size_t)table->size + 1);
+}
+
+/* Writes all tables one after the other, where out is not NULL; returns how many words they take. */
+static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  size_t at = 0;
+  if (looks->components == 1) {
+    at = usual_words(caster->table);
+    if (out) {
+      memcpy(out, caster->table->rgba ? (const void*)caster->table->rgba : (const void*)caster->table->sums, 4 * at);
+    }
+  }
+  for (int c = 0; c < looks->components; ++c) {
+    const stratus_table* table = looks->tables[c];
+    looks->first[c] = (int)at;
+    if (table && out && dependent && c == 0 && looks->components == 2) {
+      memcpy(out + at, table->rgba, 16 * (size_t)table->size);
+    } else if (table && out) {
+      thicken(table, out + at);
+    }
+    at += table ? 4 * (size_t)table->size : 0;
+  }
+  for (int c = 0; c < looks->components; ++c) {
+    const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
+    const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == looks->components);
+    const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
+    looks->factor_first[c] = has ? (int)at : -1;
+    looks->factor_scale[c] = most > 0.0 ? (float)(value_extent(caster->ranges) * STRATUS_LOOK_FACTORS / most) : 0.0f;
+    if (has && out) {
+      fill_factors(transfer, out + at);
+    }
+    at += has ? STRATUS_LOOK_FACTORS + 2 : 0;
+  }
+  return at;
+}
+
+stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  void* memory = NULL;
+  if (looks->memory && looks->table_builds == caster->table_builds) {
+    return STRATUS_OK;
+  }
+  stratus_release(caster->context, looks->memory);
+  looks->memory = NULL;
+  TRY(create_tables(caster, dependent));
+  const size_t words = lay_out(caster, dependent, NULL);
+  TRY(stratus_allocate(caster->context, words, sizeof(float), &memory));
+  (void)lay_out(caster, dependent, memory);
+  looks->memory = memory;
+  looks->bytes = words * sizeof(float);
+  looks->table_builds = caster->table_builds;
+  ++caster->table_serial;
+  return STRATUS_OK;
+}
+
+bool stratus_ray_looks_show(const stratus_ray_caster* caster)
+{
+  const stratus_ray_look_tables* looks = &caster->look_tables;
+  if (looks->components <= 1) {
+    return caster->table->shown > 0;
+  }
+  for (int c = 0; c < looks->components; ++c) {
+    if (looks->tables[c] && (!caster->dependent || c + 1 == looks->components) && looks->tables[c]->shown > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* ---- occupancy */
+
+stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster)
+{
+  const stratus_ray_look_tables* looks = &caster->look_tables;
+  stratus_occupancy* whole = NULL;
+  stratus_status status = STRATUS_OK;
+  for (int c = caster->dependent ? looks->components - 1 : 0; c < looks->components; ++c) {
+    stratus_occupancy* part = NULL;
+    TRY_CLEANUP(stratus_occupancy_build(caster->context, range_of(caster, c), looks->tables[c], &part));
+    if (whole) {
+      stratus_occupancy_add(whole, part);
+      stratus_occupancy_destroy(part);
+    } else {
+      whole = part;
+    }
+  }
+  caster->occupancy = whole;
+  return STRATUS_OK;
+cleanup:
+  stratus_occupancy_destroy(whole);
+  return status;
+}

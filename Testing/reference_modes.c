@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The double-precision reference for maxima, minima, means, sums, isosurfaces, crop regions and masks. */
+#include "reference_modes.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PARTS 64 /* of a cell, in which an isosurface is looked for */
+
+typedef struct line {
+  double origin[3], direction[3]; /* index coordinates by world distance from the eye (parallel: from its plane) */
+  double begin, end;
+} line;
+
+typedef struct scene {
+  const stratus_volume* volume;
+  const stratus_transfer* transfer;
+  const stratus_ray_cast_options* options;
+  double to_world[3][4]; /* of index coordinates */
+  double low, high;      /* of all finite values */
+} scene;
+
+/* ---- the field */
+
+static double value_at(const stratus_volume* v, int64_t i, int64_t j, int64_t k)
+{
+  const size_t at = (size_t)(((k * v->dimensions[1] + j) * v->dimensions[0] + i) * v->value_stride);
+  switch (v->type) {
+    case STRATUS_INT8:
+      return ((const int8_t*)v->values)[at];
+    case STRATUS_UINT8:
+      return ((const uint8_t*)v->values)[at];
+    case STRATUS_INT16:
+      return ((const int16_t*)v->values)[at];
+    case STRATUS_UINT16:
+      return ((const uint16_t*)v->values)[at];
+    case STRATUS_INT32:
+      return ((const int32_t*)v->values)[at];
+    case STRATUS_UINT32:
+      return ((const uint32_t*)v->values)[at];
+    case STRATUS_INT64:
+      return (double)((const int64_t*)v->values)[at];
+    case STRATUS_UINT64:
+      return (double)((const uint64_t*)v->values)[at];
+    case STRATUS_FLOAT32:
+      return (double)((const float*)v->values)[at];
+    default:
+      return ((const double*)v->values)[at];
+  }
+}
+
+static bool cell_is_hidden(const stratus_volume* v, const int64_t at[3])
+{
+  const int64_t nx = v->dimensions[0] > 1 ? v->dimensions[0] - 1 : 1, ny = v->dimensions[1] > 1 ? v->dimensions[1] - 1 : 1;
+  return v->cell_ghosts && !v->cell_centered && (v->cell_ghosts[(at[2] * ny + at[1]) * nx + at[0]] & STRATUS_GHOST_HIDDEN_CELL);
+}
+
+/* Whether crop regions and mask leave the place p (index coordinates) in the picture. */
+static bool is_kept(const scene* s, const double p[3])
+{
+  const stratus_volume* v = s->volume;
+  const stratus_ray_cast_options* o = s->options;
+  int region = 0;
+  int64_t nearest[3];
+  for (int a = 2; a >= 0; --a) {
+    const double half = v->cell_centered ? 0.5 : 0.0, top = (double)(v->dimensions[a] - 1);
+    const double low = (o->crop_bounds[2 * a] - v->origin[a]) / v->spacing[a] - half;
+    const double high = (o->crop_bounds[2 * a + 1] - v->origin[a]) / v->spacing[a] - half;
+    region = 3 * region + (p[a] < low ? 0 : p[a] > high ? 2 : 1);
+    nearest[a] = (int64_t)floor(fmin(fmax(p[a], 0.0), top) + 0.5);
+  }
+  return (!o->crop || (o->crop_regions >> region & 1)) &&
+    (!o->mask || o->mask[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
+}
+
+/* NAN where nothing is to be seen. */
+static double field_at(const scene* s, const double p[3])
+{
+  const stratus_volume* v = s->volume;
+  int64_t at[3];
+  double t[3], sum = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    const double top = (double)(v->dimensions[a] - 1), q = fmin(fmax(p[a], 0.0), top);
+    if (s->options->interpolation == STRATUS_INTERPOLATION_NEAREST) {
+      at[a] = (int64_t)floor(q + 0.5);
+      t[a] = 0.0;
+    } else {
+      at[a] = (int64_t)fmin(floor(q), fmax(top - 1.0, 0.0));
+      t[a] = q - (double)at[a];
+    }
+  }
+  if (!is_kept(s, p) || cell_is_hidden(v, at)) {
+    return (double)NAN;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1.0;
+    int64_t c[3];
+    for (int a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      weight *= up ? t[a] : 1.0 - t[a];
+      c[a] = at[a] + up < v->dimensions[a] ? at[a] + up : at[a];
+    }
+    const double value = value_at(v, c[0], c[1], c[2]);
+    if (s->options->interpolation == STRATUS_INTERPOLATION_LINEAR || corner == 0) {
+      sum += isfinite(value) ? weight * value : (double)NAN;
+    }
+  }
+  return sum;
+}
+
+static double between(const double* points, size_t count, size_t width, size_t component, double x)
+{
+  size_t i = 0;
+  if (x < points[0]) {
+    return points[component];
+  }
+  while (i + 1 < count && points[(i + 1) * width] <= x) {
+    ++i;
+  }
+  if (i + 1 == count) {
+    return points[i * width + component];
+  }
+  const double *a = points + i * width, *b = a + width;
+  return a[component] + (x - a[0]) / (b[0] - a[0]) * (b[component] - a[component]);
+}
+
+static void color_at(const stratus_transfer* transfer, double x, double rgba[4])
+{
+  const bool outside = x < transfer->opacity[0] || x > transfer->opacity[2 * (transfer->opacity_count - 1)];
+  rgba[3] = outside && !transfer->clamp ? 0.0 : between(transfer->opacity, transfer->opacity_count, 2, 1, x);
+  for (size_t c = 0; c < 3; ++c) {
+    rgba[c] = between(transfer->color, transfer->color_count, 4, c + 1, x);
+  }
+}
+
+/* ---- rays */
+
+static void set_to_world(scene* s)
+{
+  const stratus_volume* v = s->volume;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 4; ++c) {
+      s->to_world[r][c] = c == 3 ? v->matrix[4 * r + 3] : 0.0;
+      for (int m = 0; m < 3; ++m) {
+        s->to_world[r][c] += v->matrix[4 * r + m] * (c == 3 ? v->origin[m] : v->direction[3 * m + c] * v->spacing[c]);
+      }
+    }
+  }
+  for (int r = 0; v->cell_centered && r < 3; ++r) {
+    s->to_world[r][3] += 0.5 * (s->to_world[r][0] + s->to_world[r][1] + s->to_world[r][2]);
+  }
+}
+
+/* x with to_world x = b, by Cramer's rule. */
+static void solve(const scene* s, const double b[3], double x[3])
+{
+  double m[4];
+  for (int which = 0; which < 4; ++which) {
+    double a[3][3];
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        a[r][c] = which == c ? b[r] : s->to_world[r][c];
+      }
+    }
+    m[which] = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+      a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+  }
+  for (int c = 0; c < 3; ++c) {
+    x[c] = m[c] / m[3];
+  }
+}
+
+static line make_line(const scene* s, const stratus_camera* camera, double u, double v)
+{
+  double from[3], along[3], length = 0.0;
+  line l;
+  for (int a = 0; a < 3; ++a) {
+    const double side = u * camera->right[a] + v * camera->up[a];
+    from[a] = camera->eye[a] + (camera->parallel ? side : 0.0) - s->to_world[a][3];
+    along[a] = camera->forward[a] + (camera->parallel ? 0.0 : side);
+    length += along[a] * along[a];
+  }
+  length = sqrt(length);
+  for (int a = 0; a < 3; ++a) {
+    along[a] /= length;
+  }
+  l.begin = camera->near_k * length;
+  l.end = camera->far_k * length;
+  solve(s, from, l.origin);
+  solve(s, along, l.direction);
+  for (int a = 0; a < 3; ++a) {
+    const double half = s->volume->cell_centered ? 0.5 : 0.0, lo = -half, hi = (double)s->volume->dimensions[a] - 1.0 + half;
+    const double t0 = (lo - l.origin[a]) / l.direction[a], t1 = (hi - l.origin[a]) / l.direction[a];
+    l.begin = fmax(l.begin, fmin(t0, t1));
+    l.end = fmin(l.end, fmax(t0, t1));
+  }
+  return l;
+}
+
+static void point_on(const line* l, double t, double p[3])
+{
+  for (int a = 0; a < 3; ++a) {
+    p[a] = l->origin[a] + t * l->direction[a];
+  }
+}
+
+/* ---- the modes that sample */
+
+static void draw_light(const scene* s, const line* l, double step, float rgba[4], float* depth)
+{
+  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
+  const double length = (l->end - l->begin) / (double)count;
+  double left = 1.0, sum[3] = { 0.0, 0.0, 0.0 };
+  for (int64_t i = 0; i < count; ++i) {
+    double p[3], color[4];
+    const double t = l->begin + ((double)i + 0.5) * length;
+    point_on(l, t, p);
+    const double value = field_at(s, p);
+    if (isnan(value)) {
+      continue;
+    }
+    color_at(s->transfer, value, color);
+    const double alpha = color[3] < 1.0 ? 1.0 - pow(1.0 - color[3], length / s->transfer->unit_distance) : 1.0;
+    for (int c = 0; c < 3; ++c) {
+      sum[c] += left * alpha * color[c];
+    }
+    left *= 1.0 - alpha;
+    *depth = alpha > 0.0 && (double)*depth > t ? (float)t : *depth;
+  }
+  for (int c = 0; c < 3; ++c) {
+    rgba[c] = (float)sum[c];
+  }
+  rgba[3] = (float)(1.0 - left);
+}
+
+static void draw_extreme(const scene* s, const line* l, double step, float rgba[4], float* depth)
+{
+  const double sign = s->options->mode == STRATUS_MODE_MINIMUM ? -1.0 : 1.0;
+  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
+  double best = -(double)INFINITY, at = 0.0, color[4];
+  for (int64_t i = 0; i < count; ++i) {
+    double p[3];
+    const double t = l->begin + ((double)i + 0.5) * (l->end - l->begin) / (double)count;
+    point_on(l, t, p);
+    const double value = sign * field_at(s, p);
+    if (value > best) {
+      best = value;
+      at = t;
+    }
+  }
+  if (isfinite(best)) {
+    color_at(s->transfer, sign * best, color);
+    for (int c = 0; c < 4; ++c) {
+      rgba[c] = (float)(color[c] * (c < 3 ? color[3] : 1.0));
+    }
+    *depth = color[3] > 0.0 ? (float)at : INFINITY;
+  }
+}
+
+static void draw_sum(const scene* s, const line* l, double step, float rgba[4], float* depth)
+{
+  const bool mean = s->options->mode == STRATUS_MODE_AVERAGE;
+  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
+  const double length = (l->end - l->begin) / (double)count;
+  double sum = 0.0, counted = 0.0;
+  for (int64_t i = 0; i < count; ++i) {
+    double p[3], color[4];
+    const double t = l->begin + ((double)i + 0.5) * length;
+    point_on(l, t, p);
+    const double value = field_at(s, p);
+    if (isnan(value) || (mean && !(value >= s->options->average_range[0] && value <= s->options->average_range[1]))) {
+      continue;
+    }
+    color_at(s->transfer, value, color);
+    sum += s->high > s->low ? color[3] * (value - s->low) / (s->high - s->low) * length : 0.0;
+    counted += length;
+    *depth = color[3] > 0.0 && (double)*depth > t ? (float)t : *depth;
+  }
+  if (mean && counted == 0.0) {
+    return;
+  }
+  const double grey = sum / (mean ? counted : s->transfer->unit_distance);
+  rgba[0] = rgba[1] = rgba[2] = (float)fmin(grey, 1.0);
+  rgba[3] = 1.0f;
+}
+
+/* ---- isosurfaces */
+
+typedef struct crossing {
+  double t, contour;
+} crossing;
+
+static int by_distance(const void* a, const void* b)
+{
+  const double s = ((const crossing*)a)->t, t = ((const crossing*)b)->t;
+  return s < t ? -1 : s > t;
+}
+
+static double field_on(const scene* s, const line* l, double t)
+{
+  double p[3];
+  point_on(l, t, p);
+  return field_at(s, p);
+}
+
+static int cross_cell(const scene* s, const line* l, double from, double to, double contour, crossing* found)
+{
+  int count = 0;
+  for (int part = 0; part < PARTS; ++part) {
+    double lo = from + (to - from) * part / PARTS, hi = from + (to - from) * (part + 1) / PARTS;
+    const double first = field_on(s, l, lo), last = field_on(s, l, hi);
+    if (isnan(first) || isnan(last) || (first < contour) == (last < contour)) {
+      continue;
+    }
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      if ((field_on(s, l, middle) < contour) == (first < contour)) {
+        lo = middle;
+      } else {
+        hi = middle;
+      }
+    }
+    found[count++] = (crossing){ 0.5 * (lo + hi), contour };
+  }
+  return count;
+}
+
+static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* depth)
+{
+  enum { CROSSINGS = 4096 };
+  static _Thread_local crossing planes[CROSSINGS], found[CROSSINGS];
+  int plane_count = 0, count = 0;
+  planes[plane_count++].t = l->begin;
+  planes[plane_count++].t = l->end;
+  for (int a = 0; a < 3; ++a) {
+    for (int64_t n = -1; n <= s->volume->dimensions[a]; ++n) {
+      const double t = ((double)n - l->origin[a]) / l->direction[a];
+      if (t > l->begin && t < l->end && plane_count < CROSSINGS) {
+        planes[plane_count++].t = t;
+      }
+    }
+  }
+  qsort(planes, (size_t)plane_count, sizeof *planes, by_distance);
+  for (int i = 0; i + 1 < plane_count; ++i) {
+    const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* so that both ends are this cell's */
+    for (int n = 0; n < s->options->contour_count && count < CROSSINGS - PARTS; ++n) {
+      count += cross_cell(s, l, planes[i].t + hair, planes[i + 1].t - hair, s->options->contours[n], found + count);
+    }
+  }
+  qsort(found, (size_t)count, sizeof *found, by_distance);
+  double left = 1.0;
+  for (int i = 0; i < count; ++i) {
+    double color[4];
+    color_at(s->transfer, found[i].contour, color);
+    for (int c = 0; c < 3; ++c) {
+      rgba[c] += (float)(left * color[3] * color[c]);
+    }
+    left *= 1.0 - color[3];
+    *depth = color[3] > 0.0 && isinf(*depth) ? (float)found[i].t : *depth;
+  }
+  rgba[3] = (float)(1.0 - left);
+}
+
+void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth)
+{
+  scene s = { .volume = volume, .transfer = transfer, .options = options, .low = (double)INFINITY, .high = -(double)INFINITY };
+  set_to_world(&s);
+  for (int64_t k = 0; k < volume->dimensions[2]; ++k) {
+    for (int64_t j = 0; j < volume->dimensions[1]; ++j) {
+      for (int64_t i = 0; i < volume->dimensions[0]; ++i) {
+        const double value = value_at(volume, i, j, k);
+        s.low = isfinite(value) ? fmin(s.low, value) : s.low;
+        s.high = isfinite(value) ? fmax(s.high, value) : s.high;
+      }
+    }
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int pixel = 0; pixel < width * height; ++pixel) {
+    const line l = make_line(&s, camera, (2.0 * (pixel % width) + 1.0) / width - 1.0, (2.0 * (pixel / width) + 1.0) / height - 1.0);
+    float *to = rgba + 4 * (size_t)pixel, *far = depth + pixel;
+    memset(to, 0, 4 * sizeof *to);
+    *far = INFINITY;
+    if (!(l.begin < l.end)) {
+      continue;
+    }
+    if (options->mode == STRATUS_MODE_ISOSURFACE) {
+      draw_surfaces(&s, &l, to, far);
+    } else if (options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM) {
+      draw_extreme(&s, &l, step, to, far);
+    } else if (options->mode == STRATUS_MODE_COMPOSITE) {
+      draw_light(&s, &l, step, to, far);
+    } else {
+      draw_sum(&s, &l, step, to, far);
+    }
+  }
+}

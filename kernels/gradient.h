@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The field's gradient at a sample. Included after fetch.h, once for each STRATUS_TYPE.
+ *
+ * The trilinear interpolation of the eight corners' central differences, which is the central difference of the interpolated field: 32 values of
+ * the 4x4x4 about the cell. A corner without a neighbour (the volume ends, or the value there is no number) takes the difference to the other one. */
+#ifndef STRATUS_GRADIENT_H
+#define STRATUS_GRADIENT_H
+/* Differences at `from` and `to`, which lie side by side, at t between them. lower, upper: where `before` and `after` are beyond the volume. */
+INLINE vfloat gradient_between(vfloat before, vfloat from, vfloat to, vfloat after, vfloat t, vmask lower, vmask upper)
+{
+  const vfloat inner = to - from, half_one = v_set(0.5f);
+  const vfloat left = v_select(m_andnot(v_finite(before), lower), (to - before) * half_one, inner);
+  const vfloat right = v_select(m_andnot(v_finite(after), upper), (after - from) * half_one, inner);
+  return v_lerp(left, right, t);
+}
+
+INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g); }
+#endif
+
+/* values[i..i+1] of row (j, k): at the volume's end the last one twice. */
+INLINE void fetch_two(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
+{
+#if STRATUS_TYPE == -1
+  *v0 = fetch_nearest(a, values, i, j, k, mask);
+  *v1 = fetch_nearest(a, values, vi_min(i + vi_set(1), vi_set(a->dimensions[0] - 1)), j, k, mask);
+#else
+  fetch_pair(a, values, fixed_index(a, i, j, k), mask, 1, v0, v1);
+#endif
+}
+
+/* Where values are taken as they are: the differences at the voxel itself. */
+INLINE void voxel_gradient(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+{
+  vint at[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    vfloat place = x[axis];
+    if (a->clamp) {
+      place = v_clamp(place, 0.0f, a->last[axis]);
+    }
+    at[axis] = v_to_int(place + v_set(0.5f));
+  }
+  const vfloat here = fetch_nearest(a, values, at[0], at[1], at[2], mask), zero = v_set(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    vint side[3] = { at[0], at[1], at[2] };
+    side[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
+    const vfloat low = fetch_nearest(a, values, side[0], side[1], side[2], mask);
+    const vmask lower = v_finite(low) & vi_ge(at[axis], vi_set(1));
+    side[axis] = vi_min(at[axis] + vi_set(1), vi_set(a->dimensions[axis] - 1));
+    const vfloat high = fetch_nearest(a, values, side[0], side[1], side[2], mask);
+    const vmask upper = v_finite(high) & vi_lt(at[axis], vi_set(a->dimensions[axis] - 1));
+    const vfloat difference = v_select(upper, high, here) - v_select(lower, low, here);
+    g[axis] = v_select(lower & upper, difference * v_set(0.5f), v_select(lower | upper, difference, zero));
+  }
+}
+
+/* g: value a voxel along each axis at index coordinates x, in the lanes of `mask`; where the mask is not set, any number. */
+INLINE void ray_gradient(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+{
+  if (a->nearest) {
+    voxel_gradient(a, values, x, mask, g);
+    return;
+  }
+  vint at[3], before[3], after[3];
+  vfloat t[3], v[8], line[3][4];
+  vmask lower[3], upper[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int end = a->dimensions[axis] - 1;
+    vfloat place = x[axis];
+    if (a->clamp) {
+      place = v_clamp(place, 0.0f, a->last[axis]);
+    }
+    at[axis] = vi_max(vi_min(v_to_int(place), vi_set(end - 1)), vi_set(0));
+    t[axis] = place - v_from_int(at[axis]);
+    lower[axis] = vi_lt(at[axis], vi_set(1));
+    upper[axis] = vi_ge(at[axis], vi_set(end - 1));
+    before[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
+    after[axis] = vi_min(at[axis] + vi_set(2), vi_set(end));
+  }
+  fetch_cell(a, values, at[0], at[1], at[2], mask, v);
+  for (int row = 0; row < 4; ++row) { /* along x, at the cell's four edges */
+    const vint j = at[1] + vi_set(row & 1), k = at[2] + vi_set(row >> 1);
+    const vint y = vi_min(j, vi_set(a->dimensions[1] - 1)), z = vi_min(k, vi_set(a->dimensions[2] - 1));
+    const vfloat left = fetch_nearest(a, values, before[0], y, z, mask), right = fetch_nearest(a, values, after[0], y, z, mask);
+    line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
+  }
+  for (int side = 0; side < 2; ++side) { /* along y at both ends of z, along z at both ends of y */
+    const vint j = vi_min(at[1] + vi_set(side), vi_set(a->dimensions[1] - 1)), k = vi_min(at[2] + vi_set(side), vi_set(a->dimensions[2] - 1));
+    vfloat low[2], high[2];
+    fetch_two(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
+    fetch_two(a, values, at[0], after[1], k, mask, &high[0], &high[1]);
+    for (int i = 0; i < 2; ++i) {
+      line[1][i + 2 * side] = gradient_between(low[i], v[i + 4 * side], v[i + 2 + 4 * side], high[i], t[1], lower[1], upper[1]);
+    }
+    fetch_two(a, values, at[0], j, before[2], mask, &low[0], &low[1]);
+    fetch_two(a, values, at[0], j, after[2], mask, &high[0], &high[1]);
+    for (int i = 0; i < 2; ++i) {
+      line[2][i + 2 * side] = gradient_between(low[i], v[i + 2 * side], v[i + 2 * side + 4], high[i], t[2], lower[2], upper[2]);
+    }
+  }
+  g[0] = bilinear(line[0], t[1], t[2]);
+  g[1] = bilinear(line[1], t[0], t[2]);
+  g[2] = bilinear(line[2], t[0], t[1]);
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components. Included by
+ * ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOOKS. What is looked up beyond the values is so only where something shows, and only
+ * thins or colours that: a segment left out would have added exactly zero, here too. */
+#include "gradient.h"
+#include "shading.h"
+
+/* Few samples come this far, and the code is long: once for each type, not wherever it is called. */
+#ifdef STRATUS_DEVICE
+#define OUTLINE static
+#else
+#define OUTLINE static __attribute__((noinline))
+#endif
+
+#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->component_bytes)
+
+/* What samples at s on their rays show beside their values, in the lanes of `mask`, by the gradient of component c. */
+OUTLINE void ray_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vmask mask, stratus_look* look)
+{
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
+  if (a->shade || a->factor_first[c] >= 0) {
+    ray_gradient(a, COMPONENT_VALUES(a, values, c), x, mask, g);
+  }
+  look->factor = gradient_factor(a, table, c, g, mask);
+  if (a->shade) {
+    ray_light(a, x, k->d, g, look->diffuse, look->specular);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      look->diffuse[i] = v_set(1.0f);
+      look->specular[i] = v_set(0.0f);
+    }
+  }
+}
+
+#if !STRATUS_PREINTEGRATED
+/* Adds the medium whose optical depth is layer[3] and whose light is layer[0..2], both over a whole sample, by component c's gradient. */
+OUTLINE void ray_add_medium(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
+  const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[4])
+{
+  const vmask shows = mask & v_lt(v_set(0.0f), layer[3]);
+  stratus_look look;
+  if (m_any(shows)) {
+    ray_look(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &look);
+    light_layer(&look, layer);
+    for (int i = 0; i < 4; ++i) {
+      sum[i] = v_select(shows, v_fma(layer[i], look.factor * v_set(a->component_weight[c]), sum[i]), sum[i]);
+    }
+  }
+}
+
+/* The value of component c where the sample is. */
+OUTLINE vfloat component_value(
+  CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
+{
+  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  return ray_value(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
+}
+
+/* Each component a medium: their optical depths add up, and their light. */
+INLINE void add_independent(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k,
+  const stratus_sample* sample, vfloat sum[4])
+{
+  for (int c = 0; c < a->components; ++c) {
+    const vfloat value = component_value(a, k, sample, c, k->live);
+    vfloat layer[4];
+    gather_four((GLOBAL const float*)table + a->look_first[c], look_entry(a, c, value), k->live & v_finite(value), layer);
+    ray_add_medium(a, table, c, k, sample, k->live, layer, sum);
+  }
+}
+
+/* Colour from all components but the last, opacity from that. */
+INLINE void add_dependent(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k,
+  const stratus_sample* sample, vfloat sum[4])
+{
+  const int last = a->components - 1;
+  vfloat value = component_value(a, k, sample, last, k->live), layer[4], color[4];
+  vmask valid = k->live & v_finite(value);
+  gather_four((GLOBAL const float*)table + a->look_first[last], look_entry(a, last, value), valid, layer);
+  valid = valid & v_lt(v_set(0.0f), layer[3]);
+  if (!m_any(valid)) {
+    return;
+  }
+  if (last == 1) {
+    value = component_value(a, k, sample, 0, valid);
+    valid = valid & v_finite(value);
+    gather_four((GLOBAL const float*)table + a->look_first[0], look_entry(a, 0, value), valid, color);
+  } else {
+    for (int c = 0; c < 3; ++c) {
+      color[c] = component_value(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    layer[c] = color[c] * layer[3];
+  }
+  ray_add_medium(a, table, last, k, sample, valid, layer, sum);
+}
+
+OUTLINE void shade_components(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat zero = v_set(0.0f);
+  vfloat sum[4] = { zero, zero, zero, zero };
+  if (a->dependent) {
+    add_dependent(a, table, k, sample, sum);
+  } else {
+    add_independent(a, table, k, sample, sum);
+  }
+  const vmask shows = k->live & v_lt(zero, sum[3]);
+  if (m_any(shows)) {
+    vfloat layer[4];
+    layer[3] = v_select(shows, v_absorbed(sum[3] * sample->weight), zero);
+    const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(sum[3], v_set(1e-30f))), zero);
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = sum[c] * per_depth;
+    }
+    composite(a, k, shows, layer, sample->lo);
+  }
+}
+#endif
+
+/* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
+OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
+  stratus_look look;
+  k->samples -= mask_int(k->live);
+#if STRATUS_PREINTEGRATED
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
+  const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
+  if (m_any(shows)) {
+    ray_look(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &look);
+    integrate_look(a, (GLOBAL const int*)table, k, shows, value, weight * look.factor, lo, &look);
+  }
+  k->front = value;
+  k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
+  k->fresh = m_none();
+#else
+  if (a->components > 1) {
+    shade_components(a, table, k, sample);
+  } else {
+    const vint entry = table_entry(a, value);
+    vfloat layer[4];
+    gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
+    const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);
+    if (m_any(shows)) {
+      ray_look(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &look);
+      shorten_layer(a, (GLOBAL const float*)table, entry, shows, weight * look.factor, layer);
+      light_layer(&look, layer);
+      composite(a, k, shows, layer, lo);
+    }
+  }
+  k->i = k->i + vi_set(1);
+#endif
+  k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
+}
+
+#undef OUTLINE
+#undef COMPONENT_VALUES
+
+INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+{
+  (void)a;
+  (void)table;
+  (void)k;
+}
