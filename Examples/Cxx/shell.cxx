@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A surface, filled by TetGen, a field on the tetrahedra, and its picture: shell [OUT.png]. Without a file name it opens a window to turn it in.
 #include <vtkStratusTetGenFilter.h>
+#include <vtkStratusTetrahedraMapper.h>
 
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
@@ -16,7 +17,6 @@
 #include <vtkRenderer.h>
 #include <vtkSphereSource.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkUnstructuredGridVolumeRayCastMapper.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 #include <vtkWindowToImageFilter.h>
@@ -65,22 +65,26 @@ int main(int argc, char** argv)
     return EXIT_FAILURE;
   }
 
-  vtkNew<vtkDoubleArray> field; // waves around the axis
+  vtkNew<vtkDoubleArray> field;
   field->SetName("waves");
   for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point) {
     double x[3];
     mesh->GetPoint(point, x);
-    field->InsertNextValue(0.5 + 0.5 * std::sin(4.0 * std::atan2(x[1], x[0]) + 6.0 * x[2]));
+    double sum = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      sum += std::sin(5.0 * x[a]) * std::cos(5.0 * x[(a + 1) % 3]);
+    }
+    field->InsertNextValue(sum);
   }
   mesh->GetPointData()->SetScalars(field);
 
-  vtkNew<vtkUnstructuredGridVolumeRayCastMapper> mapper;
+  vtkNew<vtkStratusTetrahedraMapper> mapper;
   mapper->SetInputData(mesh);
   vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(0.5, 0.0);
-  opacity->AddPoint(1.0, 0.9);
+  opacity->AddPoint(0.3, 0.0);
+  opacity->AddPoint(1.0, 0.6);
   vtkNew<vtkColorTransferFunction> color;
-  color->AddRGBPoint(0.5, 0.1, 0.4, 0.9);
+  color->AddRGBPoint(0.3, 0.1, 0.4, 0.9);
   color->AddRGBPoint(1.0, 1.0, 0.6, 0.2);
   vtkNew<vtkVolume> volume;
   volume->SetMapper(mapper);
@@ -96,6 +100,7 @@ int main(int argc, char** argv)
   window->AddRenderer(renderer);
   renderer->GetActiveCamera()->SetPosition(2.0, 1.5, 3.0);
   renderer->ResetCamera();
+  renderer->GetActiveCamera()->Zoom(1.5);
   if (argc < 2) {
     vtkNew<vtkRenderWindowInteractor> interactor;
     interactor->SetRenderWindow(window);
