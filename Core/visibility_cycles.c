@@ -2,21 +2,24 @@
  * Cells that hide one another in a ring. No order is right for all of them: the relation through the face that is seen smallest gives way. */
 #include "visibility_order.h"
 
-/* A face through which a cell waits for a neighbour that waits itself. There is one: what doesn't wait has come. */
+/* A face through which a cell waits for a neighbour that waits itself. -1: none of those that it waits for does, but they are held back across
+ * gaps: all else has come. */
 static int face_in_front(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)cell;
   for (int f = 0; f < 4; f++) {
-    if (order->state[cell] >> (4 + f) & 1 && order->waiting[neighbours[f]] > 0) {
+    if (order->state[cell] >> (4 + f) & 1 && stratus_order_waits_for(order, (uint32_t)neighbours[f]) > 0) {
       return f;
     }
   }
   return -1;
 }
 
+/* STRATUS_NO_CELL if what it waits for is held back. */
 static uint32_t cell_in_front(const stratus_visibility_order* order, uint32_t cell)
 {
-  return (uint32_t)order->adjacency->neighbours[4 * (int64_t)cell + face_in_front(order, cell)];
+  const int face = face_in_front(order, cell);
+  return face < 0 ? STRATUS_NO_CELL : (uint32_t)order->adjacency->neighbours[4 * (int64_t)cell + face];
 }
 
 uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t start, int64_t* steps)
@@ -24,13 +27,16 @@ uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t sta
   /* From cell to cell in front: one comes again. The one that is kept moves up each time the walk has doubled (Brent 1980). */
   uint32_t kept = start, cell = cell_in_front(order, start);
   int64_t power = 1, length = 1;
-  for (; kept != cell; length++, ++*steps) {
+  for (; kept != cell && cell != STRATUS_NO_CELL; length++, ++*steps) {
     if (length == power) {
       kept = cell;
       power *= 2;
       length = 0;
     }
     cell = cell_in_front(order, cell);
+  }
+  if (cell == STRATUS_NO_CELL) {
+    return cell;
   }
   uint32_t least = cell;
   double least_size = INFINITY;

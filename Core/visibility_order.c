@@ -78,6 +78,7 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   stratus_order_side_flat_cells(order, order->next);
   TRY(stratus_order_join_seams(order));
   TRY(stratus_order_take_leaves(order, leaves));
+  TRY(stratus_order_find_gaps(order));
   return stratus_progress(context, "visibility order", 1.0);
 }
 
@@ -126,6 +127,11 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->leaf_begin);
   stratus_release(context, order->leaf_order);
   stratus_release(context, order->leaf_output);
+  stratus_release(context, order->gap_faces);
+  stratus_release(context, order->gap_begin);
+  stratus_release(context, order->gates);
+  stratus_release(context, order->gate_bins);
+  stratus_release(context, order->gate_entries);
   stratus_release(context, order->seen);
   stratus_release(context, order->state);
   stratus_release(context, order->waiting);

@@ -13,6 +13,14 @@ typedef struct stratus_view {
   int parallel;
 } stratus_view;
 
+/* A border face across which cells of its leaf may hide one another. */
+typedef struct stratus_gate {
+  float low, high; /* depths of its points lie between */
+  uint32_t held;   /* a way out: the first of the cells that wait for its own; linked by `next` */
+  int8_t facing;   /* 1: a way out of the mesh, -1: a way in, 0: seen edge-on */
+  uint8_t passed;  /* its cell has come */
+} stratus_gate;
+
 struct stratus_visibility_order {
   stratus_context* context;
   const double* points; /* borrowed */
@@ -32,9 +40,14 @@ struct stratus_visibility_order {
   int32_t* leaf_order;  /* front to back */
   int64_t* leaf_output; /* where each begins in the order */
 
+  uint32_t* gap_faces; /* leaf by leaf, rising: border faces beyond whose planes lies more of their leaf */
+  int64_t* gap_begin;  /* leaf_count + 1 */
+  stratus_gate* gates; /* of the gap faces in this view */
+  uint32_t *gate_bins, *gate_entries;
+
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint8_t* state;   /* a cell: bit f: its neighbour behind face f comes after it, bit 4 + f: before it */
-  uint8_t* waiting; /* neighbours that come before it and have not come yet */
+  uint8_t* waiting; /* neighbours that come before it and have not come yet; and STRATUS_GATE_IN, _OUT */
   float* key;       /* how far away */
   uint32_t* next;   /* in its bucket */
   uint32_t* cells;  /* the order */
@@ -49,6 +62,18 @@ struct stratus_visibility_order {
 };
 
 #define STRATUS_BUCKETS_MAX 65536
+#define STRATUS_GATE_IN 0x80u  /* of a cell that has ways in from gaps */
+#define STRATUS_GATE_OUT 0x40u /* of one that has ways out into gaps */
+
+static inline const int32_t* stratus_order_vertices(const stratus_visibility_order* order, uint32_t cell)
+{
+  return order->vertices + 4 * (int64_t)cell;
+}
+
+static inline unsigned stratus_order_waits_for(const stratus_visibility_order* order, uint32_t cell)
+{
+  return order->waiting[cell] & 7u;
+}
 
 /* ---- visibility_flat.c: sides of cells without volume. What does not fit together is no neighbour any more. */
 void stratus_order_side_flat_cells(stratus_visibility_order* order, uint32_t* queue);
@@ -61,8 +86,64 @@ stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const 
 /* leaf_order and leaf_output of a view. */
 void stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view);
 
+/* ---- visibility_gaps.c: gap_faces. After leaves. */
+stratus_status stratus_order_find_gaps(stratus_visibility_order* order);
+
+/* ---- visibility_gates.c: a leaf's gap faces in one view */
+typedef struct stratus_gate_grid {
+  int size; /* bins across and down; 0: the side sees none */
+  uint32_t first;
+  double low[2], extent[2], scale[2];
+} stratus_gate_grid;
+
+typedef struct stratus_gates {
+  stratus_visibility_order* order;
+  int parallel, sides;
+  const uint32_t* faces;
+  stratus_gate* gates;
+  int64_t count, held; /* gates; cells that are held back */
+  stratus_gate_grid grids[6];
+  uint32_t *bin_begin, *bin_end, *entries; /* ways out by what they cover of the view */
+} stratus_gates;
+
+#define STRATUS_GATE_BINS_EXTRA 8 /* a leaf, beyond one a gate */
+#define STRATUS_GATE_ENTRIES 6    /* a gate in bins: at least one a side */
+
+/* As seen: from the eye, or with z along the rays. */
+typedef struct stratus_view_point {
+  double x, y, z;
+} stratus_view_point;
+
+static inline uint32_t stratus_gate_cell(const stratus_gates* gates, int64_t gate)
+{
+  return gates->faces[gate] / 4;
+}
+
+void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3]);
+
+stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps);
+/* After the signs: marks the cells that have gates. */
+void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf);
+/* A cell marked IN is to come: true if another has to come before it across a gap. It is held until then. */
+bool stratus_gates_hold(stratus_gates* gates, uint32_t cell);
+/* A cell marked OUT has come. Returns the cells that waited for it, linked by `next`, to be tried again. */
+uint32_t stratus_gates_pass(stratus_gates* gates, uint32_t cell);
+/* Nothing may come but cells are held: the nearest of them, not to be held again. */
+uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps);
+
+/* ---- visibility_gate_bins.c */
+
+/* The box around a gate's face in what a side sees, -1..1 where that is a side of the cube. False: it sees nothing of it. */
+bool stratus_gate_box(const stratus_gates* gates, int64_t gate, int side, double box[4]);
+/* First and last bins across and down. */
+void stratus_gate_bins(const stratus_gate_grid* grid, const double box[4], int bins[4]);
+/* All ways out. */
+void stratus_gates_fill_bins(stratus_gates* gates);
+
 /* ---- visibility_signs.c: state, waiting and key of all cells. Returns the signs that needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
+/* 1: rays leave the cell through its face, -1: they come in, 0: it is seen edge-on, or may be. */
+int stratus_order_facing(const stratus_visibility_order* order, uint32_t face);
 /* How large a face of a cell is seen, in some unit of the view. */
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face);
 
@@ -77,7 +158,7 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
 /* ---- visibility_cycles.c */
 
 /* Nothing is ready, yet cells wait: one relation of a cycle is taken out, and the cell that it led to told, ready or not. `start` is a cell
- * that waits; `steps` is counted up by what the search cost. */
+ * that waits; `steps` is counted up by what the search cost. STRATUS_NO_CELL: there is no cycle, what `start` waits for is held back. */
 uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t start, int64_t* steps);
 /* By distance. */
 void stratus_order_sort_by_key(const stratus_visibility_order* order, uint32_t* cells, int64_t count);

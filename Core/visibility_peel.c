@@ -22,8 +22,10 @@ typedef struct leaf_peel {
   /* layers: out[emitted..ready) may come, up to out[layer_end) in this layer */
   int64_t ready, layer_end;
   /* cycles */
-  int64_t unreleased, steps; /* cells listed before `unreleased` have come or are ready */
+  int64_t unreleased, steps, gate_steps; /* cells listed before `unreleased` have come or are ready */
+  bool faces_broken;
   stratus_peel_counts counts;
+  stratus_gates gates; /* nearest */
 } leaf_peel;
 
 static inline uint32_t leaf_cell(const leaf_peel* peel, int64_t i)
@@ -85,24 +87,56 @@ static void make_buckets(leaf_peel* peel)
   peel->nearest = peel->buckets;
 }
 
-/* Makes a cell ready, or all that are left, by distance. */
+/* A cell that waits for neighbours, STRATUS_NO_CELL if none does. */
+static uint32_t find_waiting(leaf_peel* peel)
+{
+  for (; peel->unreleased < peel->count; peel->unreleased++) {
+    const uint32_t cell = leaf_cell(peel, peel->unreleased);
+    if (stratus_order_waits_for(peel->order, cell) > 0) {
+      return cell;
+    }
+  }
+  return STRATUS_NO_CELL;
+}
+
+/* What is held back comes, the nearest or, if there were many, all. A ring of its own, unless one through faces was broken before: that one
+ * may well lead across gaps in many places. */
+static void yield_gate(leaf_peel* peel)
+{
+  do {
+    push(peel, stratus_gates_yield(&peel->gates, &peel->gate_steps));
+    peel->counts.cycles += !peel->faces_broken;
+  } while (peel->gates.held > 0 && peel->gate_steps > STEPS_PER_CELL * peel->count);
+}
+
+/* Makes a cell ready, or all that are left, by distance. Of a ring that leads across gaps what is held back there gives way. */
 static void unstick(leaf_peel* peel)
 {
   stratus_visibility_order* order = peel->order;
   while (peel->steps < STEPS_PER_CELL * peel->count) {
-    while (order->waiting[leaf_cell(peel, peel->unreleased)] == 0) {
-      peel->unreleased++;
+    const uint32_t start = find_waiting(peel);
+    const uint32_t cell = start == STRATUS_NO_CELL ? start : stratus_order_break_cycle(order, start, &peel->steps);
+    if (cell == STRATUS_NO_CELL) {
+      yield_gate(peel);
+      return;
     }
-    const uint32_t cell = stratus_order_break_cycle(order, leaf_cell(peel, peel->unreleased), &peel->steps);
     peel->counts.cycles++;
-    if (order->waiting[cell] == 0) {
+    peel->faces_broken = true;
+    if (stratus_order_waits_for(order, cell) == 0) {
+      order->waiting[cell] = (uint8_t)(order->waiting[cell] & ~STRATUS_GATE_IN); /* the ring may well lead across gaps, too */
       push(peel, cell);
       return;
     }
   }
+  if (peel->gates.held > 0) {
+    while (peel->gates.held > 0) {
+      yield_gate(peel);
+    }
+    return;
+  }
   for (int64_t i = peel->unreleased; i < peel->count; i++) {
     const uint32_t cell = leaf_cell(peel, i);
-    if (order->waiting[cell] > 0) {
+    if (stratus_order_waits_for(order, cell) > 0) {
       peel->out[peel->emitted++] = cell;
       peel->counts.forced++;
     }
@@ -117,8 +151,14 @@ static void emit(leaf_peel* peel, uint32_t cell)
   const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)cell;
   const unsigned after = order->state[cell] & 15u;
   for (int f = 0; f < 4; f++) {
-    if (after >> f & 1 && --order->waiting[neighbours[f]] == 0) {
+    if (after >> f & 1 && (--order->waiting[neighbours[f]] & 7) == 0) {
       push(peel, (uint32_t)neighbours[f]);
+    }
+  }
+  if (order->waiting[cell] & STRATUS_GATE_OUT) {
+    for (uint32_t released = stratus_gates_pass(&peel->gates, cell), following; released != STRATUS_NO_CELL; released = following) {
+      following = order->next[released];
+      push(peel, released);
     }
   }
 }
@@ -135,20 +175,21 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
     .heads = heads };
   if (peeling == STRATUS_PEELING_NEAREST) {
     make_buckets(&peel);
+    stratus_gates_open(&peel.gates, order, leaf);
   }
   /* From the back, as a bucket gives its last one first. */
   for (int64_t i = peel.count - 1; i >= 0; i--) {
     const uint32_t cell = leaf_cell(&peel, i);
-    if (order->waiting[cell] == 0) {
+    if (stratus_order_waits_for(order, cell) == 0) {
       push(&peel, cell);
     }
   }
   while (peel.emitted < peel.count) {
     const uint32_t cell = pop(&peel);
-    if (cell != STRATUS_NO_CELL) {
-      emit(&peel, cell);
-    } else {
+    if (cell == STRATUS_NO_CELL) {
       unstick(&peel);
+    } else if (!(order->waiting[cell] & STRATUS_GATE_IN) || !stratus_gates_hold(&peel.gates, cell)) {
+      emit(&peel, cell);
     }
   }
   return peel.counts;

@@ -121,6 +121,15 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
   return exact;
 }
 
+int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
+{
+  const int32_t* v = stratus_order_vertices(order, face / 4);
+  double det[4];
+  face_determinants(order->seen + 3 * (int64_t)v[0], order->seen + 3 * (int64_t)v[1], order->seen + 3 * (int64_t)v[2],
+    order->seen + 3 * (int64_t)v[3], order->view.parallel, det);
+  return ((det[face % 4] < -ERROR_BOUND) - (det[face % 4] > ERROR_BOUND)) * order->side[face / 4];
+}
+
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face)
 {
   const int32_t* v = order->vertices + 4 * (int64_t)cell;

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Order across gaps. A cell that rays enter from a gap is held back until all cells have come from which rays leave into that gap or one
+ * before it: those whose faces cover its own in the view and lie before it. */
+#include "visibility_order.h"
+
+#include <string.h>
+
+#define CORNERS_MAX 6    /* of two triangles' intersection */
+#define LEAST_SHARE 1e-6 /* of a face that another covers: less is rounding's, of faces that only touch */
+#define LEAST_DEPTH 1e-9 /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
+
+void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
+{
+  const stratus_visibility_order* order = gates->order;
+  const int32_t* v = stratus_order_vertices(order, stratus_gate_cell(gates, gate));
+  for (unsigned i = 0; i < 3; i++) {
+    const double* p = order->seen + 3 * (int64_t)v[(gates->faces[gate] + 1 + i) % 4];
+    points[i] = (stratus_view_point){ p[0], p[1], p[2] };
+  }
+}
+
+/* How large three points are in the view, and which way round. */
+static double turn_of(const stratus_gates* gates, const stratus_view_point* a, const stratus_view_point* b, const stratus_view_point* c)
+{
+  if (gates->parallel) {
+    return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
+  }
+  return a->x * (b->y * c->z - b->z * c->y) + a->y * (b->z * c->x - b->x * c->z) + a->z * (b->x * c->y - b->y * c->x);
+}
+
+/* The part of a convex polygon, which has room for one more corner, where distance[] is not negative. */
+static int clip(stratus_view_point* polygon, int count, const double* distance)
+{
+  stratus_view_point kept[CORNERS_MAX + 2];
+  int made = 0;
+  for (int i = 0; i < count; i++) {
+    const int j = i + 1 < count ? i + 1 : 0;
+    const stratus_view_point *p = polygon + i, *q = polygon + j;
+    if (distance[i] >= 0.0) {
+      kept[made++] = *p;
+    }
+    if ((distance[i] > 0.0 && distance[j] < 0.0) || (distance[i] < 0.0 && distance[j] > 0.0)) {
+      const double t = distance[i] / (distance[i] - distance[j]);
+      kept[made++] = (stratus_view_point){ p->x + t * (q->x - p->x), p->y + t * (q->y - p->y), p->z + t * (q->z - p->z) };
+    }
+  }
+  memcpy(polygon, kept, (size_t)made * sizeof *kept);
+  return made;
+}
+
+static stratus_view_point minus(const stratus_view_point* p, const stratus_view_point* q)
+{
+  return (stratus_view_point){ p->x - q->x, p->y - q->y, p->z - q->z };
+}
+
+/* Whether p is on the eye's side of a face's plane, or on it. *nearness: how many times as far the plane is. */
+static bool is_before(const stratus_gates* gates, const stratus_view_point* p, const stratus_view_point face[3], double* nearness)
+{
+  const stratus_view_point u = minus(face + 1, face), v = minus(face + 2, face), from = minus(p, face);
+  const stratus_view_point normal = { u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x };
+  const double length = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+  const double size = sqrt(u.x * u.x + u.y * u.y + u.z * u.z) + sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  const double plane = gates->parallel ? normal.z : normal.x * face->x + normal.y * face->y + normal.z * face->z;
+  const double beyond = normal.x * from.x + normal.y * from.y + normal.z * from.z;
+  *nearness = gates->parallel ? 1.0 : plane / (plane + beyond);
+  return (plane > 0.0 ? beyond : -beyond) <= LEAST_DEPTH * length * size;
+}
+
+/* Whether the face of gate a lies before the one of b in the middle of what they share of the view. */
+static bool lies_before(const stratus_gates* gates, int64_t a, int64_t b)
+{
+  stratus_view_point polygon[CORNERS_MAX + 2], front[3], back[3], middle = { 0.0, 0.0, 0.0 };
+  double size = 0.0, nearness;
+  int count = 3;
+  stratus_gate_points(gates, a, front);
+  stratus_gate_points(gates, b, back);
+  memcpy(polygon, front, sizeof front);
+  const double turn = turn_of(gates, back, back + 1, back + 2);
+  for (int e = 0; e < 3 && count >= 3; e++) {
+    double distance[CORNERS_MAX + 2];
+    for (int i = 0; i < count; i++) {
+      distance[i] = turn_of(gates, back + (e + 1) % 3, back + (e + 2) % 3, polygon + i) * turn;
+    }
+    count = clip(polygon, count, distance);
+  }
+  for (int i = 0; i < count; i++) {
+    size += i >= 2 ? fabs(turn_of(gates, polygon, polygon + i - 1, polygon + i)) : 0.0;
+    middle.x += polygon[i].x / count;
+    middle.y += polygon[i].y / count;
+    middle.z += polygon[i].z / count;
+  }
+  if (count < 3 || !is_before(gates, &middle, back, &nearness)) {
+    return false;
+  }
+  const double front_turn = turn_of(gates, front, front + 1, front + 2), size_behind = size * nearness * nearness * nearness;
+  return size > LEAST_SHARE * fabs(front_turn) || size_behind > LEAST_SHARE * fabs(turn);
+}
+
+/* Not nearer, nor farther, than any point of the face. */
+static void find_depths(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3])
+{
+  double low = INFINITY, high = -INFINITY, x = 0.0, y = 0.0, z = 0.0, radius = 0.0;
+  for (int i = 0; i < 3; i++) {
+    const stratus_view_point* p = points + i;
+    const double depth = gates->parallel ? p->z : sqrt(p->x * p->x + p->y * p->y + p->z * p->z);
+    low = fmin(low, depth);
+    high = fmax(high, depth);
+    x += p->x / 3.0;
+    y += p->y / 3.0;
+    z += p->z / 3.0;
+  }
+  for (int i = 0; i < 3 && !gates->parallel; i++) {
+    const stratus_view_point* p = points + i;
+    radius = fmax(radius, (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y) + (p->z - z) * (p->z - z));
+  }
+  low = gates->parallel ? low : sqrt(x * x + y * y + z * z) - sqrt(radius);
+  gate->low = (float)(low - 1e-6 * fabs(low));
+  gate->high = (float)(high + 1e-6 * fabs(high));
+}
+
+void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf)
+{
+  const int64_t first = order->gap_begin[leaf];
+  *gates = (stratus_gates){ .order = order,
+    .parallel = order->view.parallel,
+    .sides = order->view.parallel ? 1 : 6,
+    .faces = order->gap_faces + first,
+    .count = order->gap_begin[leaf + 1] - first,
+    .gates = order->gates + first,
+    .bin_begin = order->gate_bins + 2 * (first + STRATUS_GATE_BINS_EXTRA * (int64_t)leaf),
+    .entries = order->gate_entries + STRATUS_GATE_ENTRIES * first };
+  gates->bin_end = gates->bin_begin + gates->count + STRATUS_GATE_BINS_EXTRA;
+  int64_t ways_in = 0, ways_out = 0;
+  for (int64_t g = 0; g < gates->count; g++) {
+    stratus_view_point points[3];
+    stratus_gate_points(gates, g, points);
+    find_depths(gates, gates->gates + g, points);
+    gates->gates[g].facing = (int8_t)stratus_order_facing(order, gates->faces[g]);
+    gates->gates[g].held = STRATUS_NO_CELL;
+    gates->gates[g].passed = 0;
+    ways_in += gates->gates[g].facing < 0;
+    ways_out += gates->gates[g].facing > 0;
+  }
+  if (ways_in == 0 || ways_out == 0) {
+    return;
+  }
+  stratus_gates_fill_bins(gates);
+  for (int64_t g = 0; g < gates->count; g++) {
+    const int facing = gates->gates[g].facing;
+    order->waiting[stratus_gate_cell(gates, g)] |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
+  }
+}
+
+/* A cell's first gate. Its others follow. */
+static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
+{
+  int64_t low = 0, high = gates->count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (gates->faces[middle] < 4 * cell) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/* A way out whose cell has not come and that lies before a way in; -1: none. What has come leaves its bin. */
+static int64_t find_gate_before(stratus_gates* gates, int64_t way_in)
+{
+  for (int side = 0; side < gates->sides; side++) {
+    const stratus_gate_grid* grid = gates->grids + side;
+    double box[4];
+    int at[4];
+    if (grid->size == 0 || !stratus_gate_box(gates, way_in, side, box)) {
+      continue;
+    }
+    stratus_gate_bins(grid, box, at);
+    for (int bin = at[2] * grid->size + at[0]; bin <= at[3] * grid->size + at[1]; bin++) {
+      if (bin % grid->size < at[0] || bin % grid->size > at[1]) {
+        continue;
+      }
+      const uint32_t begin = gates->bin_begin[grid->first + (uint32_t)bin];
+      uint32_t* end = gates->bin_end + grid->first + bin;
+      for (uint32_t e = begin; e < *end;) {
+        const uint32_t way_out = gates->entries[e];
+        if (gates->gates[way_out].passed) {
+          gates->entries[e] = gates->entries[--*end];
+          continue;
+        }
+        if (gates->gates[way_out].low < gates->gates[way_in].high && stratus_gate_cell(gates, way_out) != stratus_gate_cell(gates, way_in) &&
+          lies_before(gates, way_out, way_in)) {
+          return way_out;
+        }
+        e++;
+      }
+    }
+  }
+  return -1;
+}
+
+bool stratus_gates_hold(stratus_gates* gates, uint32_t cell)
+{
+  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+    const int64_t before = gates->gates[g].facing < 0 ? find_gate_before(gates, g) : -1;
+    if (before >= 0) {
+      gates->order->next[cell] = gates->gates[before].held;
+      gates->gates[before].held = cell;
+      gates->held++;
+      return true;
+    }
+  }
+  return false;
+}
+
+uint32_t stratus_gates_pass(stratus_gates* gates, uint32_t cell)
+{
+  uint32_t released = STRATUS_NO_CELL;
+  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+    stratus_gate* gate = gates->gates + g;
+    gate->passed = 1;
+    while (gate->held != STRATUS_NO_CELL) {
+      const uint32_t first = gate->held;
+      gate->held = gates->order->next[first];
+      gates->order->next[first] = released;
+      released = first;
+      gates->held--;
+    }
+  }
+  return released;
+}
+
+uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps)
+{
+  const stratus_visibility_order* order = gates->order;
+  uint32_t* nearest = NULL; /* there is one, as cells are held */
+  for (int64_t g = 0; g < gates->count; g++) {
+    for (uint32_t* at = &gates->gates[g].held; *at != STRATUS_NO_CELL; at = order->next + *at, ++*steps) {
+      nearest = !nearest || order->key[*at] < order->key[*nearest] ? at : nearest;
+    }
+  }
+  *steps += gates->count;
+  const uint32_t cell = *nearest;
+  *nearest = order->next[cell];
+  order->waiting[cell] &= (uint8_t)~STRATUS_GATE_IN;
+  gates->held--;
+  return cell;
+}
+
+stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps)
+{
+  const size_t count = (size_t)gaps, bins = 2 * (count + STRATUS_GATE_BINS_EXTRA * (size_t)order->leaf_count);
+  void* memory;
+  TRY(stratus_allocate(order->context, count, sizeof *order->gates, &memory));
+  order->gates = memory;
+  TRY(stratus_allocate(order->context, count, STRATUS_GATE_ENTRIES * sizeof *order->gate_entries, &memory));
+  order->gate_entries = memory;
+  TRY(stratus_allocate(order->context, bins, sizeof *order->gate_bins, &memory));
+  order->gate_bins = memory;
+  order->bytes += count * (sizeof *order->gates + STRATUS_GATE_ENTRIES * sizeof *order->gate_entries) + bins * sizeof *order->gate_bins;
+  return STRATUS_OK;
+}

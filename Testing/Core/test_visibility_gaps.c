@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Visibility orders across gaps, against rays: cells that share no face hide one another, too, where nearest first alone is wrong. */
+#include "mesh_case.h"
+#include "visibility_order.h"
+
+#define RAYS 400
+
+static stratus_context* make_context(int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = "host";
+  options.threads = threads;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  return context;
+}
+
+/* View 0..23: six directions, each parallel, perspective, near and from inside. */
+static stratus_camera camera_of(const mesh_case* mesh, int view)
+{
+  static const double directions[6][3] = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { .6, .5, .3 }, { -.3, .8, -.4 }, { .1, -.2, -1 } };
+  static const double distance[4] = { 3.0, 3.0, 0.8, 0.01 };
+  double bounds[6], radius = 0.0;
+  stratus_camera camera = { .parallel = view % 4 == 0, .far_k = INFINITY };
+  mesh_bounds(mesh, bounds);
+  for (int a = 0; a < 3; a++) {
+    radius = fmax(radius, bounds[2 * a + 1] - bounds[2 * a]);
+  }
+  for (int a = 0; a < 3; a++) {
+    camera.forward[a] = directions[view / 4][a];
+    camera.eye[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]) - distance[view % 4] * radius * camera.forward[a];
+  }
+  return camera;
+}
+
+/* Wrong pairs of all 24 views, in one leaf or in several; no cycle, as there is none. */
+static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratus_peeling peeling)
+{
+  stratus_context* context = make_context(threads);
+  stratus_visibility_order* order = NULL;
+  stratus_partition* partition = NULL;
+  stratus_partition_result cut;
+  stratus_partition_options options = stratus_partition_options_default();
+  options.depth = depth;
+  options.leaf_cells = 1;
+  stratus_mesh view = mesh_case_view(mesh);
+  assert_int_equal(stratus_partition_create(context, &view, &options, &partition), STRATUS_OK);
+  stratus_partition_get(partition, &cut);
+  mesh_case pieces = mesh_case_allocate(cut.point_count, cut.cell_count);
+  memcpy(pieces.points, cut.points, (size_t)cut.point_count * 3 * sizeof(double));
+  memcpy(pieces.vertices, cut.vertices, (size_t)cut.cell_count * 4 * sizeof(int32_t));
+  view = mesh_case_view(&pieces);
+  assert_int_equal(stratus_visibility_order_create(context, &view, &cut.leaves, &order), STRATUS_OK);
+  int64_t pairs = 0, wrong = 0;
+  for (int v = 0; v < 24; v++) {
+    const stratus_camera camera = camera_of(&pieces, v);
+    stratus_visibility_result result;
+    assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, peeling, &result), STRATUS_OK);
+    assert_int_equal(result.cycles + result.forced, 0);
+    wrong += mesh_wrong_pairs(&pieces, &camera, result.cells, RAYS, (uint32_t)v, &pairs);
+  }
+  assert_true(pairs > 12 * RAYS);
+  stratus_visibility_order_destroy(order);
+  stratus_partition_destroy(partition);
+  stratus_context_destroy(context);
+  mesh_case_free(&pieces);
+  return wrong;
+}
+
+static mesh_case block(int x, int y, int z, const double low[3], const double high[3], double jitter, uint32_t seed)
+{
+  mesh_case mesh = mesh_grid((const int[3]){ x, y, z }, jitter, seed);
+  const double scale[3] = { (high[0] - low[0]) / x, (high[1] - low[1]) / y, (high[2] - low[2]) / z };
+  mesh_move(&mesh, scale, low);
+  return mesh;
+}
+
+/* Beside one another with the same points, each named twice, but diagonals the other way: no face coincides. */
+static void a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order(void** state)
+{
+  (void)state;
+  mesh_case mesh = block(3, 5, 4, (const double[3]){ 0, 0, 0 }, (const double[3]){ 3, 5, 4 }, 0.0, 1);
+  const mesh_case other = block(3, 5, 4, (const double[3]){ 3, 5, 0 }, (const double[3]){ 6, 0, 4 }, 0.0, 1);
+  mesh = mesh_join(mesh, other);
+  mesh_shuffle(&mesh, 8);
+  assert_true(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_LAYERS) > 0); /* or nothing hangs on the seam */
+  assert_int_equal(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_NEAREST), 0);
+  assert_int_equal(wrong_pairs(&mesh, 2, 2, STRATUS_PEELING_NEAREST), 0);
+  mesh_case_free(&mesh);
+}
+
+/* Of a plate of few long cells the middles tell nothing of where they are next to a fine one. */
+static void long_cells_hide_short_ones_behind_a_gap(void** state)
+{
+  (void)state;
+  mesh_case mesh = block(1, 2, 2, (const double[3]){ 0, 0, 0 }, (const double[3]){ 4, 9, 9 }, 0.1, 1);
+  mesh = mesh_join(mesh, block(4, 9, 9, (const double[3]){ 4.1, 0, 0 }, (const double[3]){ 6, 9, 9 }, 0.19, 2));
+  mesh = mesh_join(mesh, block(2, 1, 3, (const double[3]){ 6.02, 1, -2 }, (const double[3]){ 7, 11, 9 }, 0.1, 3));
+  mesh_shuffle(&mesh, 5);
+  for (int depth = 0; depth < 3; depth++) {
+    assert_int_equal(wrong_pairs(&mesh, 1 + depth, depth, STRATUS_PEELING_NEAREST), 0);
+  }
+  mesh_case_free(&mesh);
+}
+
+/* A box with a hollow, whose walls are cells of all sizes, around another one with a hollow, around a block. */
+static mesh_case nested(void)
+{
+  mesh_case mesh = block(2, 2, 2, (const double[3]){ -1, -1, -1 }, (const double[3]){ 1, 1, 1 }, 0.15, 1);
+  for (int shell = 1; shell <= 2; shell++) {
+    const double in = shell == 1 ? 1.1 : 2.1, out = in + 0.9;
+    const int n = shell == 1 ? 6 : 3;
+    for (int side = -1; side <= 1; side += 2) {
+      const double thin[2] = { side < 0 ? -out : in, side < 0 ? -in : out };
+      mesh = mesh_join(mesh, block(1, n, n, (const double[3]){ thin[0], -out, -out }, (const double[3]){ thin[1], out, out }, 0.1, 2));
+      mesh = mesh_join(mesh, block(n, 2, 1, (const double[3]){ -in, thin[0], -out }, (const double[3]){ in, thin[1], out }, 0.1, 3));
+      mesh = mesh_join(mesh, block(1, n, 2, (const double[3]){ -in, -in, thin[0] }, (const double[3]){ in, in, thin[1] }, 0.1, 4));
+    }
+  }
+  mesh_shuffle(&mesh, 3);
+  return mesh;
+}
+
+static void parts_within_hollows_of_others_are_in_order(void** state)
+{
+  (void)state;
+  mesh_case mesh = nested();
+  assert_int_equal(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_NEAREST), 0);
+  assert_int_equal(wrong_pairs(&mesh, 2, 3, STRATUS_PEELING_NEAREST), 0);
+  mesh_case_free(&mesh);
+}
+
+/* Three cells, each over the next one and under the one before: no order is right, one is given, the same by any number of threads. */
+static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
+{
+  static const double corners[4][3] = { { -3.0, 0.8, -1.2 }, { -3.0, 1.4, -1.2 }, { 3.0, 1.1, 1.0 }, { 3.0, 1.1, 1.4 } };
+  (void)state;
+  mesh_case mesh = mesh_case_allocate(12, 3);
+  for (int i = 0; i < 12; i++) {
+    const double angle = i / 4 * 2.0943951023931953, *p = corners[i % 4];
+    mesh.points[3 * i] = p[0] * cos(angle) - p[1] * sin(angle);
+    mesh.points[3 * i + 1] = p[0] * sin(angle) + p[1] * cos(angle);
+    mesh.points[3 * i + 2] = p[2];
+    mesh.vertices[i] = i;
+  }
+  uint32_t first[3];
+  for (int threads = 1; threads <= 3; threads++) {
+    stratus_context* context = make_context(threads);
+    const stratus_mesh view = mesh_case_view(&mesh);
+    const stratus_camera camera = { .eye = { 0.0, 0.0, 40.0 }, .forward = { 0, 0, -1 } };
+    stratus_visibility_order* order = NULL;
+    stratus_visibility_result result;
+    assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);
+    assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
+    assert_int_equal(result.count, mesh.cell_count);
+    assert_int_equal(result.cycles, 1);
+    assert_int_equal(result.forced, 0);
+    assert_int_equal(1u << result.cells[0] | 1u << result.cells[1] | 1u << result.cells[2], 7);
+    if (threads == 1) {
+      memcpy(first, result.cells, (size_t)mesh.cell_count * sizeof *first);
+    }
+    assert_memory_equal(first, result.cells, (size_t)mesh.cell_count * sizeof *first);
+    stratus_visibility_order_destroy(order);
+    stratus_context_destroy(context);
+  }
+  mesh_case_free(&mesh);
+}
+
+/* A convex mesh has no gap, whatever its border's planes; a block beside it makes gaps of the faces that look at it. */
+static void only_faces_that_look_at_others_are_gaps(void** state)
+{
+  (void)state;
+  stratus_context* context = make_context(2);
+  mesh_case mesh = block(4, 4, 4, (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 }, 0.0, 1);
+  for (int blocks = 1; blocks <= 2; blocks++) {
+    const stratus_mesh view = mesh_case_view(&mesh);
+    stratus_visibility_order* order = NULL;
+    assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);
+    assert_int_equal(order->gap_begin[1], blocks == 1 ? 0 : 2 * 4 * 4 * 2);
+    stratus_visibility_order_destroy(order);
+    if (blocks == 1) {
+      mesh = mesh_join(mesh, block(4, 4, 4, (const double[3]){ 1.5, 0, 0 }, (const double[3]){ 3, 1, 1 }, 0.0, 1));
+    }
+  }
+  mesh_case_free(&mesh);
+  stratus_context_destroy(context);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order),
+    cmocka_unit_test(long_cells_hide_short_ones_behind_a_gap),
+    cmocka_unit_test(parts_within_hollows_of_others_are_in_order),
+    cmocka_unit_test(cells_that_hide_one_another_in_a_ring_are_told),
+    cmocka_unit_test(only_faces_that_look_at_others_are_gaps),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
