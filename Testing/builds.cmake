@@ -67,3 +67,8 @@ foreach (kind IN ITEMS density distance_field first_hit tetra_march)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     "${stratus_test_folder}/test_${kind}_device" tiny)
 endforeach ()
+
+# ---- the plugin in ParaView
+if (stratus_vtk AND stratus_exr AND TARGET stratus-command)
+  include(paraview.cmake)
+endif ()

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusVolumeRepresentation.h"
+
+#include "vtkStratusVolumeMapper.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkStratusVolumeRepresentation);
+
+vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
+{
+  this->VolumeMapper.TakeReference(vtkStratusVolumeMapper::New());
+}
+
+vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
+
+// The superclass takes another mapper for composite data: then there is none of ours to set.
+vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetStratusMapper()
+{
+  return vtkStratusVolumeMapper::SafeDownCast(this->VolumeMapper);
+}
+
+void vtkStratusVolumeRepresentation::SetRenderMode(int mode)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetRenderMode(mode);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetNormals(int normals)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetNormals(normals);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetStructure(int structure)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetStructure(structure);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetSampling(int sampling)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetSampling(sampling);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetSampleDistance(double distance)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetSampleDistance(distance);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetTermination(double opacity)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetTermination(opacity);
+  }
+}
+
+void vtkStratusVolumeRepresentation::SetDevice(const char* device)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetDevice(device);
+  }
+}
+
+void vtkStratusVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "VolumeMapper:\n";
+  this->VolumeMapper->PrintSelf(os, indent.GetNextIndent());
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusVolumeRepresentation
+ * @brief   ParaView's volume rendering of uniform grids, by vtkStratusVolumeMapper
+ *
+ * Everything of ParaView's own representation "Volume" that the mapper can do; what it can't it refuses by an error in ParaView's messages. The setters
+ * below are vtkStratusVolumeMapper's, which tells what they mean.
+ *
+ * @sa vtkStratusVolumeMapper
+ */
+#ifndef vtkStratusVolumeRepresentation_h
+#define vtkStratusVolumeRepresentation_h
+
+#include "StratusParaViewRepresentationsModule.h" // For export macro
+#include "vtkImageVolumeRepresentation.h"
+
+class vtkStratusVolumeMapper;
+
+class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusVolumeRepresentation : public vtkImageVolumeRepresentation
+{
+public:
+  static vtkStratusVolumeRepresentation* New();
+  vtkTypeMacro(vtkStratusVolumeRepresentation, vtkImageVolumeRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Forwarded to the mapper.
+   */
+  void SetRenderMode(int mode);
+  void SetNormals(int normals);
+  void SetStructure(int structure);
+  void SetSampling(int sampling);
+  void SetSampleDistance(double distance);
+  void SetTermination(double opacity);
+  void SetDevice(const char* device);
+  ///@}
+
+protected:
+  vtkStratusVolumeRepresentation();
+  ~vtkStratusVolumeRepresentation() override;
+
+private:
+  vtkStratusVolumeRepresentation(const vtkStratusVolumeRepresentation&) = delete;
+  void operator=(const vtkStratusVolumeRepresentation&) = delete;
+
+  vtkStratusVolumeMapper* GetStratusMapper();
+};
+
+#endif

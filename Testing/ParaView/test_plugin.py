@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""pvbatch with the plugin: what the representation draws is what `stratus render` draws, and filters and reader give what they should.
+pvbatch test_plugin.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder. Rounding to bytes alone gives 58.9 dB
+where all levels come alike."""
+import os
+import re
+import subprocess
+import sys
+
+import numpy
+from paraview import simple
+from paraview.vtk import vtkIOXML, vtkCommonDataModel
+from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+plugin, stratus, compare, folder = sys.argv[1:5]
+os.makedirs(folder, exist_ok=True)
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+def write_cloud(path):
+    """Heaps of density on an uneven grid, far from the origin."""
+    n = (72, 60, 48)
+    x, y, z = numpy.meshgrid(*[numpy.arange(m, dtype=numpy.float32) for m in n], indexing="ij", sparse=True)
+    field = numpy.zeros(n, numpy.float32)
+    for cx, cy, cz, r in (20, 22, 18, 14), (48, 34, 26, 18), (60, 12, 36, 7):
+        ripple = 0.2 * (numpy.sin(x / 3) * numpy.cos(y / 4) + numpy.sin(z / 5))
+        field = numpy.maximum(field, 1 - ((x - cx) ** 2 + (y - cy) ** 2 + 2 * (z - cz) ** 2) / r**2 + ripple)
+    image = vtkCommonDataModel.vtkImageData()
+    image.SetDimensions(*n)
+    image.SetSpacing(1, 1.2, 0.9)
+    image.SetOrigin(100, -20, 5)
+    array = numpy_to_vtk(numpy.clip(field, 0, None).ravel(order="F"), deep=True)
+    array.SetName("density")
+    image.GetPointData().SetScalars(array)
+    writer = vtkIOXML.vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(path)
+    writer.SetDataModeToBinary()
+    check(writer.Write() == 1, "the cloud is written")
+    return array.GetRange()[1]
+
+
+def camera_of(output):
+    """What `stratus render` tells of its camera."""
+    number = r"([-+.e\d]+)"
+    triple = " ".join(3 * [number])
+    found = re.search(rf"camera +eye {triple}, forward {triple}, up {triple}, angle {number}", output)
+    values = [float(group) for group in found.groups()]
+    return values[0:3], values[3:6], values[6:9], values[9]
+
+
+def look_like(view, output):
+    eye, forward, up, angle = camera_of(output)
+    view.CameraPosition = eye
+    view.CameraFocalPoint = [e + 100 * f for e, f in zip(eye, forward)]
+    view.CameraViewUp = up
+    view.CameraViewAngle = angle
+    view.CameraParallelProjection = 0
+
+
+def make_view(width, height):
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [width, height]
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0, 0, 0]
+    view.OrientationAxesVisibility = 0
+    return view
+
+
+def draw(path, array, opacity, color, unit, least, width=500, height=400):
+    """The same scene twice: `stratus render` in floats, ParaView in bytes."""
+    name = os.path.splitext(os.path.basename(path))[0]
+    floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
+    command = [stratus, "render", path, "--array", array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
+               "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
+    told = subprocess.run(command, capture_output=True, text=True)
+    check(told.returncode == 0, told.stderr)
+    source = simple.XMLImageDataReader(FileName=[path])
+    source.UpdatePipeline()
+    view = make_view(width, height)
+    shown = simple.Show(source, view, "UniformGridRepresentation")
+    simple.ColorBy(shown, ("POINTS", array))
+    look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
+    look.ColorSpace, look.UseLogScale = "RGB", 0
+    look.RGBPoints = [number for point in color for number in point]
+    fade.Points = [number for value, alpha in opacity for number in (value, alpha, 0.5, 0.0)]
+    shown.SetRepresentationType("Stratus Volume")
+    shown.ScalarOpacityUnitDistance = unit
+    shown.SetScalarBarVisibility(view, False)
+    look_like(view, told.stdout)
+    simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)
+    judged = subprocess.run([compare, bytes_, floats, str(least)], capture_output=True, text=True)
+    print(f"{name}: ParaView beside stratus render: {judged.stdout.strip()}")
+    check(judged.returncode == 0, f"{name} looks in ParaView as it does from the command line")
+    return source, shown, view, bytes_, floats
+
+
+def pixels(path):
+    return open(path, "rb").read()
+
+
+def filters(cloud, shown, view, before):
+    tree = simple.StratusHybridTree(Input=cloud, Scalars=["POINTS", "density"], Range=[0.1, 2])
+    tree.UpdatePipeline()
+    fields = simple.servermanager.Fetch(tree).GetFieldData()
+    check(fields.GetArray("StratusHybridTree") is not None, "the image carries its tree")
+    boxes = simple.servermanager.Fetch(tree, idx=1)
+    check(boxes.GetNumberOfCells() > 0 and boxes.GetCellData().GetArray("Depth") is not None, "the boxes of its nodes")
+    shown.StratusStructure = "Hybrid Tree"
+    again = before.replace(".png", "-tree.png")
+    simple.SaveScreenshot(again, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
+    check(pixels(again) == pixels(before), "through the tree the same picture")
+    shown.StratusRenderMode = "First Hit"
+    simple.SaveScreenshot(again, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
+    check(pixels(again) != pixels(before), "first hits are another picture")
+    shown.StratusRenderMode = "Composite"
+    shown.StratusSampleDistance = 5
+    simple.SaveScreenshot(again, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
+    check(pixels(again) != pixels(before), "long steps are another picture")
+
+    distances = simple.StratusDistanceMap(Input=cloud, Scalars=["POINTS", "density"], Range=[0.1, 2], BlockSize="4")
+    distances.UpdatePipeline()
+    values = vtk_to_numpy(simple.servermanager.Fetch(distances).GetCellData().GetArray("Distance"))
+    check(len(values) == 18 * 15 * 12 and values.min() == 0 and values.max() > 1, "distances of all blocks")
+
+    cells = simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[0, 8, 0, 8, 0, 8]))
+    parts = simple.StratusPartition(Input=cells, Depth=2, LeafCells=1)
+    parts.UpdatePipeline()
+    leaves = vtk_to_numpy(simple.servermanager.Fetch(parts).GetCellData().GetArray("StratusLeaf"))
+    check(sorted(set(leaves)) == [0, 1, 2, 3] and (numpy.diff(leaves) >= 0).all(), "four leaves, one after the other")
+
+
+def tetgen_files():
+    base = os.path.join(folder, "two")
+    open(base + ".node", "w").write("5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n")
+    open(base + ".ele", "w").write("2 4 0\n0 0 1 2 3\n1 1 2 3 4\n")
+    reader = simple.OpenDataFile(base + ".ele")  # found by its extension
+    check(reader is not None and reader.GetXMLName() == "StratusTetGenReader", "the reader opens .ele files")
+    reader.UpdatePipeline()
+    mesh = simple.servermanager.Fetch(reader)
+    check(mesh.GetNumberOfCells() == 2 and mesh.GetNumberOfPoints() == 5, "two tetrahedra over five points")
+
+
+simple.LoadPlugin(plugin, ns=vars(simple))
+simple._DisableFirstRenderCameraReset()
+cloud_path = os.path.join(folder, "cloud.vti")
+most = write_cloud(cloud_path)
+cloud, shown, view, png, _ = draw(cloud_path, "density", [(0.05, 0), (most, 0.4)], [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)], 1.0, 55)
+filters(cloud, shown, view, png)
+tetgen_files()
+isabel = os.path.realpath("../shared/data/isabel_02.vti")
+if os.path.exists(isabel):
+    draw(isabel, "velocityMag", [(10, 0), (70, 0.3)], [(0, 0.1, 0.2, 0.7), (35, 0.9, 0.9, 0.4), (75, 0.9, 0.1, 0.1)], 1.0, 55)
+else:
+    print("SKIPPED: ../shared/data/isabel_02.vti is not here; the hurricane was not drawn")
+sys.stdout.flush()
+os._exit(1 if failures else 0)  # pvbatch returns 0 whatever sys.exit is given

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The plugin in Debian's ParaView: unpacked (once a build folder), built against, and run. Needs apt-get and a network the first time, and OpenEXR, by
+# whose floats the pictures are judged.
+set(paraview "${CMAKE_BINARY_DIR}/paraview")
+set(plugin_build "${CMAKE_BINARY_DIR}/paraview_plugin")
+file(GLOB paraview_cmake_names "/usr/lib/*/cmake/VTK-9.1" "/usr/lib/*/cmake/vtk-9.1") # which of Debian's architectures
+list(GET paraview_cmake_names 0 paraview_cmake)
+get_filename_component(paraview_cmake "${paraview_cmake}/../paraview-5.11" ABSOLUTE)
+
+stratus_add_test(paraview_unpacked paraview "${PROJECT_SOURCE_DIR}/cmake/unpack-paraview" "${paraview}")
+set_tests_properties(paraview_unpacked PROPERTIES FIXTURES_SETUP paraview)
+
+stratus_add_test(paraview_plugin paraview "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}/ParaView" "${plugin_build}"
+  --build-generator "${CMAKE_GENERATOR}" --build-noclean --build-project StratusParaView
+  --build-options -DCMAKE_BUILD_TYPE=Release -DSTRATUS_WERROR=ON "-DStratus_DIR=${CMAKE_BINARY_DIR}/lib/cmake/Stratus"
+    "-DParaView_DIR=${paraview}${paraview_cmake}")
+set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700)
+
+stratus_add_test(paraview_pictures paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_plugin.py"
+  "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
+  "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")
+set_tests_properties(paraview_pictures PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
