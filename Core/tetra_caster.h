@@ -45,7 +45,12 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
 
 /* tetra_order.c: a place for each cell, neighbours in space near each other, and a name for each point by the first cell that has it. */
-stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, int32_t** places, int32_t** names);
+typedef struct stratus_tetra_places {
+  int32_t* of;  /* a cell's place */
+  uint32_t* at; /* the cell at a place */
+} stratus_tetra_places;
+
+stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names);
 
 /* tetra_march.c: running sums of a table, those of an entry side by side; NULL where it has none. */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);

@@ -130,22 +130,26 @@ static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
 }
 
 static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume,
-  const stratus_adjacency* adjacency, const int32_t* places)
+  const stratus_adjacency* adjacency, const stratus_tetra_places* places)
 {
 #pragma omp parallel for num_threads(tetra->context->threads)
-  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
-    pack_cell(tetra, mesh, adjacency, places, cell, tetra->cells + TETRA_CELL * (int64_t)places[cell]);
+  for (int64_t place = 0; place < mesh->cell_count; ++place) {
+    const int64_t cell = places->at[place];
+    pack_cell(tetra, mesh, adjacency, places->of, cell, tetra->cells + TETRA_CELL * place);
     if (mesh->cell_values) {
-      tetra->cell_values[places[cell]] = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
+      tetra->cell_values[place] = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
     }
   }
 }
 
+/* In the order of places, so that faces of a tile lie together, too. */
 static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency,
-  const int32_t* places, stratus_tetra_face* faces)
+  const stratus_tetra_places* places, stratus_tetra_face* faces)
 {
   size_t count = 0;
-  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+  for (int64_t place = 0; place < mesh->cell_count; ++place) {
+    const int64_t cell = places->at[place];
+    const int32_t* v = mesh->vertices + 4 * cell;
     for (int f = 0; f < 4 && tetra->shown[cell]; ++f) {
       if (shown_neighbour(tetra, adjacency, cell, f) >= 0) {
         continue;
@@ -155,11 +159,10 @@ static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* me
         break;
       }
       if (faces) {
-        const int32_t* v = mesh->vertices + 4 * cell;
         int32_t p[3];
         const bool right = stratus_face_points(v, f, p) * nominal > 0;
         faces[count] = (stratus_tetra_face){ { tetra->names[p[0]], tetra->names[p[right ? 1 : 2]], tetra->names[p[right ? 2 : 1]] },
-          tetra->names[v[f]], TETRA_CELL * places[cell] };
+          tetra->names[v[f]], (int32_t)(TETRA_CELL * place) };
       }
       ++count;
     }
@@ -184,7 +187,8 @@ static stratus_status fetch_values(stratus_tetra_mesh* tetra, const stratus_mesh
   return STRATUS_OK;
 }
 
-static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places)
+static stratus_status build(
+  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const stratus_tetra_places* places)
 {
   const stratus_volume volume = values_of(mesh);
   void* memory = NULL;
@@ -218,7 +222,7 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   stratus_status status = STRATUS_OK;
   stratus_adjacency* adjacency = NULL;
   void* memory = NULL;
-  int32_t* places = NULL;
+  stratus_tetra_places places = { 0 };
   if (mesh->cell_count > CELL_INTS_MOST / TETRA_CELL || mesh->point_count > POINTS_MOST) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh of %lld cells and %lld points is too large to draw: at most %d and %lld",
       (long long)mesh->cell_count, (long long)mesh->point_count, CELL_INTS_MOST / TETRA_CELL, (long long)POINTS_MOST);
@@ -233,12 +237,13 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   tetra->broken = adjacency->broken_faces;
   tetra->folded = adjacency->folded_faces;
   TRY_CLEANUP(stratus_tetra_order(context, mesh, &places, &tetra->names));
-  TRY_CLEANUP(build(tetra, mesh, adjacency, places));
+  TRY_CLEANUP(build(tetra, mesh, adjacency, &places));
   *out = tetra;
   tetra = NULL;
 
 cleanup:
-  stratus_release(context, places);
+  stratus_release(context, places.of);
+  stratus_release(context, places.at);
   stratus_adjacency_destroy(adjacency);
   stratus_tetra_mesh_destroy(tetra);
   return status;

@@ -48,7 +48,7 @@ static void find_codes(const stratus_mesh* mesh, int threads, uint64_t* codes, u
   }
 }
 
-stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, int32_t** places, int32_t** names)
+stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names)
 {
   stratus_status status = STRATUS_OK;
   void *codes = NULL, *memory = NULL, *place = NULL, *name = NULL;
@@ -74,9 +74,10 @@ stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh*
   for (int64_t i = 0; i < mesh->point_count; ++i) {
     called[i] = called[i] < 0 ? next++ : called[i];
   }
-  *places = to;
+  places->of = to;
+  places->at = cells;
   *names = called;
-  place = name = NULL;
+  memory = place = name = NULL;
 
 cleanup:
   stratus_release(context, codes);
