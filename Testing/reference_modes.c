@@ -8,6 +8,9 @@
 #include <string.h>
 
 #define PARTS 64 /* of a cell, in which an isosurface is looked for */
+/* The contract's bounds of values on points are drawn in by so many voxels: who looks for surfaces at the very rim must do the same. */
+#define RIM 0x1p-10
+#define CUTS 8
 
 typedef struct line {
   double origin[3], direction[3]; /* index coordinates by world distance from the eye (parallel: from its plane) */
@@ -191,7 +194,7 @@ static line make_line(const scene* s, const stratus_camera* camera, double u, do
   solve(s, from, l.origin);
   solve(s, along, l.direction);
   for (int a = 0; a < 3; ++a) {
-    const double half = s->volume->cell_centered ? 0.5 : 0.0, lo = -half, hi = (double)s->volume->dimensions[a] - 1.0 + half;
+    const double half = s->volume->cell_centered ? 0.5 : -RIM, lo = -half, hi = (double)s->volume->dimensions[a] - 1.0 + half;
     const double t0 = (lo - l.origin[a]) / l.direction[a], t1 = (hi - l.origin[a]) / l.direction[a];
     l.begin = fmax(l.begin, fmin(t0, t1));
     l.end = fmin(l.end, fmax(t0, t1));
@@ -208,26 +211,78 @@ static void point_on(const line* l, double t, double p[3])
 
 /* ---- the modes that sample */
 
+/* A ray's way cut where it passes the crop's planes, so that no sample's stretch lies on both sides of one. */
+static int cut_line(const scene* s, const line* l, double cut[CUTS])
+{
+  int count = 0;
+  cut[count++] = l->begin;
+  for (int side = 0; s->options->crop && side < 6; ++side) {
+    const int a = side / 2;
+    const double half = s->volume->cell_centered ? 0.5 : 0.0;
+    const double place = (s->options->crop_bounds[side] - s->volume->origin[a]) / s->volume->spacing[a] - half;
+    const double t = (place - l->origin[a]) / l->direction[a];
+    int at = count;
+    if (!(t > l->begin && t < l->end)) {
+      continue;
+    }
+    for (; at > 1 && cut[at - 1] > t; --at) {
+      cut[at] = cut[at - 1];
+    }
+    cut[at] = t;
+    ++count;
+  }
+  cut[count] = l->end;
+  return count;
+}
+
+/* Samples of a ray: each in the middle of its stretch. */
+typedef struct samples {
+  double cut[CUTS], step, t, length;
+  int pieces, piece;
+  int64_t i, count;
+} samples;
+
+static samples begin_samples(const scene* s, const line* l, double step)
+{
+  samples all = { .step = step, .piece = -1 };
+  all.pieces = cut_line(s, l, all.cut);
+  return all;
+}
+
+static bool next_sample(samples* all)
+{
+  while (all->i == all->count) {
+    if (++all->piece == all->pieces) {
+      return false;
+    }
+    const double extent = all->cut[all->piece + 1] - all->cut[all->piece];
+    all->i = 0;
+    all->count = (int64_t)ceil(extent / all->step);
+    all->length = all->count > 0 ? extent / (double)all->count : 0.0;
+  }
+  all->t = all->cut[all->piece] + ((double)all->i++ + 0.5) * all->length;
+  return true;
+}
+
+
 static void draw_light(const scene* s, const line* l, double step, float rgba[4], float* depth)
 {
-  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
-  const double length = (l->end - l->begin) / (double)count;
+  samples all = begin_samples(s, l, step);
   double left = 1.0, sum[3] = { 0.0, 0.0, 0.0 };
-  for (int64_t i = 0; i < count; ++i) {
+  while (next_sample(&all)) {
     double p[3], color[4];
-    const double t = l->begin + ((double)i + 0.5) * length;
-    point_on(l, t, p);
+    point_on(l, all.t, p);
     const double value = field_at(s, p);
     if (isnan(value)) {
       continue;
     }
     color_at(s->transfer, value, color);
-    const double alpha = color[3] < 1.0 ? 1.0 - pow(1.0 - color[3], length / s->transfer->unit_distance) : 1.0;
+    const double alpha = color[3] < 1.0 ? 1.0 - pow(1.0 - color[3], all.length / s->transfer->unit_distance) : 1.0;
     for (int c = 0; c < 3; ++c) {
       sum[c] += left * alpha * color[c];
     }
     left *= 1.0 - alpha;
-    *depth = alpha > 0.0 && (double)*depth > t ? (float)t : *depth;
+    *depth = alpha > 0.0 && (double)*depth > all.t ? (float)all.t : *depth;
   }
   for (int c = 0; c < 3; ++c) {
     rgba[c] = (float)sum[c];
@@ -238,16 +293,15 @@ static void draw_light(const scene* s, const line* l, double step, float rgba[4]
 static void draw_extreme(const scene* s, const line* l, double step, float rgba[4], float* depth)
 {
   const double sign = s->options->mode == STRATUS_MODE_MINIMUM ? -1.0 : 1.0;
-  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
+  samples all = begin_samples(s, l, step);
   double best = -(double)INFINITY, at = 0.0, color[4];
-  for (int64_t i = 0; i < count; ++i) {
+  while (next_sample(&all)) {
     double p[3];
-    const double t = l->begin + ((double)i + 0.5) * (l->end - l->begin) / (double)count;
-    point_on(l, t, p);
+    point_on(l, all.t, p);
     const double value = sign * field_at(s, p);
     if (value > best) {
       best = value;
-      at = t;
+      at = all.t;
     }
   }
   if (isfinite(best)) {
@@ -262,21 +316,19 @@ static void draw_extreme(const scene* s, const line* l, double step, float rgba[
 static void draw_sum(const scene* s, const line* l, double step, float rgba[4], float* depth)
 {
   const bool mean = s->options->mode == STRATUS_MODE_AVERAGE;
-  const int64_t count = (int64_t)ceil((l->end - l->begin) / step);
-  const double length = (l->end - l->begin) / (double)count;
+  samples all = begin_samples(s, l, step);
   double sum = 0.0, counted = 0.0;
-  for (int64_t i = 0; i < count; ++i) {
+  while (next_sample(&all)) {
     double p[3], color[4];
-    const double t = l->begin + ((double)i + 0.5) * length;
-    point_on(l, t, p);
+    point_on(l, all.t, p);
     const double value = field_at(s, p);
     if (isnan(value) || (mean && !(value >= s->options->average_range[0] && value <= s->options->average_range[1]))) {
       continue;
     }
     color_at(s->transfer, value, color);
-    sum += s->high > s->low ? color[3] * (value - s->low) / (s->high - s->low) * length : 0.0;
-    counted += length;
-    *depth = color[3] > 0.0 && (double)*depth > t ? (float)t : *depth;
+    sum += s->high > s->low ? color[3] * (value - s->low) / (s->high - s->low) * all.length : 0.0;
+    counted += all.length;
+    *depth = color[3] > 0.0 && (double)*depth > all.t ? (float)all.t : *depth;
   }
   if (mean && counted == 0.0) {
     return;
@@ -305,9 +357,15 @@ static double field_on(const scene* s, const line* l, double t)
   return field_at(s, p);
 }
 
-static int cross_cell(const scene* s, const line* l, double from, double to, double contour, crossing* found)
+/* before: the field where the ray left the cell before, NAN at the first; then at the end of this one. */
+static int cross_cell(const scene* s, const line* l, double from, double to, double contour, double* before, crossing* found)
 {
   int count = 0;
+  const double begin = field_on(s, l, from);
+  if (!isnan(*before) && !isnan(begin) && (*before < contour) != (begin < contour)) {
+    found[count++] = (crossing){ from, contour }; /* on the border itself */
+  }
+  *before = field_on(s, l, to);
   for (int part = 0; part < PARTS; ++part) {
     double lo = from + (to - from) * part / PARTS, hi = from + (to - from) * (part + 1) / PARTS;
     const double first = field_on(s, l, lo), last = field_on(s, l, hi);
@@ -343,10 +401,11 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
     }
   }
   qsort(planes, (size_t)plane_count, sizeof *planes, by_distance);
-  for (int i = 0; i + 1 < plane_count; ++i) {
-    const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* so that both ends are this cell's */
-    for (int n = 0; n < s->options->contour_count && count < CROSSINGS - PARTS; ++n) {
-      count += cross_cell(s, l, planes[i].t + hair, planes[i + 1].t - hair, s->options->contours[n], found + count);
+  for (int n = 0; n < s->options->contour_count; ++n) {
+    double before = (double)NAN;
+    for (int i = 0; i + 1 < plane_count && count < CROSSINGS - PARTS - 1; ++i) {
+      const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* so that both ends are this cell's */
+      count += cross_cell(s, l, planes[i].t + hair, planes[i + 1].t - hair, s->options->contours[n], &before, found + count);
     }
   }
   qsort(found, (size_t)count, sizeof *found, by_distance);
