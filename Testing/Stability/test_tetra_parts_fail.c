@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's hollows, cells
+ * that share no point, points that nothing uses, few inverted cells among many, a seam of other faces. Each way of drawing gives the reference's
+ * picture. */
+#include "tetra_case.h"
+
+#define CLOSE 0.025 /* RMSE of 255: half of the bar of record for functions with peaks */
+
+static tetra_picture picture;
+static double reference[4 * TETRA_PIXELS];
+
+static void agrees(stratus_context* context, const tetra_case* c, const char* what)
+{
+  double largest;
+  tetra_draw(context, c, &picture);
+  tetra_reference(c, reference, NULL);
+  const double error = tetra_error(picture.rgba, reference, &largest);
+  if (!(error <= CLOSE)) {
+    print_error("%s: RMSE %.4f of 255, at most %g; largest %.3f\n", what, error, CLOSE, largest);
+  }
+  assert_true(error <= CLOSE);
+  assert_int_equal(picture.report.stuck, 0);
+}
+
+/* Room for as many points and cells, none of them there. */
+static void clear(tetra_case* c, size_t points, size_t cells)
+{
+  c->points = realloc(c->points, points * 3 * sizeof(double));
+  c->values = realloc(c->values, points * sizeof(float));
+  c->vertices = realloc(c->vertices, cells * 4 * sizeof(int32_t));
+  assert_true(c->points && c->values && c->vertices);
+  c->mesh.points = c->points;
+  c->mesh.values = c->values;
+  c->mesh.vertices = c->vertices;
+  c->mesh.point_count = c->mesh.cell_count = 0;
+}
+
+static int32_t add_point(tetra_case* c, double x, double y, double z)
+{
+  const int64_t at = c->mesh.point_count++;
+  c->points[3 * at] = x;
+  c->points[3 * at + 1] = y;
+  c->points[3 * at + 2] = z;
+  c->values[at] = (float)(0.5 + 0.25 * sin(1.9 * x + 0.7 * y) + 0.25 * cos(1.3 * z - 0.9 * y));
+  return (int32_t)at;
+}
+
+static void add_cell(tetra_case* c, int32_t p, int32_t q, int32_t r, int32_t s)
+{
+  const int32_t cell[4] = { p, q, r, s };
+  memcpy(c->vertices + 4 * c->mesh.cell_count++, cell, sizeof cell);
+}
+
+/* A box of n^3 times six cells with points of its own. */
+static void add_box(tetra_case* c, int n, const double low[3], const double size[3])
+{
+  static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
+  const int32_t first = (int32_t)c->mesh.point_count, step[3] = { 1, n + 1, (n + 1) * (n + 1) };
+  for (int i = 0; i < (n + 1) * step[2]; ++i) {
+    add_point(c, low[0] + size[0] * (i % step[1]) / n, low[1] + size[1] * (i / step[1] % step[1]) / n, low[2] + size[2] * (i / step[2]) / n);
+  }
+  for (int box = 0; box < n * n * n; ++box) {
+    const int32_t corner = first + box % n + box / n % n * step[1] + box / n / n * step[2];
+    for (int t = 0; t < 6; ++t) {
+      const int32_t a = corner + step[path[t][0]];
+      add_cell(c, corner, a, a + step[path[t][1]], corner + step[0] + step[1] + step[2]);
+    }
+  }
+}
+
+/* Bars about an axis, each over the next and under the one before: whatever comes first, another hides it. */
+static void three_cells_in_a_ring(void** state)
+{
+  static const double corners[4][3] = { { 0.35, -2, -0.5 }, { 0.85, -2, -0.5 }, { 0.6, 2, 0.3 }, { 0.6, 2, 0.8 } };
+  for (int view = 0; view < 9; ++view) {
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    clear(&c, 12, 3);
+    for (int bar = 0; bar < 3; ++bar) {
+      const double turn = 2.0943951023931953 * bar;
+      for (int i = 0; i < 4; ++i) {
+        const double x = corners[i][0], y = corners[i][1];
+        add_point(&c, 2.0 + cos(turn) * x - sin(turn) * y, 2.0 + sin(turn) * x + cos(turn) * y, 2.0 + corners[i][2]);
+        c.values[4 * bar + i] = 0.3f + 0.3f * (float)bar;
+      }
+      add_cell(&c, 4 * bar, 4 * bar + 1, 4 * bar + 2, 4 * bar + 3);
+    }
+    c.transfer.unit_distance = 0.1; /* nearly opaque: what is behind hardly counts */
+    tetra_look(*state, &c, 4, view % 8, view & 1);
+    if (view == 8) { /* along the axis, where the ring is one */
+      const double eye[3] = { 2, 2, 12 }, focal[3] = { 2, 2, 2 }, up[3] = { 0, 1, 0 };
+      assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 30.0, 1.2, &c.camera), STRATUS_OK);
+    }
+    agrees(*state, &c, "ring");
+    tetra_destroy(&c);
+  }
+}
+
+static void parts_that_interleave(void** state)
+{
+  for (int view = 0; view < 8; ++view) {
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    clear(&c, 64 * 8, 64 * 6);
+    for (int i = 0; i < 64; ++i) { /* a chess board of boxes of two sizes that touch in parts of faces */
+      const double shrink = (i + i / 4 + i / 16) & 1 ? 0.7 : 1.0;
+      const double low[3] = { i % 4, i / 4 % 4, i / 16 }, size[3] = { shrink, shrink, shrink };
+      add_box(&c, 1, low, size);
+    }
+    tetra_look(*state, &c, 4, view, view & 1);
+    agrees(*state, &c, "board");
+    tetra_destroy(&c);
+  }
+}
+
+static void a_part_in_the_hollow_of_another(void** state)
+{
+  for (int view = 0; view < 4; ++view) {
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    clear(&c, 27 * 8, 27 * 6);
+    for (int i = 0; i < 27; ++i) {
+      const double shrink = i == 13 ? 0.5 : 1.0, shift = (1.0 - shrink) / 2.0;
+      const double low[3] = { i % 3 + shift, i / 3 % 3 + shift, i / 9 + shift }, size[3] = { shrink, shrink, shrink };
+      add_box(&c, 1, low, size);
+    }
+    tetra_look(*state, &c, 3, 2 * view, view & 1);
+    agrees(*state, &c, "hollow");
+    tetra_destroy(&c);
+  }
+}
+
+/* No cell shares a point with another, so that all faces are border; points far away and in the midst belong to none. */
+static void points_that_are_there_twice_or_for_nothing(void** state)
+{
+  tetra_case c, apart;
+  tetra_create(&c, 2, 0.2, 0.0, 2);
+  tetra_create(&apart, 2, 0.2, 0.0, 2);
+  clear(&apart, 4 * 48 + 3, 48);
+  add_point(&apart, 1e6, -1e6, 3.0);
+  add_point(&apart, 1.0, 1.0, 1.0);
+  for (int64_t i = 0; i < 4 * c.mesh.cell_count; ++i) {
+    const double* p = c.points + 3 * (int64_t)c.vertices[i];
+    apart.values[add_point(&apart, p[0], p[1], p[2])] = c.values[c.vertices[i]];
+    apart.vertices[i] = (int32_t)apart.mesh.point_count - 1;
+  }
+  apart.mesh.cell_count = c.mesh.cell_count;
+  for (int view = 0; view < 4; ++view) {
+    tetra_look(*state, &c, 2, view, view & 1);
+    apart.camera = c.camera;
+    agrees(*state, &c, "points shared");
+    assert_int_equal(picture.report.border_faces, 6 * 2 * 2 * 2);
+    agrees(*state, &apart, "points apart");
+    assert_int_equal(picture.report.border_faces, 4 * apart.mesh.cell_count);
+  }
+  apart.points[0] = NAN; /* of a point that nothing uses: still no place */
+  stratus_tetra_caster* caster = NULL;
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
+  assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+  assert_int_equal(stratus_tetra_caster_render(caster, &apart.mesh, &apart.transfer, &apart.camera, &apart.options, &image, NULL),
+    STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(*state), "finite"));
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+  tetra_destroy(&apart);
+}
+
+/* One point of 729 pulled through what is behind it: a few of 3072 cells turn inside out. In one colour order does not count, only that
+ * all are drawn. */
+static void few_inverted_cells_among_many(void** state)
+{
+  const double low[3] = { 0, 0, 0 }, size[3] = { 4, 4, 4 };
+  for (int view = 0; view < 2; ++view) {
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    clear(&c, 729, 3072);
+    add_box(&c, 8, low, size);
+    double* pulled = c.points + 3 * (4 + 9 * (4 + 9 * 4));
+    pulled[0] = 2.6;
+    pulled[1] = 2.05;
+    pulled[2] = 2.025;
+    for (int i = 0; i < 12; ++i) {
+      c.color[i] = i & 3 ? 0.5 : c.color[i];
+    }
+    tetra_look(*state, &c, 4, 3 * view, view & 1);
+    agrees(*state, &c, "inverted");
+    assert_true(picture.report.folded_faces > 0 && picture.report.folded_faces < 48);
+    tetra_destroy(&c);
+  }
+}
+
+static void a_seam_of_other_faces(void** state)
+{
+  const double low[3] = { 0, 0, 0 }, beside[3] = { 1.5, 0, 0 }, size[3] = { 1.5, 3, 3 };
+  for (int view = 0; view < 8; ++view) {
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    clear(&c, 200, 300);
+    add_box(&c, 2, low, size);
+    add_box(&c, 3, beside, size);
+    tetra_look(*state, &c, 3, view, view & 1);
+    agrees(*state, &c, "seam");
+    tetra_destroy(&c);
+  }
+}
+
+static int start(void** state)
+{
+  stratus_context* context = NULL;
+  stratus_context_options options = stratus_context_options_default();
+  options.device = "host";
+  const stratus_status status = stratus_context_create(&options, &context, NULL, 0);
+  *state = context;
+  return status == STRATUS_OK ? 0 : -1;
+}
+
+static int stop(void** state)
+{
+  stratus_context_destroy(*state);
+  return 0;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(three_cells_in_a_ring),
+    cmocka_unit_test(parts_that_interleave),
+    cmocka_unit_test(a_part_in_the_hollow_of_another),
+    cmocka_unit_test(points_that_are_there_twice_or_for_nothing),
+    cmocka_unit_test(few_inverted_cells_among_many),
+    cmocka_unit_test(a_seam_of_other_faces),
+  };
+  int failed = 0;
+  for (tetra_method = STRATUS_TETRA_METHOD_MARCH; tetra_method <= STRATUS_TETRA_METHOD_PROJECT; ++tetra_method) {
+    failed += cmocka_run_group_tests_name(stratus_tetra_method_name(tetra_method), tests, start, stop);
+  }
+  return failed;
+}
