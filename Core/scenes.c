@@ -13,6 +13,7 @@
 
 typedef struct recipe {
   const char* name;
+  int components;
   int n[3];
   stratus_type type;
   int up_axis;
@@ -29,16 +30,19 @@ typedef struct scene_storage {
   void* values;
   double opacity[POINTS_MAX][2], edited_opacity[POINTS_MAX][2];
   double color[3][4], edited_color[3][4];
+  double second_color[2][4];
+  stratus_transfer transfers[2];
 } scene_storage;
 
 /* clang-format off */
 static const recipe recipes[] = {
-  { "cloud", { 256, 128, 256 }, STRATUS_FLOAT32, 1, .97, 1.0,   0.6,   cloud_field, cloud_shade },
-  { "plume", { 512, 512, 256 }, STRATUS_UINT8,   2, .99, 255.0, 0.35,  plume_field, plume_shade },
-  { "fog",   { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.03,  fog_field,   fog_shade },
-  { "haze",  { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.003, fog_field,   fog_shade },
-  { "peak",  { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.03,  fog_field,   fog_shade },
-  { "voxel", { 256, 256, 256 }, STRATUS_UINT8,   1, 0.0, 255.0, 0.9,   NULL,        NULL },
+  { "cloud", 1, { 256, 128, 256 }, STRATUS_FLOAT32, 1, .97, 1.0,   0.6,   cloud_field, cloud_shade },
+  { "plume", 1, { 512, 512, 256 }, STRATUS_UINT8,   2, .99, 255.0, 0.35,  plume_field, plume_shade },
+  { "fog",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.03,  fog_field,   fog_shade },
+  { "haze",  1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.003, fog_field,   fog_shade },
+  { "peak",  1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.03,  fog_field,   fog_shade },
+  { "voxel", 1, { 256, 256, 256 }, STRATUS_UINT8,   1, 0.0, 255.0, 0.9,   NULL,        NULL },
+  { "plume2", 2, { 512, 512, 256 }, STRATUS_UINT8, 2, .99, 255.0, 0.35, plume_field, plume_shade },
 };
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
@@ -156,8 +160,9 @@ static void measure(stratus_scene* scene, int threads)
 #pragma omp parallel for num_threads(threads) reduction(+ : occupied)
   for (int64_t k = 0; k < rows / per_slice; ++k) {
     for (int64_t q = k * per_slice * row; q < (k + 1) * per_slice * row; ++q) {
-      const double value = scene->volume.type == STRATUS_UINT8 ? (double)((const uint8_t*)scene->volume.values)[q]
-                                                               : (double)((const float*)scene->volume.values)[q];
+      const int64_t at = q * scene->volume.value_stride;
+      const double value = scene->volume.type == STRATUS_UINT8 ? (double)((const uint8_t*)scene->volume.values)[at]
+                                                               : (double)((const float*)scene->volume.values)[at];
       occupied += value > 0.0;
       slices[k] += value;
     }
@@ -194,6 +199,25 @@ static void set_transfer(scene_storage* storage, const recipe* recipe)
   storage->scene.edited.opacity = storage->edited_opacity[0];
   storage->scene.edited.opacity_count = is_peak ? 5 : 4;
   storage->scene.edited.color = storage->edited_color[0];
+
+  const double second_color[][4] = { { 0, .95, .75, .25 }, { top, .8, .2, .1 } };
+  memcpy(storage->second_color, second_color, sizeof second_color);
+  storage->transfers[0] = storage->transfers[1] = storage->scene.transfer;
+  storage->transfers[1].color = storage->second_color[0];
+  storage->transfers[1].color_count = 2;
+  storage->scene.transfers = storage->transfers;
+}
+
+/* The first pollutant, made in place the second by how far it has come along x. Exact: whole numbers. */
+static void split_plume(const recipe* recipe, uint8_t* values)
+{
+  const int64_t count = (int64_t)recipe->n[0] * recipe->n[1] * recipe->n[2];
+  for (int64_t q = count - 1; q >= 0; --q) { /* from the end: what is written is never read again */
+    const int along = (int)(q % recipe->n[0]), way = along > 8 ? along - 8 : 0, all = recipe->n[0] - 8;
+    const int value = values[q];
+    values[2 * q] = (uint8_t)((value * (all - way) + all / 2) / all);
+    values[2 * q + 1] = (uint8_t)((value * way + all / 2) / all);
+  }
 }
 
 /* ---------------------------------------------------------------- the public side */
@@ -237,14 +261,19 @@ stratus_status stratus_scene_create(stratus_context* context, const char* name, 
   scene_storage* storage = memory;
   const size_t count = (size_t)recipe->n[0] * (size_t)recipe->n[1] * (size_t)recipe->n[2];
   stratus_status status;
-  TRY_CLEANUP(stratus_allocate(context, count, stratus_type_size(recipe->type), &storage->values));
+  TRY_CLEANUP(stratus_allocate(context, count, stratus_type_size(recipe->type) * (size_t)recipe->components, &storage->values));
   TRY_CLEANUP(fill_values(context, recipe, storage->values));
+  if (recipe->components == 2) {
+    split_plume(recipe, storage->values);
+  }
 
   storage->scene.name = recipe->name;
   storage->scene.up_axis = recipe->up_axis;
   storage->scene.volume = stratus_volume_default();
   storage->scene.volume.values = storage->values;
   storage->scene.volume.type = recipe->type;
+  storage->scene.volume.components = recipe->components;
+  storage->scene.volume.value_stride = recipe->components;
   for (int a = 0; a < 3; ++a) {
     storage->scene.volume.dimensions[a] = recipe->n[a];
     storage->scene.volume.spacing[a] = 1.0;

@@ -965,12 +965,13 @@ typedef struct stratus_scene {
   stratus_volume volume;
   stratus_transfer transfer;
   stratus_transfer edited; /* the second transfer function, for measuring edits */
+  const stratus_transfer* transfers; /* as many as the volume has components: the first is `transfer` */
   int up_axis;             /* 0..2, of the cameras */
   double occupied;         /* fraction of values > 0 */
   double mean;             /* of the values */
 } stratus_scene;
 
-/* Names: cloud, plume, fog, haze, peak, voxel. */
+/* Names: cloud, plume, fog, haze, peak, voxel; plume2: the plume as two pollutants, of which the first turns into the second on the way. */
 STRATUS_API int stratus_scene_count(void);
 STRATUS_API const char* stratus_scene_name(int index); /* NULL beyond */
 STRATUS_API stratus_status stratus_scene_create(stratus_context* context, const char* name, stratus_scene** scene);

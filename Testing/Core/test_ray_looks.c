@@ -62,7 +62,7 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   const double turned[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
   memcpy(c.volume.matrix, turned, sizeof turned);
   case_look(context, &c, 3, 1);
-  lit_psnr("uneven, turned, mirrored and sheared; parallel", context, &c, 40.0); /* bytes: 256 values, opacity bends at each voxel */
+  lit_psnr("uneven, turned, mirrored and sheared; parallel", context, &c, MIDPOINT_DB);
   case_destroy(&c);
   stratus_context_destroy(context);
 }
@@ -78,7 +78,7 @@ static void border_voxels_and_every_type_are_lit(void** state)
     shine(&c);
     c.volume.cell_centered = type % 2;
     case_look(context, &c, type % 8, 0);
-    lit_psnr(case_type_names[type], context, &c, type <= STRATUS_UINT8 ? 40.0 : MIDPOINT_DB);
+    lit_psnr(case_type_names[type], context, &c, MIDPOINT_DB);
     case_destroy(&c);
   }
   picture_case c;
@@ -92,7 +92,7 @@ static void border_voxels_and_every_type_are_lit(void** state)
   shine(&c);
   c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
   c.options.sample_distance = 0.02;
-  lit_psnr("nearest", context, &c, 35.0); /* steps of the field: what a sample misses is of first order */
+  lit_psnr("nearest", context, &c, MIDPOINT_DB);
   case_destroy(&c);
   stratus_context_destroy(context);
 }

@@ -163,14 +163,40 @@ static void transfer_functions_are_those_of_record(void** state)
   stratus_context_destroy(context);
 }
 
+static void plume2_is_the_plume_in_two_parts(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(2);
+  stratus_scene* plume = make(context, "plume");
+  stratus_scene* two = make(context, "plume2");
+  assert_int_equal(two->volume.components, 2);
+  assert_int_equal(two->volume.value_stride, 2);
+  assert_int_equal(stratus_volume_check(context, &two->volume), STRATUS_OK);
+  assert_ptr_not_equal(two->transfers[0].color, two->transfers[1].color);
+  const uint8_t* whole = plume->volume.values;
+  const uint8_t* parts = two->volume.values;
+  int64_t wrong = 0, begin = 0, end = 0;
+  for (int64_t q = 0; q < values(plume); ++q) {
+    const int apart = (int)parts[2 * q] + (int)parts[2 * q + 1] - (int)whole[q];
+    wrong += apart < -1 || apart > 1;
+    begin += q % 512 < 60 ? (int)parts[2 * q] - (int)parts[2 * q + 1] : 0;
+    end += q % 512 > 450 ? (int)parts[2 * q + 1] - (int)parts[2 * q] : 0;
+  }
+  assert_int_equal(wrong, 0);
+  assert_true(begin > 0 && end > 0); /* the first at the source, the second at the end of the way */
+  stratus_scene_destroy(context, plume);
+  stratus_scene_destroy(context, two);
+  stratus_context_destroy(context);
+}
+
 static void names_are_listed_and_an_unknown_one_is_told(void** state)
 {
   (void)state;
   stratus_context* context = open_context(1);
   stratus_scene* scene = NULL;
-  assert_int_equal(stratus_scene_count(), 6);
+  assert_int_equal(stratus_scene_count(), 7);
   assert_null(stratus_scene_name(-1));
-  assert_null(stratus_scene_name(6));
+  assert_null(stratus_scene_name(7));
   assert_int_equal(stratus_scene_create(context, "clowd", &scene), STRATUS_INVALID_ARGUMENT);
   assert_null(scene);
   assert_non_null(strstr(stratus_context_message(context), "clowd"));
@@ -259,6 +285,7 @@ int main(void)
     cmocka_unit_test(voxel_is_one_voxel_at_its_place),
     cmocka_unit_test(fog_haze_and_peak_are_one_field_to_the_last_bit),
     cmocka_unit_test(transfer_functions_are_those_of_record),
+    cmocka_unit_test(plume2_is_the_plume_in_two_parts),
     cmocka_unit_test(names_are_listed_and_an_unknown_one_is_told),
     cmocka_unit_test(cameras_stand_where_the_record_says),
     cmocka_unit_test(wrong_cameras_are_refused_by_their_value),
