@@ -99,7 +99,7 @@ void vtkStratusImageView::Release()
   this->Plain = nullptr;
 }
 
-bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
 {
   this->Volume = stratus_volume_default();
   this->Volume.cell_centered = cells ? 1 : 0;
@@ -109,14 +109,14 @@ bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cel
     // VTK counts one layer of cells along an axis of one point.
     this->Volume.dimensions[a] = cells ? std::max(points[a] - 1, 1) : points[a];
   }
-  if (!this->SetValues(image, array, cells, error) || !this->SetGhosts(image, cells, error)) {
+  if (!this->SetValues(image, array, cells, mostComponents, error) || !this->SetGhosts(image, cells, error)) {
     return false;
   }
   this->SetGeometry(image, matrix);
   return true;
 }
 
-bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bool cells, std::string& error)
+bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error)
 {
   stratus_volume& volume = this->Volume;
   if (!CoreType(array->GetDataType(), volume.type)) {
@@ -124,11 +124,14 @@ bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bo
       ", which is not supported: use char to unsigned long long, float or double";
     return false;
   }
-  if (array->GetNumberOfComponents() != 1) {
-    error = "array " + ArrayName(array) + " has " + std::to_string(array->GetNumberOfComponents()) +
-      " components, only arrays of 1 component are supported";
+  const int components = array->GetNumberOfComponents();
+  if (components < 1 || components > mostComponents) {
+    error = "array " + ArrayName(array) + " has " + std::to_string(components) + " components, only arrays of 1 " +
+      (mostComponents > 1 ? "to " + std::to_string(mostComponents) + " components" : "component") + " are supported";
     return false;
   }
+  volume.components = components;
+  volume.value_stride = components;
   const vtkIdType expected = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
   if (array->GetNumberOfTuples() < expected) {
     error = "array " + ArrayName(array) + " has " + std::to_string(array->GetNumberOfTuples()) + " values, the image has " +

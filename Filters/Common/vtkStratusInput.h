@@ -30,14 +30,14 @@ class VTK_STRATUS_PRIVATE vtkStratusImageView
 {
 public:
   // False, with the reason in `error`, where the core can't take the array. matrix: of the prop, or nullptr.
-  bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
+  bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
   const stratus_volume& GetVolume() const { return this->Volume; }
   // What the image calls its origin and start, against what the volume does: crop_bounds = planes + offset.
   const double* GetCropOffset() const { return this->CropOffset; }
   void Release();
 
 private:
-  bool SetValues(vtkImageData* image, vtkDataArray* array, bool cells, std::string& error);
+  bool SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error);
   void SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix);
   bool SetGhosts(vtkImageData* image, bool cells, std::string& error);
 
@@ -52,13 +52,16 @@ private:
 class VTK_STRATUS_PRIVATE vtkStratusTransferView
 {
 public:
-  bool Set(vtkVolumeProperty* property, std::string& error);
+  // Of the property's component `index`.
+  bool Set(vtkVolumeProperty* property, int index, std::string& error);
+  bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
 
 private:
   stratus_transfer Transfer;
   std::vector<double> Opacity;
   std::vector<double> Color;
+  std::vector<double> Gradient;
 };
 
 // Which array a mapper or filter means is VTK's business; why there is none is told here.

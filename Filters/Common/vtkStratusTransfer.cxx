@@ -106,19 +106,39 @@ bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& resul
   }
   return true;
 }
+// Nothing where the function is 1 everywhere. Beyond the ends of one that does not clamp there is nothing.
+void AppendGradient(vtkPiecewiseFunction* function, std::vector<double>& result)
+{
+  if (!AppendPiecewise(function, 1, result)) {
+    return;
+  }
+  bool plain = true;
+  for (size_t i = 1; i < result.size(); i += 2) {
+    plain = plain && result[i] == 1.0;
+  }
+  if (!function->GetClamping()) {
+    const double first[2] = { result[0], 0.0 };
+    const double last[2] = { result[result.size() - 2], 0.0 };
+    result.insert(result.begin(), first, first + 2);
+    result.insert(result.end(), last, last + 2);
+  } else if (plain) {
+    result.clear();
+  }
+}
 } // namespace
 
-bool vtkStratusTransferView::Set(vtkVolumeProperty* property, std::string& error)
+bool vtkStratusTransferView::Set(vtkVolumeProperty* property, int index, std::string& error)
 {
   this->Opacity.clear();
   this->Color.clear();
-  vtkPiecewiseFunction* opacity = property->GetScalarOpacity();
+  this->Gradient.clear();
+  vtkPiecewiseFunction* opacity = property->GetScalarOpacity(index);
   if (!AppendPiecewise(opacity, 1, this->Opacity)) {
     error = "the scalar opacity function has no points, it needs at least 1";
     return false;
   }
-  const bool colored = property->GetColorChannels() == 3 ? AppendColors(property->GetRGBTransferFunction(), this->Color)
-                                                         : AppendPiecewise(property->GetGrayTransferFunction(), 3, this->Color);
+  const bool colored = property->GetColorChannels(index) == 3 ? AppendColors(property->GetRGBTransferFunction(index), this->Color)
+                                                              : AppendPiecewise(property->GetGrayTransferFunction(index), 3, this->Color);
   if (!colored) {
     error = "the colour transfer function has no points, it needs at least 1";
     return false;
@@ -128,7 +148,13 @@ bool vtkStratusTransferView::Set(vtkVolumeProperty* property, std::string& error
   this->Transfer.opacity_count = this->Opacity.size() / 2;
   this->Transfer.color = this->Color.data();
   this->Transfer.color_count = this->Color.size() / 4;
-  this->Transfer.unit_distance = property->GetScalarOpacityUnitDistance();
+  if (!property->GetDisableGradientOpacity(index) && property->HasGradientOpacity(index)) {
+    AppendGradient(property->GetGradientOpacity(index), this->Gradient);
+  }
+  this->Transfer.gradient = this->Gradient.empty() ? nullptr : this->Gradient.data();
+  this->Transfer.gradient_count = this->Gradient.size() / 2;
+  this->Transfer.weight = property->GetComponentWeight(index);
+  this->Transfer.unit_distance = property->GetScalarOpacityUnitDistance(index);
   this->Transfer.clamp = opacity->GetClamping() ? 1 : 0;
   return true;
 }

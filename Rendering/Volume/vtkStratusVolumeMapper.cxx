@@ -60,6 +60,14 @@ void vtkStratusVolumeMapper::SetDevice(const char* device)
   }
 }
 
+void vtkStratusVolumeMapper::SetMaskInput(vtkImageData* mask)
+{
+  if (this->MaskInput != mask) {
+    this->MaskInput = mask;
+    this->Modified();
+  }
+}
+
 const char* vtkStratusVolumeMapper::GetDevice()
 {
   return this->Internal->Context.GetDevice().c_str();
@@ -173,6 +181,10 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Audit: " << (this->Audit ? "On" : "Off") << "\n";
+  os << indent << "MaskInput: " << this->MaskInput.GetPointer() << "\n";
+  os << indent << "MaskType: " << (this->MaskType == BinaryMaskType ? "binary" : "label map") << "\n";
+  os << indent << "UseJittering: " << (this->UseJittering ? "On" : "Off") << "\n";
+  os << indent << "JitterSeed: " << this->JitterSeed << "\n";
   os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";
   os << indent << "Last picture: structure " << this->GetStructureUsedAsString() << ", sampling " << this->GetSamplingUsedAsString()
      << ", sample distance " << this->GetUsedSampleDistance() << ", " << this->GetUsedImageSampleDistance() << " pixels a ray, "

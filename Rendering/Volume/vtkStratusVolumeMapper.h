@@ -6,10 +6,15 @@
  * Takes the place of vtkSmartVolumeMapper: a vtkImageData and the vtkVolume's vtkVolumeProperty go in, the picture is composited with
  * the opaque geometry of the scene. Setters that mean the same have vtkSmartVolumeMapper's names.
  *
- * Supported: point and cell scalars of one component and any numeric type but bits, linear and nearest interpolation, scalar opacity,
+ * Supported: point and cell scalars of any numeric type but bits, linear and nearest interpolation, scalar opacity,
  * colour or grey, ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's
- * matrix, cropping to the subvolume, up to six clipping planes. All else (other blend modes, shading but in first hits, gradient opacity, more components,
- * two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
+ * matrix, cropping to any of the 27 regions, up to six clipping planes, binary masks, jitter, and the blend modes composite, maximum and minimum
+ * intensity, average intensity (AverageIPScalarRange), additive, and isosurface (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear
+ * interpolation, every root of the field in each cell). In composite also: light (Shade; the renderer's lights and
+ * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over magnitudes in values per mean
+ * spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components: independent ones are media that mix (their optical depths
+ * add up, times ComponentWeight; their shading must be alike), dependent ones are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char). All
+ * else (blend mode slice, label map masks, two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
  *
  * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
  * property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a cone below 90
@@ -25,6 +30,7 @@
 #define vtkStratusVolumeMapper_h
 
 #include "StratusRenderingVolumeModule.h" // For export macro
+#include "vtkSmartPointer.h" // For MaskInput
 #include "vtkVolumeMapper.h"
 
 #include <memory> // For std::unique_ptr
@@ -146,6 +152,36 @@ public:
   void SetSamplingToMidpoint() { this->SetSampling(MIDPOINT_SAMPLING); }
   void SetSamplingToPreintegrated() { this->SetSampling(PREINTEGRATED_SAMPLING); }
   const char* GetSamplingAsString();
+  ///@}
+
+  enum
+  {
+    BinaryMaskType = 0,
+    LabelMapMaskType
+  };
+  ///@{
+  /**
+   * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the values), 0 where
+   * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of the types, label maps are refused. Default binary.
+   */
+  virtual void SetMaskInput(vtkImageData* mask);
+  vtkImageData* GetMaskInput() { return this->MaskInput; }
+  vtkSetClampMacro(MaskType, int, BinaryMaskType, LabelMapMaskType);
+  vtkGetMacro(MaskType, int);
+  void SetMaskTypeToBinary() { this->SetMaskType(BinaryMaskType); }
+  void SetMaskTypeToLabelMap() { this->SetMaskType(LabelMapMaskType); }
+  ///@}
+
+  ///@{
+  /**
+   * Move each ray's samples along it by up to a sample distance, so that the wood grain of long steps turns into noise. The noise is the same from picture
+   * to picture, at any number of threads; another seed is another noise. Default off, seed 0.
+   */
+  vtkSetClampMacro(UseJittering, vtkTypeBool, 0, 1);
+  vtkGetMacro(UseJittering, vtkTypeBool);
+  vtkBooleanMacro(UseJittering, vtkTypeBool);
+  vtkSetMacro(JitterSeed, unsigned int);
+  vtkGetMacro(JitterSeed, unsigned int);
   ///@}
 
   ///@{
@@ -294,6 +330,10 @@ protected:
   int BlockSize = 0;
   int NumberOfThreads = 0;
   vtkTypeBool Audit = 0;
+  vtkSmartPointer<vtkImageData> MaskInput;
+  int MaskType = BinaryMaskType;
+  vtkTypeBool UseJittering = 0;
+  unsigned int JitterSeed = 0;
   vtkTypeBool CountSamples = 0;
 
 private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What only first hits ask of vtkStratusVolumeMapper: light, bounds, depth for the window; and the tree that an image may carry.
+// The light that vtkStratusVolumeMapper's pictures are in; what only first hits ask of it: bounds, depth for the window; and the tree that an image may
+// carry.
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkStratusTreeArrays.h"
@@ -39,11 +40,13 @@ bool SetLight(vtkLight* light, stratus_light& result, std::string& error)
 bool vtkStratusVolumeMapper::Internals::SetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
-  if (!this->IsFirstHit()) {
+  if (!this->IsFirstHit() && !property->GetShade()) {
     return true;
   }
   stratus_shading& shading = options.shading;
   shading.on = property->GetShade() ? 1 : 0;
+  options.shade = shading.on;
+  shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
   shading.ambient = property->GetAmbient();
   shading.diffuse = property->GetDiffuse();
   shading.specular = property->GetSpecular();

@@ -2,9 +2,11 @@
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkContourValues.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPointData.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
@@ -62,11 +64,13 @@ bool vtkStratusVolumeMapper::Internals::PrepareContext(std::string& error)
 bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
-  if (mapper->BlendMode != vtkVolumeMapper::COMPOSITE_BLEND) {
-    error = "blend mode " + std::to_string(mapper->BlendMode) + " is not supported, only composite (0) is";
-  } else if (mapper->Cropping && mapper->CroppingRegionFlags != VTK_CROP_SUBVOLUME) {
-    error = "cropping region flags " + std::to_string(mapper->CroppingRegionFlags) + " are not supported, only the subvolume (" +
-      std::to_string(VTK_CROP_SUBVOLUME) + ") is";
+  const int blend = mapper->BlendMode;
+  if (blend < vtkVolumeMapper::COMPOSITE_BLEND || blend > vtkVolumeMapper::ISOSURFACE_BLEND) {
+    error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to isosurface (5) are";
+  } else if (this->IsFirstHit() && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
+    error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
+  } else if (mapper->MaskInput && mapper->MaskType != BinaryMaskType) {
+    error = "label map masks are not supported, only binary ones are";
   } else if (mapper->FinalColorWindow == 0.0f || !std::isfinite(mapper->FinalColorWindow) || !std::isfinite(mapper->FinalColorLevel)) {
     error = "FinalColorWindow is " + std::to_string(mapper->FinalColorWindow) + " and FinalColorLevel " +
       std::to_string(mapper->FinalColorLevel) + ", they must be finite and the window not 0";
@@ -76,25 +80,50 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
 
 bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
-  if (property->GetShade() && !this->IsFirstHit()) {
-    error = "shading is not supported, only ShadeOff is (first hits: both are)";
+  const int blend = this->Mapper->BlendMode;
+  const bool light = blend == vtkVolumeMapper::COMPOSITE_BLEND || blend == vtkVolumeMapper::ISOSURFACE_BLEND;
+  if (property->GetShade() && !light) {
+    error = "shading is not supported in blend mode " + std::to_string(blend) + ", only composite (0) and isosurface (5) are lit";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0) {
     error = "label maps are not supported, only the scalar transfer functions are";
   } else if (property->GetUseClippedVoxelIntensity()) {
     error = "UseClippedVoxelIntensity is not supported, only off is";
-  } else if (!property->GetDisableGradientOpacity() && property->HasGradientOpacity()) {
-    vtkPiecewiseFunction* gradient = property->GetGradientOpacity();
-    for (int n = 0; n < gradient->GetSize(); ++n) {
-      double node[4];
-      gradient->GetNodeValue(n, node);
-      if (node[1] != 1.0) {
-        error = "gradient opacity is not supported, only a function that is 1 everywhere, or DisableGradientOpacityOn";
-      }
-    }
   }
   return error.empty();
+}
+
+// One transfer function, or one for each component that is a medium of its own.
+bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
+{
+  const int components = this->Image.GetVolume().components;
+  const bool composite = this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND && !this->IsFirstHit();
+  const int media = property->GetIndependentComponents() ? components : 1;
+  if (components > 1 && !composite) {
+    error = "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
+    return false;
+  }
+  for (int c = 0; c < media; ++c) {
+    if (!this->Transfers[c].Set(property, c, error)) {
+      return false;
+    }
+    this->Functions[c] = this->Transfers[c].GetTransfer();
+    if (this->Functions[c].gradient_count > 0 && !composite) {
+      error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
+              "DisableGradientOpacityOn";
+      return false;
+    }
+    const bool alike = property->GetShade(c) == property->GetShade(0) && property->GetAmbient(c) == property->GetAmbient(0) &&
+      property->GetDiffuse(c) == property->GetDiffuse(0) && property->GetSpecular(c) == property->GetSpecular(0) &&
+      property->GetSpecularPower(c) == property->GetSpecularPower(0);
+    if (!alike && (property->GetShade(c) || property->GetShade(0))) {
+      error = "components of different shading are not supported: component " + std::to_string(c) +
+        "'s Shade, Ambient, Diffuse, Specular and SpecularPower must be component 0's";
+      return false;
+    }
+  }
+  return true;
 }
 
 bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::string& error)
@@ -125,7 +154,8 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
     error += std::string(" for scalar mode ") + mapper->GetScalarModeAsString() + ": " + vtkStratusArrayNames(image);
     return false;
   }
-  return this->Image.Set(image, array, cells == 1, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
+  return this->Image.Set(image, array, cells == 1, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX) &&
+    this->SetTransfers(prop->GetProperty(), error);
 }
 
 bool vtkStratusVolumeMapper::Internals::SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const
@@ -152,11 +182,55 @@ bool vtkStratusVolumeMapper::Internals::SetClipPlanes(stratus_ray_cast_options& 
   return true;
 }
 
+bool vtkStratusVolumeMapper::Internals::SetMask(stratus_ray_cast_options& options, std::string& error) const
+{
+  vtkImageData* mask = this->Mapper->MaskInput;
+  if (!mask) {
+    return true;
+  }
+  vtkUnsignedCharArray* bytes = vtkUnsignedCharArray::SafeDownCast(mask->GetPointData()->GetScalars());
+  const int64_t* wanted = this->Image.GetVolume().dimensions;
+  int dimensions[3];
+  mask->GetDimensions(dimensions);
+  if (!bytes || bytes->GetNumberOfComponents() != 1) {
+    error = "MaskInput has no point scalars of one unsigned char each";
+  } else if (dimensions[0] != wanted[0] || dimensions[1] != wanted[1] || dimensions[2] != wanted[2]) {
+    error = "MaskInput has " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
+      " points, the input " + std::to_string(wanted[0]) + " x " + std::to_string(wanted[1]) + " x " + std::to_string(wanted[2]) + " values";
+  } else {
+    options.mask = bytes->GetPointer(0);
+    options.mask_revision = std::max<uint64_t>(bytes->GetMTime(), mask->GetMTime());
+  }
+  return error.empty();
+}
+
+// What means and isosurfaces are told beside the transfer function.
+bool vtkStratusVolumeMapper::Internals::SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+{
+  std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+  if (options.mode != STRATUS_MODE_ISOSURFACE) {
+    return true;
+  }
+  vtkContourValues* contours = property->GetIsoSurfaceValues();
+  const int count = contours ? contours->GetNumberOfContours() : 0;
+  if (count > STRATUS_CONTOURS_MAX) {
+    error = std::to_string(count) + " isosurface values are not supported, at most " + std::to_string(STRATUS_CONTOURS_MAX) + " are";
+    return false;
+  }
+  options.contour_count = count;
+  for (int n = 0; n < count; ++n) {
+    options.contours[n] = contours->GetValue(n);
+  }
+  return true;
+}
+
 bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
+  static const stratus_mode blends[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE };
   options = stratus_ray_cast_options_default();
-  options.mode = static_cast<stratus_mode>(mapper->RenderMode);
+  options.mode = this->IsFirstHit() ? STRATUS_MODE_FIRST_HIT : blends[mapper->BlendMode];
   options.normals = static_cast<stratus_normals>(mapper->Normals);
   options.structure = static_cast<stratus_structure>(mapper->Structure);
   options.sampling = static_cast<stratus_sampling>(mapper->Sampling);
@@ -164,13 +238,17 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   options.sample_distance = mapper->SampleDistance > 0.0 ? mapper->SampleDistance : 0.0;
   options.termination = mapper->Termination;
+  options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.block_size = mapper->BlockSize;
   options.audit = mapper->Audit ? 1 : 0;
   if (mapper->Cropping) {
     options.crop = 1;
+    options.crop_regions = static_cast<uint32_t>(mapper->CroppingRegionFlags);
     for (int b = 0; b < 6; ++b) {
       options.crop_bounds[b] = mapper->CroppingRegionPlanes[b] + this->Image.GetCropOffset()[b / 2];
     }
   }
-  return this->SetClipPlanes(options, error);
+  options.jitter = mapper->UseJittering ? 1 : 0;
+  options.jitter_seed = mapper->JitterSeed;
+  return this->SetMask(options, error) && this->SetContours(property, options, error) && this->SetClipPlanes(options, error);
 }

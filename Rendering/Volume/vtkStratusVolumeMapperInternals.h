@@ -38,7 +38,8 @@ public:
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkStratusImageView Image;
-  vtkStratusTransferView Transfer;
+  vtkStratusTransferView Transfers[STRATUS_COMPONENTS_MAX]; // one a component that has one ..
+  stratus_transfer Functions[STRATUS_COMPONENTS_MAX];       // .. as the core takes them
   vtkStratusDisplay Display;
   std::string LastError; // told already
   double DrawMilliseconds = 0.0;
@@ -55,6 +56,7 @@ private:
   bool CheckMapper(std::string& error) const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
+  bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // First hits (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
@@ -63,6 +65,8 @@ private:
   void SetShownDepth();
 
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
+  bool SetMask(stratus_ray_cast_options& options, std::string& error) const;
+  bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
   // What else the renderer draws: geometry that may end rays, or volumes beside this one.

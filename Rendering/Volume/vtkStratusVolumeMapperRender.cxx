@@ -39,7 +39,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
   learnedFor[16] = static_cast<double>(prop->GetProperty()->GetMTime());
-  learnedFor[17] = mapper->RenderMode;
+  learnedFor[17] = mapper->RenderMode + 100.0 * mapper->BlendMode;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
@@ -53,7 +53,8 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    coarseness.Step = this->IsFirstHit() ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
+    const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND;
+    coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));
   }
@@ -145,7 +146,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   image.rgba8 = bytes ? this->Bytes.data() : nullptr;
   this->Renderer = renderer;
   const stratus_status status = stratus_ray_caster_render(
-    this->Caster, &this->Image.GetVolume(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+    this->Caster, &this->Image.GetVolume(), this->Functions, &this->Picture.Camera, &options, &image, &this->Report);
   this->Renderer = nullptr;
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
@@ -172,7 +173,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     options.sample_distance = coarseness.Step * this->FullSampleDistance;
   }
   this->HasPicture = false;
-  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop ? options.crop_bounds : nullptr, coarseness.Pixels,
+  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop && options.crop_regions == STRATUS_CROP_INSIDE ? options.crop_bounds : nullptr, coarseness.Pixels,
         this->IsFirstHit())) {
     error = "the camera's projection has no inverse";
     return false;

@@ -43,16 +43,31 @@ void Refused(const char* what, const char* word, const std::function<void(Scene&
 void Modes()
 {
   Refused(
-    "maximum intensity", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToMaximumIntensity(); },
+    "slice", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); },
     [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
   Refused(
-    "shading", "shading", [](Scene& s) { s.Volume->GetProperty()->ShadeOn(); }, [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
+    "shading of a maximum", "shading",
+    [](Scene& s) {
+      s.Volume->GetProperty()->ShadeOn();
+      s.Mapper->SetBlendModeToMaximumIntensity();
+    },
+    [](Scene& s) {
+      s.Volume->GetProperty()->ShadeOff();
+      s.Mapper->SetBlendModeToComposite();
+    });
   vtkNew<vtkPiecewiseFunction> gradient;
   gradient->AddPoint(0, 0);
   gradient->AddPoint(1, 1);
   Refused(
-    "gradient opacity", "gradient opacity", [&](Scene& s) { s.Volume->GetProperty()->SetGradientOpacity(gradient); },
-    [](Scene& s) { s.Volume->GetProperty()->DisableGradientOpacityOn(); });
+    "gradient opacity in first hits", "gradient opacity",
+    [&](Scene& s) {
+      s.Volume->GetProperty()->SetGradientOpacity(gradient);
+      s.Mapper->SetRenderModeToFirstHit();
+    },
+    [](Scene& s) {
+      s.Volume->GetProperty()->DisableGradientOpacityOn();
+      s.Mapper->SetRenderModeToComposite();
+    });
   Refused(
     "2D transfer function", "TF_1D", [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
     [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_1D); });
@@ -62,12 +77,19 @@ void Modes()
     "label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
     [](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, nullptr); });
   Refused(
-    "fence cropping", "cropping",
+    "isosurface without values", "0 contour values",
+    [](Scene& s) { s.Mapper->SetBlendModeToIsoSurface(); },
+    [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
+  Refused(
+    "maxima of first hits", "blend mode",
     [](Scene& s) {
-      s.Mapper->CroppingOn();
-      s.Mapper->SetCroppingRegionFlagsToFence();
+      s.Mapper->SetRenderModeToFirstHit();
+      s.Mapper->SetBlendModeToMaximumIntensity();
     },
-    [](Scene& s) { s.Mapper->CroppingOff(); });
+    [](Scene& s) {
+      s.Mapper->SetRenderModeToComposite();
+      s.Mapper->SetBlendModeToComposite();
+    });
   Refused(
     "seven clipping planes", "clipping planes",
     [](Scene& s) {
@@ -132,9 +154,9 @@ void Data()
     [](Scene& s) { s.Mapper->SetScalarModeToUsePointData(); });
   vtkNew<vtkImageData> vectors;
   vectors->SetDimensions(5, 5, 5);
-  vectors->AllocateScalars(VTK_FLOAT, 3);
+  vectors->AllocateScalars(VTK_FLOAT, 5);
   Refused(
-    "three components", "3 components", [&](Scene& s) { s.Mapper->SetInputData(vectors); },
+    "five components", "5 components", [&](Scene& s) { s.Mapper->SetInputData(vectors); },
     [](Scene& s) { s.Mapper->SetInputData(s.Image); });
   vtkNew<vtkImageData> bits;
   bits->SetDimensions(5, 5, 5);

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What samples show beyond one value's colour and opacity: light, gradient opacity, several components. Each against the double reference, and each
+// setter by its effect. (How far VTK's own mappers are from the same reference: stratus-bench volume, scenes +shade and plume2.)
+#include "mapper_testing.h"
+
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
+
+namespace {
+// The double reference at 1/16 voxel, midpoint samples of .25: what is left is what the sampling itself leaves, lit or not.
+const double WantedDb = 50.0;
+
+void Fine(Scene& scene)
+{
+  scene.Mapper->SetSampleDistance(0.25);
+  scene.Mapper->SetSamplingToMidpoint();
+}
+
+stratus_shading ReferenceShading(Scene& scene)
+{
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  stratus_shading shading = stratus_ray_cast_options_default().shading;
+  shading.ambient = property->GetAmbient();
+  shading.diffuse = property->GetDiffuse();
+  shading.specular = property->GetSpecular();
+  shading.specular_power = property->GetSpecularPower();
+  shading.one_sided = scene.Renderer->GetTwoSidedLighting() ? 0 : 1;
+  shading.light_count = 0;
+  vtkLightCollection* lights = scene.Renderer->GetLights();
+  for (int i = 0; i < lights->GetNumberOfItems(); ++i) {
+    vtkLight* light = vtkLight::SafeDownCast(lights->GetItemAsObject(i));
+    double position[3], focal[3];
+    light->GetTransformedPosition(position);
+    light->GetTransformedFocalPoint(focal);
+    stratus_light& to = shading.lights[shading.light_count++];
+    to.positional = light->GetPositional();
+    for (int a = 0; a < 3; ++a) {
+      to.vector[a] = position[a] - (to.positional ? 0.0 : focal[a]);
+      to.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
+    }
+  }
+  return shading;
+}
+
+double LitPsnr(Scene& scene)
+{
+  const stratus_shading shading = ReferenceShading(scene);
+  return ReferencePsnr(scene, [&](reference_scene& reference) { reference.shading = &shading; });
+}
+
+void Shading()
+{
+  Scene scene;
+  Fine(scene);
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  const double plain = scene.Light();
+  property->ShadeOn();
+  property->SetAmbient(0.2);
+  property->SetDiffuse(0.7);
+  property->SetSpecular(0.3);
+  property->SetSpecularPower(12.0);
+  const double lit = scene.Light();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  CHECK(std::fabs(lit - plain) > 0.02 * plain, "ShadeOn shows no light: %g of %g", lit, plain);
+  double db = LitPsnr(scene);
+  std::printf("the renderer's own light: %.1f dB\n", db);
+  CHECK(db >= WantedDb, "%.1f dB", db);
+
+  vtkNew<vtkLight> sun, lamp;
+  sun->SetPosition(3, 1, -2);
+  sun->SetDiffuseColor(1, 0.5, 0.2);
+  lamp->SetPositional(1);
+  lamp->SetConeAngle(90);
+  lamp->SetPosition(40, 60, 50);
+  lamp->SetIntensity(0.6);
+  scene.Renderer->RemoveAllLights();
+  scene.Renderer->AddLight(sun);
+  scene.Renderer->AddLight(lamp);
+  scene.Render();
+  db = LitPsnr(scene);
+  std::printf("sun and lamp: %.1f dB\n", db);
+  CHECK(db >= WantedDb, "%.1f dB", db);
+
+  const double two = scene.Light();
+  scene.Renderer->TwoSidedLightingOff();
+  const double one = scene.Light();
+  CHECK(one < 0.97 * two, "TwoSidedLightingOff takes no light: %g of %g", one, two);
+  db = LitPsnr(scene);
+  CHECK(db >= WantedDb, "one-sided: %.1f dB", db);
+  lamp->SwitchOff();
+  CHECK(scene.Light() < 0.97 * one, "SwitchOff takes no light");
+  lamp->SwitchOn();
+  lamp->SetConeAngle(20);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("spot lights"), "a spot light: %s", scene.Errors->Text.c_str());
+}
+
+void Setters()
+{
+  Scene scene;
+  Fine(scene);
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  const std::vector<float> plain = scene.Picture();
+  property->ShadeOn();
+  property->SetAmbient(1.0);
+  property->SetDiffuse(0.0);
+  property->SetSpecular(0.0);
+  const std::vector<float> ambient = scene.Picture();
+  double worst = 0.0;
+  for (size_t i = 0; i < plain.size(); ++i) {
+    worst = std::max(worst, std::fabs(static_cast<double>(plain[i]) - ambient[i]));
+  }
+  CHECK(worst < 1e-6, "ambient light of 1 changes colours by %g", worst);
+  property->SetAmbient(0.0);
+  property->SetDiffuse(0.8);
+  const double diffuse = scene.Light();
+  property->SetDiffuse(0.4);
+  const double half = scene.Light();
+  CHECK(half < diffuse, "SetDiffuse does nothing");
+  property->SetSpecular(0.5);
+  property->SetSpecularPower(5.0);
+  const double broad = scene.Light();
+  CHECK(broad > half, "SetSpecular does nothing");
+  property->SetSpecularPower(100.0);
+  CHECK(scene.Light() < broad, "SetSpecularPower does nothing");
+  scene.Mapper->AuditOn();
+  scene.Render();
+  CHECK(scene.Mapper->GetDifferingPixels() == 0, "%llu pixels differ", static_cast<unsigned long long>(scene.Mapper->GetDifferingPixels()));
+}
+
+void GradientOpacity()
+{
+  Scene scene;
+  Fine(scene);
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  const double plain = scene.Light();
+  vtkNew<vtkPiecewiseFunction> steep;
+  steep->AddPoint(0.05, 0.0);
+  steep->AddPoint(0.1, 0.1);
+  steep->AddPoint(0.3, 1.0);
+  property->SetGradientOpacity(steep);
+  const double thinned = scene.Light();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  CHECK(thinned < 0.9 * plain && thinned > 0.05 * plain, "gradient opacity: %g of %g", thinned, plain);
+  const double points[] = { 0.05, 0.0, 0.1, 0.1, 0.3, 1.0 };
+  stratus_transfer transfer;
+  const double db = ReferencePsnr(scene, [&](reference_scene& reference) {
+    transfer = *reference.transfer;
+    transfer.gradient = points;
+    transfer.gradient_count = 3;
+    reference.transfer = &transfer;
+  });
+  std::printf("gradient opacity: %.1f dB\n", db);
+  CHECK(db >= WantedDb, "%.1f dB", db);
+  property->DisableGradientOpacityOn();
+  CHECK(scene.Light() == plain, "DisableGradientOpacityOn does not");
+}
+
+// Two components: the scene's field, and one of its own.
+vtkSmartPointer<vtkFloatArray> TwoComponents(vtkImageData* image)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetNumberOfComponents(2);
+  array->SetName("two");
+  int n[3];
+  image->GetDimensions(n);
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const double x = static_cast<double>(i) / (n[0] - 1), y = static_cast<double>(j) / (n[1] - 1), z = static_cast<double>(k) / (n[2] - 1);
+        array->InsertNextTuple2(Field(x, y, z), 10.0 * Field(y, 1.0 - x, z));
+      }
+    }
+  }
+  image->GetPointData()->SetScalars(array);
+  return array;
+}
+
+double ComponentsPsnr(Scene& scene, vtkFloatArray* array, const stratus_transfer* transfers, int dependent)
+{
+  stratus_volume volume;
+  return ReferencePsnr(
+    scene,
+    [&](reference_scene& reference) {
+      volume = *reference.volume;
+      volume.components = array->GetNumberOfComponents();
+      volume.value_stride = volume.components;
+      reference.volume = &volume;
+      reference.transfer = transfers;
+      reference.dependent = dependent;
+    });
+}
+
+void Components()
+{
+  Scene scene;
+  Fine(scene);
+  const double single = scene.Light();
+  const vtkSmartPointer<vtkFloatArray> array = TwoComponents(scene.Image);
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(1.0, 0.0);
+  opacity->AddPoint(10.0, 0.4);
+  vtkNew<vtkColorTransferFunction> green;
+  green->AddRGBPoint(0.0, 0.0, 1.0, 0.2);
+  property->SetScalarOpacity(1, opacity);
+  property->SetColor(1, green);
+  property->SetScalarOpacityUnitDistance(1, 2.0);
+  const double both = scene.Light();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  CHECK(both > 1.1 * single, "a second component adds no light: %g beside %g", both, single);
+
+  stratus_transfer transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
+  const double opacities[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 1.0, 0.0, 10.0, 0.4, 11.0, 0.4 } };
+  const double colors[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 }, { 0.0, 0.0, 1.0, 0.2 } };
+  for (int c = 0; c < 2; ++c) {
+    transfers[c].opacity = opacities[c];
+    transfers[c].opacity_count = 3;
+    transfers[c].color = colors[c];
+    transfers[c].color_count = c ? 1 : 3;
+    transfers[c].unit_distance = c ? 2.0 : 1.5;
+  }
+  double db = ComponentsPsnr(scene, array, transfers, 0);
+  std::printf("two independent components: %.1f dB\n", db);
+  CHECK(db >= WantedDb, "%.1f dB", db);
+  property->SetComponentWeight(1, 0.3);
+  transfers[1].weight = 0.3;
+  CHECK(scene.Light() < 0.97 * both, "SetComponentWeight takes no light");
+  db = ComponentsPsnr(scene, array, transfers, 0);
+  CHECK(db >= WantedDb, "with a weight: %.1f dB", db);
+  property->SetComponentWeight(1, 0.0);
+  CHECK(std::fabs(scene.Light() - single) < 1e-3 * single, "a component of weight 0 shows");
+
+  property->IndependentComponentsOff();
+  property->SetScalarOpacity(opacity);
+  transfers[0].opacity = opacities[1];
+  scene.Render();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  db = ComponentsPsnr(scene, array, transfers, 1);
+  std::printf("two dependent components: %.1f dB\n", db);
+  CHECK(db >= WantedDb, "%.1f dB", db);
+  scene.Mapper->AuditOn();
+  scene.Render();
+  CHECK(scene.Mapper->GetDifferingPixels() == 0, "%llu pixels differ", static_cast<unsigned long long>(scene.Mapper->GetDifferingPixels()));
+}
+
+// Colours as they are, opacity from the fourth.
+void Rgba()
+{
+  Scene scene;
+  Fine(scene);
+  vtkNew<vtkUnsignedCharArray> array;
+  array->SetNumberOfComponents(4);
+  for (vtkIdType i = 0; i < scene.Image->GetNumberOfPoints(); ++i) {
+    array->InsertNextTuple4(255, 51, 0, 255.0 * scene.Image->GetPointData()->GetScalars()->GetComponent(i, 0));
+  }
+  scene.Image->GetPointData()->SetScalars(array);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(20.0, 0.0);
+  opacity->AddPoint(255.0, 0.5);
+  scene.Volume->GetProperty()->SetScalarOpacity(opacity);
+  scene.Volume->GetProperty()->IndependentComponentsOff();
+  const std::vector<float> picture = scene.Picture();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  int shown = 0;
+  double worst = 0.0;
+  for (size_t p = 0; p < picture.size(); p += 4) {
+    shown += picture[p + 3] > 0.1f;
+    worst = std::max({ worst, std::fabs(static_cast<double>(picture[p]) - picture[p + 3]),
+      std::fabs(picture[p + 1] - 0.2 * static_cast<double>(picture[p + 3])), std::fabs(static_cast<double>(picture[p + 2])) });
+  }
+  CHECK(shown > 1000 && worst < 1e-5, "%d pixels show, colours are wrong by %g", shown, worst);
+}
+
+void Refusals()
+{
+  Scene scene;
+  const vtkSmartPointer<vtkFloatArray> array = TwoComponents(scene.Image);
+  scene.Volume->GetProperty()->SetShade(0, 1);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("different shading"), "%s", scene.Errors->Text.c_str());
+  scene.Volume->GetProperty()->SetShade(1, 1);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1, "%s", scene.Errors->Text.c_str());
+  scene.Mapper->SetRenderModeToFirstHit();
+  scene.Render();
+  CHECK(scene.Errors->Count == 2 && scene.Errors->Has("components"), "%s", scene.Errors->Text.c_str());
+  scene.Mapper->SetRenderModeToComposite();
+  vtkNew<vtkFloatArray> three;
+  three->SetNumberOfComponents(3);
+  three->SetNumberOfTuples(scene.Image->GetNumberOfPoints());
+  three->Fill(0.5);
+  scene.Image->GetPointData()->SetScalars(three);
+  scene.Volume->GetProperty()->IndependentComponentsOff();
+  scene.Render();
+  CHECK(scene.Errors->Count == 3 && scene.Errors->Has("3 dependent"), "%s", scene.Errors->Text.c_str());
+}
+} // namespace
+
+int main()
+{
+  Shading();
+  Setters();
+  GradientOpacity();
+  Components();
+  Rgba();
+  Refusals();
+  std::printf("%d failures\n", Failures);
+  return Failures ? 1 : 0;
+}
