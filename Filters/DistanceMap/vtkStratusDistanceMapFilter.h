@@ -33,7 +33,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkMTimeType GetMTime() override;
 
-  ///@{
+  //@{
   /**
    * The values that count as occupied, ends included; lower <= upper, infinities allowed. Default: all. Not used with a VolumeProperty.
    */
@@ -42,26 +42,26 @@ public:
   vtkSetMacro(UpperThreshold, double);
   vtkGetMacro(UpperThreshold, double);
   void ThresholdBetween(double lower, double upper);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The property whose scalar opacity tells what is occupied. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Cells along a block: 2, 4, 8, 16 or 32. Default 4.
    */
   vtkSetMacro(BlockSize, int);
   vtkGetMacro(BlockSize, int);
-  ///@}
+  //@}
 
   enum KindType { BLOCK, FULL, PAPER, OCTANT };
-  ///@{
+  //@{
   /**
    * BLOCK: 1 in every empty block; FULL: the distance to the nearest occupied block; PAPER: the same by Deakin and Knackstedt's own
    * transform, equal to the bit; OCTANT: to the nearest one that a ray of the octant Octant can reach. Default FULL.
@@ -73,22 +73,22 @@ public:
   void SetKindToPaper() { this->SetKind(PAPER); }
   void SetKindToOctant() { this->SetKind(OCTANT); }
   const char* GetKindAsString();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the rays, 0..7: bit a is set where they move towards + along axis a. Default 7. Used by the kind OCTANT.
    */
   vtkSetClampMacro(Octant, int, 0, 7);
   vtkGetMacro(Octant, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last output: blocks that are occupied.
    */
   vtkGetMacro(OccupiedBlocks, vtkIdType);
-  ///@}
+  //@}
 
 protected:
   vtkStratusDistanceMapFilter();

@@ -37,7 +37,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkMTimeType GetMTime() override;
 
-  ///@{
+  //@{
   /**
    * The values that count, ends included; lower <= upper, infinities allowed. Default: all. Not used with a VolumeProperty.
    */
@@ -46,18 +46,18 @@ public:
   vtkSetMacro(UpperThreshold, double);
   vtkGetMacro(UpperThreshold, double);
   void ThresholdBetween(double lower, double upper);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The property whose scalar opacity tells what counts. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
-  ///@}
+  //@}
 
   enum PurposeType { RAY_CASTING, FIRST_HITS };
-  ///@{
+  //@{
   /**
    * What the tree is for. RAY_CASTING: blocks of cells that show something between their smallest and largest value, rounded outward; serves
    * every transfer function that shows no more. FIRST_HITS: the voxels themselves; serves those that show the same. Default RAY_CASTING.
@@ -66,10 +66,10 @@ public:
   vtkGetMacro(Purpose, int);
   void SetPurposeToRayCasting() { this->SetPurpose(RAY_CASTING); }
   void SetPurposeToFirstHits() { this->SetPurpose(FIRST_HITS); }
-  ///@}
+  //@}
 
   enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS };
-  ///@{
+  //@{
   /**
    * How the tree is built. HYBRID (default): leaves of distance fields where voxels lie even, a hierarchy of bricks where they don't; HYBRID_PAPER:
    * Guo et al. 2025 as written; DISTANCE and OCTANT: one field over everything; the others: hierarchies of single voxels, to compare with.
@@ -88,17 +88,17 @@ public:
   void SetMethodToDensityPeaks() { this->SetMethod(DENSITY_PEAKS); }
   void SetMethodToKMeans() { this->SetMethod(K_MEANS); }
   const char* GetMethodAsString();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * A node this deep is a leaf, 1..64; hierarchies of voxels are only kept near it, by splits at the median. Default 32.
    */
   vtkSetClampMacro(MaximumDepth, int, 1, 64);
   vtkGetMacro(MaximumDepth, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Bricks of 4^3 voxels in a leaf of the sparse parts, and voxels in a leaf of the hierarchies of voxels; 1..64. Default 4 and 1.
    */
@@ -106,9 +106,9 @@ public:
   vtkGetMacro(LeafBricks, int);
   vtkSetClampMacro(LeafVoxels, int, 1, 64);
   vtkGetMacro(LeafVoxels, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Most bricks that a leaf of a distance field covers, 1..2^29, and most of them for one that holds anything, at least 1. Values out of range are an
    * error when building. Default 33554432 and 512.
@@ -117,9 +117,9 @@ public:
   vtkGetMacro(FieldBricks, vtkIdType);
   vtkSetMacro(FieldEmptiness, double);
   vtkGetMacro(FieldEmptiness, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * How much the spread of voxels may differ between the axes for a node to count as even: of the node's extent (HYBRID, default .1), and in voxels
    * (HYBRID_PAPER, default 8). At least 0; else an error when building.
@@ -128,17 +128,17 @@ public:
   vtkGetMacro(Uniform, double);
   vtkSetMacro(PaperThreshold, double);
   vtkGetMacro(PaperThreshold, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Bandwidth of density in voxels, or 0 (default) for the paper's rule with its floor of 1. Negative: an error when building.
    */
   vtkSetMacro(Bandwidth, double);
   vtkGetMacro(Bandwidth, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Density summed voxel by voxel instead of over bricks, and anew in each node. Default off; HYBRID_PAPER always does both.
    */
@@ -148,9 +148,9 @@ public:
   vtkSetClampMacro(DensityPerNode, vtkTypeBool, 0, 1);
   vtkGetMacro(DensityPerNode, vtkTypeBool);
   vtkBooleanMacro(DensityPerNode, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last tree built: voxels that count, bricks that hold any, nodes, leaves, leaves of distance fields, depth of the deepest leaf, bytes,
    * cost by the surface area heuristic, milliseconds, and one sentence on what decided its shape.
@@ -165,7 +165,7 @@ public:
   vtkGetMacro(SurfaceAreaCost, double);
   vtkGetMacro(BuildTime, double);
   const char* GetReason();
-  ///@}
+  //@}
 
   /**
    * The second output.

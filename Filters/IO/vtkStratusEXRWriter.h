@@ -32,13 +32,13 @@ public:
   vtkTypeMacro(vtkStratusEXRWriter, vtkWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * The file to write. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
-  ///@}
+  //@}
 
 protected:
   vtkStratusEXRWriter();

@@ -42,15 +42,15 @@ public:
   vtkTypeMacro(vtkStratusTetGenReader, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * A file of the mesh, or what the names of all have in common. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Whether to read .face, .edge and .neigh files that are there. Default on. One that FileName names is read in any case.
    */
@@ -63,7 +63,7 @@ public:
   vtkSetClampMacro(ReadNeighbors, vtkTypeBool, 0, 1);
   vtkGetMacro(ReadNeighbors, vtkTypeBool);
   vtkBooleanMacro(ReadNeighbors, vtkTypeBool);
-  ///@}
+  //@}
 
   /**
    * The second output.

@@ -33,21 +33,21 @@ public:
   vtkTypeMacro(vtkStratusTetGenWriter, vtkWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * One of the files to write, or what the names of all shall have in common. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The number of the first point, tetrahedron, face ... in the files: 0 (default) or 1.
    */
   vtkSetClampMacro(FirstNumber, int, 0, 1);
   vtkGetMacro(FirstNumber, int);
-  ///@}
+  //@}
 
 protected:
   vtkStratusTetGenWriter();

@@ -36,16 +36,16 @@ public:
   vtkTypeMacro(vtkStratusTetGenFilter, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * Whether to add points until tetrahedra are well shaped. Default on.
    */
   vtkSetClampMacro(Quality, vtkTypeBool, 0, 1);
   vtkGetMacro(Quality, vtkTypeBool);
   vtkBooleanMacro(Quality, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * With Quality: the largest ratio of a tetrahedron's circumscribed radius to its shortest edge, above 0, and the smallest angle between two of its
    * faces in degrees, 0..70. Default 2 and 0. Below 1.2 and above 18 TetGen may not come to an end;
@@ -55,43 +55,43 @@ public:
   vtkGetMacro(RadiusEdgeRatio, double);
   vtkSetMacro(MinimumDihedralAngle, double);
   vtkGetMacro(MinimumDihedralAngle, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The largest volume of a tetrahedron, at least 0. Default 0: any.
    */
   vtkSetMacro(MaximumVolume, double);
   vtkGetMacro(MaximumVolume, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * How many points TetGen may add at most, 0..2^31 - 1, or -1 (default) for any number. Where it is reached, quality and volume are not.
    */
   vtkSetMacro(MaximumSteinerPoints, vtkIdType);
   vtkGetMacro(MaximumSteinerPoints, vtkIdType);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Whether the surface's triangles stay as they are, without points added on it. Default off.
    */
   vtkSetClampMacro(PreserveBoundary, vtkTypeBool, 0, 1);
   vtkGetMacro(PreserveBoundary, vtkTypeBool);
   vtkBooleanMacro(PreserveBoundary, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * A point in a part that stays empty: all up to the next facets is left out.
    */
   void AddHole(double x, double y, double z);
   void RemoveAllHoles();
   int GetNumberOfHoles();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * A point in a part whose tetrahedra shall have this value of "Region" and, where it is above 0, no larger volume. Parts that no region lies in
    * have whole values above all of these.
@@ -99,23 +99,23 @@ public:
   void AddRegion(double x, double y, double z, double attribute, double maximumVolume = 0.0);
   void RemoveAllRegions();
   int GetNumberOfRegions();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Seconds after which TetGen is stopped, above 0 and up to 1e6. Default 60.
    */
   vtkSetMacro(TimeLimit, double);
   vtkGetMacro(TimeLimit, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The program that runs TetGen. Default none: stratus-tetgen where it was built or installed with this library.
    */
   vtkSetFilePathMacro(Program);
   vtkGetFilePathMacro(Program);
-  ///@}
+  //@}
 
   /**
    * The second output.

@@ -30,71 +30,71 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum RuleType { MEDIAN, PAPER };
-  ///@{
+  //@{
   /**
    * MEDIAN: of the planes through points between the 40 % and the 60 % quantile the one that adds fewest cells. PAPER: of evenly spaced planes
    * the one that adds fewest among those that Growth and Imbalance admit. Default MEDIAN.
    */
   vtkSetClampMacro(Rule, int, MEDIAN, PAPER);
   vtkGetMacro(Rule, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * At most 2^Depth leaves, 0..16. Default 3.
    */
   vtkSetClampMacro(Depth, int, 0, 16);
   vtkGetMacro(Depth, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Planes tried an axis and node, 1..4096. Default 64.
    */
   vtkSetClampMacro(Planes, int, 1, 4096);
   vtkGetMacro(Planes, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Most new cells per cell of a node (the paper's Phi), > 0. Default: any.
    */
   vtkSetMacro(Growth, double);
   vtkGetMacro(Growth, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The difference of a plane's two sides over their mean stays below this (the paper's epsilon), > 0. Default 0.5.
    */
   vtkSetMacro(Imbalance, double);
   vtkGetMacro(Imbalance, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Where no plane is admissible the mesh is turned as many times at most, 0..64. Default 0.
    */
   vtkSetClampMacro(Rotations, int, 0, 64);
   vtkGetMacro(Rotations, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * A node of so many cells or fewer is not cut, >= 1. Default 1024.
    */
   vtkSetClampMacro(LeafCells, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(LeafCells, vtkIdType);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last output: leaves; cells of the largest; tetrahedra before anything was cut.
    */
   vtkGetMacro(NumberOfLeaves, int);
   vtkGetMacro(LargestLeaf, vtkIdType);
   vtkGetMacro(NumberOfTetrahedra, vtkIdType);
-  ///@}
+  //@}
 
 protected:
   vtkStratusPartitionFilter();

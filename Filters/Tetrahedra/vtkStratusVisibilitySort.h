@@ -31,24 +31,24 @@ public:
   vtkIdTypeArray* GetNextCells() override;
 
   enum PeelingType { NEAREST, LAYERS };
-  ///@{
+  //@{
   /**
    * NEAREST: of the cells that nothing hides any more the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it; gaps may then
    * be crossed in the wrong order. Default NEAREST.
    */
   vtkSetClampMacro(Peeling, int, NEAREST, LAYERS);
   vtkGetMacro(Peeling, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Threads of the host, 0: as many as OpenMP would take, at most 1024. Default 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last traversal: leaves; rings of cells that hide one another, each broken once; layers (peeling in layers); milliseconds that
    * neighbours took, once, and signs and peeling, each time.
@@ -58,7 +58,7 @@ public:
   vtkGetMacro(NumberOfLayers, int);
   vtkGetMacro(BuildMilliseconds, double);
   vtkGetMacro(SortMilliseconds, double);
-  ///@}
+  //@}
 
 protected:
   vtkStratusVisibilitySort();

@@ -23,7 +23,7 @@ public:
   vtkTypeMacro(vtkStratusVolumeRepresentation, vtkImageVolumeRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * Forwarded to the mapper.
    */
@@ -34,7 +34,7 @@ public:
   void SetSampleDistance(double distance);
   void SetTermination(double opacity);
   void SetDevice(const char* device);
-  ///@}
+  //@}
 
 protected:
   vtkStratusVolumeRepresentation();

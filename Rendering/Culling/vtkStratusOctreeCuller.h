@@ -34,16 +34,16 @@ public:
   vtkTypeMacro(vtkStratusOctreeCuller, vtkCuller);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * Install puts a culler in place of the renderer's vtkFrustumCoverageCuller, takes over its coverages and order, and returns it; the renderer
    * owns it. Where one is, it is returned. Uninstall goes the way back. Other cullers stay.
    */
   static vtkStratusOctreeCuller* Install(vtkRenderer* renderer);
   static void Uninstall(vtkRenderer* renderer);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * The promise that this culler's Modified() is called whenever bounds may have changed; they are asked for then, and of props that are new in the
    * list. Props added, removed, shown or hidden need no call. Default off.
@@ -51,18 +51,18 @@ public:
   vtkSetMacro(StaticProps, bool);
   vtkGetMacro(StaticProps, bool);
   vtkBooleanMacro(StaticProps, bool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside. Coverage
    * is a share of the wider window. Default 8.
    */
   vtkSetClampMacro(Margin, double, 0.0, 1000.0);
   vtkGetMacro(Margin, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Props that cover less of the window than the first are left out, those that cover more than the second get all their time, 0..1. Default 0 and 1.
    */
@@ -70,10 +70,10 @@ public:
   vtkGetMacro(MinimumCoverage, double);
   vtkSetClampMacro(MaximumCoverage, double, 0.0, 1.0);
   vtkGetMacro(MaximumCoverage, double);
-  ///@}
+  //@}
 
   enum SortingStyleType { SORT_NONE, SORT_FRONT_TO_BACK, SORT_BACK_TO_FRONT };
-  ///@{
+  //@{
   /**
    * Order of what is left, by the distance of the bounds' centre from the near plane, as vtkFrustumCoverageCuller's. Default the renderer's.
    */
@@ -83,19 +83,19 @@ public:
   void SetSortingStyleToFrontToBack() { this->SetSortingStyle(SORT_FRONT_TO_BACK); }
   void SetSortingStyleToBackToFront() { this->SetSortingStyle(SORT_BACK_TO_FRONT); }
   const char* GetSortingStyleAsString();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Whether boxes at the frustum's edges are tried by every separating axis, so that nothing beyond them is kept. Default off.
    */
   vtkSetMacro(Exact, bool);
   vtkGetMacro(Exact, bool);
   vtkBooleanMacro(Exact, bool);
-  ///@}
+  //@}
 
   enum StopRuleType { STOP_PIXELS, STOP_MANHATTAN, STOP_EUCLID, STOP_STATIC };
-  ///@{
+  //@{
   /**
    * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor S) < 1
    * as in the paper or in straight lines, or all, at once. What is seen depends on none of it.
@@ -107,9 +107,9 @@ public:
   void SetStopRuleToEuclid() { this->SetStopRule(STOP_EUCLID); }
   void SetStopRuleToStatic() { this->SetStopRule(STOP_STATIC); }
   const char* GetStopRuleAsString();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Diameter of a node on screen, of a window 1000 pixels high, 1e-3..1e6, default 32; C of the rules by distance, 1e-3..1e6, default 35.
    */
@@ -117,9 +117,9 @@ public:
   vtkGetMacro(Pixels, double);
   vtkSetClampMacro(DistanceFactor, double, 1e-3, 1e6);
   vtkGetMacro(DistanceFactor, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Levels below the root, 0..21, default 21; 0 is a plain list. A node of so many props or fewer is not split, 1..1048576, default 256.
    */
@@ -127,17 +127,17 @@ public:
   vtkGetMacro(MaximumLevel, int);
   vtkSetClampMacro(LeafProps, int, 1, 1048576);
   vtkGetMacro(LeafProps, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Threads that test boxes, 0..1024, 0 as many as OpenMP takes. Default 1: below a hundred thousand props others cost more than they do.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last call of Cull(), whichever renderer's: props in the list, those left in it, those whose bounds were asked for, milliseconds.
    */
@@ -145,15 +145,15 @@ public:
   vtkGetMacro(NumberOfVisibleProps, vtkIdType);
   vtkGetMacro(NumberOfPropsAsked, vtkIdType);
   vtkGetMacro(CullTime, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of a renderer's octree: nodes, bytes that it takes beside the bounds; 0 if it has none.
    */
   vtkIdType GetNumberOfNodes(vtkRenderer* renderer);
   vtkIdType GetBytes(vtkRenderer* renderer);
-  ///@}
+  //@}
 
   /**
    * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int, the

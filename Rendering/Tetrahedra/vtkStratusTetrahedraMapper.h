@@ -35,23 +35,23 @@ public:
   vtkTypeMacro(vtkStratusTetrahedraMapper, vtkUnstructuredGridVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * A ray ends when its alpha passes this, 0..1. Default .999. Not in maximum intensity.
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Threads that draw, 0..1024; 0 takes as many as OpenMP would. The picture is the same with any number. Default 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last picture: milliseconds that the march took, and making the grid ready (0 where it was), cells that rays passed, and faces
    * through which they came in.
@@ -60,15 +60,15 @@ public:
   double GetBuildMilliseconds();
   vtkIdType GetNumberOfSegments();
   vtkIdType GetNumberOfEntries();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last picture: tetrahedra that the cells were divided into, and cells ignored: vertices, lines and polygons.
    */
   vtkIdType GetNumberOfTetrahedra();
   vtkIdType GetNumberOfIgnoredCells();
-  ///@}
+  //@}
 
   /**
    * The last picture as floats, as large as the renderer's viewport: point arrays RGBA (premultiplied by alpha) and Depth (world distance

@@ -45,7 +45,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE };
-  ///@{
+  //@{
   /**
    * Light through the whole of each ray, or the first voxel of opacity > 0 as a lit, opaque solid. Default COMPOSITE_MODE.
    */
@@ -54,10 +54,10 @@ public:
   void SetRenderModeToComposite() { this->SetRenderMode(COMPOSITE_MODE); }
   void SetRenderModeToFirstHit() { this->SetRenderMode(FIRST_HIT_MODE); }
   const char* GetRenderModeAsString();
-  ///@}
+  //@}
 
   enum NormalsType { FACE_NORMALS, GRADIENT_NORMALS };
-  ///@{
+  //@{
   /**
    * What light falls on in first hits: the voxels' faces, or the field's gradient by central differences. Default FACE_NORMALS.
    */
@@ -65,17 +65,17 @@ public:
   vtkGetMacro(Normals, int);
   void SetNormalsToFaces() { this->SetNormals(FACE_NORMALS); }
   void SetNormalsToGradient() { this->SetNormals(GRADIENT_NORMALS); }
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * World length between two samples of a ray; 0 or less takes it from the data's spacing and the transfer function. Default -1.
    */
   vtkSetMacro(SampleDistance, double);
   vtkGetMacro(SampleDistance, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * While the window's desired update rate is at least InteractiveUpdateRate, draw as coarsely as the time allotted to this volume
    * asks for: first longer steps, then fewer rays. Below that rate the picture is exact. Default on.
@@ -83,18 +83,18 @@ public:
   vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
   vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
   vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Frames a second from which AutoAdjustSampleDistances is at work, 1e-10..1e10. Default 1: a still picture of VTK's interactor (rate 0.0001)
    * is exact, one that moves (rate 15) is adjusted.
    */
   vtkSetClampMacro(InteractiveUpdateRate, double, 1.0e-10, 1.0e10);
   vtkGetMacro(InteractiveUpdateRate, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Pixels between two rays along each axis of the window, 1..100, and the most that AutoAdjustSampleDistances may take. Default 1 and 8.
    */
@@ -102,17 +102,17 @@ public:
   vtkGetMacro(ImageSampleDistance, double);
   vtkSetClampMacro(MaximumImageSampleDistance, double, 1.0, 100.0);
   vtkGetMacro(MaximumImageSampleDistance, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * How many times the sample distance AutoAdjustSampleDistances may make it, 1..100. Default 2.
    */
   vtkSetClampMacro(MaximumSampleDistanceFactor, double, 1.0, 100.0);
   vtkGetMacro(MaximumSampleDistanceFactor, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Window and level of the final colours: a colour c is shown as (c - level) / window + 0.5. The window is not 0, a negative one
    * inverts. Default 1 and 0.5: as they are. GetLastImage() is not affected.
@@ -121,10 +121,10 @@ public:
   vtkGetMacro(FinalColorWindow, float);
   vtkSetMacro(FinalColorLevel, float);
   vtkGetMacro(FinalColorLevel, float);
-  ///@}
+  //@}
 
   enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE, HYBRID_STRUCTURE };
-  ///@{
+  //@{
   /**
    * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, eight of them by the ray's octant, or a hybrid tree. No
    * choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
@@ -138,10 +138,10 @@ public:
   void SetStructureToOctant() { this->SetStructure(OCTANT_STRUCTURE); }
   void SetStructureToHybrid() { this->SetStructure(HYBRID_STRUCTURE); }
   const char* GetStructureAsString();
-  ///@}
+  //@}
 
   enum SamplingType { AUTO_SAMPLING, MIDPOINT_SAMPLING, PREINTEGRATED_SAMPLING };
-  ///@{
+  //@{
   /**
    * One value in the middle of each segment, or the transfer function integrated between the values at its ends. Nearest interpolation is
    * never pre-integrated. Default AUTO_SAMPLING: by the transfer function's bend against the data.
@@ -152,14 +152,14 @@ public:
   void SetSamplingToMidpoint() { this->SetSampling(MIDPOINT_SAMPLING); }
   void SetSamplingToPreintegrated() { this->SetSampling(PREINTEGRATED_SAMPLING); }
   const char* GetSamplingAsString();
-  ///@}
+  //@}
 
   enum
   {
     BinaryMaskType = 0,
     LabelMapMaskType
   };
-  ///@{
+  //@{
   /**
    * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the values), 0 where
    * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of the types, label maps are refused. Default binary.
@@ -170,9 +170,9 @@ public:
   vtkGetMacro(MaskType, int);
   void SetMaskTypeToBinary() { this->SetMaskType(BinaryMaskType); }
   void SetMaskTypeToLabelMap() { this->SetMaskType(LabelMapMaskType); }
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Move each ray's samples along it by up to a sample distance, so that the wood grain of long steps turns into noise. The noise is the same from picture
    * to picture, at any number of threads; another seed is another noise. Default off, seed 0.
@@ -182,60 +182,60 @@ public:
   vtkBooleanMacro(UseJittering, vtkTypeBool);
   vtkSetMacro(JitterSeed, unsigned int);
   vtkGetMacro(JitterSeed, unsigned int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * A ray ends when its opacity passes this, 0..1. Default 0.999.
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Cells along a block of the structure: 2, 4, 8, 16, 32, or 0 for the core's default. Others are an error when drawing. Default 0.
    */
   vtkSetMacro(BlockSize, int);
   vtkGetMacro(BlockSize, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Where rays are cast: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name.
    * One that does not exist is an error with the list of those that do, and the device stays what it was. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Threads of the host, 1..1024, or 0 for as many as OpenMP would take. The picture does not depend on it. Default 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Also march without structure and count the pixels that differ, see GetDifferingPixels(). Slow. Default off.
    */
   vtkSetClampMacro(Audit, vtkTypeBool, 0, 1);
   vtkGetMacro(Audit, vtkTypeBool);
   vtkBooleanMacro(Audit, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Also count the values interpolated for each pixel: GetLastImage() then has them as "Samples". Does not change the picture. Default off.
    */
   vtkSetClampMacro(CountSamples, vtkTypeBool, 0, 1);
   vtkGetMacro(CountSamples, vtkTypeBool);
   vtkBooleanMacro(CountSamples, vtkTypeBool);
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last picture drawn: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
    * blocks and how many of them are occupied, and bytes of the structure.
@@ -247,9 +247,9 @@ public:
   vtkTypeUInt64 GetBlocks();
   vtkTypeUInt64 GetOccupiedBlocks();
   vtkTypeUInt64 GetStructureBytes();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * How often each was built since this mapper (or its device or threads) was set up.
    */
@@ -262,9 +262,9 @@ public:
    * Whether the last picture was drawn by the tree that the input carries, so that none had to be built.
    */
   bool GetCarriedTreeUsed();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Milliseconds of the last picture by stage; 0 for what was not done. Draw is the read-back of depth and the display of the picture.
    */
@@ -275,9 +275,9 @@ public:
   double GetUploadTime();
   double GetCastTime();
   double GetDrawTime();
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * What the last picture used, and why: structure, sampling, world length between samples, pixels between rays, device.
    */
@@ -287,7 +287,7 @@ public:
   double GetUsedImageSampleDistance();
   const char* GetReason();
   const char* GetDeviceName();
-  ///@}
+  //@}
 
   /**
    * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4 components,
