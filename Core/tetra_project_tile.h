@@ -12,12 +12,23 @@
 #define PIXELS (PROJECT_TILE * PROJECT_TILE)
 #define ACROSS (PROJECT_TILE / PACKET_X) /* packets side by side in a tile */
 #define UPWARDS (PROJECT_TILE / PACKET_Y)
-#define PIECES 1024 /* collected before they are shaded */
+#define PIECES 256 /* collected before they are shaded: few enough to stay in the innermost cache */
 
-/* A piece lies before the last one of its pixel, out of order, if it begins by more before that one's end than rounding explains: a share of both
- * depths, and of its length. */
-#define OUT_OF_ORDER 0x1p-20f
+/* A piece lies before the last one of its pixel, out of order, if it begins by more before that one's end than rounding explains: a share of its
+ * depth and of its length. */
+#define OUT_OF_ORDER 0x1p-19f
 #define OUT_OF_ORDER_LENGTH 0x1p-8f
+
+typedef float four_floats __attribute__((vector_size(16), may_alias));
+
+/* What a pixel has gathered. */
+typedef struct tile_pixel {
+  four_floats light; /* red, green, blue, transparency; maximum: where the largest value is, it, - , - */
+  float back;        /* where the last piece that counts ends */
+  float depth;
+  uint32_t samples;
+  uint32_t wrong; /* 1: pieces came out of order */
+} tile_pixel;
 
 /* Pixels lie packet by packet: pixel p is lane p % WIDTH of packet p / WIDTH. */
 typedef struct project_tile {
@@ -27,11 +38,9 @@ typedef struct project_tile {
   float us[ACROSS][WIDTH], uw[ACROSS][WIDTH], vs[UPWARDS][WIDTH], vw[UPWARDS][WIDTH];
   float dx[ACROSS][WIDTH], dy[UPWARDS][WIDTH]; /* from the tile's first pixel, in pixels */
   float length[PIXELS], offset[PIXELS], end[PIXELS]; /* world distance = offset + length z */
-  float transparency[PIXELS], red[PIXELS], green[PIXELS], blue[PIXELS], depth[PIXELS];
-  float back[PIXELS];  /* where the last piece ends */
-  float open[PIXELS];  /* what begins behind it need not be looked at: no end, until the pixel is opaque */
-  uint32_t samples[PIXELS];
-  uint8_t wrong[PIXELS]; /* 1: pieces came out of order */
+  float open[PIXELS]; /* what begins behind it need not be looked at: no end, until the pixel is opaque */
+  tile_pixel pixels[PIXELS];
+  int wrong; /* pixels */
   int count; /* pieces */
   float at[PIECES + 2 * WIDTH], to[PIECES + 2 * WIDTH], first[PIECES + 2 * WIDTH], last[PIECES + 2 * WIDTH];
   int pixel[PIECES + 2 * WIDTH];
@@ -58,12 +67,9 @@ static float end_of(const stratus_tetra_projection* projection, int x, int y)
 /* Nothing gathered yet. Pixels beyond the picture are closed. */
 static void clear_pixel(project_tile* t, int p, bool inside)
 {
-  t->red[p] = t->green[p] = t->blue[p] = 0.0f;
-  t->transparency[p] = inside ? 1.0f : -1.0f;
-  t->depth[p] = t->projection->frame->arguments.maximum ? -LARGEST_FLOAT : LARGEST_FLOAT;
-  t->back[p] = -LARGEST_FLOAT;
+  const bool maximum = t->projection->frame->arguments.maximum;
+  t->pixels[p] = (tile_pixel){ .light = { 0.0f, maximum ? -LARGEST_FLOAT : 0.0f, 0.0f, 1.0f }, .back = -LARGEST_FLOAT, .depth = LARGEST_FLOAT };
   t->open[p] = inside ? LARGEST_FLOAT : -LARGEST_FLOAT;
-  t->samples[p] = 0;
 }
 
 static void begin_tile(project_tile* t, int tile)
@@ -77,7 +83,7 @@ static void begin_tile(project_tile* t, int tile)
   t->height = image->height - t->y0 < PROJECT_TILE ? image->height - t->y0 : PROJECT_TILE;
   t->alive = t->width * t->height;
   t->count = 0;
-  memset(t->wrong, 0, sizeof t->wrong);
+  t->wrong = 0;
   for (int y = 0; y < PROJECT_TILE; ++y) {
     for (int x = 0; x < PROJECT_TILE; ++x) {
       const int p = place_of(x, y), lane = p % WIDTH;
@@ -104,8 +110,11 @@ static void begin_tile(project_tile* t, int tile)
 
 /* ---- pieces */
 
+/* Of WIDTH pieces. maximum: light holds where the larger end is, and the value there. */
 typedef struct layers {
-  float red[WIDTH], green[WIDTH], blue[WIDTH], transparency[WIDTH], depth[WIDTH];
+  four_floats light[WIDTH];  /* red, green, blue, less transparency */
+  float limit[WIDTH];        /* the piece is out of order if another ends behind this */
+  float to[WIDTH], depth[WIDTH];
   int visible[WIDTH];
 } layers;
 
@@ -114,16 +123,42 @@ INLINE vfloat gather_floats(const float* from, vint at, vmask mask)
   return v_from_bits(v_gather_ints((const int*)(const void*)from, at, mask));
 }
 
+INLINE void put_light(layers* out, vfloat red, vfloat green, vfloat blue, vfloat less)
+{
+#if STRATUS_ISA == 2
+  const __m512 rg = _mm512_unpacklo_ps(red, green), rg_high = _mm512_unpackhi_ps(red, green);
+  const __m512 bt = _mm512_unpacklo_ps(blue, less), bt_high = _mm512_unpackhi_ps(blue, less);
+  const __m512 rows[4] = { _mm512_shuffle_ps(rg, bt, 0x44), _mm512_shuffle_ps(rg, bt, 0xee), _mm512_shuffle_ps(rg_high, bt_high, 0x44),
+    _mm512_shuffle_ps(rg_high, bt_high, 0xee) };
+  for (int i = 0; i < 4; ++i) { /* row i: lanes i, 4 + i, 8 + i, 12 + i */
+    out->light[i] = (four_floats)_mm512_castps512_ps128(rows[i]);
+    out->light[4 + i] = (four_floats)_mm512_extractf32x4_ps(rows[i], 1);
+    out->light[8 + i] = (four_floats)_mm512_extractf32x4_ps(rows[i], 2);
+    out->light[12 + i] = (four_floats)_mm512_extractf32x4_ps(rows[i], 3);
+  }
+#else
+  float lanes[4][WIDTH];
+  v_store(lanes[0], red);
+  v_store(lanes[1], green);
+  v_store(lanes[2], blue);
+  v_store(lanes[3], less);
+  for (int l = 0; l < WIDTH; ++l) {
+    out->light[l] = (four_floats){ lanes[0][l], lanes[1][l], lanes[2][l], lanes[3][l] };
+  }
+#endif
+}
+
 INLINE void shade_pieces(project_tile* t, int i, layers* out)
 {
-  const stratus_tetra_arguments* a = &t->projection->frame->arguments;
+  const stratus_tetra_frame* frame = t->projection->frame;
+  const stratus_tetra_arguments* a = &frame->arguments;
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   const vint pixel = vi_load(t->pixel + i);
   const vfloat at = v_load(t->at + i), to = v_load(t->to + i);
-  vfloat first = v_load(t->first + i), last = v_load(t->last + i), near = v_set(0.0f);
+  vfloat first = v_load(t->first + i), last = v_load(t->last + i), near = zero;
   vmask mask = vi_lt(vi_lanes(), vi_set(t->count - i));
   const vfloat length = gather_floats(t->length, pixel, mask);
-  const bool cut_behind = t->projection->frame->image.opaque_depth != NULL;
-  const vfloat far = cut_behind ? gather_floats(t->end, pixel, mask) : v_set(t->projection->end);
+  const vfloat far = frame->image.opaque_depth ? gather_floats(t->end, pixel, mask) : v_set(t->projection->end);
   const vfloat begin = v_max(at, v_set(t->projection->begin)), end = v_min(to, far);
   mask = mask & v_lt(begin, end);
   const vmask cut = mask & (v_lt(at, begin) | v_lt(end, to));
@@ -132,69 +167,69 @@ INLINE void shade_pieces(project_tile* t, int i, layers* out)
     first = v_select(cut, v_fma(slope, begin - at, start), first);
     last = v_select(cut, v_fma(slope, end - at, start), last);
   }
-  if (a->table.want_depth || a->maximum) {
-    const vfloat offset = gather_floats(t->offset, pixel, mask);
-    near = v_fma(begin, length, offset);
-    v_store(out->depth, v_select(v_lt(first, last), v_fma(end, length, offset), near));
-  }
   vi_store(out->visible, vi_select(mask, vi_set(1), vi_set(0)));
-  if (a->maximum) { /* red: the value, depth: where */
-    v_store(out->red, v_max(first, last));
+  if (a->table.want_depth || a->maximum) {
+    near = v_fma(begin, length, gather_floats(t->offset, pixel, mask));
+  }
+  if (a->maximum) {
+    const vfloat beyond = v_fma(end, length, gather_floats(t->offset, pixel, mask));
+    put_light(out, v_select(v_lt(first, last), beyond, near), v_max(first, last), zero, zero);
     return;
   }
-  stratus_packet k;
-  k.red = k.green = k.blue = k.first = v_set(0.0f);
-  k.transparency = v_set(1.0f);
-  k.depth = v_set(LARGEST_FLOAT);
-  k.front = first;
-  integrate_segment(&a->table, t->projection->frame->sums, &k, mask, last, (end - begin) * length, near);
-  v_store(out->red, k.red);
-  v_store(out->green, k.green);
-  v_store(out->blue, k.blue);
-  v_store(out->transparency, k.transparency);
-  v_store(out->depth, k.depth);
+  stratus_tetra_light light = { .red = zero, .green = zero, .blue = zero, .transparency = one, .depth = v_set(LARGEST_FLOAT), .most = zero };
+  const stratus_tetra_place from = tetra_place(a, frame->march_sums, first, mask), until = tetra_place(a, frame->march_sums, last, mask);
+  tetra_integrate(a, frame->march_sums, &light, mask, first, last, &from, &until, (end - begin) * length, near);
+  const vmask counts = mask & v_lt(light.transparency, one);
+  put_light(out, light.red, light.green, light.blue, light.transparency - one);
+  v_store(out->depth, light.depth);
+  v_store(out->to, v_select(counts, to, v_set(-LARGEST_FLOAT)));
+  v_store(out->limit,
+    v_select(counts, v_fma(v_abs(at), v_set(OUT_OF_ORDER), v_fma(to - at, v_set(OUT_OF_ORDER_LENGTH), at)), v_set(LARGEST_FLOAT)));
+}
+
+static void find_wrong(project_tile* t, tile_pixel* p)
+{
+  t->wrong += p->wrong == 0;
+  p->wrong = 1;
 }
 
 static void composite_pieces(project_tile* t, int i, int count, const layers* layer)
 {
-  const float termination = t->projection->frame->arguments.table.termination;
+  const stratus_tetra_arguments* a = &t->projection->frame->arguments;
+  const float termination = a->table.termination;
   for (int l = 0; l < count; ++l) {
-    const int p = t->pixel[i + l];
-    const float clear = t->transparency[p], at = t->at[i + l], to = t->to[i + l], back = t->back[p];
-    const bool ended = clear < termination;
-    if (!layer->visible[l] || (ended && at >= back)) {
+    tile_pixel* p = t->pixels + t->pixel[i + l];
+    const float clear = p->light[3];
+    if (p->back > layer->limit[l]) {
+      find_wrong(t, p);
+    }
+    if (!layer->visible[l] || clear < termination) {
       continue;
     }
-    if (layer->transparency[l] < 1.0f) {
-      t->wrong[p] |= at < back - (OUT_OF_ORDER * (fabsf(at) + fabsf(back)) + OUT_OF_ORDER_LENGTH * (to - at));
-      t->back[p] = to > back && !ended ? to : back;
+    p->light += clear * layer->light[l];
+    p->back = layer->to[l] > p->back ? layer->to[l] : p->back;
+    ++p->samples;
+    if (a->table.want_depth && p->depth >= LARGEST_FLOAT) {
+      p->depth = layer->depth[l];
     }
-    if (!ended) {
-      t->red[p] += clear * layer->red[l];
-      t->green[p] += clear * layer->green[l];
-      t->blue[p] += clear * layer->blue[l];
-      t->transparency[p] = clear * layer->transparency[l];
-      t->depth[p] = layer->depth[l] < LARGEST_FLOAT && t->depth[p] >= LARGEST_FLOAT ? layer->depth[l] : t->depth[p];
-      ++t->samples[p];
-      if (t->transparency[p] < termination) {
-        t->open[p] = t->back[p];
-        --t->alive;
-      }
+    if (p->light[3] < termination) {
+      t->open[t->pixel[i + l]] = p->back;
+      --t->alive;
     }
   }
 }
 
-/* depth holds the largest value, red where it is: the nearest place, if there are several. */
+/* The nearest place, if there are several. */
 static void take_largest(project_tile* t, int i, int count, const layers* layer)
 {
   for (int l = 0; l < count; ++l) {
-    const int p = t->pixel[i + l];
+    tile_pixel* p = t->pixels + t->pixel[i + l];
     if (layer->visible[l]) {
-      const float value = layer->red[l], where = layer->depth[l];
-      const bool more = value > t->depth[p] || (value >= t->depth[p] && where < t->red[p]);
-      t->red[p] = more ? where : t->red[p];
-      t->depth[p] = more ? value : t->depth[p];
-      ++t->samples[p];
+      const float value = layer->light[l][1], where = layer->light[l][0];
+      if (value > p->light[1] || (value >= p->light[1] && where < p->light[0])) {
+        p->light = layer->light[l];
+      }
+      ++p->samples;
     }
   }
 }
@@ -214,15 +249,15 @@ static void flush(project_tile* t)
   t->count = 0;
 }
 
-static void store_pixel(const project_tile* t, int p, size_t pixel)
+static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel)
 {
   const stratus_tetra_frame* frame = t->projection->frame;
   const stratus_image* image = &frame->image;
-  float rgba[4] = { t->red[p], t->green[p], t->blue[p], 1.0f - t->transparency[p] }, depth = t->depth[p];
+  float rgba[4] = { p->light[0], p->light[1], p->light[2], 1.0f - p->light[3] }, depth = p->depth;
   if (frame->arguments.maximum) {
-    const bool any = t->samples[p] > 0;
-    const float* entry = frame->table->rgba + 4 * (size_t)stratus_table_entry(frame->table, t->depth[p]);
-    depth = any ? t->red[p] : LARGEST_FLOAT;
+    const bool any = p->samples > 0;
+    const float* entry = frame->table->rgba + 4 * (size_t)stratus_table_entry(frame->table, p->light[1]);
+    depth = any ? p->light[0] : LARGEST_FLOAT;
     for (int c = 0; c < 4; ++c) {
       rgba[c] = any ? entry[c] : 0.0f;
     }
@@ -232,7 +267,7 @@ static void store_pixel(const project_tile* t, int p, size_t pixel)
     image->depth[pixel] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;
   }
   if (image->samples) {
-    image->samples[pixel] = t->samples[p];
+    image->samples[pixel] = p->samples;
   }
   for (int c = 0; image->rgba8 && c < 4; ++c) {
     const float value = rgba[c] * 255.0f + 0.5f;
@@ -244,10 +279,10 @@ static void store_tile(const project_tile* t)
 {
   for (int y = 0; y < t->height; ++y) {
     for (int x = 0; x < t->width; ++x) {
-      const int p = place_of(x, y);
+      const tile_pixel* p = t->pixels + place_of(x, y);
       store_pixel(t, p, (size_t)(t->y0 + y) * (size_t)t->projection->frame->image.width + (size_t)(t->x0 + x));
-      t->counts->rays += t->samples[p] > 0;
-      t->counts->segments += t->samples[p];
+      t->counts->rays += p->samples > 0;
+      t->counts->segments += p->samples;
     }
   }
 }
