@@ -72,3 +72,8 @@ endforeach ()
 if (stratus_vtk AND stratus_exr AND TARGET stratus-command)
   include(paraview.cmake)
 endif ()
+
+# ---- the documentation: no warning
+if (TARGET doc)
+  stratus_add_test(documentation documentation "${CMAKE_COMMAND}" --build "${CMAKE_BINARY_DIR}" --target doc)
+endif ()

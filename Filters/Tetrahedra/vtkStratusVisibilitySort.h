@@ -27,8 +27,13 @@ public:
   vtkTypeMacro(vtkStratusVisibilitySort, vtkVisibilitySort);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  //@{
+  /**
+   * Sorts for the camera as it is now; gives at most MaxCellsReturned cells, the next in order; nullptr after the last.
+   */
   void InitTraversal() override;
   vtkIdTypeArray* GetNextCells() override;
+  //@}
 
   enum PeelingType { NEAREST, LAYERS };
   //@{
