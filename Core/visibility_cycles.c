@@ -6,9 +6,9 @@
  * gaps: all else has come. */
 static int face_in_front(const stratus_visibility_order* order, uint32_t cell)
 {
-  const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)cell;
+  const int32_t* neighbours = order->ordered[cell].neighbours;
   for (int f = 0; f < 4; f++) {
-    if (order->state[cell] >> (4 + f) & 1 && stratus_order_waits_for(order, (uint32_t)neighbours[f]) > 0) {
+    if (order->ordered[cell].state >> (4 + f) & 1 && stratus_order_waits_for(order, (uint32_t)neighbours[f]) > 0) {
       return f;
     }
   }
@@ -19,7 +19,7 @@ static int face_in_front(const stratus_visibility_order* order, uint32_t cell)
 static uint32_t cell_in_front(const stratus_visibility_order* order, uint32_t cell)
 {
   const int face = face_in_front(order, cell);
-  return face < 0 ? STRATUS_NO_CELL : (uint32_t)order->adjacency->neighbours[4 * (int64_t)cell + face];
+  return face < 0 ? STRATUS_NO_CELL : (uint32_t)order->ordered[cell].neighbours[face];
 }
 
 uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t start, int64_t* steps)
@@ -52,21 +52,21 @@ uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t sta
 
   const int face = face_in_front(order, least);
   const uint32_t front = cell_in_front(order, least);
-  const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)front;
+  const int32_t* neighbours = order->ordered[front].neighbours;
   for (int f = 0; f < 4; f++) {
-    if (neighbours[f] == (int32_t)least && order->state[front] >> f & 1) {
-      order->state[front] = (uint8_t)(order->state[front] & ~(1u << f));
+    if (neighbours[f] == (int32_t)least && order->ordered[front].state >> f & 1) {
+      order->ordered[front].state = (uint8_t)(order->ordered[front].state & ~(1u << f));
       break;
     }
   }
-  order->state[least] = (uint8_t)(order->state[least] & ~(16u << face));
-  order->waiting[least]--;
+  order->ordered[least].state = (uint8_t)(order->ordered[least].state & ~(16u << face));
+  order->ordered[least].waiting--;
   return least;
 }
 
 static bool comes_before(const stratus_visibility_order* order, uint32_t p, uint32_t q)
 {
-  return order->key[p] < order->key[q] || (order->key[p] == order->key[q] && p < q);
+  return order->ordered[p].key < order->ordered[q].key || (order->ordered[p].key == order->ordered[q].key && p < q);
 }
 
 static void sift_down(const stratus_visibility_order* order, uint32_t* cells, int64_t from, int64_t count)

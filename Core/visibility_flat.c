@@ -59,12 +59,15 @@ static void spread_sides(stratus_visibility_order* order, uint32_t* queue)
   }
 }
 
-void stratus_order_side_flat_cells(stratus_visibility_order* order, uint32_t* queue)
+stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order)
 {
+  void* queue;
   if (order->adjacency->flat == 0) {
-    return;
+    return STRATUS_OK;
   }
+  TRY(stratus_allocate(order->context, (size_t)order->adjacency->flat, sizeof(uint32_t), &queue));
   spread_sides(order, queue);
+  stratus_release(order->context, queue);
   for (int64_t cell = 0; cell < order->cell_count; cell++) {
     for (int f = 0; f < 4 && order->adjacency->orientation[cell] == 0; f++) {
       const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
@@ -76,4 +79,5 @@ void stratus_order_side_flat_cells(stratus_visibility_order* order, uint32_t* qu
       }
     }
   }
+  return STRATUS_OK;
 }

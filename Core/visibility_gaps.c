@@ -150,7 +150,7 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
     begin[leaf] = count;
     for (int64_t i = order->leaf_begin[leaf]; i < order->leaf_begin[leaf + 1]; i++) {
-      const int32_t* neighbours = order->adjacency->neighbours + 4 * (order->listed ? (int64_t)order->listed[i] : i);
+      const int32_t* neighbours = order->ordered[i].neighbours;
       count += (neighbours[0] < 0) + (neighbours[1] < 0) + (neighbours[2] < 0) + (neighbours[3] < 0);
     }
   }
@@ -159,10 +159,9 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   *faces = memory;
   count = 0;
   for (int64_t i = 0; i < order->cell_count; i++) {
-    const uint32_t cell = order->listed ? order->listed[i] : (uint32_t)i;
     for (uint32_t f = 0; f < 4; f++) {
-      if (order->adjacency->neighbours[4 * (int64_t)cell + f] < 0) {
-        (*faces)[count++] = 4 * cell + f;
+      if (order->ordered[i].neighbours[f] < 0) {
+        (*faces)[count++] = 4 * (uint32_t)i + f;
       }
     }
   }
@@ -177,7 +176,7 @@ static int64_t keep_gaps(gap_search* search, uint32_t* faces, uint8_t* kept)
   build_boxes(search);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
   for (int64_t i = 0; i < search->count; i++) {
-    kept[i] = search->order->side[faces[i] / 4] != 0 && looks_at_others(search, faces[i]);
+    kept[i] = search->order->ordered[faces[i] / 4].side != 0 && looks_at_others(search, faces[i]);
   }
   for (int64_t i = 0; i < search->count; i++) {
     faces[count] = faces[i];

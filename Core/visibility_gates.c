@@ -147,7 +147,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
   stratus_gates_fill_bins(gates);
   for (int64_t g = 0; g < gates->count; g++) {
     const int facing = gates->gates[g].facing;
-    order->waiting[stratus_gate_cell(gates, g)] |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
+    order->ordered[stratus_gate_cell(gates, g)].waiting |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
   }
 }
 
@@ -205,7 +205,7 @@ bool stratus_gates_hold(stratus_gates* gates, uint32_t cell)
   for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
     const int64_t before = gates->gates[g].facing < 0 ? find_gate_before(gates, g) : -1;
     if (before >= 0) {
-      gates->order->next[cell] = gates->gates[before].held;
+      gates->order->ordered[cell].next = gates->gates[before].held;
       gates->gates[before].held = cell;
       gates->held++;
       return true;
@@ -222,8 +222,8 @@ uint32_t stratus_gates_pass(stratus_gates* gates, uint32_t cell)
     gate->passed = 1;
     while (gate->held != STRATUS_NO_CELL) {
       const uint32_t first = gate->held;
-      gate->held = gates->order->next[first];
-      gates->order->next[first] = released;
+      gate->held = gates->order->ordered[first].next;
+      gates->order->ordered[first].next = released;
       released = first;
       gates->held--;
     }
@@ -236,14 +236,14 @@ uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps)
   const stratus_visibility_order* order = gates->order;
   uint32_t* nearest = NULL; /* there is one, as cells are held */
   for (int64_t g = 0; g < gates->count; g++) {
-    for (uint32_t* at = &gates->gates[g].held; *at != STRATUS_NO_CELL; at = order->next + *at, ++*steps) {
-      nearest = !nearest || order->key[*at] < order->key[*nearest] ? at : nearest;
+    for (uint32_t* at = &gates->gates[g].held; *at != STRATUS_NO_CELL; at = &order->ordered[*at].next, ++*steps) {
+      nearest = !nearest || order->ordered[*at].key < order->ordered[*nearest].key ? at : nearest;
     }
   }
   *steps += gates->count;
   const uint32_t cell = *nearest;
-  *nearest = order->next[cell];
-  order->waiting[cell] &= (uint8_t)~STRATUS_GATE_IN;
+  *nearest = order->ordered[cell].next;
+  order->ordered[cell].waiting &= (uint8_t)~STRATUS_GATE_IN;
   gates->held--;
   return cell;
 }

@@ -108,38 +108,6 @@ static stratus_status check_cells(const stratus_visibility_order* order, const s
   return STRATUS_OK;
 }
 
-/* Relations end at a leaf's border, and cells are listed leaf by leaf. */
-static stratus_status list_cells(stratus_visibility_order* order, const int32_t* leaf)
-{
-  bool listed = true; /* as they come */
-  void* memory;
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    order->leaf_begin[leaf[cell] + 1]++;
-    listed = listed && (cell == 0 || leaf[cell - 1] <= leaf[cell]);
-  }
-  for (int32_t l = 0; l < order->leaf_count; l++) {
-    order->leaf_begin[l + 1] += order->leaf_begin[l];
-  }
-  if (!listed) {
-    TRY(stratus_allocate(order->context, (size_t)order->cell_count, sizeof *order->listed, &memory));
-    order->listed = memory;
-    order->bytes += (size_t)order->cell_count * sizeof *order->listed;
-    for (int64_t cell = 0; cell < order->cell_count; cell++) {
-      order->listed[order->leaf_begin[leaf[cell]]++] = (uint32_t)cell;
-    }
-    for (int32_t l = order->leaf_count; l > 0; l--) {
-      order->leaf_begin[l] = order->leaf_begin[l - 1];
-    }
-    order->leaf_begin[0] = 0;
-  }
-#pragma omp parallel for schedule(static) num_threads(order->context->threads)
-  for (int64_t i = 0; i < 4 * order->cell_count; i++) {
-    int32_t* neighbour = order->adjacency->neighbours + i;
-    *neighbour = *neighbour >= 0 && leaf[*neighbour] != leaf[i / 4] ? -1 : *neighbour;
-  }
-  return STRATUS_OK;
-}
-
 static stratus_status allocate_leaves(stratus_visibility_order* order)
 {
   void* memory;
@@ -163,8 +131,7 @@ stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const 
     order->node_count = order->leaf_count = 1;
     TRY(allocate_leaves(order));
     order->nodes[0] = (stratus_partition_node){ .axis = -1 };
-    order->leaf_begin[1] = order->cell_count;
-    return STRATUS_OK;
+    return stratus_order_take_cells(order, order->side, NULL);
   }
   TRY(check_tree(context, leaves));
   order->node_count = leaves->node_count;
@@ -176,7 +143,7 @@ stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const 
   TRY_CLEANUP(stratus_allocate(context, (size_t)leaves->node_count, sizeof(int32_t), &parents));
   TRY_CLEANUP(find_boxes(context, leaves, boxes, parents));
   TRY_CLEANUP(check_cells(order, leaves, boxes));
-  TRY_CLEANUP(list_cells(order, leaves->leaf));
+  TRY_CLEANUP(stratus_order_take_cells(order, order->side, leaves->leaf));
 
 cleanup:
   stratus_release(context, boxes);

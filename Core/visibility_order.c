@@ -46,19 +46,21 @@ static stratus_status allocate_order(stratus_visibility_order* order)
   void* memory;
   TRY(allocate_part(order, (size_t)order->point_count, 3 * sizeof *order->seen, &memory));
   order->seen = memory;
-  TRY(allocate_part(order, cells, sizeof *order->state, &memory));
-  order->state = memory;
-  TRY(allocate_part(order, cells, sizeof *order->waiting, &memory));
-  order->waiting = memory;
-  TRY(allocate_part(order, cells, sizeof *order->key, &memory));
-  order->key = memory;
-  TRY(allocate_part(order, cells, sizeof *order->next, &memory));
-  order->next = memory;
   TRY(allocate_part(order, cells, sizeof *order->cells, &memory));
   order->cells = memory;
   TRY(allocate_part(order, (size_t)order->context->threads, STRATUS_BUCKETS_MAX * sizeof *order->heads, &memory));
   order->heads = memory;
   return STRATUS_OK;
+}
+
+static void release_adjacency(stratus_visibility_order* order)
+{
+  if (order->adjacency && order->side != order->adjacency->orientation) {
+    stratus_release(order->context, order->side);
+  }
+  stratus_adjacency_destroy(order->adjacency);
+  order->adjacency = NULL;
+  order->side = NULL;
 }
 
 static stratus_status build_order(stratus_visibility_order* order, const stratus_mesh* mesh, const stratus_leaves* leaves)
@@ -68,17 +70,20 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   void* memory;
   TRY(find_bounds(order));
   TRY(stratus_adjacency_create(context, mesh, &order->adjacency));
-  order->bytes += cells * (4 * sizeof(int32_t) + sizeof(int8_t)) + sizeof *order;
   order->side = order->adjacency->orientation;
   if (order->adjacency->flat > 0) { /* else no cell needs another side than its own */
-    TRY(allocate_part(order, cells, sizeof *order->side, &memory));
+    TRY(stratus_allocate(context, cells, sizeof *order->side, &memory));
     order->side = memcpy(memory, order->adjacency->orientation, cells * sizeof *order->side);
   }
-  TRY(allocate_order(order));
-  stratus_order_side_flat_cells(order, order->next);
+  TRY(stratus_order_side_flat_cells(order));
   TRY(stratus_order_join_seams(order));
   TRY(stratus_order_take_leaves(order, leaves));
+  order->flat = order->adjacency->flat;
+  order->folded = order->adjacency->folded_faces;
+  order->inverted = order->adjacency->inverted;
+  release_adjacency(order);
   TRY(stratus_order_find_gaps(order));
+  TRY(allocate_order(order));
   return stratus_progress(context, "visibility order", 1.0);
 }
 
@@ -97,6 +102,7 @@ stratus_status stratus_visibility_order_create(
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_visibility_order), &memory));
   stratus_visibility_order* order = memory;
   order->context = context;
+  order->bytes = sizeof *order;
   order->points = mesh->points;
   order->vertices = mesh->vertices;
   order->point_count = mesh->point_count;
@@ -118,11 +124,9 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
     return;
   }
   stratus_context* context = order->context;
-  if (order->adjacency && order->side != order->adjacency->orientation) {
-    stratus_release(context, order->side);
-  }
-  stratus_adjacency_destroy(order->adjacency);
+  release_adjacency(order);
   stratus_release(context, order->nodes);
+  stratus_release(context, order->ordered);
   stratus_release(context, order->listed);
   stratus_release(context, order->leaf_begin);
   stratus_release(context, order->leaf_order);
@@ -133,10 +137,6 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->gate_bins);
   stratus_release(context, order->gate_entries);
   stratus_release(context, order->seen);
-  stratus_release(context, order->state);
-  stratus_release(context, order->waiting);
-  stratus_release(context, order->key);
-  stratus_release(context, order->next);
   stratus_release(context, order->cells);
   stratus_release(context, order->heads);
   stratus_release(context, order);
@@ -227,12 +227,11 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   order->sorted = false;
   order->view = view;
   order->peeling = peeling;
-  const stratus_adjacency* adjacency = order->adjacency;
   stratus_visibility_result found = { .cells = order->cells,
     .count = order->cell_count,
-    .flat = adjacency->flat,
-    .folded = adjacency->folded_faces,
-    .inverted = adjacency->inverted,
+    .flat = order->flat,
+    .folded = order->folded,
+    .inverted = order->inverted,
     .bytes = order->bytes,
     .build_ms = order->build_ms };
   const double begin = stratus_now_ms();

@@ -7,6 +7,13 @@
 
 #define STRATUS_NO_CELL UINT32_MAX
 
+/* What will be read soon. */
+#ifdef __GNUC__
+#define STRATUS_FETCH(address) __builtin_prefetch(address)
+#else
+#define STRATUS_FETCH(address) ((void)(address))
+#endif
+
 /* An eye, or the direction of parallel rays, in the mesh's local coordinates: exact from here on. */
 typedef struct stratus_view {
   double eye[3], direction[3];
@@ -21,6 +28,17 @@ typedef struct stratus_gate {
   uint8_t passed;  /* its cell has come */
 } stratus_gate;
 
+/* A cell as peeling asks for it. */
+typedef struct stratus_ordered_cell {
+  int32_t neighbours[4]; /* of its leaf, -1: none */
+  float key;             /* how far away */
+  uint32_t next;         /* in its bucket */
+  uint8_t state;         /* bit f: its neighbour behind face f comes after it, bit 4 + f: before it */
+  uint8_t waiting;       /* neighbours that come before it and have not come yet; and STRATUS_GATE_IN, _OUT */
+  int8_t side;           /* of faces on which it lies: 1, -1, 0 for flat ones that fit nowhere */
+  uint8_t reserved;
+} stratus_ordered_cell;
+
 struct stratus_visibility_order {
   stratus_context* context;
   const double* points; /* borrowed */
@@ -29,13 +47,15 @@ struct stratus_visibility_order {
   double matrix[16];
   double bounds[6]; /* of the points: xmin xmax ymin .. */
 
-  stratus_adjacency* adjacency; /* neighbours in other leaves taken out, those through coincident points put in */
-  int8_t* side;                 /* the adjacency's orientation, flat cells given the one that fits their neighbours; 0: none does */
+  stratus_adjacency* adjacency; /* while the order is made: in the mesh's numbers, those through coincident points put in */
+  int8_t* side;                 /* as long: the adjacency's orientation, flat cells given the one that fits their neighbours; 0: none does */
+  int64_t flat, folded, inverted;
 
   stratus_partition_node* nodes;
   int32_t node_count, leaf_count;
   double frame[9];
-  uint32_t* listed;     /* cells leaf by leaf; NULL: as they come */
+  stratus_ordered_cell* ordered; /* leaf by leaf: from here on a cell is a place in it, but in `cells` */
+  uint32_t* listed;              /* the mesh's cell of each place; NULL: the same */
   int64_t* leaf_begin;  /* leaf_count + 1 */
   int32_t* leaf_order;  /* front to back */
   int64_t* leaf_output; /* where each begins in the order */
@@ -46,11 +66,7 @@ struct stratus_visibility_order {
   uint32_t *gate_bins, *gate_entries;
 
   double* seen;     /* 3 a point: stratus_view_signs() */
-  uint8_t* state;   /* a cell: bit f: its neighbour behind face f comes after it, bit 4 + f: before it */
-  uint8_t* waiting; /* neighbours that come before it and have not come yet; and STRATUS_GATE_IN, _OUT */
-  float* key;       /* how far away */
-  uint32_t* next;   /* in its bucket */
-  uint32_t* cells;  /* the order */
+  uint32_t* cells;  /* the order, in the mesh's numbers */
   uint32_t* heads;  /* STRATUS_BUCKETS_MAX a thread */
   size_t bytes;
   double build_ms;
@@ -65,21 +81,30 @@ struct stratus_visibility_order {
 #define STRATUS_GATE_IN 0x80u  /* of a cell that has ways in from gaps */
 #define STRATUS_GATE_OUT 0x40u /* of one that has ways out into gaps */
 
-static inline const int32_t* stratus_order_vertices(const stratus_visibility_order* order, uint32_t cell)
+/* The mesh's number of the cell at a place. */
+static inline uint32_t stratus_order_cell(const stratus_visibility_order* order, uint32_t place)
 {
-  return order->vertices + 4 * (int64_t)cell;
+  return order->listed ? order->listed[place] : place;
+}
+
+static inline const int32_t* stratus_order_vertices(const stratus_visibility_order* order, uint32_t place)
+{
+  return order->vertices + 4 * (int64_t)stratus_order_cell(order, place);
 }
 
 static inline unsigned stratus_order_waits_for(const stratus_visibility_order* order, uint32_t cell)
 {
-  return order->waiting[cell] & 7u;
+  return order->ordered[cell].waiting & 7u;
 }
 
 /* ---- visibility_flat.c: sides of cells without volume. What does not fit together is no neighbour any more. */
-void stratus_order_side_flat_cells(stratus_visibility_order* order, uint32_t* queue);
+stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order);
 
 /* ---- visibility_seams.c: neighbours through faces that coincide but name different points. */
 stratus_status stratus_order_join_seams(stratus_visibility_order* order);
+
+/* ---- visibility_cells.c: ordered, listed and leaf_begin. leaf NULL: there is one. */
+stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf);
 
 /* ---- visibility_leaves.c: takes a tree, NULL: none; checks it against the cells. */
 stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves);
@@ -160,7 +185,7 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
 /* Nothing is ready, yet cells wait: one relation of a cycle is taken out, and the cell that it led to told, ready or not. `start` is a cell
  * that waits; `steps` is counted up by what the search cost. STRATUS_NO_CELL: there is no cycle, what `start` waits for is held back. */
 uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t start, int64_t* steps);
-/* By distance. */
+/* By distance; cells are places. */
 void stratus_order_sort_by_key(const stratus_visibility_order* order, uint32_t* cells, int64_t count);
 
 #endif

@@ -10,7 +10,6 @@
 
 typedef struct leaf_peel {
   stratus_visibility_order* order;
-  const uint32_t* listed; /* NULL: first, first + 1, .. */
   uint32_t first;
   int64_t count, emitted;
   uint32_t* out;
@@ -30,7 +29,7 @@ typedef struct leaf_peel {
 
 static inline uint32_t leaf_cell(const leaf_peel* peel, int64_t i)
 {
-  return peel->listed ? peel->listed[i] : peel->first + (uint32_t)i;
+  return peel->first + (uint32_t)i;
 }
 
 static inline void push(leaf_peel* peel, uint32_t cell)
@@ -39,10 +38,17 @@ static inline void push(leaf_peel* peel, uint32_t cell)
     peel->out[peel->ready++] = cell;
     return;
   }
-  const int bucket = (int)((peel->order->key[cell] - peel->low) * peel->scale);
-  peel->order->next[cell] = peel->heads[bucket];
+  stratus_ordered_cell* ordered = peel->order->ordered + cell;
+  const int bucket = (int)((ordered->key - peel->low) * peel->scale);
+  ordered->next = peel->heads[bucket];
   peel->heads[bucket] = cell;
   peel->nearest = bucket < peel->nearest ? bucket : peel->nearest;
+  /* When it comes, these will be asked whether they wait for more: now it is known which. */
+  for (int f = 0; f < 4; f++) {
+    if (ordered->state >> f & 1) {
+      STRATUS_FETCH(peel->order->ordered + ordered->neighbours[f]);
+    }
+  }
 }
 
 /* STRATUS_NO_CELL if none is ready. */
@@ -61,7 +67,7 @@ static inline uint32_t pop(leaf_peel* peel)
   while (peel->nearest < peel->buckets) {
     const uint32_t cell = peel->heads[peel->nearest];
     if (cell != STRATUS_NO_CELL) {
-      peel->heads[peel->nearest] = peel->order->next[cell];
+      peel->heads[peel->nearest] = peel->order->ordered[cell].next;
       return cell;
     }
     peel->nearest++;
@@ -74,7 +80,7 @@ static void make_buckets(leaf_peel* peel)
   float high = -INFINITY;
   peel->low = INFINITY;
   for (int64_t i = 0; i < peel->count; i++) {
-    const float key = peel->order->key[leaf_cell(peel, i)];
+    const float key = peel->order->ordered[leaf_cell(peel, i)].key;
     peel->low = key < peel->low ? key : peel->low;
     high = key > high ? key : high;
   }
@@ -123,7 +129,7 @@ static void unstick(leaf_peel* peel)
     peel->counts.cycles++;
     peel->faces_broken = true;
     if (stratus_order_waits_for(order, cell) == 0) {
-      order->waiting[cell] = (uint8_t)(order->waiting[cell] & ~STRATUS_GATE_IN); /* the ring may well lead across gaps, too */
+      order->ordered[cell].waiting &= (uint8_t)~STRATUS_GATE_IN; /* the ring may well lead across gaps, too */
       push(peel, cell);
       return;
     }
@@ -148,16 +154,16 @@ static void emit(leaf_peel* peel, uint32_t cell)
 {
   stratus_visibility_order* order = peel->order;
   peel->out[peel->emitted++] = cell;
-  const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)cell;
-  const unsigned after = order->state[cell] & 15u;
+  const int32_t* neighbours = order->ordered[cell].neighbours;
+  const unsigned after = order->ordered[cell].state & 15u;
   for (int f = 0; f < 4; f++) {
-    if (after >> f & 1 && (--order->waiting[neighbours[f]] & 7) == 0) {
+    if (after >> f & 1 && (--order->ordered[neighbours[f]].waiting & 7) == 0) {
       push(peel, (uint32_t)neighbours[f]);
     }
   }
-  if (order->waiting[cell] & STRATUS_GATE_OUT) {
+  if (order->ordered[cell].waiting & STRATUS_GATE_OUT) {
     for (uint32_t released = stratus_gates_pass(&peel->gates, cell), following; released != STRATUS_NO_CELL; released = following) {
-      following = order->next[released];
+      following = order->ordered[released].next;
       push(peel, released);
     }
   }
@@ -167,7 +173,6 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
 {
   const int64_t begin = order->leaf_begin[leaf];
   leaf_peel peel = { .order = order,
-    .listed = order->listed ? order->listed + begin : NULL,
     .first = (uint32_t)begin,
     .count = order->leaf_begin[leaf + 1] - begin,
     .out = order->cells + order->leaf_output[leaf],
@@ -188,9 +193,12 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
     const uint32_t cell = pop(&peel);
     if (cell == STRATUS_NO_CELL) {
       unstick(&peel);
-    } else if (!(order->waiting[cell] & STRATUS_GATE_IN) || !stratus_gates_hold(&peel.gates, cell)) {
+    } else if (!(order->ordered[cell].waiting & STRATUS_GATE_IN) || !stratus_gates_hold(&peel.gates, cell)) {
       emit(&peel, cell);
     }
+  }
+  for (int64_t i = 0; i < peel.count && order->listed; i++) {
+    peel.out[i] = order->listed[peel.out[i]];
   }
   return peel.counts;
 }

@@ -9,6 +9,8 @@
  * DBL_EPSILON/2. Parallel: projected coordinates up to twice as large, with four roundings each: under 250. */
 #define ERROR_BOUND (256.0 * DBL_EPSILON)
 
+#define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */
+
 /* The power of two that brings all points, seen from `from`, to at most 1. */
 static double view_scale(const stratus_visibility_order* order, const double from[3])
 {
@@ -93,8 +95,12 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
   int64_t exact = 0;
 #pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(+ : exact)
   for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    const int32_t* v = order->vertices + 4 * cell;
-    const int32_t* neighbours = order->adjacency->neighbours + 4 * cell;
+    if (order->listed && cell + AHEAD < order->cell_count) {
+      STRATUS_FETCH(order->vertices + 4 * (int64_t)order->listed[cell + AHEAD]);
+    }
+    const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
+    stratus_ordered_cell* ordered = order->ordered + cell;
+    const int32_t* neighbours = ordered->neighbours;
     const double *p0 = order->seen + 3 * (int64_t)v[0], *p1 = order->seen + 3 * (int64_t)v[1], *p2 = order->seen + 3 * (int64_t)v[2],
                  *p3 = order->seen + 3 * (int64_t)v[3];
     double det[4];
@@ -105,18 +111,18 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
       if (neighbours[f] < 0) {
         continue;
       }
-      if (sign == 0 && order->side[cell] != 0) {
+      if (sign == 0 && ordered->side != 0) {
         sign = exact_sign(order, view, v, f);
         exact++;
       }
       /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
-      sign *= order->side[cell];
+      sign *= ordered->side;
       before |= (unsigned)(sign > 0) << f;
       after |= (unsigned)(sign < 0) << f;
     }
-    order->state[cell] = (uint8_t)(before << 4 | after);
-    order->waiting[cell] = (uint8_t)count_bits(before);
-    order->key[cell] = cell_key(p0, p1, p2, p3, view->parallel);
+    ordered->state = (uint8_t)(before << 4 | after);
+    ordered->waiting = (uint8_t)count_bits(before);
+    ordered->key = cell_key(p0, p1, p2, p3, view->parallel);
   }
   return exact;
 }
@@ -127,12 +133,12 @@ int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
   double det[4];
   face_determinants(order->seen + 3 * (int64_t)v[0], order->seen + 3 * (int64_t)v[1], order->seen + 3 * (int64_t)v[2],
     order->seen + 3 * (int64_t)v[3], order->view.parallel, det);
-  return ((det[face % 4] < -ERROR_BOUND) - (det[face % 4] > ERROR_BOUND)) * order->side[face / 4];
+  return ((det[face % 4] < -ERROR_BOUND) - (det[face % 4] > ERROR_BOUND)) * order->ordered[face / 4].side;
 }
 
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face)
 {
-  const int32_t* v = order->vertices + 4 * (int64_t)cell;
+  const int32_t* v = stratus_order_vertices(order, cell);
   double det[4], size = 1.0;
   face_determinants(order->seen + 3 * (int64_t)v[0], order->seen + 3 * (int64_t)v[1], order->seen + 3 * (int64_t)v[2],
     order->seen + 3 * (int64_t)v[3], order->view.parallel, det);

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space, since
+ * peeling goes from neighbour to neighbour. All that it asks of a cell then stands together. */
+#include "bvh.h"
+#include "visibility_order.h"
+
+#include "kernels/morton.h"
+
+#include <string.h>
+
+#define SCATTERED 16    /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
+#define FEW_CELLS 4096  /* that fit a cache in any order */
+#define AXIS_BITS 10
+
+static bool is_scattered(const stratus_visibility_order* order, const int32_t* leaf)
+{
+  int64_t pairs = 0;
+  double distance = 0.0;
+  for (int64_t i = 0; i < 4 * order->cell_count; i += 61) { /* has no divisor in common with 4: all faces alike */
+    const int64_t neighbour = order->adjacency->neighbours[i];
+    const bool together = neighbour >= 0 && (!leaf || leaf[neighbour] == leaf[i / 4]);
+    pairs += together;
+    distance += together ? fabs((double)(neighbour - i / 4)) : 0.0;
+  }
+  const double cells = (double)order->cell_count / order->leaf_count;
+  return cells > FEW_CELLS && distance * SCATTERED > (double)pairs * cells;
+}
+
+/* Cells of a leaf by the Morton code of where they are. */
+static stratus_status list_by_place(stratus_visibility_order* order, const int32_t* leaf)
+{
+  stratus_context* context = order->context;
+  const double* b = order->bounds;
+  const double size = fmax(fmax(b[1] - b[0], b[3] - b[2]), b[5] - b[4]), scale = size > 0.0 ? ((1 << AXIS_BITS) - 1) / size : 0.0;
+  void* memory;
+  TRY(stratus_allocate(context, (size_t)order->cell_count, sizeof(uint64_t), &memory));
+  uint64_t* keys = memory;
+#pragma omp parallel for schedule(static) num_threads(context->threads)
+  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+    uint32_t at[3];
+    for (int a = 0; a < 3; a++) {
+      double middle = 0.0;
+      for (int v = 0; v < 4; v++) {
+        middle += 0.25 * (order->points[3 * (int64_t)order->vertices[4 * cell + v] + a] - b[2 * a]);
+      }
+      const double scaled = middle * scale;
+      at[a] = scaled > 0.0 ? (scaled < (1 << AXIS_BITS) - 1 ? (uint32_t)scaled : (1 << AXIS_BITS) - 1) : 0;
+    }
+    keys[cell] = (uint64_t)(leaf ? leaf[cell] : 0) << 3 * AXIS_BITS | morton_code(at[0], at[1], at[2], 0);
+    order->listed[cell] = (uint32_t)cell;
+  }
+  const stratus_status status = stratus_radix_sort(context, keys, order->listed, (uint32_t)order->cell_count, 3 * AXIS_BITS + 16);
+  stratus_release(context, keys);
+  return status;
+}
+
+/* leaf_begin, and `listed` if cells are not to stay as they come. */
+static stratus_status list_cells(stratus_visibility_order* order, const int32_t* leaf)
+{
+  bool listed = true; /* as they come */
+  void* memory;
+  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+    order->leaf_begin[(leaf ? leaf[cell] : 0) + 1]++;
+    listed = listed && (cell == 0 || !leaf || leaf[cell - 1] <= leaf[cell]);
+  }
+  for (int32_t l = 0; l < order->leaf_count; l++) {
+    order->leaf_begin[l + 1] += order->leaf_begin[l];
+  }
+  const bool scattered = is_scattered(order, leaf);
+  if (listed && !scattered) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(order->context, (size_t)order->cell_count, sizeof *order->listed, &memory));
+  order->listed = memory;
+  order->bytes += (size_t)order->cell_count * sizeof *order->listed;
+  if (scattered) {
+    return list_by_place(order, leaf);
+  }
+  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+    order->listed[order->leaf_begin[leaf[cell]]++] = (uint32_t)cell;
+  }
+  for (int32_t l = order->leaf_count; l > 0; l--) {
+    order->leaf_begin[l] = order->leaf_begin[l - 1];
+  }
+  order->leaf_begin[0] = 0;
+  return STRATUS_OK;
+}
+
+/* Relations end at a leaf's border. places: of each cell, NULL: its own number. */
+static void fill_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf, const uint32_t* places)
+{
+#pragma omp parallel for schedule(static) num_threads(order->context->threads)
+  for (int64_t place = 0; place < order->cell_count; place++) {
+    const uint32_t cell = stratus_order_cell(order, (uint32_t)place);
+    stratus_ordered_cell* ordered = order->ordered + place;
+    ordered->side = side[cell];
+    for (int f = 0; f < 4; f++) {
+      const int32_t neighbour = order->adjacency->neighbours[4 * (int64_t)cell + f];
+      const bool other = neighbour < 0 || (leaf && leaf[neighbour] != leaf[cell]);
+      ordered->neighbours[f] = other ? -1 : places ? (int32_t)places[neighbour] : neighbour;
+    }
+  }
+}
+
+stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf)
+{
+  stratus_context* context = order->context;
+  stratus_status status = STRATUS_OK;
+  void *memory = NULL, *places = NULL;
+  TRY(list_cells(order, leaf));
+  TRY(stratus_allocate(context, (size_t)order->cell_count, sizeof *order->ordered, &memory));
+  order->ordered = memory;
+  order->bytes += (size_t)order->cell_count * sizeof *order->ordered;
+  if (order->listed) {
+    TRY_CLEANUP(stratus_allocate(context, (size_t)order->cell_count, sizeof(uint32_t), &places));
+    for (int64_t place = 0; place < order->cell_count; place++) {
+      ((uint32_t*)places)[order->listed[place]] = (uint32_t)place;
+    }
+  }
+  fill_cells(order, side, leaf, places);
+
+cleanup:
+  stratus_release(context, places);
+  return status;
+}
