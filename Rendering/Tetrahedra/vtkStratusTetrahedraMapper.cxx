@@ -45,6 +45,31 @@ void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)
   this->Superclass::ReleaseGraphicsResources(window);
 }
 
+void vtkStratusTetrahedraMapper::SetDevice(const char* device)
+{
+  const std::string name = device && *device ? device : "auto";
+  if (name == this->Internal->Context.GetDevice()) {
+    return;
+  }
+  std::string error;
+  if (this->Internal->Context.Create(name, this->NumberOfThreads, error)) {
+    this->Modified();
+  } else {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusTetrahedraMapper::GetDevice()
+{
+  return this->Internal->Context.GetDevice().c_str();
+}
+
+const char* vtkStratusTetrahedraMapper::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context.Get()) : "";
+}
+
 double vtkStratusTetrahedraMapper::GetMarchMilliseconds()
 {
   return this->Internal->Report.march_ms;
@@ -86,6 +111,7 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   const stratus_tetra_report& report = this->Internal->Report;
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "March Milliseconds: " << report.march_ms << "\n";
   os << indent << "Build Milliseconds: " << report.build_ms << "\n";
   os << indent << "Tetrahedra: " << report.cells << "\n";

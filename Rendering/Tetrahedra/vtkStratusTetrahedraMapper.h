@@ -53,6 +53,17 @@ public:
 
   //@{
   /**
+   * Where rays march: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name; the
+   * picture is the same. One that does not exist is an error with the list of those that do, and the device stays what it was. A mesh that a
+   * device can't hold is drawn on the host. Default "auto".
+   */
+  virtual void SetDevice(const char* device);
+  virtual const char* GetDevice();
+  const char* GetDeviceName(); // the one that draws, "" if there is none
+  ///@}
+
+  ///@{
+  /**
    * Of the last picture: milliseconds that the march took, and making the grid ready (0 where it was), cells that rays passed, and faces
    * through which they came in.
    */

@@ -25,6 +25,7 @@ public:
 
   // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
+  bool PrepareContext(std::string& error);
   vtkImageData* GetLastImage();
   vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
 
@@ -39,7 +40,6 @@ private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
-  bool PrepareContext(std::string& error);
   bool HasGeometry(vtkRenderer* renderer, vtkVolume* prop) const;
   const float* ReadOpaqueDepth(vtkRenderer* renderer);
   bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);

@@ -111,6 +111,16 @@ mapper.SetNumberOfThreads(1)
 check((picture() == whole).all(), "one thread draws the same bits")
 mapper.SetNumberOfThreads(-3)
 check(mapper.GetNumberOfThreads() == 0, "threads are clamped")
+mapper.SetDevice("no such device")
+check(len(errors) == 1 and mapper.GetDevice() == "auto", "a device that is none is an error, and changes nothing")
+errors.clear()
+mapper.SetDevice("0")
+if errors:
+    errors.clear()  # no OpenCL device on this machine
+else:
+    check((picture() == whole).all(), "an OpenCL device draws the same bits")
+    mapper.SetDevice("host")
+    check((picture() == whole).all() and mapper.GetDeviceName().startswith("host"), "and so does the host again")
 mapper.SetBlendModeToMaximumIntensity()
 largest = picture()[height // 2]
 value = ((column(3.5) + 0.5 - width / 2) * 6 / height + 2) / n
@@ -190,7 +200,7 @@ check(picture() is None and len(errors) == 3, "an empty grid is nothing, and no 
 mapper.SetInputData(grid)
 check((picture() == whole).all(), "and a grid again")
 text = str(mapper)
-for word in "Termination", "NumberOfThreads", "Tetrahedra", "Ignored Cells", "Segments", "Entries":
+for word in "Termination", "NumberOfThreads", "Device", "Tetrahedra", "Ignored Cells", "Segments", "Entries":
     check(word in text, "PrintSelf tells " + word)
 
 # ---- the partition filter, the order, and VTK's projector
