@@ -128,9 +128,50 @@ int stratus_orientation(const double a[3], const double b[3], const double c[3],
   return exact_sign(head, tail);
 }
 
+/* The axis that a direction is along, -1: none. */
+static int axis_of(const double direction[3])
+{
+  const bool x = direction[0] != 0.0, y = direction[1] != 0.0, z = direction[2] != 0.0;
+  return x && !y && !z ? 0 : y && !x && !z ? 1 : z && !x && !y ? 2 : -1;
+}
+
+/* Whether p*q > r*s or less, if no product comes near the ends of what a double can hold: else *sure is false. Rounding keeps the order of
+ * what it does not make equal, and what it took off each is a double. */
+static int compare_products(double p, double q, double r, double s, bool* sure)
+{
+  const double pq = p * q, rs = r * s;
+  const bool small = (fabs(pq) < 1e-250 && p != 0.0 && q != 0.0) || (fabs(rs) < 1e-250 && r != 0.0 && s != 0.0);
+  *sure = !small && fabs(pq) <= 1e290 && fabs(rs) <= 1e290;
+  if (pq != rs) {
+    return pq > rs ? 1 : -1;
+  }
+  const double pq_rest = fma(p, q, -pq), rs_rest = fma(r, s, -rs);
+  return (pq_rest > rs_rest) - (pq_rest < rs_rest);
+}
+
+/* Views along an axis see most planes of a grid edge-on: many determinants are 0, which takes an expansion long to find out. This takes
+ * two products. False: differences are not exact, or too large or small. */
+static bool find_sign_along_axis(const double a[3], const double b[3], const double c[3], const double direction[3], int axis, int* sign)
+{
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  double u[2], v[2], rest[4];
+  bool sure;
+  add_exactly(b[i], -a[i], &u[0], &rest[0]);
+  add_exactly(b[j], -a[j], &u[1], &rest[1]);
+  add_exactly(c[i], -a[i], &v[0], &rest[2]);
+  add_exactly(c[j], -a[j], &v[1], &rest[3]);
+  *sign = compare_products(u[0], v[1], u[1], v[0], &sure) * (direction[axis] > 0.0 ? 1 : -1);
+  return sure && rest[0] == 0.0 && rest[1] == 0.0 && rest[2] == 0.0 && rest[3] == 0.0;
+}
+
 int stratus_orientation_along(const double a[3], const double b[3], const double c[3], const double direction[3])
 {
   double head[3][3], tail[3][3], size;
+  int axis_sign;
+  const int axis = axis_of(direction);
+  if (axis >= 0 && find_sign_along_axis(a, b, c, direction, axis, &axis_sign)) {
+    return axis_sign;
+  }
   for (int i = 0; i < 3; i++) {
     head[0][i] = b[i] - a[i];
     head[1][i] = c[i] - a[i];

@@ -73,6 +73,36 @@ static void orientation_is_that_of_integers(void** state)
   }
 }
 
+/* Three points nearly in a line, as seen along an axis: two products of up to 90 bits decide. */
+static void orientation_along_an_axis_is_that_of_integers(void** state)
+{
+  static const int exponents[] = { 0, -200, 150, -20 };
+  uint32_t random = 7;
+  int seen[3] = { 0 };
+  (void)state;
+  for (int repeat = 0; repeat < 100000; repeat++) {
+    int64_t p[4][3] = { { 0 } }, direction[3] = { 0, 0, 0 };
+    double q[3][3], away[3];
+    const int bits = 2 + repeat % 40, times = 1 + (int)(mesh_random(&random) % 15);
+    direction[repeat % 3] = repeat % 2 ? 3 : -1;
+    for (int a = 0; a < 3; a++) {
+      const int64_t mask = (INT64_C(1) << bits) - 1, step = ((int64_t)mesh_random(&random) << 24 | mesh_random(&random)) & mask;
+      p[0][a] = ((int64_t)mesh_random(&random) << 24 | mesh_random(&random)) & mask;
+      p[1][a] = p[0][a] + step;
+      p[2][a] = p[0][a] + times * step + (int64_t)(mesh_random(&random) % 3) - 1;
+    }
+    for (int i = 0; i < 9; i++) {
+      q[i / 3][i % 3] = ldexp((double)p[i / 3][i % 3], exponents[repeat % 4]);
+      away[i % 3] = ldexp((double)direction[i % 3], exponents[(repeat + 1) % 4]);
+    }
+    const int expected = integer_orientation(p, direction);
+    assert_int_equal(stratus_orientation_along(q[0], q[1], q[2], away), expected);
+    assert_int_equal(stratus_orientation_along(q[0], q[2], q[1], away), -expected);
+    seen[expected + 1]++;
+  }
+  assert_true(seen[0] > 1000 && seen[1] > 1000 && seen[2] > 1000);
+}
+
 /* The number 1 + 2^-52 beside 1: rounding alone would call these coplanar. */
 static void orientation_sees_the_last_bit(void** state)
 {
@@ -229,6 +259,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(orientation_is_that_of_integers),
+    cmocka_unit_test(orientation_along_an_axis_is_that_of_integers),
     cmocka_unit_test(orientation_sees_the_last_bit),
     cmocka_unit_test(neighbours_of_random_cells_are_those_of_all_pairs),
     cmocka_unit_test(a_grid_has_the_border_of_its_box),
