@@ -105,6 +105,32 @@ void CopyCells(vtkCellData* from, const std::vector<vtkIdType>& origins, vtkCell
   KeepAttributes(from, to);
 }
 
+// A cell with a blanked corner is blanked as a whole: its pieces say so themselves, as not all of them touch the corner.
+void HidePieces(vtkUnstructuredGrid* input, const vtkStratusTetrahedra& tetrahedra, const std::vector<vtkIdType>& origins, vtkUnstructuredGrid* output)
+{
+  vtkUnsignedCharArray* points = input->GetPointGhostArray();
+  if (!points || points->GetNumberOfTuples() < tetrahedra.GridPoints) {
+    return;
+  }
+  std::vector<bool> hidden(static_cast<size_t>(input->GetNumberOfCells()));
+  for (size_t i = 0; i < tetrahedra.Vertices.size(); ++i) {
+    const vtkIdType point = tetrahedra.Vertices[i];
+    if (point < tetrahedra.GridPoints && (points->GetValue(point) & vtkDataSetAttributes::HIDDENPOINT)) {
+      hidden[static_cast<size_t>(tetrahedra.Cells[i / 4])] = true;
+    }
+  }
+  if (std::find(hidden.begin(), hidden.end(), true) == hidden.end()) {
+    return;
+  }
+  auto* cells = vtkUnsignedCharArray::SafeDownCast(output->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  cells = cells ? cells : output->AllocateCellGhostArray();
+  for (size_t i = 0; i < origins.size(); ++i) {
+    const auto cell = static_cast<vtkIdType>(i);
+    const int flag = hidden[static_cast<size_t>(origins[i])] ? vtkDataSetAttributes::HIDDENCELL : 0;
+    cells->SetValue(cell, static_cast<unsigned char>(cells->GetValue(cell) | flag));
+  }
+}
+
 void SetGeometry(const stratus_partition_result& cut, vtkUnstructuredGrid* output)
 {
   vtkNew<vtkDoubleArray> coordinates;
@@ -167,6 +193,7 @@ int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector
     original->InsertNextValue(origins[i]);
   }
   CopyCells(input->GetCellData(), origins, output->GetCellData());
+  HidePieces(input, tetrahedra, origins, output);
   output->GetCellData()->AddArray(original);
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkStratusLeaves::Write(cut.leaves, static_cast<vtkIdType>(cut.cell_count), output);

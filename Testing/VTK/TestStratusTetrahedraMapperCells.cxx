@@ -134,6 +134,36 @@ void WholeCellsAreHidden()
   }
 }
 
+// Pieces of a cell with a blanked corner are blanked, too, those that do not touch it included.
+void TheFilterHidesAlike()
+{
+  GridScene scene;
+  Grid grid = MixedGrid(Boxes);
+  AddDensity(grid);
+  scene.Tetrahedra->SetInputData(grid);
+  const std::vector<float> whole = scene.GridPicture();
+  vtkUnsignedCharArray* ghosts = grid->AllocatePointGhostArray();
+  for (vtkIdType point : { 60, 61, 110, 200, 340 }) {
+    ghosts->SetValue(point, vtkDataSetAttributes::HIDDENPOINT);
+  }
+  grid->Modified();
+  const std::vector<float> direct = scene.GridPicture();
+  vtkNew<vtkStratusPartitionFilter> filter;
+  filter->SetInputData(grid);
+  for (int depth : { 0, 3 }) {
+    filter->SetDepth(depth);
+    filter->SetLeafCells(50);
+    scene.Tetrahedra->SetInputConnection(filter->GetOutputPort());
+    const std::vector<float> filtered = scene.GridPicture();
+    double worst = filtered.size() == direct.size() && !direct.empty() ? 0.0 : 1.0;
+    for (size_t i = 0; i < direct.size() && worst < 1.0; ++i) {
+      worst = std::max(worst, std::fabs(static_cast<double>(direct[i]) - static_cast<double>(filtered[i])));
+    }
+    CHECK(worst < (depth ? 2e-4 : 1e-9), "depth %d: pixels differ by %g", depth, worst);
+  }
+  CHECK(direct != whole, "blanked points hide nothing");
+}
+
 void WhatHasNoVolumeIsIgnored()
 {
   GridScene scene;
@@ -193,6 +223,7 @@ int main()
   EveryKindOfCell();
   TheFilterDividesAlike();
   WholeCellsAreHidden();
+  TheFilterHidesAlike();
   WhatHasNoVolumeIsIgnored();
   WhatIsBuiltIsKept();
   return Failures ? 1 : 0;
