@@ -154,6 +154,7 @@ struct stratus_distance_map {
   size_t map_bytes;  /* pitch*blocks[1]*blocks[2] */
   size_t bytes_size; /* all maps and 64 bytes of padding, which traversal may read */
   uint8_t* bytes;
+  size_t bounds_at; /* > 0: where the bits of a float a block begin, for rays that look for extremes: kernels/ray_best.h */
   int tree_nodes; /* > 0: no map but a tree as the march asks it, in the layout of kernels/tree_map.h; kind, pitch and map_bytes mean nothing */
 };
 

@@ -402,6 +402,10 @@ static stratus_structure choose_structure(
     snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
     return wanted;
   }
+  if (share > OCCUPIED_LARGEST && stratus_ray_modes_extreme(&caster->shown)) {
+    snprintf(why, capacity, "block: %.3g %% occupied, but blocks that hold nothing better than a ray has are passed", 100.0 * share);
+    return STRATUS_STRUCTURE_BLOCK;
+  }
   if (share > OCCUPIED_LARGEST) {
     snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
     return STRATUS_STRUCTURE_NONE;
@@ -441,6 +445,11 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
     TRY(stratus_ray_tree_map(caster, offered, &map));
   } else {
     TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+  }
+  const stratus_status status = stratus_ray_modes_bounds(caster, map);
+  if (status != STRATUS_OK) {
+    stratus_distance_map_destroy(map);
+    return status;
   }
   drop_map(caster);
   caster->map = map;

@@ -271,6 +271,9 @@ static void set_map(const stratus_occupancy* occupancy, const stratus_distance_m
   a->blocks_rows = (int)map->blocks[1];
   a->octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
   a->tree = map->tree_nodes;
+  a->bounds_at = (int)(map->bounds_at / 64);
+  a->bounds_across = (int)occupancy->blocks[0];
+  a->bounds_rows = (int)occupancy->blocks[1];
   a->block_log2 = 0;
   while (1 << a->block_log2 < map->block_size) {
     ++a->block_log2;

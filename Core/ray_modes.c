@@ -2,6 +2,8 @@
  * Modes of the ray cast beside light: which values matter to them, how they are sampled, and what their rays are told. */
 #include "ray_caster.h"
 
+#include <string.h>
+
 /* Maxima are sampled this densely, in voxels: what lies between two samples is missed by a quarter of what the field bends over them. */
 #define EXTREME_STEP 0.5
 
@@ -149,6 +151,37 @@ void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transf
   } else if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count as much as others */
     show_only(table, stratus_table_entry(table, (float)(range[0] - bias)), stratus_table_entry(table, (float)(range[1] - bias)));
   }
+}
+
+bool stratus_ray_modes_extreme(const stratus_ray_shown* shown)
+{
+  return is_extreme(shown->mode);
+}
+
+stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map)
+{
+  const stratus_value_range* ranges = caster->ranges;
+  const size_t blocks = (size_t)ranges->blocks[0] * (size_t)ranges->blocks[1] * (size_t)ranges->blocks[2];
+  const size_t at = (map->bytes_size + 63) / 64 * 64, bytes = blocks * sizeof(float);
+  const bool smallest = caster->shown.mode == STRATUS_MODE_MINIMUM;
+  void* memory = NULL;
+  if (!is_extreme(caster->shown.mode)) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(caster->context, at + bytes, 1, &memory));
+  memcpy(memory, map->bytes, map->bytes_size);
+  uint8_t* bounds = (uint8_t*)memory + at;
+#pragma omp parallel for num_threads(caster->context->threads)
+  for (size_t b = 0; b < blocks; ++b) {
+    const float best = smallest ? -ranges->lo[b] : ranges->hi[b]; /* -INFINITY where no value is finite */
+    const float bound = best + 1e-6f * fmaxf(fabsf(ranges->lo[b]), fabsf(ranges->hi[b]));
+    memcpy(bounds + b * sizeof bound, isfinite(best) ? &bound : &best, sizeof bound);
+  }
+  stratus_release(caster->context, map->bytes);
+  map->bytes = memory;
+  map->bytes_size = at + bytes;
+  map->bounds_at = at;
+  return STRATUS_OK;
 }
 
 /* The float nearest to `value` that is not below it (or above, where upward is 0): no value in the range may be left out. */

@@ -562,7 +562,7 @@ typedef struct stratus_image {
 
 typedef struct stratus_ray_cast_report {
   uint64_t rays;             /* that met the volume's bounds, among those of the pixels that what is occupied covers */
-  uint64_t samples;          /* values interpolated */
+  uint64_t samples;          /* values interpolated; isosurfaces: cells visited */
   uint64_t skipped;          /* segments that the structure skipped */
   uint64_t lookups;          /* reads of the structure */
   uint64_t differing_pixels; /* audit only */

@@ -49,6 +49,9 @@
 #define ray_load RAY_NAME(ray_load)
 
 #include "fetch.h"
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+#include "ray_best.h"
+#endif
 
 /* The field at index coordinates x: not finite where a corner is not, or the cell is hidden. */
 INLINE vfloat ray_value(
@@ -102,7 +105,12 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
     } else {
       byte = gather_map(map, index, need);
     }
-    const vmask occupied = need & vi_ge(byte, vi_set(128));
+    vmask occupied = need & vi_ge(byte, vi_set(128));
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+    /* an occupied block that holds nothing better is passed, too; of its neighbours nothing is known yet */
+    byte = vi_select(occupied, vi_set(1), byte);
+    occupied = best_may_be_in(a, map, block, k->front, occupied);
+#endif
     const vfloat leave = cube_exit(a, k, block, byte & vi_set(127));
     k->lookups -= mask_int(need);
 #if STRATUS_PREINTEGRATED
@@ -150,6 +158,11 @@ INLINE stratus_sample ray_sample(
   return sample;
 }
 
+/* Here and not where they are used: a device is sent each header once, in one of the branches below. */
+#if STRATUS_RAY_MODE == STRATUS_RAY_LOOKS || STRATUS_RAY_MODE == STRATUS_RAY_SURFACE
+#include "gradient.h"
+#include "shading.h"
+#endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_LOOKS
 #include "ray_looks.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_SURFACE

@@ -68,6 +68,8 @@ typedef struct stratus_ray_cast_arguments {
   float sum_scale;                   /* sums: of a sum over whole samples; 0: the mean is shown */
   int sum;                           /* 1: rays show something wherever they meet the bounds */
   int contour_count;
+  int bounds_at;                       /* extremes: where the blocks' bounds begin in the map, in 64 bytes */
+  int bounds_across, bounds_rows;      /* blocks a row, rows a slice */
   int crop_regions;                      /* 0, or which of the 27 regions between crop_plane are shown: bit x + 3 y + 9 z, each 0..2 */
   int jitter, seed;                      /* 1: each ray's lattice lies farther from the eye, by a part of a sample that pixel and seed decide */
   stratus_pair crop_plane[3][2];
@@ -90,6 +92,6 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32)
 
 #endif

@@ -2,8 +2,6 @@
  * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components. Included by
  * ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOOKS. What is looked up beyond the values is so only where something shows, and only
  * thins or colours that: a segment left out would have added exactly zero, here too. */
-#include "gradient.h"
-#include "shading.h"
 
 /* Few samples come this far, and the code is long: once for each type, not wherever it is called. */
 #ifdef STRATUS_DEVICE

@@ -8,7 +8,6 @@
 #define STRATUS_RAY_SURFACE_H
 
 #include "cell_cubic.h"
-#include "shading.h"
 
 /* Few cells come this far, and the code is long: once for each type. */
 #ifdef STRATUS_DEVICE
@@ -118,8 +117,6 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 }
 
 #endif
-
-#include "gradient.h"
 
 #define surface_show RAY_NAME(surface_show)
 #define surface_roots RAY_NAME(surface_roots)

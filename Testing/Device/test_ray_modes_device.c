@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The device's maxima, minima, means, sums and isosurfaces against the host's, cropped, masked and jittered too: the traversal is one source, so the
+ * counters agree exactly, and pixels to the few units in the last place that the set-up of rays may be rounded otherwise. PoCL: 0. */
+#include "../picture_case.h"
+
+#define ULPS_MOST 4
+
+static picture on_host, on_device;
+
+/* Steps between neighbouring floats from a to b. */
+static int64_t ulps(float a, float b)
+{
+  int32_t i, j;
+  memcpy(&i, &a, sizeof i);
+  memcpy(&j, &b, sizeof j);
+  const int64_t x = i < 0 ? INT32_MIN - (int64_t)i : i, y = j < 0 ? INT32_MIN - (int64_t)j : j;
+  return x > y ? x - y : y - x;
+}
+
+static void ask_for(picture_case* c, int mode, uint32_t seed, const uint8_t* mask)
+{
+  const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
+  c->options.mode = (stratus_mode)mode;
+  c->options.sample_distance = 0.7;
+  c->options.structure = (stratus_structure)(seed % 6);
+  c->options.contour_count = 2;
+  c->options.contours[0] = base + 0.3 * scale;
+  c->options.contours[1] = base + 0.1 * scale;
+  c->options.average_range[1] = base + 0.5 * scale;
+  c->options.mask = seed % 2 ? mask : NULL;
+  c->options.jitter = seed % 3 == 1;
+  c->options.jitter_seed = seed;
+  c->options.crop = seed % 3 == 2;
+  c->options.crop_regions = 0x5140145u;
+  for (int a = 0; a < 3; ++a) {
+    c->options.crop_bounds[2 * a] = 7.3;
+    c->options.crop_bounds[2 * a + 1] = 13.1;
+  }
+}
+
+static void modes_are_those_of_the_host(void** state)
+{
+  (void)state;
+  if (stratus_device_count() == 0) {
+    print_message("SKIPPED: no OpenCL device\n");
+    skip();
+  }
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  assert_true(stratus_context_on_device(device));
+  static const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_UINT8 };
+  static uint8_t mask[21 * 19 * 23];
+  int64_t most = 0;
+  int other_counts = 0, lit = 0, pictures = 0;
+  for (size_t i = 0; i < sizeof mask; ++i) {
+    mask[i] = (uint8_t)(i % 21 > 6);
+  }
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    picture_case c;
+    const int mode = STRATUS_MODE_MAXIMUM + (int)(seed % 5);
+    case_create(host, &c, types[seed / 5 % 2], 21, 19, 23, seed);
+    ask_for(&c, mode, seed, mask);
+    case_render(host, &c, &on_host);
+    c.options.audit = 1;
+    case_render(device, &c, &on_device);
+    if (on_device.report.differing_pixels) {
+      print_error("seed %u, %s: the audit on the device found %llu pixels\n", seed, stratus_mode_name(c.options.mode),
+        (unsigned long long)on_device.report.differing_pixels);
+      fail();
+    }
+    lit += case_lit(&on_host) > CASE_PIXELS / 50;
+    ++pictures;
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      other_counts += on_host.samples[i] != on_device.samples[i];
+      for (int k = 4 * i; k < 4 * i + 4; ++k) {
+        const int64_t apart = ulps(on_host.rgba[k], on_device.rgba[k]);
+        most = apart > most ? apart : most;
+      }
+    }
+    case_destroy(&c);
+  }
+  print_message("             %d pictures of %d, at most %lld units in the last place apart, %d pixels with other counts\n", lit, pictures,
+    (long long)most, other_counts);
+  assert_true(lit > pictures * 3 / 4);
+  assert_int_equal(other_counts, 0);
+  assert_true(most <= ULPS_MOST);
+  stratus_context_destroy(host);
+  stratus_context_destroy(device);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(modes_are_those_of_the_host) };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
