@@ -5,6 +5,7 @@
 
 #include "ray_caster.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define SIDE_MOST 65536
@@ -255,11 +256,13 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
-  report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
   if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
+    report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
+    snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     clear_image(image);
     return STRATUS_OK;
   }
+  report->method = stratus_tetra_choose(caster, mesh, camera, options, image, report->why, sizeof report->why);
   const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
   frame.table = caster->table;

@@ -58,6 +58,9 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
 /* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
+/* tetra_choice.c: march or project, and the reason. */
+stratus_tetra_method stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_tetra_options* options, const stratus_image* image, char* why, size_t capacity);
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);
 /* At least `count` elements of `size` bytes in *memory, whose old contents are lost. */
 stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size);

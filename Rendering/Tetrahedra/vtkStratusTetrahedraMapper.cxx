@@ -75,6 +75,46 @@ double vtkStratusTetrahedraMapper::GetMarchMilliseconds()
   return this->Internal->Report.march_ms;
 }
 
+const char* vtkStratusTetrahedraMapper::GetMethodAsString()
+{
+  return stratus_tetra_method_name(static_cast<stratus_tetra_method>(this->Method));
+}
+
+const char* vtkStratusTetrahedraMapper::GetMethodUsedAsString()
+{
+  return stratus_tetra_method_name(this->Internal->Report.method);
+}
+
+const char* vtkStratusTetrahedraMapper::GetMethodReason()
+{
+  return this->Internal->Report.why;
+}
+
+double vtkStratusTetrahedraMapper::GetSortMilliseconds()
+{
+  return this->Internal->Report.sort_ms;
+}
+
+double vtkStratusTetrahedraMapper::GetBinMilliseconds()
+{
+  return this->Internal->Report.bin_ms;
+}
+
+double vtkStratusTetrahedraMapper::GetProjectMilliseconds()
+{
+  return this->Internal->Report.project_ms;
+}
+
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfCellsInView()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.cells_in_view);
+}
+
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfPixelsDrawnAgain()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.again);
+}
+
 double vtkStratusTetrahedraMapper::GetBuildMilliseconds()
 {
   return this->Internal->Report.build_ms;
@@ -112,6 +152,13 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
+  os << indent << "Method: " << this->GetMethodAsString() << "\n";
+  os << indent << "Method Used: " << stratus_tetra_method_name(report.method) << " (" << report.why << ")\n";
+  os << indent << "Sort Milliseconds: " << report.sort_ms << "\n";
+  os << indent << "Bin Milliseconds: " << report.bin_ms << "\n";
+  os << indent << "Project Milliseconds: " << report.project_ms << "\n";
+  os << indent << "Cells In View: " << report.cells_in_view << "\n";
+  os << indent << "Pixels Drawn Again: " << report.again << "\n";
   os << indent << "March Milliseconds: " << report.march_ms << "\n";
   os << indent << "Build Milliseconds: " << report.build_ms << "\n";
   os << indent << "Tetrahedra: " << report.cells << "\n";

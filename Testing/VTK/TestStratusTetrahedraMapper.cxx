@@ -28,6 +28,30 @@ void TestAgainstTheImageMapper()
   CHECK(moved > SamePicture - 4.0, "moved: %.1f dB", moved); // VTK's own camera is worse out there
 }
 
+void TestMethods()
+{
+  GridScene scene;
+  CHECK(scene.Tetrahedra->GetMethod() == vtkStratusTetrahedraMapper::AUTO_METHOD, "the default is %s", scene.Tetrahedra->GetMethodAsString());
+  scene.Tetrahedra->SetMethodToMarch();
+  const std::vector<float> marched = scene.GridPicture();
+  CHECK(std::string(scene.Tetrahedra->GetMethodUsedAsString()) == "march", "it is %s", scene.Tetrahedra->GetMethodUsedAsString());
+  scene.Tetrahedra->SetMethodToProject();
+  const std::vector<float> projected = scene.GridPicture();
+  CHECK(std::string(scene.Tetrahedra->GetMethodUsedAsString()) == "project", "it is %s", scene.Tetrahedra->GetMethodUsedAsString());
+  CHECK(scene.Tetrahedra->GetNumberOfCellsInView() > 0 && scene.Tetrahedra->GetNumberOfSegments() > 0, "nothing was projected");
+  double squares = 0.0;
+  for (size_t i = 0; i < marched.size() && i < projected.size(); ++i) {
+    squares += 255.0 * 255.0 * (marched[i] - projected[i]) * (marched[i] - projected[i]);
+  }
+  const double rmse = std::sqrt(squares / std::max<size_t>(1, marched.size()));
+  CHECK(marched.size() == projected.size() && rmse < 0.01, "the two methods differ by %.4f of 255", rmse);
+  scene.Tetrahedra->SetMethodToAuto();
+  const std::vector<float> chosen = scene.GridPicture();
+  const bool marches = std::string(scene.Tetrahedra->GetMethodUsedAsString()) == "march";
+  CHECK(chosen == (marches ? marched : projected), "auto draws a picture of its own");
+  CHECK(std::string(scene.Tetrahedra->GetMethodReason()).size() > 10, "no reason is told");
+}
+
 void TestInside()
 {
   GridScene scene;
@@ -158,6 +182,7 @@ void TestRefusals()
 int main()
 {
   TestAgainstTheImageMapper();
+  TestMethods();
   TestInside();
   TestShown();
   TestOpaque();
