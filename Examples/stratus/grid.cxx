@@ -22,6 +22,19 @@ void refuse_options(const cli::options& o)
 
 namespace cli {
 
+stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view)
+{
+  stratus_volume box = m.box();
+  const uint8_t nothing[8] = {}; // what of the box shows says nothing of the mesh: all of it is looked at
+  box.values = nothing;
+  box.type = STRATUS_UINT8;
+  for (int a = 0; a < 3; ++a) {
+    box.spacing[a] *= static_cast<double>(box.dimensions[a]) / 2.0;
+    box.dimensions[a] = 2;
+  }
+  return place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
+}
+
 void render_grid(const options& o)
 {
   refuse_options(o);
@@ -30,18 +43,10 @@ void render_grid(const options& o)
   const mesh m(grid, o.array, o.source);
   core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
   frame picture(o);
-  stratus_volume box = m.box();
-  const transfer look = make_transfer(box, nullptr, o.opacity, o.color, o.unit_distance);
+  const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
   const stratus_transfer view = look.view();
   core.check(stratus_transfer_check(core, &view), "transfer function");
-  const uint8_t nothing[8] = {}; // what of the box shows says nothing of the mesh: all of it is looked at
-  box.values = nothing;
-  box.type = STRATUS_UINT8;
-  for (int a = 0; a < 3; ++a) {
-    box.spacing[a] *= static_cast<double>(box.dimensions[a]) / 2.0;
-    box.dimensions[a] = 2;
-  }
-  const stratus_camera camera = place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
+  const stratus_camera camera = place_camera(core, o, m, view);
   output_file out(o.output); // before the work: a path that cannot be written is told at once
 
   stratus_image image = picture.view();

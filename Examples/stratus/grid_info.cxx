@@ -70,7 +70,25 @@ void print_arrays(vtkUnstructuredGrid* grid)
   }
 }
 
-// A picture of one pixel: the report tells what the caster found on the way.
+// A picture for the sake of its report, which tells what the caster found on the way.
+stratus_tetra_report draw(const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer, const stratus_camera& camera, int width,
+  int height)
+{
+  std::vector<float> pixels(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
+  stratus_image image = {};
+  image.width = width;
+  image.height = height;
+  image.rgba = pixels.data();
+  stratus_tetra_report report = {};
+  stratus_tetra_caster* caster = nullptr;
+  core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
+  const stratus_status status = stratus_tetra_caster_render(caster, &mesh, &transfer, &camera, nullptr, &image, &report);
+  stratus_tetra_caster_destroy(caster);
+  core.check(status, "look at the tetrahedra");
+  return report;
+}
+
+// One pixel.
 stratus_tetra_report look_at(const cli::context& core, const stratus_mesh& mesh)
 {
   const double opacity[4] = { 0.0, 0.0, 1.0, 1.0 }, color[4] = { 0.0, 1.0, 1.0, 1.0 };
@@ -83,17 +101,7 @@ stratus_tetra_report look_at(const cli::context& core, const stratus_mesh& mesh)
   camera.forward[2] = camera.right[0] = camera.up[1] = 1.0;
   camera.far_k = INFINITY;
   camera.parallel = 1;
-  float pixel[4];
-  stratus_image image = {};
-  image.width = image.height = 1;
-  image.rgba = pixel;
-  stratus_tetra_report report = {};
-  stratus_tetra_caster* caster = nullptr;
-  core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
-  const stratus_status status = stratus_tetra_caster_render(caster, &mesh, &transfer, &camera, nullptr, &image, &report);
-  stratus_tetra_caster_destroy(caster);
-  core.check(status, "look at the tetrahedra");
-  return report;
+  return draw(core, mesh, transfer, camera, 1, 1);
 }
 
 void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
@@ -147,11 +155,15 @@ void cli::print_grid(const options& o)
   try {
     const mesh m(grid, o.array, o.source);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-    const stratus_tetra_report report = look_at(core, m.view());
+    const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
+    const stratus_transfer view = look.view();
+    core.check(stratus_transfer_check(core, &view), "transfer function");
+    const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);
     row("drawn",
       "'" + m.array_name + "' on " + (m.view().cell_values ? "cells" : "points") + ", " + count(report.shown_cells) + " of " +
         count(report.cells) + " tetrahedra" + (report.shown_cells < report.cells ? ", the others hidden or with values that are not finite" : ""));
-    row("opacity", make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance).origin);
+    row("opacity", look.origin);
+    row("method", format("%s, at %d x %d pixels; ", stratus_tetra_method_name(report.method), o.width, o.height) + report.why);
   } catch (const failure& reason) {
     if (!o.array.empty()) { // asked for
       throw;
