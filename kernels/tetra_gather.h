@@ -53,11 +53,11 @@ INLINE void gather_pair(GLOBAL const int* base, vint at, vmask mask, vint out[2]
 /* Asks for the cache lines of base[at], so that they are there when a step later they are read. */
 INLINE void prefetch_ints(GLOBAL const int* base, vint at)
 {
-#if !defined(STRATUS_DEVICE) && STRATUS_WIDTH == 16
+#if STRATUS_WIDTH == 16 && (!defined(STRATUS_DEVICE) || defined(STRATUS_DEVICE_AVX512))
   int place[STRATUS_WIDTH];
   vi_store(place, at);
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    __builtin_prefetch(base + place[lane]);
+    __builtin_prefetch((const void*)(uintptr_t)(base + place[lane]));
   }
 #else
   (void)base;

@@ -4,6 +4,7 @@
 #include "tetra_case.h"
 
 #include "device_state.h"
+#include "faulty_allocator.h"
 
 #define CALLS_MAX 500
 
@@ -149,6 +150,44 @@ static void the_loss_of_the_device_at_any_call(void** state)
   stratus_context_destroy(device);
 }
 
+/* Memory refused at any call is an error, nothing is kept of it, and the same caster draws the picture when asked again. */
+static void refused_memory(void** state)
+{
+  faulty_allocator allocator = { 0 };
+  const stratus_context_options options = faulty_options(&allocator, "0");
+  stratus_context* device = NULL;
+  tetra_case c;
+  int refused = 0;
+  assert_int_equal(stratus_context_create(&options, &device, NULL, 0), STRATUS_OK);
+  device->device->is_cpu = !*(const int*)*state;
+  tetra_create(&c, 2, 0.2, 0.2, 10);
+  tetra_look(device, &c, 2, 0, 0);
+  tetra_draw(device, &c, &theirs); /* programs are built */
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
+  for (bool reached = true; reached;) {
+    stratus_tetra_caster* caster = NULL;
+    const int64_t live = allocator.live;
+    assert_int_equal(stratus_tetra_caster_create(device, &caster), STRATUS_OK);
+    allocator.fail_at = allocator.calls + refused + 1;
+    stratus_status status = stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL);
+    reached = allocator.calls >= allocator.fail_at;
+    allocator.fail_at = 0;
+    if (reached) {
+      assert_int_equal(status, STRATUS_OUT_OF_MEMORY);
+      ++refused;
+      status = stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL);
+    }
+    assert_int_equal(status, STRATUS_OK);
+    assert_memory_equal(ours.rgba, theirs.rgba, sizeof ours.rgba);
+    stratus_tetra_caster_destroy(caster);
+    assert_int_equal(allocator.live, live);
+  }
+  assert_true(refused > 15);
+  tetra_destroy(&c);
+  stratus_context_destroy(device);
+  assert_int_equal(allocator.live, 0);
+}
+
 /* tiny: two small meshes, for a simulator that checks each access. */
 int main(int argc, char** argv)
 {
@@ -163,6 +202,8 @@ int main(int argc, char** argv)
     cmocka_unit_test_prestate(a_caster_that_drew_before, &as_gpu),
     cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_cpu),
     cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_gpu),
+    cmocka_unit_test_prestate(refused_memory, &as_cpu),
+    cmocka_unit_test_prestate(refused_memory, &as_gpu),
   };
   if (stratus_device_count() == 0) {
     fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
