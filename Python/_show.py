@@ -131,7 +131,7 @@ def _aim(renderer, camera):
         renderer.SetActiveCamera(camera)
         renderer.ResetCameraClippingRange()
         return
-    wishes = dict(azimuth=30.0, elevation=25.0, zoom=1.3)
+    wishes = dict(azimuth=30.0, elevation=25.0, zoom=1.15)
     unknown = set(camera or {}) - set(wishes)
     if unknown:
         raise ValueError(f"camera has {sorted(unknown)}, it may have azimuth, elevation (degrees) and zoom, or be a vtkCamera")
