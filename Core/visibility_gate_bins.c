@@ -5,39 +5,87 @@
 
 #include <string.h>
 
-bool stratus_gate_box(const stratus_gates* gates, int64_t gate, int side, double box[4])
+/* Across, down and ahead of a side of the cube. */
+static void turn_to(int side, const stratus_view_point* point, double turned[3])
 {
-  stratus_view_point points[3];
-  stratus_gate_points(gates, gate, points);
+  const double p[3] = { point->x, point->y, point->z };
+  const int axis = side / 2;
+  turned[0] = p[(axis + 1) % 3];
+  turned[1] = p[(axis + 2) % 3];
+  turned[2] = side % 2 ? -p[axis] : p[axis];
+}
+
+/* Sees it if not all points are beyond one of its four edges. */
+static bool side_sees(int side, const stratus_view_point points[3])
+{
   unsigned outside = 15;
-  bool behind = false;
+  for (int i = 0; i < 3; i++) {
+    double p[3];
+    turn_to(side, points + i, p);
+    outside &= (unsigned)(p[0] > p[2]) | (unsigned)(-p[0] > p[2]) << 1 | (unsigned)(p[1] > p[2]) << 2 | (unsigned)(-p[1] > p[2]) << 3;
+  }
+  return outside == 0;
+}
+
+static void include(float box[4], double u, double v)
+{
+  box[0] = fminf(box[0], (float)u);
+  box[1] = fmaxf(box[1], (float)u);
+  box[2] = fminf(box[2], (float)v);
+  box[3] = fmaxf(box[3], (float)v);
+}
+
+/* All of the side where a point is not ahead. */
+static void find_box(const stratus_gates* gates, int side, const stratus_view_point points[3], float box[4])
+{
   box[0] = box[2] = INFINITY;
   box[1] = box[3] = -INFINITY;
   for (int i = 0; i < 3; i++) {
-    const double p[3] = { points[i].x, points[i].y, points[i].z };
-    const int axis = gates->parallel ? 2 : side / 2;
-    const double u = p[(axis + 1) % 3], v = p[(axis + 2) % 3], w = gates->parallel ? 1.0 : side % 2 ? -p[axis] : p[axis];
     if (gates->parallel) {
-      outside = 0;
-    } else {
-      outside &= (unsigned)(u > w) | (unsigned)(-u > w) << 1 | (unsigned)(v > w) << 2 | (unsigned)(-v > w) << 3;
+      include(box, points[i].x, points[i].y);
+      continue;
     }
-    behind = behind || !(w > 0.0);
-    box[0] = fmin(box[0], u / w);
-    box[1] = fmax(box[1], u / w);
-    box[2] = fmin(box[2], v / w);
-    box[3] = fmax(box[3], v / w);
+    double p[3];
+    turn_to(side, points + i, p);
+    if (!(p[2] > 0.0)) {
+      include(box, -1.0, -1.0);
+      include(box, 1.0, 1.0);
+      continue;
+    }
+    include(box, fmin(fmax(p[0] / p[2], -1.0), 1.0), fmin(fmax(p[1] / p[2], -1.0), 1.0));
   }
-  if (outside != 0) {
+}
+
+void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3])
+{
+  int last = 0;
+  gate->sides = gates->parallel ? 1 : 0;
+  for (int side = 0; side < gates->sides && !gates->parallel; side++) {
+    if (side_sees(side, points)) {
+      gate->sides |= (uint8_t)(1u << side);
+      last = side;
+    }
+  }
+  find_box(gates, last, points, gate->box);
+}
+
+bool stratus_gate_box(const stratus_gates* gates, int64_t gate, int side, float box[4])
+{
+  const unsigned sides = gates->gates[gate].sides;
+  if (!(sides >> side & 1)) {
     return false;
   }
-  for (int i = 0; i < 4 && !gates->parallel; i++) {
-    box[i] = behind ? (i % 2 ? 1.0 : -1.0) : fmin(fmax(box[i], -1.0), 1.0);
+  if ((sides & (sides - 1)) == 0) {
+    memcpy(box, gates->gates[gate].box, sizeof gates->gates[gate].box);
+    return true;
   }
+  stratus_view_point points[3];
+  stratus_gate_points(gates, gate, points);
+  find_box(gates, side, points, box);
   return true;
 }
 
-void stratus_gate_bins(const stratus_gate_grid* grid, const double box[4], int bins[4])
+void stratus_gate_bins(const stratus_gate_grid* grid, const float box[4], int bins[4])
 {
   for (int i = 0; i < 4; i++) {
     const double at = (box[i] - grid->low[i / 2]) * grid->scale[i / 2];
@@ -50,20 +98,20 @@ static void measure_sides(stratus_gates* gates)
 {
   for (int side = 0; side < gates->sides; side++) {
     stratus_gate_grid* grid = gates->grids + side;
-    double all[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY }, box[4];
+    float all[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY }, box[4];
     int64_t seen = 0;
     for (int64_t g = 0; g < gates->count; g++) {
       if (gates->gates[g].facing > 0 && stratus_gate_box(gates, g, side, box)) {
         seen++;
         for (int i = 0; i < 4; i++) {
-          all[i] = i % 2 ? fmax(all[i], box[i]) : fmin(all[i], box[i]);
+          all[i] = i % 2 ? fmaxf(all[i], box[i]) : fminf(all[i], box[i]);
         }
       }
     }
     grid->size = (int)sqrt((double)(seen / gates->sides));
     grid->size = seen > 0 && grid->size == 0 ? 1 : grid->size;
     for (int a = 0; a < 2; a++) {
-      const double extent = all[2 * a + 1] - all[2 * a];
+      const double extent = (double)all[2 * a + 1] - all[2 * a];
       grid->low[a] = all[2 * a];
       grid->extent[a] = extent > 0.0 ? extent : 1.0;
     }
@@ -84,7 +132,7 @@ static bool count_entries(stratus_gates* gates)
   }
   memset(gates->bin_end, 0, (bins + 1) * sizeof *gates->bin_end);
   for (int64_t g = 0; g < gates->count; g++) {
-    double box[4];
+    float box[4];
     int at[4];
     for (int side = 0; side < gates->sides && gates->gates[g].facing > 0; side++) {
       const stratus_gate_grid* grid = gates->grids + side;
@@ -121,7 +169,7 @@ void stratus_gates_fill_bins(stratus_gates* gates)
     }
   }
   for (int64_t g = 0; g < gates->count; g++) {
-    double box[4];
+    float box[4];
     int at[4];
     for (int side = 0; side < gates->sides && gates->gates[g].facing > 0; side++) {
       const stratus_gate_grid* grid = gates->grids + side;

@@ -135,6 +135,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     stratus_view_point points[3];
     stratus_gate_points(gates, g, points);
     find_depths(gates, gates->gates + g, points);
+    stratus_gate_see(gates, gates->gates + g, points);
     gates->gates[g].facing = (int8_t)stratus_order_facing(order, gates->faces[g]);
     gates->gates[g].held = STRATUS_NO_CELL;
     gates->gates[g].passed = 0;
@@ -166,12 +167,20 @@ static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
   return low;
 }
 
+/* False for most that share a bin: no depth in common, or nothing of what the only side that sees either sees. */
+static bool may_lie_before(const stratus_gate* a, const stratus_gate* b)
+{
+  const float *p = a->box, *q = b->box;
+  const bool one_side = a->sides == b->sides && (a->sides & (a->sides - 1)) == 0;
+  return a->low < b->high && !(one_side && (p[0] > q[1] || q[0] > p[1] || p[2] > q[3] || q[2] > p[3]));
+}
+
 /* A way out whose cell has not come and that lies before a way in; -1: none. What has come leaves its bin. */
 static int64_t find_gate_before(stratus_gates* gates, int64_t way_in)
 {
   for (int side = 0; side < gates->sides; side++) {
     const stratus_gate_grid* grid = gates->grids + side;
-    double box[4];
+    float box[4];
     int at[4];
     if (grid->size == 0 || !stratus_gate_box(gates, way_in, side, box)) {
       continue;
@@ -189,8 +198,8 @@ static int64_t find_gate_before(stratus_gates* gates, int64_t way_in)
           gates->entries[e] = gates->entries[--*end];
           continue;
         }
-        if (gates->gates[way_out].low < gates->gates[way_in].high && stratus_gate_cell(gates, way_out) != stratus_gate_cell(gates, way_in) &&
-          lies_before(gates, way_out, way_in)) {
+        if (may_lie_before(gates->gates + way_out, gates->gates + way_in) &&
+          stratus_gate_cell(gates, way_out) != stratus_gate_cell(gates, way_in) && lies_before(gates, way_out, way_in)) {
           return way_out;
         }
         e++;

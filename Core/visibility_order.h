@@ -23,9 +23,11 @@ typedef struct stratus_view {
 /* A border face across which cells of its leaf may hide one another. */
 typedef struct stratus_gate {
   float low, high; /* depths of its points lie between */
+  float box[4];    /* in what its side sees, if there is one only */
   uint32_t held;   /* a way out: the first of the cells that wait for its own; linked by `next` */
   int8_t facing;   /* 1: a way out of the mesh, -1: a way in, 0: seen edge-on */
   uint8_t passed;  /* its cell has come */
+  uint8_t sides;   /* of the view that see it: a bit each */
 } stratus_gate;
 
 /* A cell as peeling asks for it. */
@@ -158,10 +160,12 @@ uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps);
 
 /* ---- visibility_gate_bins.c */
 
+/* Its sides and box. */
+void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3]);
 /* The box around a gate's face in what a side sees, -1..1 where that is a side of the cube. False: it sees nothing of it. */
-bool stratus_gate_box(const stratus_gates* gates, int64_t gate, int side, double box[4]);
+bool stratus_gate_box(const stratus_gates* gates, int64_t gate, int side, float box[4]);
 /* First and last bins across and down. */
-void stratus_gate_bins(const stratus_gate_grid* grid, const double box[4], int bins[4]);
+void stratus_gate_bins(const stratus_gate_grid* grid, const float box[4], int bins[4]);
 /* All ways out. */
 void stratus_gates_fill_bins(stratus_gates* gates);
 
