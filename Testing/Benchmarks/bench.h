@@ -35,14 +35,20 @@ struct scene {
   vtkSmartPointer<vtkImageData> image;
   stratus_volume volume; // borrows the image's values
   transfer first, edited;
+  std::vector<transfer> others; // of the components beside the first
+  bool shaded = false;          // lit by a headlight, in the material that vtkVolumeProperty begins with
   int up_axis = 2;
   double bounds[6];
   double voxel = 1.0; // shortest edge, world
   std::shared_ptr<void> memory;
 };
 
-// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem.
+// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem; with "+shade" behind it lit.
 scene make_scene(stratus_context* context, const std::string& source);
+// The transfer functions of all components.
+std::vector<stratus_transfer> transfers_of(const scene& s);
+// The light and material of a lit scene, as `camera` sees it.
+stratus_shading shading_of(const stratus_camera& camera);
 stratus_camera camera_of(stratus_context* context, const scene& s, int view);
 
 // ---- a method draws a scene's views

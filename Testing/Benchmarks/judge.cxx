@@ -36,13 +36,17 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
-  uint64_t hash = mix(1, v.values, static_cast<size_t>(v.dimensions[0] * v.dimensions[1] * v.dimensions[2]) * stratus_type_size(v.type));
+  uint64_t hash = mix(1, v.values, static_cast<size_t>(v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride) * stratus_type_size(v.type));
   hash = mix(hash, v.dimensions, sizeof v.dimensions);
   hash = mix(hash, v.spacing, sizeof v.spacing);
   hash = mix(hash, v.origin, sizeof v.origin);
-  hash = mix(hash, s.first.opacity.data(), s.first.opacity.size() * sizeof(double));
-  hash = mix(hash, s.first.color.data(), s.first.color.size() * sizeof(double));
-  return mix(hash, &s.first.unit_distance, sizeof(double));
+  hash = mix(hash, &s.shaded, sizeof s.shaded);
+  for (const stratus_transfer& t : transfers_of(s)) {
+    hash = mix(hash, t.opacity, 2 * t.opacity_count * sizeof(double));
+    hash = mix(hash, t.color, 4 * t.color_count * sizeof(double));
+    hash = mix(hash, &t.unit_distance, sizeof(double));
+  }
+  return hash;
 }
 
 // On a terminal: what takes so long.
@@ -72,12 +76,14 @@ public:
     if (!path.empty() && load(path, rgba)) {
       return rgba;
     }
-    const stratus_transfer transfer = this->Scene.first.view();
+    const std::vector<stratus_transfer> transfers = transfers_of(this->Scene);
     const stratus_camera camera = camera_of(this->Context, this->Scene, view);
     reference_scene r = {};
     r.volume = &this->Scene.volume;
-    r.transfer = &transfer;
+    const stratus_shading shading = shading_of(camera);
+    r.transfer = transfers.data();
     r.camera = &camera;
+    r.shading = this->Scene.shaded ? &shading : nullptr;
     if (reference_render(&r, this->Size, this->Size, step, rgba.data(), nullptr) != 0) {
       throw failure("no memory for the reference");
     }

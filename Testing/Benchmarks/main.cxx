@@ -18,8 +18,9 @@ namespace {
 
 const char* const help = R"(stratus-bench volume [options]
 
-  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, cloud-N (resampled to N x N/2 x N), or an image file;
-                            default: cloud,plume,fog,voxel,peak and ../shared/data/isabel_02.vti where it is
+  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), cloud-N (resampled to N x N/2 x N), or
+                            an image file; each with +shade behind it: lit by a headlight;
+                            default: cloud,plume,fog,voxel,peak,plume2,cloud+shade and ../shared/data/isabel_02.vti, plain and lit, where it is
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
                             vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
@@ -90,10 +91,11 @@ options parse(int argc, char* argv[])
     throw bench::failure("--size must be within 16..4096");
   }
   if (o.scenes.empty()) {
-    o.scenes = { "cloud", "plume", "fog", "voxel", "peak" };
+    o.scenes = { "cloud", "plume", "fog", "voxel", "peak", "plume2", "cloud+shade" };
     const char* isabel = "../shared/data/isabel_02.vti";
     if (std::ifstream(isabel)) {
       o.scenes.push_back(isabel);
+      o.scenes.push_back(std::string(isabel) + "+shade");
     } else {
       std::fprintf(stderr, "%s is not here: isabel_02 is left out\n", isabel);
     }
@@ -112,7 +114,12 @@ void run_scene(stratus_context* context, const std::string& source, const option
   std::fprintf(stderr, "%s\n", source.c_str());
   const bench::scene scene = bench::make_scene(context, source);
   std::vector<bench::result> results;
+  const bool plain = !scene.shaded && scene.volume.components == 1;
   for (const std::string& method : o.methods) {
+    if (!plain && (method == "floor" || method == "openvdb")) {
+      std::fprintf(stderr, "  %s has no light and takes one component: left out\n", method.c_str());
+      continue;
+    }
     if (method == "floor") {
       const bench::floor_result f = bench::run_floor(context, scene, o.size);
       std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate,

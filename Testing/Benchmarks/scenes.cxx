@@ -45,7 +45,7 @@ transfer own(const stratus_transfer& t)
 vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  const vtkIdType count = v.dimensions[0] * v.dimensions[1] * v.dimensions[2];
+  const vtkIdType count = v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.components;
   image->SetDimensions(static_cast<int>(v.dimensions[0]), static_cast<int>(v.dimensions[1]), static_cast<int>(v.dimensions[2]));
   image->SetSpacing(v.spacing);
   image->SetOrigin(v.origin);
@@ -62,6 +62,7 @@ vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
   } else {
     throw failure("a scene of a type that the bench does not know");
   }
+  array->SetNumberOfComponents(v.components);
   array->SetName("values");
   image->GetPointData()->SetScalars(array);
   return image;
@@ -112,6 +113,9 @@ scene scene_of_record(stratus_context* context, const std::string& name)
   s.volume = made->volume;
   s.first = own(made->transfer);
   s.edited = own(made->edited);
+  for (int c = 1; c < s.volume.components; ++c) {
+    s.others.push_back(own(made->transfers[c]));
+  }
   s.up_axis = made->up_axis;
   return s;
 }
@@ -143,9 +147,12 @@ scene scene_of_file(const std::string& path)
 }
 } // namespace
 
-scene make_scene(stratus_context* context, const std::string& source)
+scene make_scene(stratus_context* context, const std::string& whole)
 {
   scene s;
+  const size_t plus = whole.rfind("+shade");
+  const bool shaded = plus != std::string::npos && plus + 6 == whole.size();
+  const std::string source = shaded ? whole.substr(0, plus) : whole;
   if (source.find_first_of("./") != std::string::npos) {
     s = scene_of_file(source);
   } else if (source.rfind("cloud-", 0) == 0) {
@@ -162,9 +169,38 @@ scene make_scene(stratus_context* context, const std::string& source)
   if (!s.image) {
     s.image = wrap(s.volume);
   }
+  if (shaded) {
+    s.shaded = true;
+    s.name += "+shade";
+  }
   s.voxel = std::min({ s.volume.spacing[0], s.volume.spacing[1], s.volume.spacing[2] });
   check(context, stratus_volume_bounds(context, &s.volume, s.bounds), "bounds");
   return s;
+}
+
+std::vector<stratus_transfer> transfers_of(const scene& s)
+{
+  std::vector<stratus_transfer> all = { s.first.view() };
+  for (const transfer& t : s.others) {
+    all.push_back(t.view());
+  }
+  return all;
+}
+
+stratus_shading shading_of(const stratus_camera& camera)
+{
+  stratus_shading shading = stratus_ray_cast_options_default().shading;
+  shading.ambient = 0.1;
+  shading.diffuse = 0.7;
+  shading.specular = 0.2;
+  shading.specular_power = 10.0;
+  shading.light_count = 1;
+  shading.lights[0] = stratus_light();
+  for (int a = 0; a < 3; ++a) {
+    shading.lights[0].vector[a] = -camera.forward[a];
+    shading.lights[0].color[a] = 1.0;
+  }
+  return shading;
 }
 
 stratus_camera camera_of(stratus_context* context, const scene& s, int view)

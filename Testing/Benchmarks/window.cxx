@@ -3,6 +3,7 @@
 
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkLight.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -18,7 +19,18 @@ window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper
   this->Renderer->SetBackground(0, 0, 0);
   this->Renderer->SetBackgroundAlpha(0.0);
   this->Property->SetInterpolationTypeToLinear();
-  this->Property->ShadeOff();
+  for (int c = 0; c < s.volume.components; ++c) {
+    this->Property->SetShade(c, s.shaded);
+    this->Property->SetAmbient(c, 0.1);
+    this->Property->SetDiffuse(c, 0.7);
+    this->Property->SetSpecular(c, 0.2);
+    this->Property->SetSpecularPower(c, 10.0);
+  }
+  // vtkFixedPointVolumeRayCastMapper's ambient light is the light's, and that is black unless told otherwise.
+  vtkNew<vtkLight> light;
+  light->SetLightTypeToHeadlight();
+  light->SetAmbientColor(1, 1, 1);
+  this->Renderer->AddLight(light);
   this->Volume->SetProperty(this->Property);
   this->Volume->SetMapper(mapper);
   mapper->SetInputDataObject(0, s.image);
@@ -26,6 +38,14 @@ window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper
 }
 
 void window::use(const transfer& t)
+{
+  this->set(0, t);
+  for (size_t c = 0; c < this->Scene.others.size(); ++c) {
+    this->set(static_cast<int>(c) + 1, this->Scene.others[c]);
+  }
+}
+
+void window::set(int component, const transfer& t)
 {
   vtkNew<vtkPiecewiseFunction> opacity;
   vtkNew<vtkColorTransferFunction> color;
@@ -35,9 +55,9 @@ void window::use(const transfer& t)
   for (size_t i = 0; i < t.color.size(); i += 4) {
     color->AddRGBPoint(t.color[i], t.color[i + 1], t.color[i + 2], t.color[i + 3]);
   }
-  this->Property->SetScalarOpacity(opacity);
-  this->Property->SetColor(color);
-  this->Property->SetScalarOpacityUnitDistance(t.unit_distance);
+  this->Property->SetScalarOpacity(component, opacity);
+  this->Property->SetColor(component, color);
+  this->Property->SetScalarOpacityUnitDistance(component, t.unit_distance);
 }
 
 void window::show(int view)

@@ -25,6 +25,8 @@ public:
   std::vector<uint8_t> read() const; // RGBA
 
 private:
+  void set(int component, const transfer& t);
+
   stratus_context* Context;
   const scene& Scene;
   int Size;
