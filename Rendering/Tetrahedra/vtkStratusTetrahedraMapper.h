@@ -75,9 +75,9 @@ public:
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
   const char* GetDeviceName(); // the one that draws, "" if there is none
-  ///@}
+  //@}
 
-  ///@{
+  //@{
   /**
    * Of the last picture: milliseconds that the march took, and making the grid ready (0 where it was), cells that rays passed, and faces
    * through which they came in.
