@@ -3,6 +3,7 @@
 #include "mapper_testing.h"
 
 #include "vtkBitArray.h"
+#include "vtkContourValues.h"
 #include "vtkCullerCollection.h"
 #include "vtkExecutive.h"
 #include "vtkPlane.h"
@@ -78,7 +79,10 @@ void Modes()
     [](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, nullptr); });
   Refused(
     "isosurface without values", "0 contour values",
-    [](Scene& s) { s.Mapper->SetBlendModeToIsoSurface(); },
+    [](Scene& s) {
+      s.Mapper->SetBlendModeToIsoSurface();
+      s.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(0);
+    },
     [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
   Refused(
     "maxima of first hits", "blend mode",

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blend modes, crop regions, masks and jitter in the window: held against the double reference, and, to tell how far the two agree, beside VTK's
+// own mapper of the GPU. Every setter is seen in the picture.
+#include "mapper_testing.h"
+
+#include "Testing/reference_modes.h"
+
+#include "vtkContourValues.h"
+#include "vtkOpenGLGPUVolumeRayCastMapper.h"
+
+#include <limits>
+
+namespace {
+struct Functions {
+  explicit Functions(Scene& scene)
+  {
+    for (int n = 0; n < scene.Opacity->GetSize(); ++n) {
+      double node[4];
+      scene.Opacity->GetNodeValue(n, node);
+      this->Opacity.insert(this->Opacity.end(), node, node + 2);
+    }
+    for (int n = 0; n < scene.Color->GetSize(); ++n) {
+      double node[6];
+      scene.Color->GetNodeValue(n, node);
+      this->Color.insert(this->Color.end(), node, node + 4);
+    }
+    this->Transfer.opacity = this->Opacity.data();
+    this->Transfer.opacity_count = this->Opacity.size() / 2;
+    this->Transfer.color = this->Color.data();
+    this->Transfer.color_count = this->Color.size() / 4;
+    this->Transfer.unit_distance = scene.Volume->GetProperty()->GetScalarOpacityUnitDistance();
+  }
+  std::vector<double> Opacity, Color;
+  stratus_transfer Transfer = stratus_transfer_default();
+};
+
+// The reference's picture of what `options` ask for.
+std::vector<float> Expected(Scene& scene, const stratus_ray_cast_options& options)
+{
+  const Functions functions(scene);
+  vtkFloatArray* values = vtkFloatArray::SafeDownCast(scene.Image->GetPointData()->GetScalars());
+  const stratus_volume volume = ReferenceVolume(scene.Image, values, false, scene.Volume->GetMatrix());
+  const stratus_camera camera = ReferenceCamera(scene.Renderer);
+  const int* size = scene.Renderer->GetSize();
+  std::vector<float> rgba(4 * scene.Pixels()), depth(scene.Pixels());
+  reference_modes_render(&volume, &functions.Transfer, &camera, &options, size[0], size[1], 1.0 / 16, rgba.data(), depth.data());
+  return rgba;
+}
+
+// PSNR of what VTK's mapper shows over black, in 8 bits, against the same.
+double VtkPsnr(Scene& scene, const std::vector<float>& expected)
+{
+  vtkNew<vtkOpenGLGPUVolumeRayCastMapper> mapper;
+  mapper->SetInputData(scene.Image);
+  mapper->SetBlendMode(scene.Mapper->GetBlendMode());
+  mapper->SetAverageIPScalarRange(scene.Mapper->GetAverageIPScalarRange());
+  mapper->SetCropping(scene.Mapper->GetCropping());
+  mapper->SetCroppingRegionPlanes(scene.Mapper->GetCroppingRegionPlanes());
+  mapper->SetCroppingRegionFlags(scene.Mapper->GetCroppingRegionFlags());
+  mapper->SetMaskInput(scene.Mapper->GetMaskInput());
+  mapper->SetMaskTypeToBinary();
+  mapper->AutoAdjustSampleDistancesOff();
+  mapper->SetSampleDistance(0.1f);
+  scene.Volume->SetMapper(mapper);
+  scene.Render();
+  const std::vector<unsigned char> bytes = scene.Bytes();
+  scene.Volume->SetMapper(scene.Mapper);
+  std::vector<float> shown(4 * scene.Pixels());
+  for (size_t p = 0; p < scene.Pixels(); ++p) {
+    for (size_t c = 0; c < 3; ++c) {
+      shown[4 * p + c] = bytes[4 * p + c] / 255.0f;
+    }
+    shown[4 * p + 3] = expected[4 * p + 3]; // the window keeps no alpha of the volume's
+  }
+  return reference_psnr(shown.data(), expected.data(), scene.Pixels());
+}
+
+// least_db: what sampling every tenth of a voxel leaves; surfaces are wholly right or wrong at their rims.
+void Against(const char* what, Scene& scene, const stratus_ray_cast_options& options, double least_db)
+{
+  scene.Mapper->SetSampleDistance(0.1);
+  const std::vector<float> picture = scene.Picture(), expected = Expected(scene, options);
+  CHECK(scene.Errors->Count == 0, "%s: %s", what, scene.Errors->Text.c_str());
+  CHECK(!picture.empty(), "%s: no picture", what);
+  double lit = 0.0;
+  for (float value : expected) {
+    lit += value;
+  }
+  CHECK(lit > 10.0, "%s: the reference's picture is all but empty (%g)", what, lit);
+  const double db = picture.empty() ? 0.0 : reference_psnr(picture.data(), expected.data(), scene.Pixels());
+  CHECK(db >= least_db, "%s: %.1f dB", what, db);
+  std::printf("%-24s %.1f dB; vtkOpenGLGPUVolumeRayCastMapper, in 8 bits: %.1f dB\n", what, db, VtkPsnr(scene, expected));
+}
+
+void BlendModes()
+{
+  const std::pair<int, stratus_mode> modes[] = { { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, STRATUS_MODE_MAXIMUM },
+    { vtkVolumeMapper::MINIMUM_INTENSITY_BLEND, STRATUS_MODE_MINIMUM }, { vtkVolumeMapper::AVERAGE_INTENSITY_BLEND, STRATUS_MODE_AVERAGE },
+    { vtkVolumeMapper::ADDITIVE_BLEND, STRATUS_MODE_ADDITIVE }, { vtkVolumeMapper::ISOSURFACE_BLEND, STRATUS_MODE_ISOSURFACE } };
+  for (const auto& mode : modes) {
+    Scene scene;
+    if (mode.second == STRATUS_MODE_MINIMUM) { // of two blobs on nothing it is nothing everywhere: of two holes it is not
+      vtkFloatArray* values = vtkFloatArray::SafeDownCast(scene.Image->GetPointData()->GetScalars());
+      for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i) {
+        values->SetValue(i, 1.0f - values->GetValue(i));
+      }
+    }
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    options.mode = mode.second;
+    const double contours[3] = { 0.6, 0.2, 0.35 };
+    options.contour_count = 3;
+    std::copy_n(contours, 3, options.contours);
+    for (int n = 0; n < 3; ++n) {
+      scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(n, contours[n]);
+    }
+    scene.Mapper->SetBlendMode(mode.first);
+    Against(stratus_mode_name(mode.second), scene, options, mode.second == STRATUS_MODE_ISOSURFACE ? 35.0 : 55.0);
+    scene.Mapper->AuditOn();
+    scene.Render();
+    CHECK(scene.Mapper->GetDifferingPixels() == 0, "%s: skipping changes the picture", stratus_mode_name(mode.second));
+  }
+}
+
+void AverageRange()
+{
+  Scene scene;
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  options.mode = STRATUS_MODE_AVERAGE;
+  options.average_range[0] = 0.3;
+  options.average_range[1] = 0.6;
+  scene.Mapper->SetBlendModeToAverageIntensity();
+  const double all = scene.Light();
+  scene.Mapper->SetAverageIPScalarRange(0.3, 0.6);
+  CHECK(scene.Light() != all, "the range of values that count changes nothing");
+  Against("average of 0.3..0.6", scene, options, 40.0); // where the range begins, some samples count or don't
+}
+
+void Contours()
+{
+  Scene scene;
+  vtkContourValues* contours = scene.Volume->GetProperty()->GetIsoSurfaceValues();
+  scene.Mapper->SetBlendModeToIsoSurface();
+  contours->SetValue(0, 0.5);
+  const double one = scene.Light();
+  contours->SetValue(1, 0.2);
+  CHECK(scene.Light() > one, "a second surface adds nothing");
+  contours->SetNumberOfContours(17);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("17 isosurface values"), "17 contours: '%s'", scene.Errors->Text.c_str());
+  contours->SetNumberOfContours(0);
+  scene.Render();
+  CHECK(scene.Errors->Has("0 contour values"), "no contours: '%s'", scene.Errors->Text.c_str());
+  contours->SetNumberOfContours(1);
+  scene.Volume->GetProperty()->SetInterpolationTypeToNearest();
+  scene.Render();
+  CHECK(scene.Errors->Has("nearest"), "nearest: '%s'", scene.Errors->Text.c_str());
+}
+
+void CropRegions()
+{
+  const std::pair<int, const char*> sets[] = { { VTK_CROP_SUBVOLUME, "subvolume" }, { VTK_CROP_FENCE, "fence" },
+    { VTK_CROP_INVERTED_FENCE, "inverted fence" }, { VTK_CROP_CROSS, "cross" }, { VTK_CROP_INVERTED_CROSS, "inverted cross" },
+    { 1 << 12, "region 12" }, { 1 << 14, "region 14" }, { 1 << 10, "region 10" }, { 1 << 16, "region 16" } };
+  for (const auto& set : sets) {
+    Scene scene;
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    options.crop = 1;
+    options.crop_regions = static_cast<uint32_t>(set.first);
+    double planes[6];
+    scene.Image->GetBounds(planes);
+    for (int a = 0; a < 3; ++a) {
+      const double low = planes[2 * a], width = planes[2 * a + 1] - low;
+      planes[2 * a] = options.crop_bounds[2 * a] = low + 0.35 * width;
+      planes[2 * a + 1] = options.crop_bounds[2 * a + 1] = low + 0.6 * width;
+    }
+    scene.Mapper->CroppingOn();
+    scene.Mapper->SetCroppingRegionPlanes(planes);
+    scene.Mapper->SetCroppingRegionFlags(set.first);
+    Against(set.second, scene, options, 48.0);
+  }
+  Scene none;
+  none.Mapper->CroppingOn();
+  none.Mapper->SetCroppingRegionFlags(0);
+  CHECK(none.Light() == 0.0 && none.Errors->Count == 0, "no region shown, and yet something is");
+}
+
+void Masks()
+{
+  Scene scene;
+  vtkNew<vtkImageData> mask;
+  mask->CopyStructure(scene.Image);
+  mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  unsigned char* bytes = static_cast<unsigned char*>(mask->GetScalarPointer());
+  for (vtkIdType i = 0; i < mask->GetNumberOfPoints(); ++i) {
+    bytes[i] = i % 33 < 16 || i / 33 % 29 > 20 ? 255 : 0;
+  }
+  const double whole = scene.Light();
+  scene.Mapper->SetMaskInput(mask);
+  CHECK(scene.Mapper->GetMaskInput() == mask, "the mask is another");
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  options.mask = bytes;
+  scene.Mapper->SetSamplingToMidpoint();
+  Against("binary mask", scene, options, 40.0);
+  const double masked = scene.Light();
+  CHECK(masked > 0.0 && masked < whole, "the mask takes nothing out");
+  std::fill_n(bytes, mask->GetNumberOfPoints(), static_cast<unsigned char>(0));
+  mask->Modified();
+  CHECK(scene.Light() == 0.0, "the mask has changed, the picture not");
+  scene.Mapper->SetMaskTypeToLabelMap();
+  scene.Render();
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("label map masks"), "label map: '%s'", scene.Errors->Text.c_str());
+  scene.Mapper->SetMaskTypeToBinary();
+  vtkNew<vtkImageData> small;
+  small->SetDimensions(5, 5, 5);
+  small->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  scene.Mapper->SetMaskInput(small);
+  scene.Render();
+  CHECK(scene.Errors->Has("5 x 5 x 5"), "another size: '%s'", scene.Errors->Text.c_str());
+  small->AllocateScalars(VTK_FLOAT, 1);
+  scene.Mapper->SetSampleDistance(0.2); // so that it is told anew
+  scene.Render();
+  CHECK(scene.Errors->Has("unsigned char"), "floats: '%s'", scene.Errors->Text.c_str());
+  scene.Mapper->SetMaskInput(nullptr);
+  CHECK(scene.Light() > 0.9 * whole, "without mask nothing is drawn");
+}
+
+void Jitter()
+{
+  Scene scene;
+  scene.Mapper->SetSampleDistance(1.5);
+  CHECK(!scene.Mapper->GetUseJittering() && scene.Mapper->GetJitterSeed() == 0, "defaults");
+  const std::vector<float> plain = scene.Picture();
+  scene.Mapper->UseJitteringOn();
+  const std::vector<float> noisy = scene.Picture();
+  CHECK(noisy != plain, "jitter changes nothing");
+  scene.Mapper->SetNumberOfThreads(3);
+  CHECK(scene.Picture() == noisy, "jitter depends on the number of threads");
+  scene.Mapper->SetJitterSeed(7);
+  CHECK(scene.Picture() != noisy, "the seed changes nothing");
+  scene.Mapper->UseJitteringOff();
+  CHECK(scene.Picture() == plain, "jitter off is not as before");
+}
+} // namespace
+
+int main()
+{
+  BlendModes();
+  AverageRange();
+  Contours();
+  CropRegions();
+  Masks();
+  Jitter();
+  return Failures ? 1 : 0;
+}
