@@ -72,7 +72,7 @@ static size_t hidden_bytes(const stratus_ray_caster* caster)
 {
   const int64_t* n = caster->volume.dimensions;
   const size_t values = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-  return (caster->hides & HIDDEN_BY_MASK ? values : 0) +
+  return (caster->hides & (HIDDEN_BY_MASK | HIDDEN_LABELS) ? values : 0) +
     (caster->hides & HIDDEN_CELLS ? stratus_ray_hidden_cells(&caster->volume, caster->hidden_by_value) : 0);
 }
 

@@ -251,7 +251,7 @@ static stratus_status update_ranges(
     int hides = 0;
     stratus_status status = make_hidden(caster->context, volume, by_value, &hidden);
     if (status == STRATUS_OK) {
-      status = stratus_ray_mask_join(caster->context, volume, options->mask, by_value, &hidden, &hides);
+      status = stratus_ray_mask_join(caster->context, volume, options->mask, options->label_count > 0, by_value, &hidden, &hides);
     }
     if (status == STRATUS_OK && !same) {
       status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
@@ -311,7 +311,8 @@ static const double* keep_points(double** end, const double* points, size_t coun
 
 static stratus_status keep_transfer(stratus_ray_caster* caster, const stratus_transfer* transfer, int count, bool dependent)
 {
-  size_t numbers = 0;
+  size_t numbers = ((size_t)count * sizeof *transfer + sizeof(double) - 1) / sizeof(double);
+  const size_t first = numbers;
   void* memory = NULL;
   for (int i = 0; i < count; ++i) {
     numbers += 2 * transfer[i].opacity_count + 4 * transfer[i].color_count + 2 * transfer[i].gradient_count;
@@ -319,7 +320,8 @@ static stratus_status keep_transfer(stratus_ray_caster* caster, const stratus_tr
   TRY(stratus_allocate(caster->context, numbers, sizeof(double), &memory));
   drop_transfer(caster);
   caster->points = memory;
-  double* end = memory;
+  caster->transfers = memory;
+  double* end = (double*)memory + first;
   for (int i = 0; i < count; ++i) {
     stratus_transfer* kept = &caster->transfers[i];
     *kept = transfer[i];
@@ -370,7 +372,7 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
     caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
   stratus_ray_modes_mark(&shown, &caster->transfer, ranges->bias, table);
   caster->shown = shown;
-  if (!same_kind || !same_mode || caster->table->shown != table->shown || caster->look_tables.components > 1) {
+  if (!same_kind || !same_mode || caster->table->shown != table->shown || stratus_ray_looks_several(caster)) {
     drop_occupancy(caster);
   }
   stratus_table_destroy(caster->table);
@@ -470,7 +472,7 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
   }
   if (!caster->occupancy) {
     const double start = stratus_now_ms();
-    if (caster->look_tables.components > 1) {
+    if (stratus_ray_looks_several(caster)) {
       TRY(stratus_ray_looks_occupancy(caster));
     } else {
       TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));

@@ -38,6 +38,8 @@ typedef struct stratus_ray_look_tables {
   size_t bytes;
   int first[4], factor_first[4]; /* in floats; factor_first -1: none */
   float factor_scale[4];         /* entries per magnitude, which is in parts of the value range */
+  stratus_table** label_tables;  /* of label 0 and on, NULL: no labels */
+  int label_tables_count, label_first;
   uint64_t range_builds, table_builds; /* the caster's, that they belong to */
 } stratus_ray_look_tables;
 
@@ -52,12 +54,12 @@ struct stratus_ray_caster {
   stratus_value_range* ranges;
   uint8_t* hidden; /* in the form that traversal reads, or NULL */
   bool hidden_by_value;
-  int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK: what `hidden` holds */
+  int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK, HIDDEN_LABELS: what `hidden` holds */
   const uint8_t* mask; /* that it was made from, or NULL */
   uint64_t mask_revision;
   double* points; /* the transfer functions', copied: opacity, then colour, then gradient opacity, of each */
   stratus_transfer transfer;     /* the first, or only, .. */
-  stratus_transfer transfers[4]; /* .. of these */
+  stratus_transfer* transfers;   /* .. of these, which stand before the points */
   int transfer_count;
   stratus_interpolation interpolation; /* with the next three: what the choice was made for */
   stratus_sampling wanted_sampling;
@@ -135,6 +137,7 @@ stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster); /* of the c
 void stratus_ray_looks_choose(
   stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent); /* after caster->table */
+bool stratus_ray_looks_several(const stratus_ray_caster* caster); /* tables, so that one map of opacity is not enough */
 bool stratus_ray_looks_show(const stratus_ray_caster* caster); /* anything at all */
 stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
 void stratus_ray_looks_release(stratus_ray_caster* caster);
@@ -142,7 +145,8 @@ void stratus_ray_looks_release(stratus_ray_caster* caster);
 /* ray_mask.c: whether the mask is the one that caster->hidden was made from; and one put before the bytes of cells (NULL: none are hidden). */
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_mask_join(
-  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool by_value, uint8_t** hidden, int* hides);
+  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden,
+  int* hides);
 /* Bytes a cell, as traversal reads them. */
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value);
 

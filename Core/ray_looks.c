@@ -13,7 +13,7 @@ stratus_status stratus_ray_looks_check(stratus_context* context, const stratus_r
 
 bool stratus_ray_looks_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
-  const bool more = options->shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1;
+  const bool more = options->shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->label_count > 0;
   return options->mode == STRATUS_MODE_COMPOSITE && more;
 }
 
@@ -66,6 +66,8 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   a->components = looks->components;
   a->dependent = caster->dependent;
+  a->label_first = looks->label_first;
+  a->label_count = looks->label_tables ? looks->label_tables_count - 1 : 0;
   a->component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
   for (int c = 0; c < 4; ++c) {
     const stratus_table* table = looks->tables[c];
@@ -77,7 +79,7 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
     a->look_scale[c] = table ? table->scale : 0.0f;
     a->look_offset[c] = table ? table->offset : 0.0f;
     a->look_last[c] = table ? (float)(table->size - 1) : 0.0f;
-    a->component_weight[c] = c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
+    a->component_weight[c] = c < looks->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
   }
 }
 

@@ -7,6 +7,8 @@
 
 /* Optical depth over a sample of what is opaque. */
 #define OPAQUE_DEPTH 16.0f
+/* Floats tell so many entries apart, less what stands before them. */
+#define LABEL_ENTRIES_MOST 16000000
 
 int stratus_volume_components(const stratus_volume* volume)
 {
@@ -23,7 +25,7 @@ stratus_volume stratus_volume_component(const stratus_volume* volume, int compon
 
 int stratus_ray_looks_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  return options->dependent ? 1 : stratus_volume_components(volume);
+  return options->label_count > 0 ? 1 + options->label_count : options->dependent ? 1 : stratus_volume_components(volume);
 }
 
 /* ---- checks */
@@ -34,6 +36,14 @@ stratus_status stratus_ray_looks_check_volume(
   const int components = stratus_volume_components(volume);
   if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d components: only composite takes more than 1",
+      stratus_mode_name(options->mode), components);
+  }
+  if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one", options->label_count,
+      options->mask ? "with" : "without");
+  }
+  if (options->label_count > 0 && (components > 1 || options->mode != STRATUS_MODE_COMPOSITE)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "labels in mode %s of a volume of %d components: only composite of 1 takes them",
       stratus_mode_name(options->mode), components);
   }
   if (options->dependent && components == 3) {
@@ -48,11 +58,25 @@ stratus_status stratus_ray_looks_check_volume(
     if (components > 1 && !options->dependent && !(weight >= 0.0 && weight <= 1.0)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
     }
+    if (options->label_count > 0 && c > 0 && transfer[c].gradient_count > 0) {
+      return stratus_fail(context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
+    }
   }
   return STRATUS_OK;
 }
 
 /* ---- ranges and choice */
+
+static void drop_label_tables(stratus_ray_caster* caster)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  for (int l = 0; l < looks->label_tables_count; ++l) {
+    stratus_table_destroy(looks->label_tables[l]);
+  }
+  stratus_release(caster->context, looks->label_tables);
+  looks->label_tables = NULL;
+  looks->label_tables_count = 0;
+}
 
 void stratus_ray_looks_release(stratus_ray_caster* caster)
 {
@@ -61,8 +85,19 @@ void stratus_ray_looks_release(stratus_ray_caster* caster)
     stratus_value_range_destroy(looks->ranges[c]);
     stratus_table_destroy(looks->tables[c]);
   }
+  drop_label_tables(caster);
   stratus_release(caster->context, looks->memory);
   memset(looks, 0, sizeof *looks);
+}
+
+static bool has_labels(const stratus_ray_caster* caster)
+{
+  return caster->look_tables.components == 1 && caster->transfer_count > 1;
+}
+
+bool stratus_ray_looks_several(const stratus_ray_caster* caster)
+{
+  return caster->look_tables.components > 1 || has_labels(caster);
 }
 
 stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster)
@@ -90,12 +125,12 @@ static const stratus_value_range* range_of(const stratus_ray_caster* caster, int
 void stratus_ray_looks_choose(stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(&caster->volume), media = stratus_ray_looks_media(&caster->volume, options);
-  if (components == 1) {
+  if (components == 1 && media == 1) {
     return;
   }
   for (int m = 0; m < media; ++m) {
     stratus_ray_choice choice;
-    stratus_ray_choose(range_of(caster, media == 1 ? components - 1 : m), voxel, transfer + m, options->interpolation,
+    stratus_ray_choose(range_of(caster, components == 1 ? 0 : media == 1 ? components - 1 : m), voxel, transfer + m, options->interpolation,
       STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
     if (m == 0 || choice.sample_distance < caster->choice.sample_distance) {
       caster->choice = choice;
@@ -128,6 +163,29 @@ static stratus_status create_table(
     STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
 }
 
+static stratus_status create_label_tables(stratus_ray_caster* caster)
+{
+  stratus_ray_look_tables* looks = &caster->look_tables;
+  void* memory = NULL;
+  drop_label_tables(caster);
+  if (!has_labels(caster)) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate_zero(caster->context, (size_t)caster->transfer_count, sizeof *looks->label_tables, &memory));
+  looks->label_tables = memory;
+  looks->label_tables_count = caster->transfer_count;
+  size_t entries = 0;
+  for (int l = 0; l < caster->transfer_count; ++l) {
+    TRY(create_table(caster, caster->transfers + l, 0, &looks->label_tables[l]));
+    entries += 2 * (size_t)looks->label_tables[l]->size;
+  }
+  if (entries > LABEL_ENTRIES_MOST) {
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d labels' functions take %zu entries, at most %d: their narrowest features ask for less",
+      caster->transfer_count - 1, entries, LABEL_ENTRIES_MOST);
+  }
+  return STRATUS_OK;
+}
+
 /* A table for each component that has one: media, and the colour that goes with a dependent opacity. */
 static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
 {
@@ -138,7 +196,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
     looks->tables[c] = NULL;
   }
   if (last == 0) {
-    return STRATUS_OK;
+    return create_label_tables(caster);
   }
   if (!dependent) {
     for (int c = 0; c <= last; ++c) {
@@ -185,6 +243,25 @@ static size_t usual_words(const stratus_table* table)
   return table->rgba ? 8 * (size_t)table->size : 4 * ((size_t)table->size + 1);
 }
 
+/* Labels: where each one's table stands, and the tables. */
+static size_t lay_out_labels(stratus_ray_look_tables* looks, size_t at, float* out)
+{
+  const size_t labels = (size_t)looks->label_tables_count;
+  looks->label_first = (int)at;
+  float* header = out ? out + at : NULL;
+  at += 4 * labels;
+  for (size_t l = 0; l < labels; ++l) {
+    const stratus_table* table = looks->label_tables[l];
+    if (out) {
+      const float place[4] = { table->scale, table->offset, (float)(table->size - 1), (float)(at / 4) };
+      memcpy(header + 4 * l, place, sizeof place);
+      memcpy(out + at, table->rgba, usual_words(table) * sizeof *out);
+    }
+    at += usual_words(table);
+  }
+  return at;
+}
+
 /* Writes all tables one after the other, where out is not NULL; returns how many words they take. */
 static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
 {
@@ -206,7 +283,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     }
     at += table ? 4 * (size_t)table->size : 0;
   }
-  for (int c = 0; c < looks->components; ++c) {
+  for (int c = 0; c < looks->components; ++c) { /* of labels, the first function's */
     const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
     const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == looks->components);
     const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
@@ -217,7 +294,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     }
     at += has ? STRATUS_LOOK_FACTORS + 2 : 0;
   }
-  return at;
+  return lay_out_labels(looks, (at + 3) / 4 * 4, out);
 }
 
 stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent)
@@ -243,6 +320,11 @@ stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool depende
 bool stratus_ray_looks_show(const stratus_ray_caster* caster)
 {
   const stratus_ray_look_tables* looks = &caster->look_tables;
+  for (int l = 0; caster->looks && l < looks->label_tables_count; ++l) {
+    if (looks->label_tables[l]->shown > 0) {
+      return true;
+    }
+  }
   if (looks->components <= 1) {
     return caster->table->shown > 0;
   }
@@ -261,9 +343,12 @@ stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster)
   const stratus_ray_look_tables* looks = &caster->look_tables;
   stratus_occupancy* whole = NULL;
   stratus_status status = STRATUS_OK;
-  for (int c = caster->dependent ? looks->components - 1 : 0; c < looks->components; ++c) {
+  const bool labels = has_labels(caster);
+  const int first = caster->dependent && !labels ? looks->components - 1 : 0, count = labels ? looks->label_tables_count : looks->components;
+  for (int c = first; c < count; ++c) {
     stratus_occupancy* part = NULL;
-    TRY_CLEANUP(stratus_occupancy_build(caster->context, range_of(caster, c), looks->tables[c], &part));
+    TRY_CLEANUP(stratus_occupancy_build(
+      caster->context, range_of(caster, labels ? 0 : c), labels ? looks->label_tables[c] : looks->tables[c], &part));
     if (whole) {
       stratus_occupancy_add(whole, part);
       stratus_occupancy_destroy(part);

@@ -6,7 +6,8 @@
 
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  return caster->mask == options->mask && (!options->mask || caster->mask_revision == options->mask_revision);
+  const bool labels = (caster->hides & HIDDEN_LABELS) != 0;
+  return caster->mask == options->mask && labels == (options->mask && options->label_count > 0) && (!options->mask || caster->mask_revision == options->mask_revision);
 }
 
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)
@@ -20,7 +21,8 @@ size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)
 }
 
 stratus_status stratus_ray_mask_join(
-  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool by_value, uint8_t** hidden, int* hides)
+  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden,
+  int* hides)
 {
   const int64_t* n = volume->dimensions;
   const size_t values = (size_t)n[0] * (size_t)n[1] * (size_t)n[2], cells = *hidden ? stratus_ray_hidden_cells(volume, by_value) : 0;
@@ -36,6 +38,6 @@ stratus_status stratus_ray_mask_join(
   }
   stratus_release(context, *hidden);
   *hidden = memory;
-  *hides |= HIDDEN_BY_MASK;
+  *hides |= labels ? HIDDEN_LABELS : HIDDEN_BY_MASK;
   return STRATUS_OK;
 }

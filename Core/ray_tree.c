@@ -14,7 +14,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 {
   const stratus_tree* tree = offered_tree(caster);
   *serves = false;
-  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || caster->look_tables.components > 1) {
+  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_looks_several(caster)) {
     /* what other modes need is not what the opacity shows */
     return STRATUS_OK;
   }

@@ -540,6 +540,9 @@ typedef struct stratus_ray_cast_options {
    * of its ends is. Not for first hits. Copied when it, its revision or the volume's data changes. */
   const uint8_t* mask;
   uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
+  int label_count;        /* composite, one component. 1..255: the mask's bytes hide nothing but are labels: l in 1..label_count has the colour and opacity of
+                           * transfer[l] (the nearest value's label; the value as it is sampled), all others those of transfer[0], whose gradient opacity
+                           * counts for all. Never pre-integrated. 0 (default): no labels. */
   int jitter;             /* 1: each ray's samples are moved along it by 0..1 sample distances, by a number from pixel and jitter_seed, so that wood grain
                            * turns into noise. Default 0. */
   uint32_t jitter_seed;   /* default 0 */

@@ -196,6 +196,9 @@ static int make_grid(const reference_scene* scene, grid* g)
     const stratus_volume view = reference_component(v, c);
     find_shown_blocks(g, &view, scene->dependent ? scene->transfer : scene->transfer + c);
   }
+  for (int l = 1; l <= scene->label_count; ++l) {
+    find_shown_blocks(g, v, scene->transfer + l);
+  }
   return 0;
 }
 

@@ -23,6 +23,8 @@ typedef struct reference_scene {
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4];
   const stratus_shading* shading; /* NULL: unlit */
   int dependent;                  /* as in stratus_ray_cast_options */
+  const uint8_t* labels;          /* likewise: the mask, where there are labels */
+  int label_count;
 } reference_scene;
 
 /* Draws into rgba (width*height*4 floats, premultiplied, bottom row first). step: length of a step in units of the shortest edge of a voxel

@@ -16,7 +16,21 @@ int reference_components(const stratus_volume* volume)
 
 int reference_has_looks(const reference_scene* scene)
 {
-  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1;
+  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 ||
+    scene->label_count > 0;
+}
+
+/* The transfer function of the nearest value's label. */
+static const stratus_transfer* function_of(const reference_scene* scene, const reference_place* place)
+{
+  const int64_t* n = scene->volume->dimensions;
+  int64_t at[3];
+  for (int a = 0; a < 3; ++a) {
+    at[a] = (int64_t)floor(place->index[a] + 0.5);
+    at[a] = at[a] < n[a] ? at[a] : n[a] - 1;
+  }
+  const int label = scene->label_count > 0 ? scene->labels[(at[2] * n[1] + at[1]) * n[0] + at[0]] : 0;
+  return scene->transfer + (label <= scene->label_count ? label : 0);
 }
 
 stratus_volume reference_component(const stratus_volume* volume, int c)
@@ -185,7 +199,7 @@ void reference_look(const reference_scene* scene, const reference_place* place, 
     whole = whole && !isnan(values[c]);
   }
   for (int c = 0; c < components && !scene->dependent; ++c) {
-    const stratus_transfer* transfer = scene->transfer + c;
+    const stratus_transfer* transfer = components > 1 ? scene->transfer + c : function_of(scene, place);
     if (!isnan(values[c])) {
       reference_color(transfer, values[c], rgb);
       add_medium(scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);

@@ -38,6 +38,8 @@
 #define voxel_gradient RAY_NAME(voxel_gradient)
 #define ray_gradient RAY_NAME(ray_gradient)
 #define ray_look RAY_NAME(ray_look)
+#define shade_labels RAY_NAME(shade_labels)
+#define label_at RAY_NAME(label_at)
 #define shade_components RAY_NAME(shade_components)
 #define add_dependent RAY_NAME(add_dependent)
 #define add_independent RAY_NAME(add_independent)
@@ -74,7 +76,7 @@ INLINE vfloat ray_value(
     fetch_cell(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
-  if (a->has_hidden) {
+  if (a->has_hidden & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
     value = ray_hide(a, hidden, x, mask, value);
   }
   return value;
@@ -283,6 +285,8 @@ INLINE void ray_load(
 #undef voxel_gradient
 #undef ray_gradient
 #undef ray_look
+#undef shade_labels
+#undef label_at
 #undef shade_components
 #undef add_dependent
 #undef add_independent

@@ -11,6 +11,7 @@
 /* has_hidden: what the hidden bytes hold: a mask, a byte a value, 0 where it takes the value out; then a byte a cell, 1 where that is hidden. */
 #define HIDDEN_CELLS 1
 #define HIDDEN_BY_MASK 2
+#define HIDDEN_LABELS 4 /* the mask's bytes are labels, and hide nothing */
 
 #define STRATUS_CONTOUR_MAX 16
 
@@ -89,9 +90,10 @@ typedef struct stratus_ray_cast_arguments {
   int factor_first[4];          /* .. its gradient opacity's first entry, likewise, -1: none; .. */
   float factor_scale[4], factor_last[4]; /* .. and that one's entries */
   float component_weight[4];
+  int label_first, label_count; /* labels 0..label_count: where their scale, offset, last entry and first entry / 4 stand, in floats. 0: no labels */
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32 + 2)
 
 #endif

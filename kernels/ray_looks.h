@@ -117,6 +117,57 @@ OUTLINE void shade_components(
     composite(a, k, shows, layer, sample->lo);
   }
 }
+
+/* Labels at index coordinates x: of the nearest value; 0 where it has no functions of its own. */
+OUTLINE vint label_at(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
+{
+  float place[3][STRATUS_WIDTH];
+  int wanted[STRATUS_WIDTH], label[STRATUS_WIDTH];
+  vi_store(wanted, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    vfloat at = x[axis];
+    if (a->clamp) {
+      at = v_clamp(at, 0.0f, a->last[axis]);
+    }
+    v_store(place[axis], at);
+  }
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    label[lane] = wanted[lane] ? (int)hidden[hidden_place(a, 1, place[0][lane], place[1][lane], place[2][lane])] : 0;
+    label[lane] = label[lane] <= a->label_count ? label[lane] : 0;
+  }
+  return vi_load(label);
+}
+
+/* One value, in the colour and opacity of its label. */
+OUTLINE void shade_labels(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  GLOBAL const float* floats = (GLOBAL const float*)table;
+  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  const vmask valid = k->live & v_finite(sample->value);
+  vfloat of[4], layer[4];
+  gather_four(floats + a->label_first, label_at(a, sample->hidden, x, valid), valid, of);
+  const vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2])) + v_to_int(of[3]);
+  gather_four(floats, entry, valid, layer);
+  const vmask shows = valid & v_lt(zero, layer[3]);
+  if (m_any(shows)) {
+    stratus_look look;
+    ray_look(a, sample->values, table, 0, k, s, shows, &look);
+    const vfloat thick = sample->weight * look.factor;
+    const vmask part = shows & v_lt(thick, v_set(1.0f));
+    if (m_any(part)) { /* as shorten_layer() */
+      vfloat depth[4];
+      gather_four(floats, entry + v_to_int(of[2]) + vi_set(1), part, depth);
+      const vfloat alpha = v_absorbed(depth[0] * thick),
+                   ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
+      for (int c = 0; c < 4; ++c) {
+        layer[c] = layer[c] * ratio;
+      }
+    }
+    light_layer(&look, layer);
+    composite(a, k, shows, layer, sample->lo);
+  }
+}
 #endif
 
 /* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
@@ -138,6 +189,8 @@ OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 #else
   if (a->components > 1) {
     shade_components(a, table, k, sample);
+  } else if (a->label_count > 0) {
+    shade_labels(a, table, k, sample);
   } else {
     const vint entry = table_entry(a, value);
     vfloat layer[4];

@@ -201,7 +201,7 @@ INLINE vfloat ray_hide_by(
     if (lm[lane]) {
       const float x0 = lx[0][lane], x1 = lx[1][lane], x2 = lx[2][lane];
       size_t masked = 0; /* bytes of the mask, which come first */
-      if (a->has_hidden & HIDDEN_BY_MASK) {
+      if (a->has_hidden & (HIDDEN_BY_MASK | HIDDEN_LABELS)) {
         masked = (size_t)a->dimensions[0] * (size_t)a->dimensions[1] * (size_t)a->dimensions[2];
       }
       if (what & HIDDEN_BY_MASK) {

@@ -163,6 +163,62 @@ static void dependent_components_are_colour_and_opacity(void** state)
   stratus_context_destroy(context);
 }
 
+/* Four labels in blobs, one of them without functions of its own. */
+static void set_labels(many* m, uint8_t* labels)
+{
+  static const double colors[3][4] = { { 0, 1, 0.2, 0.1 }, { 0, 0.1, 0.9, 0.3 }, { 0, 0.2, 0.3, 1 } };
+  const int64_t* n = m->c.volume.dimensions;
+  for (int64_t v = 0; v < n[0] * n[1] * n[2]; ++v) {
+    const int64_t x = v % n[0], y = v / n[0] % n[1], z = v / n[0] / n[1];
+    labels[v] = (uint8_t)((x / 7 + y / 5 + z / 6) % 4);
+  }
+  m->transfers[1] = m->transfers[2] = m->transfers[0];
+  m->transfers[1].color = colors[0];
+  m->transfers[2].color = colors[1];
+  m->transfers[1].color_count = m->transfers[2].color_count = 1;
+  m->transfers[2].unit_distance = 0.4;
+  m->c.options.mask = labels;
+  m->c.options.label_count = 2;
+}
+
+static void labels_have_colours_and_opacities_of_their_own(void** state)
+{
+  (void)state;
+  static uint8_t labels[24 * 22 * 26];
+  stratus_context* context = case_context("host", 2);
+  for (int type = STRATUS_UINT8; type <= STRATUS_FLOAT64; type += 4) { /* uint8, uint32, float64 */
+    many m;
+    float reference[4 * CASE_PIXELS];
+    many_create(context, &m, (stratus_type)type, 1, 24, 22, 26, 60u + (uint32_t)type);
+    draw(context, &m, &other);
+    set_labels(&m, labels);
+    m.c.volume.cell_centered = type == STRATUS_UINT32;
+    m.c.options.shade = type == STRATUS_FLOAT64;
+    m.c.options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
+    reference_scene scene = case_scene(&m.c);
+    scene.transfer = m.transfers;
+    scene.labels = labels;
+    scene.label_count = 2;
+    scene.shading = m.c.options.shade ? &m.c.options.shading : NULL;
+    draw(context, &m, &drawn);
+    assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
+    const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
+    print_message("             labels over %s: %.1f dB, %d pixels\n", case_type_names[type], db, case_lit(&drawn));
+    assert_true(case_lit(&drawn) > 200);
+    assert_true(db >= 60.0);
+    for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+      m.c.options.structure = (stratus_structure)s;
+      draw(context, &m, &other);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    }
+    m.c.options.label_count = 0; /* the same bytes as a mask, then none */
+    draw(context, &m, &other);
+    assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 static void no_structure_changes_a_bit(void** state)
 {
   (void)state;
@@ -253,6 +309,9 @@ static void what_it_cannot_show_is_refused(void** state)
   m.c.options.mode = STRATUS_MODE_MAXIMUM;
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
+  m.c.options.label_count = 2;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT); /* without a mask */
+  m.c.options.label_count = 0;
   m.c.volume.components = 5;
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   m.c.volume.components = 4;
@@ -268,6 +327,7 @@ int main(void)
     cmocka_unit_test(gradient_opacity_thins_as_the_reference_says),
     cmocka_unit_test(independent_components_mix_as_the_reference_mixes_them),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
+    cmocka_unit_test(labels_have_colours_and_opacities_of_their_own),
     cmocka_unit_test(no_structure_changes_a_bit),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
