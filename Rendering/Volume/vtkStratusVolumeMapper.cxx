@@ -60,6 +60,12 @@ void vtkStratusVolumeMapper::SetDevice(const char* device)
   }
 }
 
+// Not in the header: VTK 9.2's smart pointers give what they hold only where its class is known.
+vtkImageData* vtkStratusVolumeMapper::GetMaskInput()
+{
+  return this->MaskInput;
+}
+
 void vtkStratusVolumeMapper::SetMaskInput(vtkImageData* mask)
 {
   if (this->MaskInput != mask) {

@@ -165,7 +165,7 @@ public:
    * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of the types, label maps are refused. Default binary.
    */
   virtual void SetMaskInput(vtkImageData* mask);
-  vtkImageData* GetMaskInput() { return this->MaskInput; }
+  vtkImageData* GetMaskInput();
   vtkSetClampMacro(MaskType, int, BinaryMaskType, LabelMapMaskType);
   vtkGetMacro(MaskType, int);
   void SetMaskTypeToBinary() { this->SetMaskType(BinaryMaskType); }
