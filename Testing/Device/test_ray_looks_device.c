@@ -74,6 +74,20 @@ static void device_and_host_show_the_same(void** state)
   c.options.dependent = 1;
   compare(host, device, &c, both, "two dependent components");
   case_destroy(&c);
+
+  static uint8_t labels[26 * 24 * 28];
+  static const double green[] = { 0, 0, 1, 0 };
+  case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 7);
+  for (size_t v = 0; v < sizeof labels; ++v) {
+    labels[v] = (uint8_t)(v / 5 % 3);
+  }
+  stratus_transfer functions[2] = { c.transfer, c.transfer };
+  functions[1].color = green;
+  functions[1].color_count = 1;
+  c.options.mask = labels;
+  c.options.label_count = 1;
+  compare(host, device, &c, functions, "labels");
+  case_destroy(&c);
   stratus_context_destroy(host);
   stratus_context_destroy(device);
 }
