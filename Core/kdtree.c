@@ -179,6 +179,7 @@ static stratus_status make_result(stratus_partition* partition)
       continue;
     }
     partition->tree[n].below = partition->leaf_count;
+    TRY(stratus_kdtree_list_cells(partition, node));
     partition->largest_leaf = node->count > partition->largest_leaf ? node->count : partition->largest_leaf;
     for (int64_t i = 0; i < node->count; i++, cell++) {
       memcpy(partition->vertices + 4 * cell, node->cells[i].vertex, sizeof node->cells[i].vertex);

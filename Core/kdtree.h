@@ -65,6 +65,9 @@ stratus_status stratus_kdtree_choose_plane(const stratus_partition* partition, c
 /* ---- kdtree_cut.c: two children for a node. Cells of other nodes that share an edge with one that is cut are divided along. */
 stratus_status stratus_kdtree_cut(stratus_partition* partition, int32_t node, const stratus_kdtree_plane* plane);
 
+/* ---- kdtree_list.c: a leaf's cells near one another where they are so in space. */
+stratus_status stratus_kdtree_list_cells(const stratus_partition* partition, stratus_kdtree_node* node);
+
 /* ---- kdtree.c: room for at least `needed`, keeping `used`. */
 stratus_status stratus_kdtree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
 

@@ -351,6 +351,49 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   stratus_context_destroy(context);
 }
 
+/* How far it is from one cell's first point to the next one's, in the mean. */
+static double mean_step(const double* points, const int32_t* vertices, int64_t cells)
+{
+  double sum = 0.0;
+  for (int64_t i = 0; i + 1 < cells; i++) {
+    const double *p = points + 3 * (int64_t)vertices[4 * i], *q = p + 3 * ((int64_t)vertices[4 * i + 4] - vertices[4 * i]);
+    sum += fabs(p[0] - q[0]) + fabs(p[1] - q[1]) + fabs(p[2] - q[2]);
+  }
+  return sum / (double)cells;
+}
+
+/* Scattered cells come near one another, each once; others stay as they come. */
+static void scattered_cells_are_listed_where_they_are(void** state)
+{
+  static const int n[3] = { 20, 20, 20 };
+  (void)state;
+  stratus_context* context = make_context(2);
+  stratus_partition_options options = stratus_partition_options_default();
+  for (int depth = 0; depth < 2; depth++) {
+    for (int scattered = 0; scattered < 2; scattered++) {
+      mesh_case mesh = mesh_grid(n, 0.1, 1);
+      if (scattered) {
+        mesh_shuffle(&mesh, 3);
+      }
+      options.depth = depth;
+      stratus_partition* partition = make_partition(context, &mesh, &options);
+      stratus_partition_result cut;
+      stratus_partition_get(partition, &cut);
+      assert_pieces_fill_their_cells(&mesh, &cut);
+      assert_true(mean_step(cut.points, cut.vertices, cut.cell_count) < 4.0);
+      if (scattered) {
+        assert_true(mean_step(mesh.points, mesh.vertices, mesh.cell_count) > 15.0);
+      }
+      for (int64_t i = 1; i < cut.cell_count && !scattered; i++) {
+        assert_true(cut.leaves.leaf[i] != cut.leaves.leaf[i - 1] || cut.cells[i] >= cut.cells[i - 1] || cut.cut_cells > 0);
+      }
+      stratus_partition_destroy(partition);
+      mesh_case_free(&mesh);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
 static void options_out_of_range_are_refused_with_their_values(void** state)
 {
   static const char* says[] = { "rule 2", "depth 17", "depth -1", "planes 0", "planes 4097", "growth 0", "growth nan", "imbalance -1",
@@ -387,6 +430,7 @@ int main(void)
     cmocka_unit_test(a_mesh_that_stands_askew_is_turned_before_it_is_cut),
     cmocka_unit_test(orders_by_leaves_are_right_from_everywhere),
     cmocka_unit_test(nothing_is_cut_where_nothing_is_to_cut),
+    cmocka_unit_test(scattered_cells_are_listed_where_they_are),
     cmocka_unit_test(options_out_of_range_are_refused_with_their_values),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
