@@ -15,7 +15,7 @@
 #define SMALL_WIDTH 12
 #define SMALL_HEIGHT 10
 #define SMALL_PIXELS (SMALL_WIDTH * SMALL_HEIGHT)
-#define SMALL_SETTINGS 8
+#define SMALL_SETTINGS 13
 
 typedef struct small_scene {
   double values[SMALL_VALUES]; /* a wide type: converted on the way */
@@ -72,15 +72,39 @@ static inline stratus_status small_scene_look(stratus_context* context, small_sc
   return status == STRATUS_OK ? stratus_scene_camera(context, bounds, 1, 2, 0, (double)SMALL_WIDTH / SMALL_HEIGHT, &scene->camera) : status;
 }
 
-/* Setting 0..SMALL_SETTINGS-1: all structures, both samplings, both interpolations, an audit. */
+/* The far half taken out. */
+static inline const uint8_t* small_mask(void)
+{
+  static uint8_t mask[SMALL_VALUES];
+  for (int q = 0; q < SMALL_VALUES; ++q) {
+    mask[q] = q < SMALL_VALUES * 3 / 4;
+  }
+  return mask;
+}
+
+/* Setting 0..SMALL_SETTINGS-1: all structures, both samplings, both interpolations, an audit; then modes, masks and crop regions. */
 static inline stratus_ray_cast_options small_setting(int index)
 {
+  static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE,
+    STRATUS_MODE_COMPOSITE };
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   options.structure = (stratus_structure)(index % 5);
   options.sampling = index == 5 ? STRATUS_SAMPLING_AUTO : index % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   options.block_size = index == 3 ? 2 : 0;
   options.interpolation = index == 7 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   options.audit = index == 6;
+  if (index >= 8) {
+    options.mode = modes[index - 8];
+    options.contour_count = 1;
+    options.contours[0] = 1e6 + 0.5;
+    options.mask = index % 2 ? small_mask() : NULL;
+    options.crop = index == 12;
+    options.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE; /* all but a cell in the middle */
+    for (int side = 0; index == 12 && side < 6; ++side) {
+      options.crop_bounds[side] = side % 2 ? 3.0 : 2.0;
+    }
+    options.jitter = index == 12;
+  }
   return options;
 }
 
