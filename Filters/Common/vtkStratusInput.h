@@ -54,6 +54,8 @@ class VTK_STRATUS_PRIVATE vtkStratusTransferView
 public:
   // Of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
+  // Of a label: what the property does not have for it is component 0's; no gradient opacity.
+  bool SetLabel(vtkVolumeProperty* property, int label, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
 

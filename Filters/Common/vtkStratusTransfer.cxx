@@ -158,3 +158,34 @@ bool vtkStratusTransferView::Set(vtkVolumeProperty* property, int index, std::st
   this->Transfer.clamp = opacity->GetClamping() ? 1 : 0;
   return true;
 }
+
+bool vtkStratusTransferView::SetLabel(vtkVolumeProperty* property, int label, std::string& error)
+{
+  vtkPiecewiseFunction* opacity = property->GetLabelScalarOpacity(label);
+  vtkColorTransferFunction* color = property->GetLabelColor(label);
+  if (!this->Set(property, 0, error)) {
+    return false;
+  }
+  if (opacity) {
+    this->Opacity.clear();
+    if (!AppendPiecewise(opacity, 1, this->Opacity)) {
+      error = "the scalar opacity function of label " + std::to_string(label) + " has no points, it needs at least 1";
+      return false;
+    }
+    this->Transfer.clamp = opacity->GetClamping() ? 1 : 0;
+  }
+  if (color) {
+    this->Color.clear();
+    if (!AppendColors(color, this->Color)) {
+      error = "the colour transfer function of label " + std::to_string(label) + " has no points, it needs at least 1";
+      return false;
+    }
+  }
+  this->Transfer.opacity = this->Opacity.data();
+  this->Transfer.opacity_count = this->Opacity.size() / 2;
+  this->Transfer.color = this->Color.data();
+  this->Transfer.color_count = this->Color.size() / 4;
+  this->Transfer.gradient = nullptr;
+  this->Transfer.gradient_count = 0;
+  return true;
+}

@@ -13,8 +13,8 @@
  * interpolation, every root of the field in each cell). In composite also: light (Shade; the renderer's lights and
  * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over magnitudes in values per mean
  * spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components: independent ones are media that mix (their optical depths
- * add up, times ComponentWeight; their shading must be alike), dependent ones are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char). All
- * else (blend mode slice, label map masks, two-dimensional transfer functions, label maps) is refused by an error, and nothing is drawn.
+ * add up, times ComponentWeight; their shading must be alike), dependent ones are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char); and label
+ * maps. All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels) is refused by an error, and nothing is drawn.
  *
  * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
  * property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a cone below 90
@@ -162,7 +162,8 @@ public:
   //@{
   /**
    * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the values), 0 where
-   * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of the types, label maps are refused. Default binary.
+   * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of type label map it hides nothing: its bytes are labels, and where label l has
+   * vtkVolumeProperty::SetLabelColor() or SetLabelScalarOpacity(), values have those in place of the property's (composite, one component). Default binary.
    */
   virtual void SetMaskInput(vtkImageData* mask);
   vtkImageData* GetMaskInput();

@@ -17,6 +17,18 @@
 #include <algorithm>
 #include <cmath>
 
+namespace {
+// Of those that have functions of their own and fit in a byte.
+int HighestLabel(vtkVolumeProperty* property)
+{
+  int highest = 0;
+  for (int label : property->GetLabelMapLabels()) {
+    highest = label > 0 && label < 256 ? std::max(highest, label) : highest;
+  }
+  return highest;
+}
+} // namespace
+
 vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
 {
@@ -69,8 +81,8 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
     error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to isosurface (5) are";
   } else if (this->IsFirstHit() && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
     error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
-  } else if (mapper->MaskInput && mapper->MaskType != BinaryMaskType) {
-    error = "label map masks are not supported, only binary ones are";
+  } else if (this->HasLabels() && (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND)) {
+    error = "label maps are supported in blend mode composite (0) only, and not in first hits";
   } else if (mapper->FinalColorWindow == 0.0f || !std::isfinite(mapper->FinalColorWindow) || !std::isfinite(mapper->FinalColorLevel)) {
     error = "FinalColorWindow is " + std::to_string(mapper->FinalColorWindow) + " and FinalColorLevel " +
       std::to_string(mapper->FinalColorLevel) + ", they must be finite and the window not 0";
@@ -86,20 +98,30 @@ bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* propert
     error = "shading is not supported in blend mode " + std::to_string(blend) + ", only composite (0) and isosurface (5) are lit";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
-  } else if (property->GetNumberOfLabels() > 0) {
-    error = "label maps are not supported, only the scalar transfer functions are";
+  } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
+    error = "there are functions of labels, but no MaskInput of type label map to tell where";
+  } else if (property->HasLabelGradientOpacity()) {
+    error = "gradient opacity of labels is not supported, only the property's, for all of them";
   } else if (property->GetUseClippedVoxelIntensity()) {
     error = "UseClippedVoxelIntensity is not supported, only off is";
   }
   return error.empty();
 }
 
-// One transfer function, or one for each component that is a medium of its own.
+bool vtkStratusVolumeMapper::Internals::HasLabels() const
+{
+  return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType;
+}
+
+// One transfer function, or one for each component that is a medium of its own, or for each label.
 bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
 {
   const int components = this->Image.GetVolume().components;
   const bool composite = this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND && !this->IsFirstHit();
   const int media = property->GetIndependentComponents() ? components : 1;
+  const int labels = this->HasLabels() ? HighestLabel(property) : 0;
+  this->Transfers.resize(static_cast<size_t>(std::max(media, 1 + labels)));
+  this->Functions.resize(this->Transfers.size());
   if (components > 1 && !composite) {
     error = "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
     return false;
@@ -122,6 +144,12 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
         "'s Shade, Ambient, Diffuse, Specular and SpecularPower must be component 0's";
       return false;
     }
+  }
+  for (int l = 1; l <= labels; ++l) {
+    if (!this->Transfers[l].SetLabel(property, l, error)) {
+      return false;
+    }
+    this->Functions[l] = this->Transfers[l].GetTransfer();
   }
   return true;
 }
@@ -198,7 +226,8 @@ bool vtkStratusVolumeMapper::Internals::SetMask(stratus_ray_cast_options& option
     error = "MaskInput has " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
       " points, the input " + std::to_string(wanted[0]) + " x " + std::to_string(wanted[1]) + " x " + std::to_string(wanted[2]) + " values";
   } else {
-    options.mask = bytes->GetPointer(0);
+    options.label_count = this->HasLabels() ? static_cast<int>(this->Functions.size()) - 1 : 0;
+    options.mask = this->HasLabels() && options.label_count == 0 ? nullptr : bytes->GetPointer(0);
     options.mask_revision = std::max<uint64_t>(bytes->GetMTime(), mask->GetMTime());
   }
   return error.empty();

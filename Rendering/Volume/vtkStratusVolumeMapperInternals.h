@@ -38,8 +38,8 @@ public:
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkStratusImageView Image;
-  vtkStratusTransferView Transfers[STRATUS_COMPONENTS_MAX]; // one a component that has one ..
-  stratus_transfer Functions[STRATUS_COMPONENTS_MAX];       // .. as the core takes them
+  std::vector<vtkStratusTransferView> Transfers; // one a component that has one, or a label ..
+  std::vector<stratus_transfer> Functions;       // .. as the core takes them
   vtkStratusDisplay Display;
   std::string LastError; // told already
   double DrawMilliseconds = 0.0;
@@ -56,6 +56,7 @@ private:
   bool CheckMapper(std::string& error) const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
+  bool HasLabels() const;
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // First hits (vtkStratusVolumeMapperFirstHit.cxx).

@@ -146,7 +146,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   image.rgba8 = bytes ? this->Bytes.data() : nullptr;
   this->Renderer = renderer;
   const stratus_status status = stratus_ray_caster_render(
-    this->Caster, &this->Image.GetVolume(), this->Functions, &this->Picture.Camera, &options, &image, &this->Report);
+    this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
   this->Renderer = nullptr;
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());

@@ -75,7 +75,7 @@ void Modes()
   vtkNew<vtkColorTransferFunction> label;
   label->AddRGBPoint(0, 1, 1, 1);
   Refused(
-    "label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
+    "label functions without a label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
     [](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, nullptr); });
   Refused(
     "isosurface without values", "0 contour values",

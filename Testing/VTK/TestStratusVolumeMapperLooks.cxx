@@ -272,6 +272,69 @@ void Rgba()
   CHECK(shown > 1000 && worst < 1e-5, "%d pixels show, colours are wrong by %g", shown, worst);
 }
 
+// The right half of the image is label 1, a slab below label 7, which has no functions.
+void Labels()
+{
+  Scene scene;
+  Fine(scene);
+  vtkNew<vtkImageData> map;
+  int n[3];
+  scene.Image->GetDimensions(n);
+  map->SetDimensions(n);
+  map->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  unsigned char* labels = static_cast<unsigned char*>(map->GetScalarPointer());
+  for (vtkIdType v = 0; v < map->GetNumberOfPoints(); ++v) {
+    labels[v] = v % n[0] > n[0] / 2 ? 1 : v / (n[0] * n[1]) < 6 ? 7 : 0;
+  }
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  const std::vector<float> plain = scene.Picture();
+  scene.Mapper->SetMaskInput(map);
+  scene.Mapper->SetMaskTypeToLabelMap();
+  CHECK(scene.Picture() == plain, "labels without functions change the picture");
+  vtkNew<vtkColorTransferFunction> green;
+  green->AddRGBPoint(0.0, 0.0, 1.0, 0.0);
+  vtkNew<vtkPiecewiseFunction> thin;
+  thin->AddPoint(0.2, 0.0);
+  thin->AddPoint(1.0, 0.2);
+  property->SetLabelColor(1, green);
+  const std::vector<float> colored = scene.Picture();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  double opacity = 0.0, shown = 0.0;
+  for (size_t p = 0; p < plain.size(); p += 4) {
+    opacity = std::max(opacity, std::fabs(static_cast<double>(plain[p + 3]) - colored[p + 3]));
+    shown += colored[p + 1] > plain[p + 1] + 0.05f && colored[p] < plain[p];
+  }
+  CHECK(opacity < 1e-5 && shown > 300, "SetLabelColor: opacity changes by %g, %g pixels are greener", opacity, shown);
+  property->SetLabelScalarOpacity(1, thin);
+  scene.Render();
+
+  const double opacities[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 0.2, 0.0, 1.0, 0.2 } };
+  const double colors[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 }, { 0.0, 0.0, 1.0, 0.0 } };
+  stratus_transfer transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
+  for (int l = 0; l < 2; ++l) {
+    transfers[l].opacity = opacities[l];
+    transfers[l].opacity_count = l ? 2 : 3;
+    transfers[l].color = colors[l];
+    transfers[l].color_count = l ? 1 : 3;
+    transfers[l].unit_distance = 1.5;
+  }
+  scene.Mapper->SetSampleDistance(0.05); // labels are steps, which samples meet to the first order only
+  scene.Render();
+  const double db = ReferencePsnr(scene, [&](reference_scene& reference) {
+    reference.transfer = transfers;
+    reference.labels = labels;
+    reference.label_count = 1;
+  });
+  std::printf("labels: %.1f dB\n", db);
+  CHECK(db >= 45.0, "%.1f dB", db);
+  vtkNew<vtkPiecewiseFunction> steep;
+  steep->AddPoint(0.0, 0.0);
+  steep->AddPoint(1.0, 1.0);
+  property->SetLabelGradientOpacity(1, steep);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("gradient opacity of labels"), "%s", scene.Errors->Text.c_str());
+}
+
 void Refusals()
 {
   Scene scene;
@@ -304,6 +367,7 @@ int main()
   GradientOpacity();
   Components();
   Rgba();
+  Labels();
   Refusals();
   std::printf("%d failures\n", Failures);
   return Failures ? 1 : 0;
