@@ -349,6 +349,7 @@ input::input(context& core, const std::string& source, const std::string& array)
     }
     core.check(stratus_scene_create(core, source.c_str(), &this->scene), "scene '" + source + "'");
     this->volume = this->scene->volume;
+    this->volume.components = 1; // options tell of one transfer function: of two pollutants, the first
     this->up_axis = this->scene->up_axis;
     this->array_name = source;
     return;
