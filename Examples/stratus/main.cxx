@@ -35,7 +35,7 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   row(
     "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
   row("mode", stratus_mode_name(o.mode));
-  if (o.mode == STRATUS_MODE_COMPOSITE) {
+  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE) {
     row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
   }
   row("why", r.why);
@@ -76,11 +76,13 @@ void render(const cli::options& o)
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
   cast.mode = o.mode;
   cast.normals = o.normals;
+  std::copy(o.average.begin(), o.average.end(), cast.average_range);
+  cast.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), cast.contours);
   cast.structure = o.structure;
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   cast.sample_distance = o.sample_distance;
-  cast.shade = o.shade;
   cast.audit = o.audit;
   stratus_ray_cast_report report = {};
   stratus_ray_caster* caster = nullptr;

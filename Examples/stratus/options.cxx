@@ -41,7 +41,6 @@ What is drawn
                           or "value:r:g:b,..." with r, g, b in 0..1
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
   --nearest               nearest instead of linear interpolation
-  --shade                 light from the eye on the field's gradient (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
 From where
@@ -56,7 +55,10 @@ How
   --sample-distance D     world length between samples (default: from the data and the opacity)
   --sampling S            auto, midpoint, preintegrated (default auto)
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
-  --mode M                composite, or first-hit: what shows at all as solid voxels, lit from the eye (default composite)
+  --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
+                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface (default composite)
+  --contours V,V,...      of isosurfaces: 1 to 16 values, each in the colour and opacity that the functions give it
+  --average-range A,B     of averages: the values that count (default: all)
   --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
@@ -131,12 +133,27 @@ stratus_tree_method method_named(const std::string& text)
 
 stratus_mode mode_named(const std::string& text)
 {
-  for (stratus_mode mode : { STRATUS_MODE_COMPOSITE, STRATUS_MODE_FIRST_HIT }) {
+  std::string names;
+  for (int i = STRATUS_MODE_COMPOSITE; i <= STRATUS_MODE_ISOSURFACE; ++i) {
+    const stratus_mode mode = static_cast<stratus_mode>(i);
     if (text == stratus_mode_name(mode)) {
       return mode;
     }
+    names += std::string(i ? ", " : "") + stratus_mode_name(mode);
   }
-  throw usage("--mode: '" + text + "' is none of composite, first-hit");
+  throw usage("--mode: '" + text + "' is none of " + names);
+}
+
+std::vector<double> numbers(const std::string& text, const std::string& what, size_t least, size_t most)
+{
+  std::vector<double> values;
+  for (const std::string& word : split(text, ',')) {
+    values.push_back(number(word, what));
+  }
+  if (values.size() < least || values.size() > most) {
+    throw usage(what + ": '" + text + "' has " + std::to_string(values.size()) + format(" values, %zu..%zu are needed", least, most));
+  }
+  return values;
 }
 
 stratus_normals normals_named(const std::string& text)
@@ -169,6 +186,12 @@ void check_complete(const options& o)
     }
     if (o.command == "render" && o.output.empty()) {
       throw usage("render: where to? Give -o OUT.png");
+    }
+    if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
+      throw usage("--mode isosurface: which values? Give --contours V,V,...");
+    }
+    if (o.command == "tree" && o.mode > STRATUS_MODE_FIRST_HIT) {
+      throw usage(std::string("tree: --mode '") + stratus_mode_name(o.mode) + "' is none of composite, first-hit");
     }
     if (o.lower > o.upper) {
       throw usage(format("--lower: %g is above --upper %g", o.lower, o.upper));
@@ -205,6 +228,8 @@ options parse(int argc, char* argv[])
     { "--sample-distance", [&](const std::string& v) { o.sample_distance = positive(v, "--sample-distance"); } },
     { "--sampling", [&](const std::string& v) { o.sampling = sampling_named(v); } },
     { "--mode", [&](const std::string& v) { o.mode = mode_named(v); } },
+    { "--contours", [&](const std::string& v) { o.contours = numbers(v, "--contours", 1, STRATUS_CONTOURS_MAX); } },
+    { "--average-range", [&](const std::string& v) { o.average = numbers(v, "--average-range", 2, 2); } },
     { "--normals", [&](const std::string& v) { o.normals = normals_named(v); } },
     { "--method", [&](const std::string& v) { o.method = method_named(v); } },
     { "--lower",
@@ -228,7 +253,7 @@ options parse(int argc, char* argv[])
         o.up = v;
       } },
   };
-  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--shade", &o.shade }, { "--audit", &o.audit } };
+  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--audit", &o.audit } };
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto value = with_value.find(word);

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace cli {
 
@@ -29,7 +30,6 @@ struct options {
   int depth = 3; // sort: of the K-D tree
   bool parallel = false;
   bool nearest = false;
-  bool shade = false;
   bool audit = false;
   bool shows_samples = false; // render: how many samples each pixel took, in place of what it shows
   bool has_range = false; // tree: of values, lower..upper
@@ -37,6 +37,8 @@ struct options {
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
+  std::vector<double> contours; // isosurface
+  std::vector<double> average;  // average: none, or the range of values that count
   stratus_normals normals = STRATUS_NORMALS_FACES;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
