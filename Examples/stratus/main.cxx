@@ -83,6 +83,7 @@ void render(const cli::options& o)
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   cast.sample_distance = o.sample_distance;
+  cast.shade = o.shade;
   cast.audit = o.audit;
   stratus_ray_cast_report report = {};
   stratus_ray_caster* caster = nullptr;

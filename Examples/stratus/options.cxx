@@ -41,6 +41,7 @@ What is drawn
                           or "value:r:g:b,..." with r, g, b in 0..1
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
   --nearest               nearest instead of linear interpolation
+  --shade                 light from the eye on the field's gradient (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
 From where
@@ -253,7 +254,7 @@ options parse(int argc, char* argv[])
         o.up = v;
       } },
   };
-  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--audit", &o.audit } };
+  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--shade", &o.shade }, { "--audit", &o.audit } };
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto value = with_value.find(word);

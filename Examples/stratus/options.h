@@ -30,6 +30,7 @@ struct options {
   int depth = 3; // sort: of the K-D tree
   bool parallel = false;
   bool nearest = false;
+  bool shade = false;
   bool audit = false;
   bool shows_samples = false; // render: how many samples each pixel took, in place of what it shows
   bool has_range = false; // tree: of values, lower..upper
