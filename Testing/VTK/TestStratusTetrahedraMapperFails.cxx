@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where pictures of tetrahedra may fail, in VTK's windows: rings, gaps, interleaved parts, folds, slivers, points that are there twice or for nothing,
 // seams, views along faces, eyes on faces and points, places far away and tiny, values that are none, next to nothing to draw. Each case gives the
-// reference's picture, or a clear error.
+// reference's picture, by either method, or a clear error.
 #include "tetrahedra_scene.h"
 
 #include "vtkDoubleArray.h"
@@ -65,10 +65,15 @@ struct Case : GridScene {
   void AgreesNow(const char* what, int view, double close = Close)
   {
     this->Parts->GetPointData()->SetScalars(this->Values);
-    const std::vector<float> ours = this->GridPicture();
-    const std::vector<double> reference = TetraReference(*this, this->Parts, this->Values, false);
-    const double error = TetraError(ours, reference);
-    CHECK(error <= close, "%s, view %d: RMSE %.4f of 255, at most %g; %s", what, view, error, close, this->GridErrors->Text.c_str());
+    std::vector<double> reference;
+    for (int method : { vtkStratusTetrahedraMapper::PROJECT_METHOD, vtkStratusTetrahedraMapper::MARCH_METHOD }) {
+      this->Tetrahedra->SetMethod(method);
+      const std::vector<float> ours = this->GridPicture();
+      reference = reference.empty() ? TetraReference(*this, this->Parts, this->Values, false) : reference;
+      const double error = TetraError(ours, reference);
+      CHECK(error <= close, "%s, view %d, %s: RMSE %.4f of 255, at most %g; %s", what, view, this->Tetrahedra->GetMethodAsString(), error, close,
+        this->GridErrors->Text.c_str());
+    }
   }
 
   vtkNew<vtkUnstructuredGrid> Parts;
@@ -214,10 +219,11 @@ void ASeam()
 }
 
 // Parallel views along the axes: pixels look along edges and within faces. The whole cube is two units thick everywhere.
-void AlongFaces()
+void AlongFaces(int method)
 {
   for (int axis = 0; axis < 3; ++axis) {
     Case scene;
+    scene.Tetrahedra->SetMethod(method);
     scene.AddCubes(2, AsItIs);
     scene.Values->Fill(1.0);
     vtkCamera* camera = scene.Renderer->GetActiveCamera();
@@ -244,7 +250,7 @@ void AlongFaces()
           worst = std::max(worst, std::fabs(static_cast<double>(picture[4 * (48 * row + column) + 3]) - alpha));
         }
       }
-      CHECK(worst < 2e-6, "axis %d, shifted by %g: alpha is off by %g", axis, shift, worst);
+      CHECK(worst < 2e-6, "axis %d, shifted by %g, %s: alpha is off by %g", axis, shift, scene.Tetrahedra->GetMethodAsString(), worst);
     }
   }
 }
@@ -347,7 +353,8 @@ int main()
   Slivers();
   PointsTwiceAndForNothing();
   ASeam();
-  AlongFaces();
+  AlongFaces(vtkStratusTetrahedraMapper::MARCH_METHOD);
+  AlongFaces(vtkStratusTetrahedraMapper::PROJECT_METHOD);
   EyesInside();
   FarAwayAndTiny();
   AMatrix();
