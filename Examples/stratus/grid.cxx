@@ -53,7 +53,9 @@ void render_grid(const options& o)
   stratus_tetra_report report = {};
   stratus_tetra_caster* caster = nullptr;
   core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
-  const stratus_status status = stratus_tetra_caster_render(caster, &m.view(), &view, &camera, nullptr, &image, &report);
+  stratus_tetra_options how = stratus_tetra_options_default();
+  how.method = o.tetra_method;
+  const stratus_status status = stratus_tetra_caster_render(caster, &m.view(), &view, &camera, &how, &image, &report);
   stratus_tetra_caster_destroy(caster);
   core.check(status, "render");
 
@@ -70,8 +72,10 @@ void render_grid(const options& o)
   row("device", stratus_context_device(core));
   row("build", format("%.2f ms: cells and border %.2f, table %.2f", report.build_ms + report.table_ms, report.build_ms, report.table_ms));
   row("frame",
-    format("%.2f ms for %d x %d pixels, %s rays met the mesh", report.transform_ms + report.entries_ms + report.march_ms, o.width, o.height,
+    format("%.2f ms for %d x %d pixels, %s rays met the mesh",
+      report.transform_ms + report.entries_ms + report.march_ms + report.sort_ms + report.bin_ms + report.project_ms, o.width, o.height,
       grouped(report.rays).c_str()));
+  row("method", report.why);
   row("cells passed", grouped(report.segments) + ", in from outside " + grouped(report.entries) + " times");
   row("flat", grouped(static_cast<unsigned long long>(report.flat)) + " cells have no volume");
   if (image.samples) {

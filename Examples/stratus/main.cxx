@@ -63,6 +63,9 @@ void render(const cli::options& o)
     cli::render_grid(o);
     return;
   }
+  if (o.tetra_method != STRATUS_TETRA_METHOD_AUTO) {
+    throw cli::usage("'" + o.source + "' is no unstructured grid: --method is for grids and trees");
+  }
   cli::context core(o.device, o.threads);
   cli::input in(core, o.source, o.array);
   cli::frame frame(o);

@@ -60,6 +60,8 @@ How
                           ray, in their colour; average, additive: of opacity times value, in grey; isosurface (default composite)
   --contours V,V,...      of isosurfaces: 1 to 16 values, each in the colour and opacity that the functions give it
   --average-range A,B     of averages: the values that count (default: all)
+  --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
+                          project (default auto: what should cost less)
   --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
@@ -120,6 +122,17 @@ stratus_structure structure_named(const std::string& text)
     }
   }
   throw usage("--structure: '" + text + "' is none of auto, none, block, distance, octant, hybrid");
+}
+
+stratus_tetra_method tetra_method_named(const std::string& text)
+{
+  for (int i = STRATUS_TETRA_METHOD_AUTO; i <= STRATUS_TETRA_METHOD_PROJECT; ++i) {
+    const stratus_tetra_method method = static_cast<stratus_tetra_method>(i);
+    if (text == stratus_tetra_method_name(method)) {
+      return method;
+    }
+  }
+  throw usage("--method: '" + text + "' is none of auto, march, project");
 }
 
 stratus_tree_method method_named(const std::string& text)
@@ -232,7 +245,14 @@ options parse(int argc, char* argv[])
     { "--contours", [&](const std::string& v) { o.contours = numbers(v, "--contours", 1, STRATUS_CONTOURS_MAX); } },
     { "--average-range", [&](const std::string& v) { o.average = numbers(v, "--average-range", 2, 2); } },
     { "--normals", [&](const std::string& v) { o.normals = normals_named(v); } },
-    { "--method", [&](const std::string& v) { o.method = method_named(v); } },
+    { "--method",
+      [&](const std::string& v) {
+        if (o.command == "render") {
+          o.tetra_method = tetra_method_named(v);
+        } else {
+          o.method = method_named(v);
+        }
+      } },
     { "--lower",
       [&](const std::string& v) {
         o.lower = number(v, "--lower");

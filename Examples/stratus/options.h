@@ -37,6 +37,7 @@ struct options {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;
+  stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: of grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface
   std::vector<double> average;  // average: none, or the range of values that count
