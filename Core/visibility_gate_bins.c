@@ -56,11 +56,27 @@ static void find_box(const stratus_gates* gates, int side, const stratus_view_po
   }
 }
 
+/* The side that sees all of a face and is the only one to, -1 if there is none. */
+static int only_side(const stratus_view_point points[3])
+{
+  const double x = fabs(points->x), y = fabs(points->y), z = fabs(points->z);
+  const int side = x > y && x > z ? (points->x > 0.0 ? 0 : 1) : y > z ? (points->y > 0.0 ? 2 : 3) : points->z > 0.0 ? 4 : 5;
+  for (int i = 0; i < 3; i++) {
+    double p[3];
+    turn_to(side, points + i, p);
+    if (!(fabs(p[0]) < p[2] && fabs(p[1]) < p[2])) {
+      return -1;
+    }
+  }
+  return side;
+}
+
 void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3])
 {
-  int last = 0;
-  gate->sides = gates->parallel ? 1 : 0;
-  for (int side = 0; side < gates->sides && !gates->parallel; side++) {
+  const int only = gates->parallel ? 0 : only_side(points);
+  int last = only < 0 ? 0 : only;
+  gate->sides = (uint8_t)(only < 0 ? 0u : 1u << only);
+  for (int side = 0; side < gates->sides && only < 0; side++) {
     if (side_sees(side, points)) {
       gate->sides |= (uint8_t)(1u << side);
       last = side;

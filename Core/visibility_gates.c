@@ -14,7 +14,7 @@ void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_
   const stratus_visibility_order* order = gates->order;
   const int32_t* v = stratus_order_vertices(order, stratus_gate_cell(gates, gate));
   for (unsigned i = 0; i < 3; i++) {
-    const double* p = order->seen + 3 * (int64_t)v[(gates->faces[gate] + 1 + i) % 4];
+    const double* p = stratus_order_seen(order, v[(gates->faces[gate] + 1 + i) % 4]);
     points[i] = (stratus_view_point){ p[0], p[1], p[2] };
   }
 }

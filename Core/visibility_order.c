@@ -82,6 +82,7 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   order->folded = order->adjacency->folded_faces;
   order->inverted = order->adjacency->inverted;
   release_adjacency(order);
+  TRY(stratus_order_place_points(order));
   TRY(stratus_order_find_gaps(order));
   TRY(allocate_order(order));
   return stratus_progress(context, "visibility order", 1.0);
@@ -136,6 +137,7 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->gates);
   stratus_release(context, order->gate_bins);
   stratus_release(context, order->gate_entries);
+  stratus_release(context, order->seen_at);
   stratus_release(context, order->seen);
   stratus_release(context, order->cells);
   stratus_release(context, order->heads);

@@ -67,6 +67,7 @@ struct stratus_visibility_order {
   stratus_gate* gates; /* of the gap faces in this view */
   uint32_t *gate_bins, *gate_entries;
 
+  uint32_t* seen_at; /* of each point; NULL: its number */
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
   uint32_t* heads;  /* STRATUS_BUCKETS_MAX a thread */
@@ -94,6 +95,11 @@ static inline const int32_t* stratus_order_vertices(const stratus_visibility_ord
   return order->vertices + 4 * (int64_t)stratus_order_cell(order, place);
 }
 
+static inline double* stratus_order_seen(const stratus_visibility_order* order, int64_t point)
+{
+  return order->seen + 3 * (order->seen_at ? (int64_t)order->seen_at[point] : point);
+}
+
 static inline unsigned stratus_order_waits_for(const stratus_visibility_order* order, uint32_t cell)
 {
   return order->ordered[cell].waiting & 7u;
@@ -104,6 +110,9 @@ stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order);
 
 /* ---- visibility_seams.c: neighbours through faces that coincide but name different points. */
 stratus_status stratus_order_join_seams(stratus_visibility_order* order);
+
+/* ---- visibility_points.c: seen_at. After the cells. */
+stratus_status stratus_order_place_points(stratus_visibility_order* order);
 
 /* ---- visibility_cells.c: ordered, listed and leaf_begin. leaf NULL: there is one. */
 stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf);

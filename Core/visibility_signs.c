@@ -39,7 +39,7 @@ static void see_points(stratus_visibility_order* order, const stratus_view* view
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
   for (int64_t p = 0; p < order->point_count; p++) {
     const double* point = order->points + 3 * p;
-    double* seen = order->seen + 3 * p;
+    double* seen = stratus_order_seen(order, p);
     const double from[3] = { (point[0] - origin[0]) * scale, (point[1] - origin[1]) * scale, (point[2] - origin[2]) * scale };
     if (view->parallel) {
       seen[x_at] = from[i] - slope_i * from[k];
@@ -101,8 +101,8 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
     const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
     stratus_ordered_cell* ordered = order->ordered + cell;
     const int32_t* neighbours = ordered->neighbours;
-    const double *p0 = order->seen + 3 * (int64_t)v[0], *p1 = order->seen + 3 * (int64_t)v[1], *p2 = order->seen + 3 * (int64_t)v[2],
-                 *p3 = order->seen + 3 * (int64_t)v[3];
+    const double *p0 = stratus_order_seen(order, v[0]), *p1 = stratus_order_seen(order, v[1]), *p2 = stratus_order_seen(order, v[2]),
+                 *p3 = stratus_order_seen(order, v[3]);
     double det[4];
     unsigned after = 0, before = 0;
     face_determinants(p0, p1, p2, p3, view->parallel, det);
@@ -131,8 +131,8 @@ int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
 {
   const int32_t* v = stratus_order_vertices(order, face / 4);
   double det[4];
-  face_determinants(order->seen + 3 * (int64_t)v[0], order->seen + 3 * (int64_t)v[1], order->seen + 3 * (int64_t)v[2],
-    order->seen + 3 * (int64_t)v[3], order->view.parallel, det);
+  face_determinants(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
+    stratus_order_seen(order, v[3]), order->view.parallel, det);
   return ((det[face % 4] < -ERROR_BOUND) - (det[face % 4] > ERROR_BOUND)) * order->ordered[face / 4].side;
 }
 
@@ -140,10 +140,10 @@ double stratus_order_face_size(const stratus_visibility_order* order, uint32_t c
 {
   const int32_t* v = stratus_order_vertices(order, cell);
   double det[4], size = 1.0;
-  face_determinants(order->seen + 3 * (int64_t)v[0], order->seen + 3 * (int64_t)v[1], order->seen + 3 * (int64_t)v[2],
-    order->seen + 3 * (int64_t)v[3], order->view.parallel, det);
+  face_determinants(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
+    stratus_order_seen(order, v[3]), order->view.parallel, det);
   for (int i = 0; i < 4 && !order->view.parallel; i++) {
-    const double* p = order->seen + 3 * (int64_t)v[i];
+    const double* p = stratus_order_seen(order, v[i]);
     size *= i == face ? 1.0 : sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   }
   return size > 0.0 ? fabs(det[face]) / size : 0.0;

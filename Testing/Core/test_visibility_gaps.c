@@ -166,6 +166,65 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
   mesh_case_free(&mesh);
 }
 
+/* Points in another order, cells that name them along. */
+static void shuffle_points(mesh_case* mesh, uint32_t seed)
+{
+  int32_t* at = malloc((size_t)mesh->point_count * sizeof *at);
+  double* points = malloc((size_t)mesh->point_count * 3 * sizeof *points);
+  assert_true(at && points);
+  for (int64_t i = 0; i < mesh->point_count; i++) {
+    const int64_t j = (int64_t)(mesh_random(&seed) % (uint32_t)(i + 1));
+    at[i] = at[j];
+    at[j] = (int32_t)i;
+  }
+  for (int64_t i = 0; i < mesh->point_count; i++) {
+    memcpy(points + 3 * (int64_t)at[i], mesh->points + 3 * i, 3 * sizeof *points);
+  }
+  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+    mesh->vertices[i] = at[mesh->vertices[i]];
+  }
+  free(mesh->points);
+  free(at);
+  mesh->points = points;
+}
+
+/* Large enough that the order brings cells and points near one another itself, in one leaf and in leaves that are listed as they come. */
+static void scattered_cells_and_points_come_in_order(void** state)
+{
+  (void)state;
+  mesh_case mesh = block(20, 20, 20, (const double[3]){ 0, 0, 0 }, (const double[3]){ 3, 3, 3 }, 0.15, 1);
+  mesh = mesh_join(mesh, block(2, 3, 2, (const double[3]){ 3.05, -1, 0 }, (const double[3]){ 6, 4, 3 }, 0.1, 2));
+  mesh_shuffle(&mesh, 1);
+  shuffle_points(&mesh, 2);
+  stratus_context* context = make_context(2);
+  const stratus_mesh view = mesh_case_view(&mesh);
+  int32_t* leaf = malloc((size_t)mesh.cell_count * sizeof *leaf);
+  assert_non_null(leaf);
+  for (int64_t i = 0; i < mesh.cell_count; i++) {
+    leaf[i] = mesh.points[3 * (int64_t)mesh.vertices[4 * i]] >= 3.05;
+  }
+  const stratus_partition_node nodes[3] = { { 0, 1, 2, 0, 3.02 }, { -1, 0, 0, 0, 0 }, { -1, 1, 0, 0, 0 } };
+  const stratus_leaves leaves = { nodes, 3, 2, leaf, { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
+  for (int leaf_count = 1; leaf_count <= 2; leaf_count++) {
+    stratus_visibility_order* order = NULL;
+    int64_t pairs = 0;
+    assert_int_equal(stratus_visibility_order_create(context, &view, leaf_count == 2 ? &leaves : NULL, &order), STRATUS_OK);
+    assert_true(order->listed && order->seen_at);
+    for (int v = 0; v < 24; v += 5) {
+      const stratus_camera camera = camera_of(&mesh, v);
+      stratus_visibility_result result;
+      assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
+      assert_int_equal(result.cycles + result.forced, 0);
+      assert_int_equal(mesh_wrong_pairs(&mesh, &camera, result.cells, 60, (uint32_t)v, &pairs), 0);
+    }
+    assert_true(pairs > 300);
+    stratus_visibility_order_destroy(order);
+  }
+  free(leaf);
+  mesh_case_free(&mesh);
+  stratus_context_destroy(context);
+}
+
 /* A convex mesh has no gap, whatever its border's planes; a block beside it makes gaps of the faces that look at it. */
 static void only_faces_that_look_at_others_are_gaps(void** state)
 {
@@ -193,6 +252,7 @@ int main(void)
     cmocka_unit_test(long_cells_hide_short_ones_behind_a_gap),
     cmocka_unit_test(parts_within_hollows_of_others_are_in_order),
     cmocka_unit_test(cells_that_hide_one_another_in_a_ring_are_told),
+    cmocka_unit_test(scattered_cells_and_points_come_in_order),
     cmocka_unit_test(only_faces_that_look_at_others_are_gaps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
