@@ -121,6 +121,17 @@ else:
     check((picture() == whole).all(), "an OpenCL device draws the same bits")
     mapper.SetDevice("host")
     check((picture() == whole).all() and mapper.GetDeviceName().startswith("host"), "and so does the host again")
+check(mapper.GetMethodAsString() == "auto" and mapper.GetMethodUsedAsString() in ("march", "project"), "a method is chosen")
+check(len(mapper.GetMethodReason()) > 0, "and a reason given")
+for method, name in (mapper.SetMethodToMarch, "march"), (mapper.SetMethodToProject, "project"):
+    method()
+    drawn = picture()
+    check(mapper.GetMethodUsedAsString() == mapper.GetMethodAsString() == name and abs(drawn - whole).max() < 1e-4, "the same picture by " + name)
+    check((mapper.GetNumberOfEntries() > 0) == (name == "march"), "rays enter where they march")
+mapper.SetMethod(9)
+check(mapper.GetMethod() == mapper.PROJECT_METHOD, "methods are clamped")
+mapper.SetMethodToAuto()
+check((picture() == whole).all(), "auto again draws the same bits")
 mapper.SetBlendModeToMaximumIntensity()
 largest = picture()[height // 2]
 value = ((column(3.5) + 0.5 - width / 2) * 6 / height + 2) / n
@@ -200,7 +211,7 @@ check(picture() is None and len(errors) == 3, "an empty grid is nothing, and no 
 mapper.SetInputData(grid)
 check((picture() == whole).all(), "and a grid again")
 text = str(mapper)
-for word in "Termination", "NumberOfThreads", "Device", "Tetrahedra", "Ignored Cells", "Segments", "Entries":
+for word in "Termination", "NumberOfThreads", "Method", "Method Used", "Device", "Tetrahedra", "Ignored Cells", "Segments", "Entries":
     check(word in text, "PrintSelf tells " + word)
 
 # ---- the partition filter, the order, and VTK's projector
