@@ -905,8 +905,10 @@ typedef enum stratus_tetra_mode {
   STRATUS_TETRA_MAXIMUM    /* the largest value on a ray: its colour, at the opacity of one unit distance */
 } stratus_tetra_mode;
 
-/* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same table. They differ by the rounding
- * of floats, and where the order of cells is not exact (stratus_visibility_order): below .01 of 255 where it is. */
+/* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same sums. They differ by the rounding of
+ * floats: below .01 of 255 on the mean (root mean square). A pixel in which projection finds its cells out of order is drawn again, nearest piece
+ * first, so that no order of cells is trusted. Only where cells overlap do the ways differ: pieces in order of depth, or one way through neighbours
+ * after the other. */
 typedef enum stratus_tetra_method {
   STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it */
   STRATUS_TETRA_METHOD_MARCH,  /* rays march from cell to cell */
