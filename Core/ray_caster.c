@@ -404,10 +404,6 @@ static stratus_structure choose_structure(
     snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
     return wanted;
   }
-  if (share > OCCUPIED_LARGEST && stratus_ray_modes_extreme(&caster->shown)) {
-    snprintf(why, capacity, "block: %.3g %% occupied, but blocks that hold nothing better than a ray has are passed", 100.0 * share);
-    return STRATUS_STRUCTURE_BLOCK;
-  }
   if (share > OCCUPIED_LARGEST) {
     snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
     return STRATUS_STRUCTURE_NONE;

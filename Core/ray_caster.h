@@ -113,7 +113,6 @@ void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double vo
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
 /* Marks the entries that the mode can't do without as those that show. */
 void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table);
-bool stratus_ray_modes_extreme(const stratus_ray_shown* shown);
 /* Puts what each block holds at best behind the map's bytes, where the mode asks for it. */
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map);
 void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);

@@ -153,11 +153,6 @@ void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transf
   }
 }
 
-bool stratus_ray_modes_extreme(const stratus_ray_shown* shown)
-{
-  return is_extreme(shown->mode);
-}
-
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map)
 {
   const stratus_value_range* ranges = caster->ranges;
