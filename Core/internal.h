@@ -106,6 +106,9 @@ typedef struct stratus_table {
 
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
   stratus_sampling sampling, double sample_distance, stratus_table** table);
+/* Of at least so many entries, 1..65536. */
+stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+  stratus_sampling sampling, double sample_distance, int entries, stratus_table** table);
 void stratus_table_destroy(stratus_table* table);
 /* The function at one value: colour, not multiplied by it, and opacity. */
 void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4]);

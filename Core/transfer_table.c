@@ -130,9 +130,9 @@ static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
   }
 }
 
-static int table_size(const stratus_transfer* transfer, double range, stratus_sampling sampling)
+static int table_size(const stratus_transfer* transfer, double range, int least)
 {
-  int size = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
+  int size = least;
   const double wanted = range > 0.0 ? ENTRIES_A_FEATURE * range / narrowest_feature(transfer, range) : 0.0;
   while (size < MOST_ENTRIES && size < wanted) {
     size *= 2;
@@ -231,12 +231,19 @@ static void fill_next_shown(stratus_table* table)
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
   stratus_sampling sampling, double sample_distance, stratus_table** out)
 {
+  const int entries = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
+  return stratus_table_create_fine(context, transfer, bias, lo, hi, sampling, sample_distance, entries, out);
+}
+
+stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+  stratus_sampling sampling, double sample_distance, int entries, stratus_table** out)
+{
   stratus_status status = STRATUS_OK;
   stratus_table* table = NULL;
   void* memory = NULL;
   double from = (double)lo + bias, to = (double)hi + bias;
   table_span(transfer, &from, &to);
-  const int size = table_size(transfer, to - from, sampling);
+  const int size = table_size(transfer, to - from, entries);
   const double width = (to - from) / (size - 1);
 
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *table, &memory));
