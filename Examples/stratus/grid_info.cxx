@@ -163,7 +163,7 @@ void cli::print_grid(const options& o)
       "'" + m.array_name + "' on " + (m.view().cell_values ? "cells" : "points") + ", " + count(report.shown_cells) + " of " +
         count(report.cells) + " tetrahedra" + (report.shown_cells < report.cells ? ", the others hidden or with values that are not finite" : ""));
     row("opacity", look.origin);
-    row("method", format("%s, at %d x %d pixels; ", stratus_tetra_method_name(report.method), o.width, o.height) + report.why);
+    row("method", report.why + format(", at %d x %d pixels", o.width, o.height));
   } catch (const failure& reason) {
     if (!o.array.empty()) { // asked for
       throw;
