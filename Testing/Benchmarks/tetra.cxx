@@ -22,9 +22,10 @@ const char* const help = R"(stratus-bench tetra [options]
   --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice), or a file of
                             tetrahedra with point scalars; default: the four
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
-  --method M,...            stratus:auto|march|project, vtk:projected, vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk);
+  --method M,...            stratus:auto|march|project, stratus:march@device (the first OpenCL device), vtk:projected,
+                            vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk);
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the
-                            paper's rule), vtk:depthsort (default: all)
+                            paper's rule), vtk:depthsort (default: all but @device)
   --size N                  N x N pixels (default 512)
   --repeats N               frames a view and method (default 3); rounds of sorters
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
@@ -42,6 +43,7 @@ of RGBA in 0..255 over the pixels that either shows, against a march in double p
 changes with steps of four times the length. sort_ms: median over the 8 views, signs and cut cells included, build_ms (neighbours; VTK: centres)
 apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over 24 views: 6 directions (3 along axes) x parallel,
 perspective, near, inside. cycles are the sum over those. bytes: the core's own after the first picture or order, peak_bytes: at most until then.
+VTK's mappers of tetrahedra take opacity for attenuation: they are given functions that mean the same to them.
 )";
 
 struct options {
@@ -72,7 +74,9 @@ void check(options& o)
   known.insert(known.end(), tetra_sorters().begin(), tetra_sorters().end());
   o.meshes = o.meshes.empty() ? std::vector<std::string>{ "bluntfin", "post", "holes", "wavelet" } : o.meshes;
   o.functions = o.functions.empty() ? tetra_functions() : o.functions;
-  o.methods = o.methods.empty() ? known : o.methods;
+  if (o.methods.empty()) { // of devices only where asked for
+    std::copy_if(known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
+  }
   for (const std::string& method : o.methods) {
     if (!has(known, method)) {
       throw failure("unknown method " + method + "; --help tells more");
@@ -242,7 +246,11 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
       }
       add_more(scene, r.method, r.more, rows);
       if (!sorter_of(r.method).empty()) {
-        add_more(scene, r.method, orders[sorter_of(r.method)], rows);
+        sorter_metrics order = orders[sorter_of(r.method)];
+        for (const auto& m : r.more) { // a picture's own come before its order's
+          order.erase(m.first);
+        }
+        add_more(scene, r.method, order, rows);
       }
     }
     for (const std::string& s : sorters) {

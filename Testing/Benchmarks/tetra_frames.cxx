@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace bench {
 
@@ -32,9 +33,11 @@ constexpr double slow_ms = 1500.0; // frames that take longer are drawn once a v
 
 using mapper_pointer = vtkSmartPointer<vtkUnstructuredGridVolumeMapper>;
 
-mapper_pointer make_march(const tetra_mesh& mesh)
+mapper_pointer make_stratus(const tetra_mesh& mesh, stratus_tetra_method method, const char* device)
 {
   auto mapper = vtkSmartPointer<vtkStratusTetrahedraMapper>::New();
+  mapper->SetMethod(static_cast<int>(method));
+  mapper->SetDevice(device);
   mapper->SetInputData(mesh.grid);
   return mapper;
 }
@@ -84,17 +87,41 @@ mapper_pointer make_ray_cast(const tetra_mesh& mesh)
 }
 
 // A line a method.
-const struct {
+const struct recipe {
   const char* name;
-  mapper_pointer (*make)(const tetra_mesh& mesh);
+  mapper_pointer (*make)(const tetra_mesh& mesh); // nullptr: ours
   const char* sorter;
+  stratus_tetra_method method;
+  const char* device;
 } recipes[] = {
-  { "stratus:march", make_march, "" },
-  { "vtk:projected", make_projected, "vtk:depthsort" },
-  { "vtk:projected+stratus-sort", make_projected_leaves, "stratus:sort" },
-  { "vtk:projected+stratus-sort-1", make_projected_one_leaf, "stratus:sort-1" },
-  { "vtk:raycast", make_ray_cast, "" },
+  { "stratus:auto", nullptr, "", STRATUS_TETRA_METHOD_AUTO, "host" },
+  { "stratus:march", nullptr, "", STRATUS_TETRA_METHOD_MARCH, "host" },
+  { "stratus:project", nullptr, "stratus:sort-1", STRATUS_TETRA_METHOD_PROJECT, "host" },
+  { "stratus:march@device", nullptr, "", STRATUS_TETRA_METHOD_MARCH, "0" },
+  { "vtk:projected", make_projected, "vtk:depthsort", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:projected+stratus-sort", make_projected_leaves, "stratus:sort", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:projected+stratus-sort-1", make_projected_one_leaf, "stratus:sort-1", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:raycast", make_ray_cast, "", STRATUS_TETRA_METHOD_AUTO, "" },
 };
+
+const recipe* find(const std::string& name)
+{
+  const auto found = std::find_if(std::begin(recipes), std::end(recipes), [&](const recipe& r) { return name == r.name; });
+  return found == std::end(recipes) ? nullptr : found;
+}
+
+// nullptr, said loudly, where there is no device.
+mapper_pointer make_mapper(const tetra_mesh& mesh, const recipe& r)
+{
+  if (r.make) {
+    return r.make(mesh);
+  }
+  if (std::string(r.device) == "0" && stratus_device_count() == 0) {
+    std::fprintf(stderr, "%s is LEFT OUT: there is no OpenCL device\n", r.name);
+    return nullptr;
+  }
+  return make_stratus(mesh, r.method, r.device);
+}
 
 // VTK's mappers of tetrahedra take opacity for attenuation, where those of images, and ours, take it for what a unit distance absorbs. A function
 // that means the same to them: opacity -ln(1 - opacity), as far as their 1 reaches by a shorter unit distance. Colours get the same points, for the
@@ -234,8 +261,8 @@ void check_drawn(const frame_result& r, int view)
   }
 }
 
-// Bytes that our mappers' picture rests on, without the grid and the window.
-void add_bytes(const tetra_mesh& mesh, const transfer& function, int size, sorter_metrics& m)
+// Bytes that a picture of ours rests on, without the grid and the window, and what it was made of.
+void add_bytes(const tetra_mesh& mesh, const transfer& function, stratus_tetra_method method, int size, sorter_metrics& m)
 {
   counted_context counted(0);
   const size_t before = counted.live();
@@ -244,8 +271,10 @@ void add_bytes(const tetra_mesh& mesh, const transfer& function, int size, sorte
   std::vector<float> rgba(4 * static_cast<size_t>(size) * static_cast<size_t>(size));
   stratus_tetra_caster* made = nullptr;
   stratus_tetra_report report;
+  stratus_tetra_options options = stratus_tetra_options_default();
   stratus_camera camera;
   stratus_image image = {};
+  options.method = method;
   image.width = image.height = size;
   image.rgba = rgba.data();
   if (stratus_tetra_caster_create(counted, &made) != STRATUS_OK ||
@@ -253,13 +282,14 @@ void add_bytes(const tetra_mesh& mesh, const transfer& function, int size, sorte
     throw failure(stratus_context_message(counted));
   }
   const std::unique_ptr<stratus_tetra_caster, decltype(&stratus_tetra_caster_destroy)> caster(made, &stratus_tetra_caster_destroy);
-  if (stratus_tetra_caster_render(made, &view, &t, &camera, nullptr, &image, &report) != STRATUS_OK) {
+  if (stratus_tetra_caster_render(made, &view, &t, &camera, &options, &image, &report) != STRATUS_OK) {
     throw failure(stratus_context_message(counted));
   }
   const auto after = static_cast<double>(counted.live() - before), peak = static_cast<double>(counted.peak() - before);
   const auto cells = static_cast<double>(view.cell_count);
   m["cells"] = { cells, "1" };
   m["build_ms"] = { report.build_ms, "ms" };
+  m["segments"] = { static_cast<double>(report.segments), "1" };
   m["bytes"] = { after, "B" };
   m["peak_bytes"] = { peak, "B" };
   m["bytes_per_cell"] = { after / cells, "B" };
@@ -281,12 +311,8 @@ const std::vector<std::string>& tetra_mappers()
 
 std::string sorter_of(const std::string& method)
 {
-  for (const auto& r : recipes) {
-    if (method == r.name) {
-      return r.sorter;
-    }
-  }
-  return "";
+  const recipe* r = find(method);
+  return r ? r->sorter : "";
 }
 
 std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh& mesh, const transfer& function,
@@ -296,13 +322,11 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
   std::vector<mapper_pointer> mappers;
   std::vector<frame_result> results;
   for (const std::string& method : methods) {
-    for (const auto& r : recipes) {
-      if (method == r.name) {
-        mappers.push_back(r.make(mesh));
-        s.add(mappers.back());
-        results.emplace_back();
-        results.back().method = method;
-      }
+    if (const mapper_pointer mapper = make_mapper(mesh, *find(method))) {
+      mappers.push_back(mapper);
+      s.add(mapper);
+      results.emplace_back();
+      results.back().method = method;
     }
   }
   for (size_t m = 0; m < mappers.size(); ++m) {
@@ -329,8 +353,9 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
   }
   for (size_t m = 0; m < mappers.size(); ++m) {
     results[m].frame_ms = median(frames[m]);
-    if (results[m].method.rfind("stratus:", 0) == 0) {
-      add_bytes(mesh, function, size, results[m].more);
+    const recipe* r = find(results[m].method);
+    if (!r->make && std::string(r->device) == "host") {
+      add_bytes(mesh, function, r->method, size, results[m].more);
     }
   }
   return results;
