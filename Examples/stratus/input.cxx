@@ -212,7 +212,8 @@ vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
   listening listener;
   vtkSmartPointer<vtkAlgorithm> reader = choose_reader(path);
   if (!reader) {
-    throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) and no grid (.vtu .pvtu .vtk .node .ele)");
+    throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
+      "and no grid (.vtu .pvtu .vtk .node .ele)");
   }
   reader->Update();
   const std::string heard = listener.heard();
