@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#define CELLS_PER_BUCKET 8
+#define CELLS_PER_BUCKET 32
 #define STEPS_PER_CELL 64 /* that searching for cycles may take, before the rest goes by distance */
 
 typedef struct leaf_peel {
