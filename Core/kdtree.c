@@ -88,6 +88,16 @@ static stratus_status see_in_frame(stratus_partition* partition, int rotation)
   return STRATUS_OK;
 }
 
+/* Of the points that count: others may lie anywhere. */
+static double largest_coordinate(const stratus_mesh* mesh)
+{
+  double largest = 0.0;
+  for (int64_t i = 0; i < 12 * mesh->cell_count; i++) {
+    largest = fmax(largest, fabs(mesh->points[3 * (int64_t)mesh->vertices[i / 3] + i % 3]));
+  }
+  return largest;
+}
+
 static stratus_status take_mesh(stratus_partition* partition, const stratus_mesh* mesh)
 {
   stratus_context* context = partition->context;
@@ -110,6 +120,7 @@ static stratus_status take_mesh(stratus_partition* partition, const stratus_mesh
     root->cells[i].origin = (int32_t)i;
   }
   root->count = mesh->cell_count;
+  partition->tolerance = STRATUS_PLANE_TOLERANCE * largest_coordinate(mesh);
   return see_in_frame(partition, 0);
 }
 

@@ -28,6 +28,7 @@ struct stratus_partition {
 
   double* points;
   double* along; /* the points in the frame; `points` itself while the frame is the identity */
+  double tolerance; /* points so near a plane are on it */
   size_t point_capacity, along_capacity;
   int64_t point_count, old_points;
   int32_t* ends;
@@ -50,6 +51,13 @@ typedef struct stratus_kdtree_plane {
   double value;
   double growth, imbalance; /* beta, alpha */
 } stratus_kdtree_plane;
+
+/* How far a point is above a plane, 0 if it is on it: a point's own business, so that all cells and faces at it agree. */
+static inline double stratus_kdtree_above(double coordinate, double value, double tolerance)
+{
+  const double above = coordinate - value;
+  return fabs(above) <= tolerance ? 0.0 : above;
+}
 
 /* Pieces below and above a plane of a cell with so many vertices below and above it: 0 and 0 of a cell that is not cut. */
 static inline void stratus_kdtree_pieces(int below, int above, int* pieces_below, int* pieces_above)

@@ -24,7 +24,8 @@ typedef struct cut_task {
 
 static double side_of(const cut_task* task, int32_t point)
 {
-  return task->partition->along[3 * (int64_t)point + task->plane->axis] - task->plane->value;
+  const stratus_partition* partition = task->partition;
+  return stratus_kdtree_above(partition->along[3 * (int64_t)point + task->plane->axis], task->plane->value, partition->tolerance);
 }
 
 static bool crosses(const cut_task* task, const int32_t v[4])
@@ -222,9 +223,15 @@ static stratus_status divide_beside(cut_task* task, stratus_kdtree_node* node)
   return STRATUS_OK;
 }
 
-static bool boxes_touch(const double p[6], const double q[6])
+/* Cells may reach out of their boxes by the tolerance. */
+static bool boxes_touch(const double p[6], const double q[6], double tolerance)
 {
-  return p[0] <= q[1] && q[0] <= p[1] && p[2] <= q[3] && q[2] <= p[3] && p[4] <= q[5] && q[4] <= p[5];
+  for (int a = 0; a < 6; a += 2) {
+    if (p[a] - 2.0 * tolerance > q[a + 1] || q[a] - 2.0 * tolerance > p[a + 1]) {
+      return false;
+    }
+  }
+  return true;
 }
 
 static stratus_status hand_down(cut_task* task, const stratus_kdtree_node* node, stratus_kdtree_node* below, stratus_kdtree_node* above)
@@ -259,7 +266,7 @@ static stratus_status cut_node(cut_task* task, int32_t number)
   TRY(make_edge_table(task, crossing));
   TRY(cut_edges(task, node));
   for (int32_t n = 0; n < partition->node_count && crossing > 0; n++) {
-    if (n != number && partition->nodes[n].plane.axis < 0 && boxes_touch(node->box, partition->nodes[n].box)) {
+    if (n != number && partition->nodes[n].plane.axis < 0 && boxes_touch(node->box, partition->nodes[n].box, partition->tolerance)) {
       TRY(divide_beside(task, partition->nodes + n));
     }
   }

@@ -22,13 +22,14 @@ static double coordinate(const stratus_partition* partition, int axis, int32_t p
   return partition->along[3 * (int64_t)point + axis];
 }
 
-/* The first candidate that is > value (or >= it). */
-static int find_candidate(const candidate_set* set, double value, bool greater)
+/* The first candidate that the coordinate is below, or is not above. */
+static int find_candidate(const candidate_set* set, double x, double tolerance, bool below)
 {
   int low = 0, high = set->count;
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (set->values[middle] < value || (greater && set->values[middle] == value)) {
+    const double above = stratus_kdtree_above(x, set->values[middle], tolerance);
+    if (above > 0.0 || (below && above == 0.0)) {
       low = middle + 1;
     } else {
       high = middle;
@@ -40,6 +41,7 @@ static int find_candidate(const candidate_set* set, double value, bool greater)
 /* below: first the change from candidate to candidate of cells that are wholly below; above: the same from the other end. */
 static void count_sides(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, candidate_set* set)
 {
+  const double tolerance = partition->tolerance;
   memset(set->below, 0, (size_t)(set->count + 1) * sizeof *set->below);
   memset(set->above, 0, (size_t)(set->count + 1) * sizeof *set->above);
   memset(set->added, 0, (size_t)(set->count + 1) * sizeof *set->added);
@@ -51,14 +53,15 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
       high = fmax(high, x[v]);
     }
     /* A cell within the plane is below it. */
-    const int first_cut = find_candidate(set, low, true), first_below = find_candidate(set, high, false);
+    const int first_cut = find_candidate(set, low, tolerance, true), first_below = find_candidate(set, high, tolerance, false);
     set->below[first_below]++;
     set->above[first_cut < first_below ? first_cut : first_below]++;
     for (int c = first_cut; c < first_below; c++) {
       int below = 0, above = 0, pieces_below, pieces_above;
       for (int v = 0; v < 4; v++) {
-        below += x[v] < set->values[c];
-        above += x[v] > set->values[c];
+        const double side = stratus_kdtree_above(x[v], set->values[c], tolerance);
+        below += side < 0.0;
+        above += side > 0.0;
       }
       stratus_kdtree_pieces(below, above, &pieces_below, &pieces_above);
       set->added[c] += pieces_below + pieces_above - 1;

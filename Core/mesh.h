@@ -5,6 +5,9 @@
 
 #include "internal.h"
 
+/* Of the largest coordinate: what lies nearer to a partition's plane lies on it. Some roundings of a point that is computed to be there. */
+#define STRATUS_PLANE_TOLERANCE 0x1p-46
+
 /* Face f of a cell is opposite its vertex f. neighbours[4*cell + f]: the cell on the other side, -1 at the border. A face that more than two
  * cells share, or two on the same side, is a border to all of them (counted). A cell that names a point twice has no neighbours; what lies on both
  * sides of it has. Threaded; the same at any thread count. */

@@ -791,8 +791,8 @@ STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const st
 /* ---------------------------------------------------------------- partition of a mesh
  * A mesh cut along planes into the leaves of a K-D tree (Li et al. 2012, section 2), so that each cell lies in one leaf and leaves can be
  * sorted apart. Points keep their numbers; a point on a cut edge comes behind them, once, whoever asks for it: pieces of neighbours meet in
- * the same points and faces. A point that lies on a plane is not cut, and a cell that
- * has a volume leaves no piece without one. */
+ * the same points and faces. A point within 2^-46 of the cells' largest coordinate of a plane lies on it, for all cells alike: it is not cut
+ * off, stays where it is, and its cells reach over the plane by so much. A cell that has a volume leaves no piece without one. */
 
 typedef enum stratus_partition_rule {
   STRATUS_PARTITION_MEDIAN, /* of the planes through the mesh's own points between the 40 % and the 60 % quantile, the one that cuts fewest cells */
@@ -858,7 +858,8 @@ STRATUS_API void stratus_partition_get(const stratus_partition* partition, strat
 /* ---------------------------------------------------------------- visibility order
  * The cells of a mesh in an order in which none hides one before it. Which of two neighbours lies in front follows from the side of their
  * face on which the eye is: in double where its rounding cannot matter, else in exact arithmetic. So an order is exact where relations pass
- * through faces; cells that share none (across a gap, a hollow, between parts) are kept in order by taking the nearest first, and by leaves.
+ * through faces. Cells on both sides of a gap are ordered by their border faces where these cover one another in the view (nearest first only;
+ * layers crosses gaps as it comes). Leaves are in order by their planes.
  * Cells without volume pass relations on; folded ones (two neighbours on the same side of a face) count as not sharing it. Cells with
  * coincident faces count as sharing them, even if they name different points. */
 
@@ -870,7 +871,7 @@ typedef enum stratus_peeling {
 } stratus_peeling;
 
 /* Borrows the mesh (points, vertices) and what `leaves` points at, for as long as the order lives. leaves NULL: one leaf. A cell that leaves
- * its leaf's box is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
+ * its leaf's box, by more than a partition's cells may, is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
 STRATUS_API stratus_status stratus_visibility_order_create(
   stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** order);
 STRATUS_API void stratus_visibility_order_destroy(stratus_visibility_order* order);
@@ -879,7 +880,8 @@ typedef struct stratus_visibility_result {
   const uint32_t* cells;    /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
   int64_t count;
   int layers;               /* peeling layers: of the leaf that has most; else 0 */
-  int64_t cycles;           /* found, and broken where the face between two of them is seen smallest */
+  int64_t cycles;           /* found, and broken where the face between two of them is seen smallest; rings across gaps count, too, unless
+                             * one through faces was broken in that leaf */
   int64_t forced;           /* cells that came by distance alone, as cycles were too many to follow */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */

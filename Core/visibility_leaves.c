@@ -87,7 +87,8 @@ static stratus_status check_cells(const stratus_visibility_order* order, const s
   for (int i = 0; i < 6; i++) {
     size = fmax(size, fabs(order->bounds[i]));
   }
-  const double slack = frame_is_identity(leaves->frame) ? 0.0 : FRAME_SLACK * size;
+  const bool turned = !frame_is_identity(leaves->frame);
+  const double slack = (turned ? FRAME_SLACK : STRATUS_PLANE_TOLERANCE) * size;
   int64_t wrong = INT64_MAX;
 #pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(min : wrong)
   for (int64_t cell = 0; cell < order->cell_count; cell++) {
@@ -96,7 +97,7 @@ static stratus_status check_cells(const stratus_visibility_order* order, const s
     for (int i = 0; i < 12 && right; i++) {
       const double* point = order->points + 3 * (int64_t)order->vertices[4 * cell + i / 3];
       const double* box = boxes + 6 * (int64_t)leaf + 2 * (i % 3);
-      const double x = slack == 0.0 ? point[i % 3] : frame_coordinate(leaves->frame, i % 3, point);
+      const double x = turned ? frame_coordinate(leaves->frame, i % 3, point) : point[i % 3];
       right = x >= box[0] - slack && x <= box[1] + slack;
     }
     wrong = !right && cell < wrong ? cell : wrong;
