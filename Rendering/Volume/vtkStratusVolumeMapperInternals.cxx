@@ -11,6 +11,7 @@
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkShaderProperty.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -90,6 +91,18 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
   return error.empty();
 }
 
+// What the prop and the renderer may ask of a mapper of volumes beside the property.
+bool vtkStratusVolumeMapper::Internals::CheckScene(vtkRenderer* renderer, vtkVolume* prop, std::string& error) const
+{
+  vtkShaderProperty* shaders = prop->GetShaderProperty();
+  if (renderer->GetUseDepthPeeling() && renderer->GetUseDepthPeelingForVolumes()) {
+    error = "depth peeling of volumes is not supported, only UseDepthPeelingForVolumesOff";
+  } else if (shaders && (shaders->GetNumberOfShaderReplacements() > 0 || shaders->HasFragmentShaderCode() || shaders->HasVertexShaderCode())) {
+    error = "shaders of the prop's own are not supported, there is none that they could change";
+  }
+  return error.empty();
+}
+
 bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
   const int blend = this->Mapper->BlendMode;
@@ -162,7 +175,9 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   }
   vtkImageData* image = vtkImageData::SafeDownCast(mapper->GetInput());
   if (!image) {
-    error = "there is no input, a vtkImageData is needed";
+    vtkDataObject* input = mapper->GetDataObjectInput();
+    error = input ? std::string("an input of class ") + input->GetClassName() + " is not supported, only vtkImageData is"
+                  : std::string("there is no input, a vtkImageData is needed");
     return false;
   }
   if (image->GetNumberOfPoints() < 1) {
@@ -236,7 +251,9 @@ bool vtkStratusVolumeMapper::Internals::SetMask(stratus_ray_cast_options& option
 // What means and isosurfaces are told beside the transfer function.
 bool vtkStratusVolumeMapper::Internals::SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
-  std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+  if (options.mode == STRATUS_MODE_AVERAGE) {
+    std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+  }
   if (options.mode != STRATUS_MODE_ISOSURFACE) {
     return true;
   }
@@ -265,7 +282,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.sampling = static_cast<stratus_sampling>(mapper->Sampling);
   options.interpolation =
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  options.sample_distance = mapper->SampleDistance > 0.0 ? mapper->SampleDistance : 0.0;
+  options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // what is no number is refused
   options.termination = mapper->Termination;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.block_size = mapper->BlockSize;

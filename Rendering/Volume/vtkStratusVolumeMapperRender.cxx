@@ -157,9 +157,10 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
   stratus_ray_cast_options options;
-  if (!this->CheckMapper(error) || !this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, error) ||
-    !this->SetOptions(prop->GetProperty(), options, error) || !this->SetShading(renderer, prop->GetProperty(), options, error) ||
-    !this->PrepareContext(error)) {
+  vtkVolumeProperty* property = prop->GetProperty();
+  if (!this->CheckMapper(error) || !this->CheckScene(renderer, prop, error) || !this->CheckProperty(property, error) ||
+    !this->PrepareInput(prop, error) || !this->SetOptions(property, options, error) ||
+    !this->SetShading(renderer, property, options, error) || !this->PrepareContext(error)) {
     return false;
   }
   // Checked here too, because the picture's rectangle already relies on it.

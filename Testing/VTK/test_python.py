@@ -61,9 +61,9 @@ check(numpy.isfinite(vtk_to_numpy(last.GetPointData().GetArray("Depth")).reshape
 
 errors = []
 mapper.AddObserver("ErrorEvent", lambda *_: errors.append(1))
-volume.GetProperty().ShadeOn()
+mapper.SetBlendModeToSlice()
 window.Render()
-check(len(errors) == 1, "shading is refused by one error")
+check(len(errors) == 1, "what is not supported is refused by one error")
 
 distances = stratus.vtkStratusDistanceMapFilter()
 distances.SetInputData(image)

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The setters that name one choice each do what the choice by number does, and every number out of its range becomes the nearest within it.
+#include "mapper_testing.h"
+
+#include <limits>
+
+namespace {
+using Mapper = vtkStratusVolumeMapper;
+
+void Structures()
+{
+  Scene scene(64, 48);
+  const std::pair<void (Mapper::*)(), const char*> choices[] = { { &Mapper::SetStructureToNone, "none" },
+    { &Mapper::SetStructureToBlock, "block" }, { &Mapper::SetStructureToDistance, "distance" }, { &Mapper::SetStructureToOctant, "octant" },
+    { &Mapper::SetStructureToHybrid, "hybrid" } };
+  for (const auto& choice : choices) {
+    (scene.Mapper->*choice.first)();
+    scene.Render();
+    CHECK(std::string(scene.Mapper->GetStructureUsedAsString()) == choice.second, "%s: %s is used", choice.second,
+      scene.Mapper->GetStructureUsedAsString());
+    CHECK((scene.Mapper->GetSamplesSkipped() > 0) == (choice.second != std::string("none")), "%s: %llu samples skipped", choice.second,
+      static_cast<unsigned long long>(scene.Mapper->GetSamplesSkipped()));
+  }
+  scene.Mapper->SetStructureToAuto();
+  CHECK(std::string(scene.Mapper->GetStructureAsString()) == "auto", "%s is no auto", scene.Mapper->GetStructureAsString());
+}
+
+void Samplings()
+{
+  Scene scene(64, 48);
+  scene.Mapper->SetSampleDistance(1.0);
+  scene.Mapper->SetSamplingToPreintegrated();
+  const std::vector<float> integrated = scene.Picture();
+  const std::string name = scene.Mapper->GetSamplingUsedAsString();
+  scene.Mapper->SetSamplingToMidpoint();
+  const std::vector<float> middle = scene.Picture();
+  CHECK(middle != integrated && name != scene.Mapper->GetSamplingUsedAsString(), "both are sampled %s", name.c_str());
+  scene.Mapper->SetSampling(Mapper::PREINTEGRATED_SAMPLING);
+  CHECK(scene.Picture() == integrated, "pre-integration by its number is another");
+  scene.Mapper->SetSamplingToAuto(); // smooth functions need no integrals, a band narrower than the data's steps does
+  CHECK(scene.Picture() == middle, "a smooth function is sampled %s", scene.Mapper->GetSamplingUsedAsString());
+  scene.Opacity->RemoveAllPoints();
+  for (double x : { 0.0, 0.498, 0.5, 0.502, 1.0 }) {
+    scene.Opacity->AddPoint(x, x == 0.5 ? 0.9 : 0.0);
+  }
+  scene.Render();
+  CHECK(name == scene.Mapper->GetSamplingUsedAsString(), "a narrow band is sampled %s", scene.Mapper->GetSamplingUsedAsString());
+}
+
+void RenderModesAndNormals()
+{
+  Scene scene(64, 48);
+  vtkVolumeProperty* property = scene.Volume->GetProperty();
+  const std::vector<float> light = scene.Picture();
+  scene.Mapper->SetRenderMode(Mapper::FIRST_HIT_MODE);
+  property->ShadeOn();
+  const std::vector<float> faces = scene.Picture();
+  CHECK(faces != light, "first hits are as light");
+  scene.Mapper->SetNormals(Mapper::GRADIENT_NORMALS);
+  const std::vector<float> slopes = scene.Picture();
+  CHECK(slopes != faces, "gradients are as faces");
+  scene.Mapper->SetNormalsToFaces();
+  CHECK(scene.Picture() == faces, "SetNormalsToFaces does not");
+  scene.Mapper->SetNormalsToGradient();
+  CHECK(scene.Picture() == slopes, "SetNormalsToGradient does not");
+  scene.Mapper->SetNormals(-1);
+  CHECK(scene.Mapper->GetNormals() == Mapper::FACE_NORMALS, "normals %d", scene.Mapper->GetNormals());
+  scene.Mapper->SetNormals(9);
+  CHECK(scene.Mapper->GetNormals() == Mapper::GRADIENT_NORMALS, "normals %d", scene.Mapper->GetNormals());
+  scene.Mapper->SetRenderMode(9);
+  CHECK(scene.Mapper->GetRenderMode() == Mapper::FIRST_HIT_MODE, "mode %d", scene.Mapper->GetRenderMode());
+  scene.Mapper->SetRenderMode(-9);
+  property->ShadeOff();
+  CHECK(scene.Mapper->GetRenderMode() == Mapper::COMPOSITE_MODE && scene.Picture() == light, "mode %d", scene.Mapper->GetRenderMode());
+}
+
+// Each is on after 1 and after 7, off after 0 and -7, and what it switches is seen.
+void Switches()
+{
+  Scene scene(64, 48);
+  const auto samples = [&] { return scene.Mapper->GetLastImage()->GetPointData()->GetArray("Samples") != nullptr; };
+  scene.Mapper->SetSampleDistance(1.5);
+  const std::vector<float> plain = scene.Picture();
+  for (int value : { 1, 0, 7, -7 }) {
+    const int meant = value > 0;
+    scene.Mapper->SetAudit(value);
+    scene.Mapper->SetCountSamples(value);
+    scene.Mapper->SetUseJittering(value);
+    scene.Mapper->SetAutoAdjustSampleDistances(value);
+    CHECK(scene.Mapper->GetAudit() == meant && scene.Mapper->GetCountSamples() == meant && scene.Mapper->GetUseJittering() == meant &&
+        scene.Mapper->GetAutoAdjustSampleDistances() == meant,
+      "%d switches wrongly", value);
+    scene.Window->SetDesiredUpdateRate(1e6);
+    scene.Render();
+    CHECK((scene.Mapper->GetUsedImageSampleDistance() > 1.0) == (meant == 1), "%d: %g pixels a ray", value,
+      scene.Mapper->GetUsedImageSampleDistance());
+    CHECK(samples() == (meant == 1), "%d: samples of pixels", value);
+    scene.Window->SetDesiredUpdateRate(0.0001);
+    CHECK((scene.Picture() != plain) == (meant == 1), "%d: jitter", value);
+  }
+  // An audit shows in nothing but its count, which is 0 as long as all is well, and in its time.
+  scene.Mapper->SetStructureToDistance();
+  scene.Mapper->AuditOn();
+  scene.Render();
+  CHECK(scene.Mapper->GetAudit() == 1 && scene.Mapper->GetDifferingPixels() == 0, "the audit finds pixels");
+  scene.Mapper->AuditOff();
+  CHECK(scene.Mapper->GetAudit() == 0 && scene.Picture() == plain, "AuditOff changes the picture");
+}
+
+void Masks()
+{
+  Scene scene(64, 48);
+  vtkNew<vtkImageData> mask;
+  mask->CopyStructure(scene.Image);
+  mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  mask->GetPointData()->GetScalars()->Fill(0);
+  const std::vector<float> whole = scene.Picture();
+  scene.Mapper->SetMaskInput(mask);
+  scene.Mapper->SetMaskType(Mapper::LabelMapMaskType);
+  CHECK(scene.Picture() == whole, "a map of label 0 hides something");
+  scene.Mapper->SetMaskType(Mapper::BinaryMaskType);
+  CHECK(scene.Light() == 0.0, "a mask of 0 hides nothing");
+  scene.Mapper->SetMaskType(5);
+  CHECK(scene.Mapper->GetMaskType() == Mapper::LabelMapMaskType, "mask type %d", scene.Mapper->GetMaskType());
+  scene.Mapper->SetMaskType(-5);
+  CHECK(scene.Mapper->GetMaskType() == Mapper::BinaryMaskType, "mask type %d", scene.Mapper->GetMaskType());
+}
+
+void Ranges()
+{
+  const double most = std::numeric_limits<double>::max();
+  vtkNew<Mapper> mapper;
+  struct Range {
+    const char* Name;
+    void (Mapper::*Set)(double);
+    double (Mapper::*Get)();
+    double Lowest, Highest;
+  };
+  const Range ranges[] = { { "InteractiveUpdateRate", &Mapper::SetInteractiveUpdateRate, &Mapper::GetInteractiveUpdateRate, 1e-10, 1e10 },
+    { "ImageSampleDistance", &Mapper::SetImageSampleDistance, &Mapper::GetImageSampleDistance, 1, 100 },
+    { "MaximumImageSampleDistance", &Mapper::SetMaximumImageSampleDistance, &Mapper::GetMaximumImageSampleDistance, 1, 100 },
+    { "MaximumSampleDistanceFactor", &Mapper::SetMaximumSampleDistanceFactor, &Mapper::GetMaximumSampleDistanceFactor, 1, 100 },
+    { "Termination", &Mapper::SetTermination, &Mapper::GetTermination, 0, 1 } };
+  for (const Range& range : ranges) {
+    (mapper->*range.Set)(-most);
+    CHECK((mapper->*range.Get)() == range.Lowest, "%s: %g", range.Name, (mapper->*range.Get)());
+    (mapper->*range.Set)(most);
+    CHECK((mapper->*range.Get)() == range.Highest, "%s: %g", range.Name, (mapper->*range.Get)());
+  }
+  for (int value : { -1, 1000000 }) {
+    mapper->SetNumberOfThreads(value);
+    mapper->SetStructure(value);
+    mapper->SetSampling(value);
+    CHECK(mapper->GetNumberOfThreads() == (value < 0 ? 0 : 1024), "%d threads", mapper->GetNumberOfThreads());
+    CHECK(mapper->GetStructure() == (value < 0 ? Mapper::AUTO_STRUCTURE : Mapper::HYBRID_STRUCTURE), "structure %d", mapper->GetStructure());
+    CHECK(mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::PREINTEGRATED_SAMPLING), "sampling %d", mapper->GetSampling());
+  }
+}
+} // namespace
+
+int main()
+{
+  Structures();
+  Samplings();
+  RenderModesAndNormals();
+  Switches();
+  Masks();
+  Ranges();
+  return Failures == 0 ? 0 : 1;
+}
