@@ -244,9 +244,14 @@ uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps)
 {
   const stratus_visibility_order* order = gates->order;
   uint32_t* nearest = NULL; /* there is one, as cells are held */
+  float nearest_key = 0.0f;
   for (int64_t g = 0; g < gates->count; g++) {
     for (uint32_t* at = &gates->gates[g].held; *at != STRATUS_NO_CELL; at = &order->ordered[*at].next, ++*steps) {
-      nearest = !nearest || order->ordered[*at].key < order->ordered[*nearest].key ? at : nearest;
+      const float key = stratus_order_key(order, *at);
+      if (!nearest || key < nearest_key) {
+        nearest = at;
+        nearest_key = key;
+      }
     }
   }
   *steps += gates->count;

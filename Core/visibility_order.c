@@ -48,7 +48,11 @@ static stratus_status allocate_order(stratus_visibility_order* order)
   order->seen = memory;
   TRY(allocate_part(order, cells, sizeof *order->cells, &memory));
   order->cells = memory;
-  TRY(allocate_part(order, (size_t)order->context->threads, STRATUS_BUCKETS_MAX * sizeof *order->heads, &memory));
+  for (int32_t l = 0; l < order->leaf_count; l++) {
+    const int64_t buckets = stratus_order_buckets(order->leaf_begin[l + 1] - order->leaf_begin[l]);
+    order->buckets = buckets > order->buckets ? buckets : order->buckets;
+  }
+  TRY(allocate_part(order, (size_t)order->context->threads, (size_t)order->buckets * sizeof *order->heads, &memory));
   order->heads = memory;
   return STRATUS_OK;
 }
@@ -194,7 +198,7 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(+ : cycles, forced) reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; i++) {
     const stratus_peel_counts counts = stratus_order_peel_leaf(
-      order, order->leaf_order[i], peeling, order->heads + (size_t)omp_get_thread_num() * STRATUS_BUCKETS_MAX);
+      order, order->leaf_order[i], peeling, order->heads + omp_get_thread_num() * order->buckets);
     cycles += counts.cycles;
     forced += counts.forced;
     layers = counts.layers > layers ? counts.layers : layers;

@@ -33,8 +33,10 @@ typedef struct stratus_gate {
 /* A cell as peeling asks for it. */
 typedef struct stratus_ordered_cell {
   int32_t neighbours[4]; /* of its leaf, -1: none */
-  float key;             /* how far away */
-  uint32_t next;         /* in its bucket */
+  union {
+    float key;     /* how far away, until it is put into a list: then stratus_order_key() tells */
+    uint32_t next; /* of its bucket, or of what a gate holds */
+  };
   uint8_t state;         /* bit f: its neighbour behind face f comes after it, bit 4 + f: before it */
   uint8_t waiting;       /* neighbours that come before it and have not come yet; and STRATUS_GATE_IN, _OUT */
   int8_t side;           /* of faces on which it lies: 1, -1, 0 for flat ones that fit nowhere */
@@ -70,7 +72,8 @@ struct stratus_visibility_order {
   uint32_t* seen_at; /* of each point; NULL: its number */
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
-  uint32_t* heads;  /* STRATUS_BUCKETS_MAX a thread */
+  uint32_t* heads;  /* of buckets, as many a thread as the largest leaf has */
+  int64_t buckets;
   size_t bytes;
   double build_ms;
 
@@ -81,8 +84,15 @@ struct stratus_visibility_order {
 };
 
 #define STRATUS_BUCKETS_MAX 65536
+#define STRATUS_CELLS_PER_BUCKET 32
 #define STRATUS_GATE_IN 0x80u  /* of a cell that has ways in from gaps */
 #define STRATUS_GATE_OUT 0x40u /* of one that has ways out into gaps */
+
+static inline int64_t stratus_order_buckets(int64_t cells)
+{
+  const int64_t wanted = cells / STRATUS_CELLS_PER_BUCKET + 1;
+  return wanted < STRATUS_BUCKETS_MAX ? wanted : STRATUS_BUCKETS_MAX;
+}
 
 /* The mesh's number of the cell at a place. */
 static inline uint32_t stratus_order_cell(const stratus_visibility_order* order, uint32_t place)
@@ -180,6 +190,8 @@ void stratus_gates_fill_bins(stratus_gates* gates);
 
 /* ---- visibility_signs.c: state, waiting and key of all cells. Returns the signs that needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
+/* The cell's key once more. */
+float stratus_order_key(const stratus_visibility_order* order, uint32_t cell);
 /* 1: rays leave the cell through its face, -1: they come in, 0: it is seen edge-on, or may be. */
 int stratus_order_facing(const stratus_visibility_order* order, uint32_t face);
 /* How large a face of a cell is seen, in some unit of the view. */
@@ -198,7 +210,7 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
 /* Nothing is ready, yet cells wait: one relation of a cycle is taken out, and the cell that it led to told, ready or not. `start` is a cell
  * that waits; `steps` is counted up by what the search cost. STRATUS_NO_CELL: there is no cycle, what `start` waits for is held back. */
 uint32_t stratus_order_break_cycle(stratus_visibility_order* order, uint32_t start, int64_t* steps);
-/* By distance; cells are places. */
+/* By distance; cells are places, of cells that are in no list. */
 void stratus_order_sort_by_key(const stratus_visibility_order* order, uint32_t* cells, int64_t count);
 
 #endif

@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#define CELLS_PER_BUCKET 32
 #define STEPS_PER_CELL 64 /* that searching for cycles may take, before the rest goes by distance */
 
 typedef struct leaf_peel {
@@ -32,14 +31,14 @@ static inline uint32_t leaf_cell(const leaf_peel* peel, int64_t i)
   return peel->first + (uint32_t)i;
 }
 
-static inline void push(leaf_peel* peel, uint32_t cell)
+static inline void push(leaf_peel* peel, uint32_t cell, float key)
 {
   if (peel->peeling == STRATUS_PEELING_LAYERS) {
     peel->out[peel->ready++] = cell;
     return;
   }
   stratus_ordered_cell* ordered = peel->order->ordered + cell;
-  const int bucket = (int)((ordered->key - peel->low) * peel->scale);
+  const int bucket = (int)((key - peel->low) * peel->scale);
   ordered->next = peel->heads[bucket];
   peel->heads[bucket] = cell;
   peel->nearest = bucket < peel->nearest ? bucket : peel->nearest;
@@ -49,6 +48,18 @@ static inline void push(leaf_peel* peel, uint32_t cell)
       STRATUS_FETCH(peel->order->ordered + ordered->neighbours[f]);
     }
   }
+}
+
+/* A cell that was in no list yet. */
+static inline void push_first(leaf_peel* peel, uint32_t cell)
+{
+  push(peel, cell, peel->order->ordered[cell].key);
+}
+
+/* One that was held back. */
+static inline void push_again(leaf_peel* peel, uint32_t cell)
+{
+  push(peel, cell, stratus_order_key(peel->order, cell));
 }
 
 /* STRATUS_NO_CELL if none is ready. */
@@ -84,8 +95,7 @@ static void make_buckets(leaf_peel* peel)
     peel->low = key < peel->low ? key : peel->low;
     high = key > high ? key : high;
   }
-  const int64_t wanted = peel->count / CELLS_PER_BUCKET + 1;
-  peel->buckets = (int)(wanted < STRATUS_BUCKETS_MAX ? wanted : STRATUS_BUCKETS_MAX);
+  peel->buckets = (int)stratus_order_buckets(peel->count);
   /* Below the number of buckets whatever the rounding: the factor takes more off than two operations can add. */
   const float scale = (float)peel->buckets * (1.0f - 4.0f * 0x1p-23f) / (high - peel->low);
   peel->scale = high > peel->low && scale <= 0x1p100f ? scale : 0.0f;
@@ -110,7 +120,7 @@ static uint32_t find_waiting(leaf_peel* peel)
 static void yield_gate(leaf_peel* peel)
 {
   do {
-    push(peel, stratus_gates_yield(&peel->gates, &peel->gate_steps));
+    push_again(peel, stratus_gates_yield(&peel->gates, &peel->gate_steps));
     peel->counts.cycles += !peel->faces_broken;
   } while (peel->gates.held > 0 && peel->gate_steps > STEPS_PER_CELL * peel->count);
 }
@@ -130,7 +140,7 @@ static void unstick(leaf_peel* peel)
     peel->faces_broken = true;
     if (stratus_order_waits_for(order, cell) == 0) {
       order->ordered[cell].waiting &= (uint8_t)~STRATUS_GATE_IN; /* the ring may well lead across gaps, too */
-      push(peel, cell);
+      push_first(peel, cell);
       return;
     }
   }
@@ -158,13 +168,13 @@ static void emit(leaf_peel* peel, uint32_t cell)
   const unsigned after = order->ordered[cell].state & 15u;
   for (int f = 0; f < 4; f++) {
     if (after >> f & 1 && (--order->ordered[neighbours[f]].waiting & 7) == 0) {
-      push(peel, (uint32_t)neighbours[f]);
+      push_first(peel, (uint32_t)neighbours[f]);
     }
   }
   if (order->ordered[cell].waiting & STRATUS_GATE_OUT) {
     for (uint32_t released = stratus_gates_pass(&peel->gates, cell), following; released != STRATUS_NO_CELL; released = following) {
       following = order->ordered[released].next;
-      push(peel, released);
+      push_again(peel, released);
     }
   }
 }
@@ -186,7 +196,7 @@ stratus_peel_counts stratus_order_peel_leaf(stratus_visibility_order* order, int
   for (int64_t i = peel.count - 1; i >= 0; i--) {
     const uint32_t cell = leaf_cell(&peel, i);
     if (stratus_order_waits_for(order, cell) == 0) {
-      push(&peel, cell);
+      push_first(&peel, cell);
     }
   }
   while (peel.emitted < peel.count) {

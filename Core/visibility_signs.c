@@ -127,6 +127,13 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
   return exact;
 }
 
+float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
+{
+  const int32_t* v = stratus_order_vertices(order, cell);
+  return cell_key(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
+    stratus_order_seen(order, v[3]), order->view.parallel);
+}
+
 int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
 {
   const int32_t* v = stratus_order_vertices(order, face / 4);
