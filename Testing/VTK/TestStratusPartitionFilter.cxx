@@ -166,14 +166,12 @@ void QuadraticGrids()
         filter->Update();
         Fills(filter->GetOutput(), n, c.Name);
         filter->SetLeafCells(50);
-        filter->SetDepth(3);
-        filter->Update();
-        Carries(grid, filter->GetOutput());
-        double volume = 0.0;
-        for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i) {
-          volume += std::abs(Volume(filter->GetOutput(), i));
+        for (int depth = 1; depth <= 3; ++depth) { // straight edges' middles lie on planes but for rounding
+          filter->SetDepth(depth);
+          filter->Update();
+          Carries(grid, filter->GetOutput());
+          Fills(filter->GetOutput(), n, c.Name);
         }
-        CHECK(std::abs(volume - n * n * n) < 1e-12 * n * n * n, "%s, cut: volume %.17g", c.Name, volume);
         CHECK(filter->GetNumberOfLeaves() > 4, "%s: %d leaves", c.Name, filter->GetNumberOfLeaves());
       }
     }
