@@ -255,11 +255,11 @@ stratus_status stratus_volume_check(stratus_context* context, const stratus_volu
   if (!volume->values) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume values is NULL");
   }
+  TRY(check_sizes(context, volume));
   if (volume->components < 0 || volume->components > 4 || volume->components > volume->value_stride) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume of %d components, must be 1..4 and at most the value stride %lld",
       volume->components, (long long)volume->value_stride);
   }
-  TRY(check_sizes(context, volume));
   return check_geometry(context, volume);
 }
 
