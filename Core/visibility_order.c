@@ -145,6 +145,7 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->seen);
   stratus_release(context, order->cells);
   stratus_release(context, order->heads);
+  stratus_device_signs_destroy(context, order->device_signs);
   stratus_release(context, order);
 }
 
@@ -241,7 +242,11 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
     .bytes = order->bytes,
     .build_ms = order->build_ms };
   const double begin = stratus_now_ms();
-  found.exact_signs = stratus_order_find_signs(order, &view);
+  if (stratus_order_signs_on_device(order)) {
+    TRY(stratus_order_find_signs_on_device(order, &view, &found.exact_signs));
+  } else {
+    found.exact_signs = stratus_order_find_signs(order, &view);
+  }
   const double signs_end = stratus_now_ms();
   TRY(stratus_progress(context, "visibility order", 0.5));
   stratus_order_sort_leaves(order, &view);

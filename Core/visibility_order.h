@@ -72,6 +72,7 @@ struct stratus_visibility_order {
   uint32_t* seen_at; /* of each point; NULL: its number */
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
+  struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
   uint32_t* heads;  /* of buckets, as many a thread as the largest leaf has */
   int64_t buckets;
   size_t bytes;
@@ -108,6 +109,13 @@ static inline const int32_t* stratus_order_vertices(const stratus_visibility_ord
 static inline double* stratus_order_seen(const stratus_visibility_order* order, int64_t point)
 {
   return order->seen + 3 * (order->seen_at ? (int64_t)order->seen_at[point] : point);
+}
+
+/* before << 4 | after, and all that come before still to come. */
+static inline void stratus_order_take_state(stratus_ordered_cell* ordered, unsigned state)
+{
+  ordered->state = (uint8_t)state;
+  ordered->waiting = (uint8_t)((state >> 4 & 1) + (state >> 5 & 1) + (state >> 6 & 1) + (state >> 7 & 1));
 }
 
 static inline unsigned stratus_order_waits_for(const stratus_visibility_order* order, uint32_t cell)
@@ -190,12 +198,24 @@ void stratus_gates_fill_bins(stratus_gates* gates);
 
 /* ---- visibility_signs.c: state, waiting and key of all cells. Returns the signs that needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
+/* `seen` alone. */
+void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view);
+/* The sign of face_determinants() without rounding. */
+int stratus_order_exact_sign(const stratus_visibility_order* order, const stratus_view* view, uint32_t cell, int face);
 /* The cell's key once more. */
 float stratus_order_key(const stratus_visibility_order* order, uint32_t cell);
 /* 1: rays leave the cell through its face, -1: they come in, 0: it is seen edge-on, or may be. */
 int stratus_order_facing(const stratus_visibility_order* order, uint32_t face);
 /* How large a face of a cell is seen, in some unit of the view. */
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face);
+
+/* ---- visibility_signs_device.c: the same as stratus_order_find_signs(), to the bit, by the context's device. */
+typedef struct stratus_device_signs stratus_device_signs;
+
+/* Whether the device should: a GPU that has doubles and room, asked for cells enough. */
+bool stratus_order_signs_on_device(const stratus_visibility_order* order);
+stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* order, const stratus_view* view, int64_t* exact);
+void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs* signs); /* takes NULL */
 
 /* ---- visibility_peel.c: one leaf's cells into order->cells. */
 typedef struct stratus_peel_counts {

@@ -3,11 +3,7 @@
  * where one is smaller than what rounding may have done to it the exact sign decides, so that both owners of a face always agree. */
 #include "visibility_order.h"
 
-#include <float.h>
-
-/* Coordinates are brought to 1 at most. Perspective: differences with the eye, products of three, six of them: under 100 roundings of
- * DBL_EPSILON/2. Parallel: projected coordinates up to twice as large, with four roundings each: under 250. */
-#define ERROR_BOUND (256.0 * DBL_EPSILON)
+#include "kernels/face_signs.h"
 
 #define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */
 
@@ -25,7 +21,7 @@ static double view_scale(const stratus_visibility_order* order, const double fro
 
 /* Perspective: points as seen from the eye. Parallel: x and y across the direction, so that the determinant with ones for z is the one along
  * the direction; z, which is not part of it, says how far. */
-static void see_points(stratus_visibility_order* order, const stratus_view* view)
+void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view)
 {
   const double* d = view->direction;
   const double middle[3] = { 0.5 * order->bounds[0] + 0.5 * order->bounds[1], 0.5 * order->bounds[2] + 0.5 * order->bounds[3],
@@ -53,21 +49,9 @@ static void see_points(stratus_visibility_order* order, const stratus_view* view
   }
 }
 
-/* Of the triples (1 3 2), (0 2 3), (0 3 1), (0 1 2), one a face, as in stratus_face_points(). */
-static inline void face_determinants(const double* p0, const double* p1, const double* p2, const double* p3, int parallel, double det[4])
+int stratus_order_exact_sign(const stratus_visibility_order* order, const stratus_view* view, uint32_t cell, int f)
 {
-  const double m01 = p0[0] * p1[1] - p0[1] * p1[0], m02 = p0[0] * p2[1] - p0[1] * p2[0], m03 = p0[0] * p3[1] - p0[1] * p3[0];
-  const double m12 = p1[0] * p2[1] - p1[1] * p2[0], m13 = p1[0] * p3[1] - p1[1] * p3[0], m23 = p2[0] * p3[1] - p2[1] * p3[0];
-  const double z0 = parallel ? 1.0 : p0[2], z1 = parallel ? 1.0 : p1[2], z2 = parallel ? 1.0 : p2[2], z3 = parallel ? 1.0 : p3[2];
-  det[0] = m13 * z2 - m12 * z3 - m23 * z1;
-  det[1] = m02 * z3 - m03 * z2 + m23 * z0;
-  det[2] = m03 * z1 - m01 * z3 - m13 * z0;
-  det[3] = m01 * z2 - m02 * z1 + m12 * z0;
-}
-
-/* The same as the sign of face_determinants() without rounding. */
-static int exact_sign(const stratus_visibility_order* order, const stratus_view* view, const int32_t* v, int f)
-{
+  const int32_t* v = stratus_order_vertices(order, cell);
   int32_t point[3];
   const int parity = stratus_face_points(v, f, point);
   const double *a = order->points + 3 * (int64_t)point[0], *b = order->points + 3 * (int64_t)point[1],
@@ -75,23 +59,9 @@ static int exact_sign(const stratus_visibility_order* order, const stratus_view*
   return parity * (view->parallel ? stratus_orientation_along(a, b, c, view->direction) : -stratus_orientation(a, b, c, view->eye));
 }
 
-static inline int count_bits(unsigned four)
-{
-  return (int)((four & 1) + (four >> 1 & 1) + (four >> 2 & 1) + (four >> 3 & 1));
-}
-
-static inline float cell_key(const double* p0, const double* p1, const double* p2, const double* p3, int parallel)
-{
-  if (parallel) {
-    return (float)(p0[2] + p1[2] + p2[2] + p3[2]);
-  }
-  const double x = p0[0] + p1[0] + p2[0] + p3[0], y = p0[1] + p1[1] + p2[1] + p3[1], z = p0[2] + p1[2] + p2[2] + p3[2];
-  return (float)sqrt(x * x + y * y + z * z);
-}
-
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view)
 {
-  see_points(order, view);
+  stratus_order_see_points(order, view);
   int64_t exact = 0;
 #pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(+ : exact)
   for (int64_t cell = 0; cell < order->cell_count; cell++) {
@@ -107,12 +77,12 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
     unsigned after = 0, before = 0;
     face_determinants(p0, p1, p2, p3, view->parallel, det);
     for (int f = 0; f < 4; f++) {
-      int sign = (det[f] > ERROR_BOUND) - (det[f] < -ERROR_BOUND);
+      int sign = face_sign(det[f]);
       if (neighbours[f] < 0) {
         continue;
       }
       if (sign == 0 && ordered->side != 0) {
-        sign = exact_sign(order, view, v, f);
+        sign = stratus_order_exact_sign(order, view, (uint32_t)cell, f);
         exact++;
       }
       /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
@@ -120,9 +90,8 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
       before |= (unsigned)(sign > 0) << f;
       after |= (unsigned)(sign < 0) << f;
     }
-    ordered->state = (uint8_t)(before << 4 | after);
-    ordered->waiting = (uint8_t)count_bits(before);
-    ordered->key = cell_key(p0, p1, p2, p3, view->parallel);
+    stratus_order_take_state(ordered, before << 4 | after);
+    ordered->key = face_signs_key(p0, p1, p2, p3, view->parallel);
   }
   return exact;
 }
@@ -130,7 +99,7 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
 float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* v = stratus_order_vertices(order, cell);
-  return cell_key(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
+  return face_signs_key(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
     stratus_order_seen(order, v[3]), order->view.parallel);
 }
 
@@ -140,7 +109,7 @@ int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
   double det[4];
   face_determinants(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
     stratus_order_seen(order, v[3]), order->view.parallel, det);
-  return ((det[face % 4] < -ERROR_BOUND) - (det[face % 4] > ERROR_BOUND)) * order->ordered[face / 4].side;
+  return -face_sign(det[face % 4]) * order->ordered[face / 4].side;
 }
 
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face)

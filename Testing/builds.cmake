@@ -63,7 +63,7 @@ endforeach ()
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}" "${stratus_test_folder}/test_device_tiny")
-foreach (kind IN ITEMS density distance_field first_hit tetra_march)
+foreach (kind IN ITEMS density distance_field first_hit tetra_march visibility_signs)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     "${stratus_test_folder}/test_${kind}_device" tiny)
 endforeach ()

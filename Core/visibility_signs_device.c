@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back two
+ * words a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
+#include "device.h"
+#include "visibility_order.h"
+
+#include <string.h>
+
+#define GROUP 64
+#define PART ((int64_t)1 << 17)    /* cells that come back at once */
+#define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */
+
+struct stratus_device_signs {
+  cl_mem corners, faces, seen, results;
+};
+
+bool stratus_order_signs_on_device(const stratus_visibility_order* order)
+{
+  const stratus_device* device = order->context->device;
+  if (!device || stratus_device_is_cpu(device) || !stratus_device_has_double(device) || order->cell_count < CELLS_MIN) {
+    return false;
+  }
+  const size_t largest = stratus_device_largest_allocation(device);
+  return (size_t)order->cell_count <= largest / (4 * sizeof(int32_t)) && (size_t)order->point_count <= largest / (3 * sizeof(double));
+}
+
+void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs* signs)
+{
+  if (signs) {
+    stratus_device_buffer_release(signs->corners);
+    stratus_device_buffer_release(signs->faces);
+    stratus_device_buffer_release(signs->seen);
+    stratus_device_buffer_release(signs->results);
+    stratus_release(context, signs);
+  }
+}
+
+/* corners and faces, as the kernel has them, of a part of the cells. */
+static stratus_status send_cells(const stratus_visibility_order* order, stratus_device_signs* signs, int64_t begin, int64_t count,
+  int32_t* corners, uint8_t* faces)
+{
+  for (int64_t i = 0; i < count; i++) {
+    const int32_t* v = stratus_order_vertices(order, (uint32_t)(begin + i));
+    const stratus_ordered_cell* ordered = order->ordered + begin + i;
+    faces[i] = (uint8_t)((ordered->side + 1) << 4);
+    for (int f = 0; f < 4; f++) {
+      corners[4 * i + f] = order->seen_at ? (int32_t)order->seen_at[v[f]] : v[f];
+      faces[i] |= (uint8_t)((ordered->neighbours[f] >= 0) << f);
+    }
+  }
+  const size_t cells = (size_t)count, first = (size_t)begin;
+  TRY(stratus_device_write(order->context, signs->corners, 4 * first * sizeof *corners, 4 * cells * sizeof *corners, corners));
+  return stratus_device_write(order->context, signs->faces, first, cells, faces);
+}
+
+static stratus_status make_signs(stratus_visibility_order* order)
+{
+  stratus_context* context = order->context;
+  const size_t cells = (size_t)order->cell_count, part = (size_t)(order->cell_count < PART ? order->cell_count : PART);
+  stratus_status status = STRATUS_OK;
+  void *memory = NULL, *corners = NULL, *faces = NULL;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_device_signs), &memory));
+  stratus_device_signs* signs = memory;
+  TRY_CLEANUP(stratus_allocate(context, part, 4 * sizeof(int32_t), &corners));
+  TRY_CLEANUP(stratus_allocate(context, part, sizeof(uint8_t), &faces));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, 4 * cells * sizeof(int32_t), NULL, false, &signs->corners));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, cells, NULL, false, &signs->faces));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)order->point_count * 3 * sizeof(double), NULL, false, &signs->seen));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, 2 * cells * sizeof(uint32_t), NULL, false, &signs->results));
+  for (int64_t begin = 0; begin < order->cell_count; begin += PART) {
+    const int64_t left = order->cell_count - begin;
+    TRY_CLEANUP(send_cells(order, signs, begin, left < PART ? left : PART, corners, faces));
+  }
+  order->device_signs = signs;
+  signs = NULL;
+
+cleanup:
+  stratus_device_signs_destroy(context, signs);
+  stratus_release(context, corners);
+  stratus_release(context, faces);
+  return status;
+}
+
+static stratus_status run_signs(const stratus_visibility_order* order, const stratus_view* view)
+{
+  stratus_context* context = order->context;
+  const stratus_device_signs* signs = order->device_signs;
+  const cl_ulong cells = (cl_ulong)order->cell_count;
+  const cl_int parallel = view->parallel;
+  const struct {
+    size_t size;
+    const void* value;
+  } arguments[] = { { sizeof signs->seen, &signs->seen }, { sizeof signs->corners, &signs->corners }, { sizeof signs->faces, &signs->faces },
+    { sizeof cells, &cells }, { sizeof parallel, &parallel }, { sizeof signs->results, &signs->results } };
+  const size_t items = (size_t)cells, local = GROUP;
+  cl_kernel kernel;
+  TRY(stratus_device_write(context, signs->seen, 0, (size_t)order->point_count * 3 * sizeof *order->seen, order->seen));
+  TRY(stratus_device_kernel(context, "visibility_signs", "", "signs", &kernel));
+  for (unsigned i = 0; i < sizeof arguments / sizeof *arguments; i++) {
+    TRY(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
+  }
+  return stratus_device_run(context, kernel, 1, &items, &local);
+}
+
+/* What the device found of a cell: its key, and its state with what nobody knows in bits 8 to 11. Returns how many of those there were. */
+static int64_t take_result(stratus_visibility_order* order, const stratus_view* view, uint32_t cell, const uint32_t result[2])
+{
+  stratus_ordered_cell* ordered = order->ordered + cell;
+  unsigned state = result[1] & 255u;
+  int64_t exact = 0;
+  for (int f = 0; f < 4; f++) {
+    if (result[1] >> (8 + f) & 1) {
+      const int sign = stratus_order_exact_sign(order, view, cell, f) * ordered->side;
+      state |= (unsigned)(sign < 0) << f | (unsigned)(sign > 0) << (4 + f);
+      exact++;
+    }
+  }
+  stratus_order_take_state(ordered, state);
+  memcpy(&ordered->key, result, sizeof ordered->key);
+  return exact;
+}
+
+stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* order, const stratus_view* view, int64_t* exact)
+{
+  stratus_context* context = order->context;
+  stratus_status status = STRATUS_OK;
+  void* memory = NULL;
+  int64_t open = 0;
+  if (!order->device_signs) {
+    TRY(make_signs(order));
+  }
+  TRY(stratus_allocate(context, (size_t)(order->cell_count < PART ? order->cell_count : PART), 2 * sizeof(uint32_t), &memory));
+  const uint32_t* results = memory;
+  stratus_order_see_points(order, view);
+  TRY_CLEANUP(run_signs(order, view));
+  for (int64_t begin = 0; begin < order->cell_count; begin += PART) {
+    const int64_t left = order->cell_count - begin, count = left < PART ? left : PART;
+    const size_t cell = 2 * sizeof(uint32_t);
+    TRY_CLEANUP(stratus_device_read(context, order->device_signs->results, (size_t)begin * cell, (size_t)count * cell, memory));
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : open)
+    for (int64_t i = 0; i < count; i++) {
+      open += take_result(order, view, (uint32_t)(begin + i), results + 2 * i);
+    }
+  }
+  *exact = open;
+
+cleanup:
+  stratus_release(context, memory);
+  return status;
+}

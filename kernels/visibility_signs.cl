@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Signs of cells' faces in a view: see face_signs.h. What rounding may have changed is told apart, for the host to find exactly. */
+#ifndef STRATUS_DEVICE
+#define STRATUS_DEVICE 1
+#endif
+#include "face_signs.h"
+
+/* corners: where in `seen` each of a cell's points is. faces: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its faces
+ * on which it lies, plus 1. results: the key's bits; then bit f: the neighbour behind face f comes after it, bit 4 + f: before it, bit 8 + f:
+ * nobody knows. */
+__kernel void signs(__global const double* seen, __global const int* corners, __global const uchar* faces, ulong count, int parallel,
+  __global uint* results)
+{
+  const size_t cell = get_global_id(0);
+  if (cell >= count) {
+    return;
+  }
+  __global const int* corner = corners + 4 * cell;
+  __global const double* p0 = seen + 3 * (size_t)corner[0];
+  __global const double* p1 = seen + 3 * (size_t)corner[1];
+  __global const double* p2 = seen + 3 * (size_t)corner[2];
+  __global const double* p3 = seen + 3 * (size_t)corner[3];
+  const int side = (int)(faces[cell] >> 4) - 1;
+  double det[4];
+  uint state = 0;
+  face_determinants(p0, p1, p2, p3, parallel, det);
+  for (int f = 0; f < 4; f++) {
+    if (side != 0 && (faces[cell] >> f & 1)) {
+      const int sign = face_sign(det[f]) * side;
+      state |= (uint)(sign < 0) << f | (uint)(sign > 0) << (4 + f) | (uint)(sign == 0) << (8 + f);
+    }
+  }
+  results[2 * cell] = as_uint(face_signs_key(p0, p1, p2, p3, parallel));
+  results[2 * cell + 1] = state;
+}
