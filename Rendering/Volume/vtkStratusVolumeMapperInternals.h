@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+class vtkHardwareSelector;
+
 class VTK_STRATUS_PRIVATE vtkStratusVolumeMapper::Internals
 {
 public:
@@ -81,11 +83,12 @@ private:
   Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
   const float* ReadOpaqueDepth(vtkRenderer* renderer);
   vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const Others& others) const;
+  void ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels);
 
   vtkRenderer* Renderer = nullptr; // while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
-  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth;
+  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples; // empty: not counted
   vtkSmartPointer<vtkUnsignedCharArray> Offered; // the tree that the caster was last given ..

@@ -3,6 +3,7 @@
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkFloatArray.h"
+#include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkPropCollection.h"
@@ -123,11 +124,28 @@ vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(vtkRen
   const double* background = renderer->GetBackground();
   const bool onBlack = !others.Geometry && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() &&
     background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
-  if (onBlack && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
+  if (onBlack && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
     pixels.Bytes = this->Bytes.data();
   }
   pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;
   return pixels;
+}
+
+// What is picked by hardware is read off the window: the prop's own colour where the volume shows anything, at the depth where it does.
+void vtkStratusVolumeMapper::Internals::ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels)
+{
+  float color[3];
+  selector->BeginRenderProp();
+  selector->GetPropColorValue(color);
+  this->Selected.resize(this->Rgba.size());
+  for (size_t at = 0; at < this->Rgba.size(); at += 4) {
+    const float seen = this->Rgba[at + 3] > 0.0f ? 1.0f : 0.0f;
+    const float shown[4] = { seen * color[0], seen * color[1], seen * color[2], seen };
+    std::copy_n(shown, 4, &this->Selected[at]);
+  }
+  pixels.Rgba = this->Selected.data();
+  pixels.Scale = 1.0f;
+  pixels.Bias = 0.0f;
 }
 
 bool vtkStratusVolumeMapper::Internals::Cast(
@@ -199,11 +217,19 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   const double cast = Now();
   pixels.Rgba = this->Rgba.data();
   std::copy_n(this->Report.window, 4, pixels.Window);
-  if (this->IsFirstHit()) {
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  if (selector) {
+    this->ChooseSelected(selector, pixels);
+  }
+  if (this->IsFirstHit() || selector) {
     this->SetShownDepth();
     pixels.Depth = this->ShownDepth.data();
   }
-  if (!this->Display.Draw(renderer, this->Picture, pixels)) {
+  const bool drawn = this->Display.Draw(renderer, this->Picture, pixels);
+  if (selector) {
+    selector->EndRenderProp();
+  }
+  if (!drawn) {
     error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
     return false;
   }

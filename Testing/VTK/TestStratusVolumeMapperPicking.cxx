@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Picking by hardware reads props off the window: the volume is picked where it shows, what is before it or behind what shows nothing is not it, and
+// pictures are as before. Which of its cells it is, hardware does not tell.
+#include "mapper_testing.h"
+
+#include "vtkActor.h"
+#include "vtkHardwareSelector.h"
+#include "vtkInformation.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkPropPicker.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkSphereSource.h"
+
+namespace {
+vtkSmartPointer<vtkSelection> Select(Scene& scene, bool propsOnly)
+{
+  vtkNew<vtkHardwareSelector> selector;
+  selector->SetRenderer(scene.Renderer);
+  const int* size = scene.Renderer->GetSize();
+  selector->SetArea(0, 0, static_cast<unsigned int>(size[0] - 1), static_cast<unsigned int>(size[1] - 1));
+  selector->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  selector->SetActorPassOnly(propsOnly);
+  return vtkSmartPointer<vtkSelection>::Take(selector->Select());
+}
+
+void Volume(int mode, bool coarse)
+{
+  Scene scene;
+  scene.Mapper->SetRenderMode(mode);
+  scene.Mapper->SetImageSampleDistance(coarse ? 3.0 : 1.0);
+  scene.Mapper->SetFinalColorWindow(0.5f); // ids are no colours
+  scene.Renderer->SetBackground(0.3, 0.6, 0.9);
+  const std::vector<float> before = scene.Picture();
+  int shown = 0;
+  for (size_t p = 0; p < scene.Pixels(); ++p) {
+    shown += before[4 * p + 3] > 0.0f;
+  }
+  const vtkSmartPointer<vtkSelection> selection = Select(scene, true);
+  CHECK(selection && selection->GetNumberOfNodes() == 1, "%u props picked", selection ? selection->GetNumberOfNodes() : 0);
+  if (selection && selection->GetNumberOfNodes() == 1) {
+    vtkInformation* node = selection->GetNode(0)->GetProperties();
+    CHECK(node->Get(vtkSelectionNode::PROP()) == scene.Volume, "another prop is picked");
+    CHECK(node->Get(vtkSelectionNode::PIXEL_COUNT()) == shown, "%d pixels are picked, %d show", node->Get(vtkSelectionNode::PIXEL_COUNT()), shown);
+  }
+  CHECK(shown > 1000 && scene.Picture() == before, "the picture after picking is another");
+  const vtkSmartPointer<vtkSelection> cells = Select(scene, false);
+  CHECK(cells && cells->GetNumberOfNodes() == 1 && cells->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PROP()) == scene.Volume,
+    "where cells are asked for, the prop is another");
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
+void Picked()
+{
+  Scene scene;
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(4);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(ball->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  scene.Renderer->AddActor(actor);
+  double center[3], along[3];
+  scene.Renderer->GetActiveCamera()->GetFocalPoint(center);
+  scene.Renderer->GetActiveCamera()->GetDirectionOfProjection(along);
+  vtkNew<vtkPropPicker> picker;
+  const int* size = scene.Renderer->GetSize();
+  for (double where : { -40.0, 40.0 }) {
+    actor->SetPosition(center[0] + where * along[0], center[1] + where * along[1], center[2] + where * along[2]);
+    scene.Renderer->ResetCameraClippingRange();
+    const bool seen = scene.Picture()[4 * scene.Pixels() / 2 + 2 * static_cast<size_t>(size[0]) + 3] > 0.0f;
+    CHECK(seen == (where > 0.0), "the ball at %g: the volume %s", where, seen ? "shows" : "does not show");
+    CHECK(picker->PickProp(size[0] / 2, size[1] / 2, scene.Renderer) == 1, "nothing is picked");
+    CHECK(picker->GetViewProp() == (where < 0.0 ? static_cast<vtkProp*>(actor) : scene.Volume), "the ball at %g: the other is picked", where);
+  }
+  CHECK(picker->PickProp(1, 1, scene.Renderer) == 0, "something is picked where nothing is");
+}
+} // namespace
+
+int main()
+{
+  for (int mode : { vtkStratusVolumeMapper::COMPOSITE_MODE, vtkStratusVolumeMapper::FIRST_HIT_MODE }) {
+    Volume(mode, false);
+    Volume(mode, true);
+  }
+  Picked();
+  return Failures == 0 ? 0 : 1;
+}
