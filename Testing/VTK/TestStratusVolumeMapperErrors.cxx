@@ -1,51 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the mapper can't draw it refuses: one error that names the reason, nothing drawn, and the next good picture is as before.
-#include "mapper_testing.h"
+#include "refusal_testing.h"
 
 #include "vtkBitArray.h"
 #include "vtkContourValues.h"
 #include "vtkCullerCollection.h"
 #include "vtkExecutive.h"
-#include "vtkLight.h"
-#include "vtkMultiVolume.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
-#include "vtkRectilinearGrid.h"
-#include "vtkShaderProperty.h"
-#include "vtkTransform.h"
 
 #include <limits>
 
 namespace {
-bool IsBlack(Scene& scene)
-{
-  const std::vector<unsigned char> bytes = scene.Bytes();
-  for (size_t p = 0; p < scene.Pixels(); ++p) {
-    if (bytes[4 * p] || bytes[4 * p + 1] || bytes[4 * p + 2]) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// Breaks a scene that has drawn, looks for `word` in one error, mends it, and wants the first picture again.
-void Refused(const char* what, const char* word, const std::function<void(Scene&)>& breaks, const std::function<void(Scene&)>& mends)
-{
-  Scene scene(64, 48);
-  const std::vector<float> before = scene.Picture();
-  CHECK(scene.Errors->Count == 0, "%s: %s", what, scene.Errors->Text.c_str());
-  breaks(scene);
-  scene.Render();
-  CHECK(scene.Errors->Count == 1, "%s: %d errors", what, scene.Errors->Count);
-  CHECK(scene.Errors->Has(word), "%s: '%s' says nothing of '%s'", what, scene.Errors->Text.c_str(), word);
-  CHECK(IsBlack(scene), "%s: something is drawn", what);
-  scene.Render();
-  CHECK(scene.Errors->Count == 1, "%s: told again with every picture", what);
-  mends(scene);
-  CHECK(scene.Picture() == before, "%s: the picture after it is another", what);
-  CHECK(scene.Errors->Count == 1, "%s: still refused: %s", what, scene.Errors->Text.c_str());
-}
-
 void Modes()
 {
   Refused(
@@ -112,151 +78,6 @@ void Modes()
     [](Scene& s) { s.Mapper->SetFinalColorWindow(1); });
   Refused(
     "block size 3", "block", [](Scene& s) { s.Mapper->SetBlockSize(3); }, [](Scene& s) { s.Mapper->SetBlockSize(0); });
-}
-
-// Of each of these VTK's mappers have something that this one has not.
-void Looks()
-{
-  Refused(
-    "intensity of what is clipped", "UseClippedVoxelIntensity", [](Scene& s) { s.Volume->GetProperty()->UseClippedVoxelIntensityOn(); },
-    [](Scene& s) { s.Volume->GetProperty()->UseClippedVoxelIntensityOff(); });
-  vtkNew<vtkPiecewiseFunction> gradient;
-  gradient->AddPoint(0, 0);
-  gradient->AddPoint(1, 1);
-  Refused(
-    "gradient opacity of a maximum", "gradient opacity",
-    [&](Scene& s) {
-      s.Volume->GetProperty()->SetGradientOpacity(gradient);
-      s.Mapper->SetBlendModeToMaximumIntensity();
-    },
-    [](Scene& s) {
-      s.Volume->GetProperty()->DisableGradientOpacityOn();
-      s.Mapper->SetBlendModeToComposite();
-    });
-  vtkNew<vtkImageData> pairs;
-  pairs->SetDimensions(5, 5, 5);
-  pairs->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
-  pairs->GetPointData()->GetScalars()->Fill(1);
-  for (int blend = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; blend <= vtkVolumeMapper::ISOSURFACE_BLEND; ++blend) {
-    Refused(
-      "two components in another mode", "2 components",
-      [&](Scene& s) {
-        s.Mapper->SetInputData(pairs);
-        s.Mapper->SetBlendMode(blend);
-      },
-      [](Scene& s) {
-        s.Mapper->SetInputData(s.Image);
-        s.Mapper->SetBlendModeToComposite();
-      });
-  }
-  vtkNew<vtkImageData> labels;
-  for (bool first : { false, true }) {
-    Refused(
-      "labels in another mode", "label maps",
-      [&](Scene& s) {
-        labels->CopyStructure(s.Image);
-        labels->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-        labels->GetPointData()->GetScalars()->Fill(1);
-        s.Mapper->SetMaskInput(labels);
-        s.Mapper->SetMaskTypeToLabelMap();
-        s.Mapper->SetBlendMode(first ? vtkVolumeMapper::COMPOSITE_BLEND : vtkVolumeMapper::ADDITIVE_BLEND);
-        s.Mapper->SetRenderMode(first ? vtkStratusVolumeMapper::FIRST_HIT_MODE : vtkStratusVolumeMapper::COMPOSITE_MODE);
-      },
-      [](Scene& s) {
-        s.Mapper->SetMaskInput(nullptr);
-        s.Mapper->SetBlendModeToComposite();
-        s.Mapper->SetRenderModeToComposite();
-      });
-  }
-  vtkNew<vtkTransform> transform;
-  Refused(
-    "clipping plane with a transform", "transform",
-    [&](Scene& s) {
-      vtkNew<vtkPlane> plane;
-      plane->SetTransform(transform);
-      s.Mapper->AddClippingPlane(plane);
-    },
-    [](Scene& s) { s.Mapper->RemoveAllClippingPlanes(); });
-}
-
-void Lights()
-{
-  Refused(
-    "nine lights", "more than 8 lights",
-    [](Scene& s) {
-      s.Volume->GetProperty()->ShadeOn();
-      s.Renderer->RemoveAllLights();
-      for (int l = 0; l < 9; ++l) {
-        s.Renderer->AddLight(vtkNew<vtkLight>());
-      }
-    },
-    [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
-  Refused(
-    "a lamp that fades", "attenuation",
-    [](Scene& s) {
-      vtkNew<vtkLight> lamp;
-      lamp->SetPositional(1);
-      lamp->SetConeAngle(90);
-      lamp->SetAttenuationValues(1, 0.1, 0);
-      s.Renderer->AddLight(lamp);
-      s.Volume->GetProperty()->ShadeOn();
-    },
-    [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
-}
-
-void Props()
-{
-  Refused(
-    "depth peeling of volumes", "UseDepthPeelingForVolumes",
-    [](Scene& s) {
-      s.Renderer->SetUseDepthPeeling(1);
-      s.Renderer->SetUseDepthPeelingForVolumes(true);
-    },
-    [](Scene& s) {
-      s.Renderer->SetUseDepthPeeling(0);
-      s.Renderer->SetUseDepthPeelingForVolumes(false);
-    });
-  Refused(
-    "shaders of one's own", "shaders",
-    [](Scene& s) { s.Volume->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Base::Impl", true, "", false); },
-    [](Scene& s) { s.Volume->GetShaderProperty()->ClearAllFragmentShaderReplacements(); });
-  vtkNew<vtkRectilinearGrid> grid;
-  vtkNew<vtkFloatArray> ticks, values;
-  for (int i = 0; i < 3; ++i) {
-    ticks->InsertNextValue(static_cast<float>(i * i));
-  }
-  values->SetNumberOfTuples(27);
-  values->Fill(1.0);
-  grid->SetDimensions(3, 3, 3);
-  grid->SetXCoordinates(ticks);
-  grid->SetYCoordinates(ticks);
-  grid->SetZCoordinates(ticks);
-  grid->GetPointData()->SetScalars(values);
-  vtkNew<ErrorObserver> pipeline;
-  Refused(
-    "rectilinear grid", "vtkRectilinearGrid is not supported",
-    [&](Scene& s) {
-      s.Mapper->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, pipeline); // it says so, too
-      static_cast<vtkVolumeMapper*>(s.Mapper)->SetInputData(grid);
-    },
-    [](Scene& s) { s.Mapper->SetInputData(s.Image); });
-}
-
-// VTK's own prop of several volumes looks for VTK's own mapper, and says so.
-void SeveralVolumes()
-{
-  Scene scene(64, 48);
-  CHECK(scene.Light() > 10.0, "nothing to see");
-  vtkNew<vtkMultiVolume> several;
-  vtkNew<ErrorObserver> errors;
-  several->AddObserver(vtkCommand::ErrorEvent, errors);
-  several->SetVolume(scene.Volume);
-  several->SetMapper(scene.Mapper);
-  scene.Renderer->RemoveViewProp(scene.Volume);
-  scene.Renderer->AddViewProp(several);
-  scene.Render();
-  CHECK(errors->Count > 0 && errors->Has("only supported by vtkGPUVolumeRayCastMapper"), "several volumes in one: '%s'", errors->Text.c_str());
-  CHECK(IsBlack(scene), "several volumes in one: something is drawn");
 }
 
 void Functions()
@@ -396,10 +217,6 @@ void Device()
 int main()
 {
   Modes();
-  Looks();
-  Lights();
-  Props();
-  SeveralVolumes();
   Functions();
   Data();
   NoInput();

@@ -221,6 +221,33 @@ void Masks()
   CHECK(scene.Light() > 0.9 * whole, "without mask nothing is drawn");
 }
 
+// Of solid voxels the middle region can be shown, other regions and masks are refused, and nothing is drawn.
+void FirstHits()
+{
+  Scene scene(64, 48);
+  scene.Mapper->SetRenderModeToFirstHit();
+  const double whole = scene.Light();
+  double planes[6];
+  scene.Image->GetBounds(planes);
+  planes[0] = 0.4 * planes[1];
+  scene.Mapper->CroppingOn();
+  scene.Mapper->SetCroppingRegionPlanes(planes);
+  scene.Mapper->SetCroppingRegionFlagsToSubVolume();
+  const double part = scene.Light();
+  CHECK(part > 0.1 * whole && part < 0.9 * whole && scene.Errors->Count == 0, "cropped first hits: %g of %g, '%s'", part, whole, scene.Errors->Text.c_str());
+  scene.Mapper->SetCroppingRegionFlagsToFence();
+  CHECK(scene.Picture().empty() && scene.Errors->Count == 1 && scene.Errors->Has("crop regions"), "a fence: '%s'", scene.Errors->Text.c_str());
+  scene.Mapper->CroppingOff();
+  vtkNew<vtkImageData> mask;
+  mask->CopyStructure(scene.Image);
+  mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  mask->GetPointData()->GetScalars()->Fill(1);
+  scene.Mapper->SetMaskInput(mask);
+  CHECK(scene.Picture().empty() && scene.Errors->Count == 2 && scene.Errors->Has("mask"), "a mask: '%s'", scene.Errors->Text.c_str());
+  scene.Mapper->SetMaskInput(nullptr);
+  CHECK(scene.Light() == whole, "first hits after what was refused are others");
+}
+
 void Jitter()
 {
   Scene scene;
@@ -246,6 +273,7 @@ int main()
   Contours();
   CropRegions();
   Masks();
+  FirstHits();
   Jitter();
   return Failures ? 1 : 0;
 }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of the mapper's refusals share: a scene that is broken, told of once, and mended.
+#ifndef refusal_testing_h
+#define refusal_testing_h
+
+#include "mapper_testing.h"
+
+inline bool IsBlack(Scene& scene)
+{
+  const std::vector<unsigned char> bytes = scene.Bytes();
+  for (size_t p = 0; p < scene.Pixels(); ++p) {
+    if (bytes[4 * p] || bytes[4 * p + 1] || bytes[4 * p + 2]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Breaks a scene that has drawn, looks for `word` in one error, mends it, and wants the first picture again.
+inline void Refused(const char* what, const char* word, const std::function<void(Scene&)>& breaks, const std::function<void(Scene&)>& mends)
+{
+  Scene scene(64, 48);
+  const std::vector<float> before = scene.Picture();
+  CHECK(scene.Errors->Count == 0, "%s: %s", what, scene.Errors->Text.c_str());
+  breaks(scene);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1, "%s: %d errors", what, scene.Errors->Count);
+  CHECK(scene.Errors->Has(word), "%s: '%s' says nothing of '%s'", what, scene.Errors->Text.c_str(), word);
+  CHECK(IsBlack(scene), "%s: something is drawn", what);
+  scene.Render();
+  CHECK(scene.Errors->Count == 1, "%s: told again with every picture", what);
+  mends(scene);
+  CHECK(scene.Picture() == before, "%s: the picture after it is another", what);
+  CHECK(scene.Errors->Count == 1, "%s: still refused: %s", what, scene.Errors->Text.c_str());
+}
+
+#endif
