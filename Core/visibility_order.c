@@ -40,6 +40,12 @@ static stratus_status allocate_part(stratus_visibility_order* order, size_t coun
   return STRATUS_OK;
 }
 
+/* A leaf is one thread's. */
+static int peeling_threads(const stratus_visibility_order* order)
+{
+  return order->leaf_count < order->context->threads ? order->leaf_count : order->context->threads;
+}
+
 static stratus_status allocate_order(stratus_visibility_order* order)
 {
   const size_t cells = (size_t)order->cell_count;
@@ -52,7 +58,7 @@ static stratus_status allocate_order(stratus_visibility_order* order)
     const int64_t buckets = stratus_order_buckets(order->leaf_begin[l + 1] - order->leaf_begin[l]);
     order->buckets = buckets > order->buckets ? buckets : order->buckets;
   }
-  TRY(allocate_part(order, (size_t)order->context->threads, (size_t)order->buckets * sizeof *order->heads, &memory));
+  TRY(allocate_part(order, (size_t)peeling_threads(order), (size_t)order->buckets * sizeof *order->heads, &memory));
   order->heads = memory;
   return STRATUS_OK;
 }
@@ -195,8 +201,7 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
 {
   int64_t cycles = 0, forced = 0;
   int layers = 0;
-  const int threads = order->leaf_count < order->context->threads ? order->leaf_count : order->context->threads;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(+ : cycles, forced) reduction(max : layers)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced) reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; i++) {
     const stratus_peel_counts counts = stratus_order_peel_leaf(
       order, order->leaf_order[i], peeling, order->heads + omp_get_thread_num() * order->buckets);

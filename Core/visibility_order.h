@@ -73,7 +73,7 @@ struct stratus_visibility_order {
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
   struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
-  uint32_t* heads;  /* of buckets, as many a thread as the largest leaf has */
+  uint32_t* heads;  /* of buckets: as many as the largest leaf has, for each thread that peels */
   int64_t buckets;
   size_t bytes;
   double build_ms;
