@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 
 namespace {
@@ -57,6 +58,24 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   }
 }
 
+// Which parts are shown. What it gives back holds the mask's bytes.
+std::unique_ptr<cli::input> choose_parts(cli::context& core, const cli::options& o, const stratus_volume& volume, stratus_ray_cast_options& cast)
+{
+  cast.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
+  cast.crop_regions = static_cast<uint32_t>(o.crop_regions);
+  if (o.mask.empty()) {
+    return nullptr;
+  }
+  auto mask = std::make_unique<cli::input>(core, o.mask, "");
+  const stratus_volume& bytes = mask->volume;
+  if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
+    throw cli::failure("mask '" + o.mask + "' has " + cli::describe(bytes) + ", one uint8 for each value of " + cli::describe(volume) + " is needed");
+  }
+  cast.mask = static_cast<const uint8_t*>(bytes.values);
+  return mask;
+}
+
 void render(const cli::options& o)
 {
   if (cli::is_grid(o.source)) {
@@ -82,6 +101,9 @@ void render(const cli::options& o)
   std::copy(o.average.begin(), o.average.end(), cast.average_range);
   cast.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  const std::unique_ptr<cli::input> mask = choose_parts(core, o, in.volume, cast);
+  cast.jitter = o.jitter < 0 ? 0 : 1;
+  cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
   cast.structure = o.structure;
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;

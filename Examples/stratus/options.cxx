@@ -4,6 +4,7 @@
 #include "transfer.h"
 
 #include <functional>
+#include <limits>
 #include <map>
 
 namespace cli {
@@ -39,6 +40,10 @@ What is drawn
   --color NAME|LIST       a colour map, )" +
     color_names() + R"(, stretched over what is shown,
                           or "value:r:g:b,..." with r, g, b in 0..1
+  --crop X,X,Y,Y,Z,Z      only what lies between these planes across the grid's axes, in the file's coordinates
+  --crop-regions N        of the 27 regions that the planes of --crop make, bit x + 3 y + 9 z for each that is shown, 0..134217727
+                          (default 8192: between all of them)
+  --mask FILE             an image of one byte a value, 0 where nothing is to be seen
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
   --nearest               nearest instead of linear interpolation
   --shade                 light from the eye on the field's gradient (composite, isosurface)
@@ -55,6 +60,7 @@ From where
 How
   --sample-distance D     world length between samples (default: from the data and the opacity)
   --sampling S            auto, midpoint, preintegrated (default auto)
+  --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
   --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
                           ray, in their colour; average, additive: of opacity times value, in grey; isosurface (default composite)
@@ -204,6 +210,9 @@ void check_complete(const options& o)
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");
     }
+    if (o.crop_regions != STRATUS_CROP_INSIDE && o.crop.empty()) {
+      throw usage("--crop-regions: between which planes? Give --crop X,X,Y,Y,Z,Z");
+    }
     if (o.command == "tree" && o.mode > STRATUS_MODE_FIRST_HIT) {
       throw usage(std::string("tree: --mode '") + stratus_mode_name(o.mode) + "' is none of composite, first-hit");
     }
@@ -244,6 +253,10 @@ options parse(int argc, char* argv[])
     { "--mode", [&](const std::string& v) { o.mode = mode_named(v); } },
     { "--contours", [&](const std::string& v) { o.contours = numbers(v, "--contours", 1, STRATUS_CONTOURS_MAX); } },
     { "--average-range", [&](const std::string& v) { o.average = numbers(v, "--average-range", 2, 2); } },
+    { "--crop", [&](const std::string& v) { o.crop = numbers(v, "--crop", 6, 6); } },
+    { "--crop-regions", [&](const std::string& v) { o.crop_regions = whole_number(v, "--crop-regions", 0, STRATUS_CROP_ALL); } },
+    { "--mask", [&](const std::string& v) { o.mask = v; } },
+    { "--jitter", [&](const std::string& v) { o.jitter = whole_number(v, "--jitter", 0, std::numeric_limits<int>::max()); } },
     { "--normals", [&](const std::string& v) { o.normals = normals_named(v); } },
     { "--method",
       [&](const std::string& v) {

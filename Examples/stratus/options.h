@@ -41,6 +41,10 @@ struct options {
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface
   std::vector<double> average;  // average: none, or the range of values that count
+  std::vector<double> crop;     // none, or six planes across the grid's axes
+  int crop_regions = STRATUS_CROP_INSIDE;
+  std::string mask; // an image of bytes, 0 where nothing is to be seen
+  int jitter = -1;  // or the seed
   stratus_normals normals = STRATUS_NORMALS_FACES;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
