@@ -14,7 +14,9 @@
  * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over magnitudes in values per mean
  * spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components: independent ones are media that mix (their optical depths
  * add up, times ComponentWeight; their shading must be alike), dependent ones are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char); and label
- * maps. All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels) is refused by an error, and nothing is drawn.
+ * maps. All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, depth peeling of volumes,
+ * shaders of the prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn; the module's README has a table of it. Picking
+ * by hardware finds the volume where it shows.
  *
  * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
  * property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a cone below 90
