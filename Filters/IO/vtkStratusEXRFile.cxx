@@ -23,7 +23,7 @@ public:
 
   void WriteHeader(int width, int height, const std::vector<vtkStratusEXRChannel>& channels);
   void WriteRows(int width, int height, const std::vector<vtkStratusEXRChannel>& channels, const vtkStratusEXRProgress& progress);
-  void Finish() { this->Check(exr_finish(&this->Context)); }
+  void Finish();
 
   std::vector<unsigned char> Bytes;
 
@@ -32,6 +32,7 @@ private:
     exr_const_context_t, void* self, const void* buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t) noexcept;
   static void Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept;
   void Check(exr_result_t result) const;
+  void ReleasePipeline();
   void WriteChunk(int top, int width, const std::vector<float>& values, const std::vector<vtkStratusEXRChannel>& channels);
 
   exr_context_t Context = nullptr;
@@ -55,12 +56,25 @@ Encoder::Encoder()
 
 Encoder::~Encoder()
 {
-  if (this->Pipeline.context) {
-    exr_encoding_destroy(this->Context, &this->Pipeline);
-  }
+  this->ReleasePipeline();
   if (this->Context) {
     exr_finish(&this->Context);
   }
+}
+
+// Before exr_finish(): its buffers are freed by the context's functions, and without a context nothing is.
+void Encoder::ReleasePipeline()
+{
+  if (this->Pipeline.context) {
+    exr_encoding_destroy(this->Context, &this->Pipeline);
+    this->Pipeline = {};
+  }
+}
+
+void Encoder::Finish()
+{
+  this->ReleasePipeline();
+  this->Check(exr_finish(&this->Context));
 }
 
 int64_t Encoder::Write(

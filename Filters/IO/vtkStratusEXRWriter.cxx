@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 
 #include <cerrno>
 #include <cmath>
@@ -97,9 +98,14 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
   if (!array || !IsNumeric(array->GetDataType())) {
     Fail(what + " is of type " + abstract->GetDataTypeAsString() + ", channels are made of numbers of 8 to 64 bits");
   }
+  vtkSmartPointer<vtkDataArray> plain = array;
+  if (!array->HasStandardMemoryLayout()) { // one copy for all rows and channels: GetVoidPointer() would make one each time
+    plain = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+    plain->DeepCopy(array);
+  }
   const int components = array->GetNumberOfComponents();
   for (int c = 0; c < components; ++c) {
-    channels.push_back({ ChannelName(name, c, components), [=](int y, float* row) { GetRow(array, c, width, y, what, row); } });
+    channels.push_back({ ChannelName(name, c, components), [=](int y, float* row) { GetRow(plain, c, width, y, what, row); } });
   }
 }
 

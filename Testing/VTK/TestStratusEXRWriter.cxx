@@ -11,6 +11,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIntArray.h"
+#include "vtkSOADataArrayTemplate.h"
 #include "vtkStringArray.h"
 #include "vtkTypeUInt32Array.h"
 #include "vtkTypeUInt64Array.h"
@@ -21,6 +22,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <malloc.h>
 #include <random>
 #include <sys/resource.h>
 
@@ -141,6 +143,53 @@ void UnnamedArrays()
       CheckChannel(picture, std::string(1, names[components - 1][c]), array, c);
     }
   }
+}
+
+// Components in arrays of their own, as simulations in situ give them.
+void SplitArrays()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(37, 17);
+  const auto array = AddArray<vtkSOADataArrayTemplate<float>>(
+    image, "RGBA", 4, [](std::mt19937& random) { return static_cast<float>(random() >> 8); });
+  vtkNew<vtkStratusEXRWriter> writer;
+  vtkNew<ErrorObserver> errors;
+  writer->AddObserver(vtkCommand::ErrorEvent, errors);
+  vtkNew<ErrorObserver> warnings; // VTK warns once of a copy that GetVoidPointer() makes
+  array->AddObserver(vtkCommand::WarningEvent, warnings);
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/split.exr").c_str());
+  CHECK(writer->Write() == 1 && errors->Count == 0, "%s", errors->Text.c_str());
+  CHECK(warnings->Count == 0, "%d warnings: %s", warnings->Count, warnings->Text.c_str());
+  ExrPicture picture;
+  CHECK(ReadExr(Folder + "/split.exr", picture), "the library reads it");
+  for (int c = 0; c < 4; ++c) {
+    CheckChannel(picture, std::string(1, "RGBA"[c]), array, c);
+  }
+}
+
+size_t BytesInUse()
+{
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+// The buffers of one picture are far larger than what is allowed for all.
+void KeepsNothing()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(512, 32);
+  AddFloats(image, "RGBA", 4);
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName((Folder + "/again.exr").c_str());
+  size_t first = 0;
+  for (int time = 0; time < 24; ++time) {
+    if (time == 4) {
+      first = BytesInUse();
+    }
+    writer->Write();
+  }
+  const size_t last = BytesInUse();
+  CHECK(last < first + 65536, "20 pictures left %zu bytes behind", last - first);
 }
 
 // One error of these words; the file that was there stays, and none beside it.
@@ -278,6 +327,8 @@ int main(int argc, char** argv)
     CheckRoundTrip(size.first, size.second);
   }
   UnnamedArrays();
+  SplitArrays();
+  KeepsNothing();
   RefusesImages();
   RefusesArrays();
   RefusesPaths();
