@@ -20,8 +20,8 @@ bool vtkStratusLeaves::Set(vtkUnstructuredGrid* grid)
 {
   vtkDataArray* leaf = grid->GetCellData()->GetArray(vtkStratusLeafArray);
   vtkDataArray* tree = grid->GetFieldData()->GetArray(vtkStratusPartitionArray);
-  if (!leaf || !tree || leaf->GetNumberOfComponents() != 1 || tree->GetNumberOfComponents() != 1 || tree->GetNumberOfTuples() < HeaderNumbers ||
-    tree->GetComponent(0, 0) != 1.0) {
+  if (!leaf || !tree || leaf->GetNumberOfComponents() != 1 || leaf->GetNumberOfTuples() < grid->GetNumberOfCells() ||
+    tree->GetNumberOfComponents() != 1 || tree->GetNumberOfTuples() < HeaderNumbers || tree->GetComponent(0, 0) != 1.0) {
     return false;
   }
   const double nodes = tree->GetComponent(1, 0);

@@ -132,6 +132,28 @@ void Moved()
   CHECK(WrongPairs(grid, cells, camera, identity) == 0, "%d pairs in the wrong order", WrongPairs(grid, cells, camera, identity));
 }
 
+// An array that something else cut short: there is no leaf to be read for each cell, so the order does without the tree.
+void ShortLeaves()
+{
+  Grid grid = Tetrahedra(3);
+  vtkNew<vtkStratusVisibilitySort> sort;
+  vtkNew<vtkCamera> camera;
+  vtkNew<vtkMatrix4x4> identity;
+  camera->SetPosition(13, 7, 9);
+  sort->SetInput(grid);
+  sort->SetCamera(camera);
+  sort->SetDirectionToFrontToBack();
+  Traverse(sort, sort->GetMaxCellsReturned());
+  CHECK(sort->GetNumberOfLeaves() == 8, "%d leaves", sort->GetNumberOfLeaves());
+  vtkDataArray* leaf = grid->GetCellData()->GetArray("StratusLeaf");
+  leaf->SetNumberOfTuples(grid->GetNumberOfCells() - 1);
+  leaf->Modified();
+  grid->Modified();
+  const std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
+  CHECK(sort->GetNumberOfLeaves() == 1, "%d leaves, one cell has none", sort->GetNumberOfLeaves());
+  CHECK(WrongPairs(grid, cells, camera, identity) == 0, "%d pairs in the wrong order", WrongPairs(grid, cells, camera, identity));
+}
+
 void Refused(const char* word, vtkDataSet* input, vtkCamera* camera)
 {
   vtkNew<vtkStratusVisibilitySort> sort;
@@ -164,6 +186,7 @@ int main()
 {
   Orders();
   Moved();
+  ShortLeaves();
   Refusals();
   return Failures == 0 ? 0 : 1;
 }
