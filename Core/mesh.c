@@ -15,6 +15,17 @@ stratus_mesh stratus_mesh_default(void)
   return mesh;
 }
 
+stratus_volume stratus_mesh_values(const stratus_mesh* mesh)
+{
+  stratus_volume volume = stratus_volume_default();
+  volume.values = mesh->values;
+  volume.type = mesh->type;
+  volume.value_stride = mesh->value_stride;
+  volume.dimensions[0] = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  volume.dimensions[1] = volume.dimensions[2] = 1;
+  return volume;
+}
+
 static stratus_status check_counts(stratus_context* context, const stratus_mesh* mesh)
 {
   if (mesh->point_count < 0 || mesh->point_count > POINTS_MAX) {

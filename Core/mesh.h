@@ -21,6 +21,9 @@ typedef struct stratus_adjacency {
   int64_t flat, inverted;             /* cells of no volume, by the exact sign; of negative orientation */
 } stratus_adjacency;
 
+/* mesh.c: a mesh's values as volumes have them, so that fetching is the same. */
+stratus_volume stratus_mesh_values(const stratus_mesh* mesh);
+
 /* The mesh is one that stratus_mesh_check() passed. */
 stratus_status stratus_adjacency_create(stratus_context* context, const stratus_mesh* mesh, stratus_adjacency** adjacency);
 void stratus_adjacency_destroy(stratus_adjacency* adjacency); /* takes NULL */

@@ -913,7 +913,8 @@ typedef enum stratus_tetra_mode {
  * first, so that no order of cells is trusted. Only where cells overlap do the ways differ: pieces in order of depth, or one way through neighbours
  * after the other. */
 typedef enum stratus_tetra_method {
-  STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it */
+  STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it.
+                                * Where the context has a device: march */
   STRATUS_TETRA_METHOD_MARCH,  /* rays march from cell to cell */
   STRATUS_TETRA_METHOD_PROJECT /* cells that can show something are sorted, dealt to tiles of pixels, and composited there */
 } stratus_tetra_method;
@@ -956,10 +957,11 @@ typedef struct stratus_tetra_caster stratus_tetra_caster;
 STRATUS_API stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** caster);
 STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
-/* Draws on the host, whatever the context's device. The mesh must have values; it is read when pointers, counts, type, stride or revision
- * differ from the last call's, else only its matrix. Opacity is per world length. image: samples gets the segments of the pixel;
- * depth the world distance to the first segment that contributes (maximum: to where the largest value is). options, report may be NULL. A failed
- * call leaves the picture undefined, and the caster fit for the next call. At most 2^31/6 cells and 2^30 points: more are STRATUS_UNSUPPORTED. */
+/* Marches on the context's device, or on the host where there is none or the mesh is too large for it; projects on the host, whatever the
+ * device. The mesh must have values; it is read when pointers, counts, type, stride or revision differ from the last call's, else only its matrix.
+ * Opacity is per world length. image: samples gets the segments of the pixel; depth the world distance to the first segment that contributes
+ * (maximum: to where the largest value is). options, report may be NULL. A failed call leaves the picture undefined, and the caster fit for the
+ * next call. At most INT32_MAX/8 cells, INT32_MAX/4 points and INT32_MAX/8 faces at the border: more are STRATUS_UNSUPPORTED. */
 STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
 /* Frees what was built; the next render builds anew. */

@@ -3,6 +3,7 @@
  * of earlier frames goes into it, so that a camera that stands still never changes the method. */
 #include "tetra_caster.h"
 
+#include "mesh.h"
 #include "ray_caster.h"
 
 #include <stdio.h>
@@ -91,10 +92,7 @@ static void count_view(const stratus_tetra_caster* caster, const stratus_mesh* m
 {
   const int64_t sample = mesh->cell_count < SAMPLE ? mesh->cell_count : SAMPLE;
   const double each = (double)mesh->cell_count / (double)sample;
-  stratus_volume values = stratus_volume_default();
-  values.values = mesh->values;
-  values.type = mesh->type;
-  values.value_stride = mesh->value_stride;
+  const stratus_volume values = stratus_mesh_values(mesh);
   for (int64_t i = 0; i < sample; ++i) {
     /* a step of nearly the golden section: no rhythm of a generated mesh is met again and again */
     const int64_t place = (int64_t)(((uint64_t)i * 2654435769u) & 0xffffffffu);

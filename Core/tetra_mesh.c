@@ -9,18 +9,6 @@
 #define CELL_INTS_MOST INT32_MAX
 #define POINTS_MOST (INT32_MAX / 4) /* four floats each */
 
-/* Values as volumes have them, so that fetching is the same. */
-static stratus_volume values_of(const stratus_mesh* mesh)
-{
-  stratus_volume volume = stratus_volume_default();
-  volume.values = mesh->values;
-  volume.type = mesh->type;
-  volume.value_stride = mesh->value_stride;
-  volume.dimensions[0] = mesh->cell_values ? mesh->cell_count : mesh->point_count;
-  volume.dimensions[1] = volume.dimensions[2] = 1;
-  return volume;
-}
-
 static void find_shown(
   stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
 {
@@ -190,7 +178,7 @@ static stratus_status fetch_values(stratus_tetra_mesh* tetra, const stratus_mesh
 static stratus_status build(
   stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const stratus_tetra_places* places)
 {
-  const stratus_volume volume = values_of(mesh);
+  const stratus_volume volume = stratus_mesh_values(mesh);
   void* memory = NULL;
   tetra->bias = stratus_volume_bias(&volume);
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, 1, &memory));

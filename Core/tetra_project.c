@@ -3,6 +3,7 @@
  * then all tiles, in parallel. Which thread does what changes nothing: a tile's cells come in the one order. */
 #include "tetra_caster.h"
 
+#include "mesh.h"
 #include "ray_caster.h"
 
 #include <omp.h>
@@ -43,10 +44,7 @@ static stratus_tetra_project_tile* tile_for(int isa)
 
 static void find_shown(stratus_tetra_projector* projector, const stratus_mesh* mesh, const float* values, double bias)
 {
-  stratus_volume volume = stratus_volume_default();
-  volume.values = mesh->values;
-  volume.type = mesh->type;
-  volume.value_stride = mesh->value_stride;
+  const stratus_volume volume = stratus_mesh_values(mesh);
 #pragma omp parallel for num_threads(projector->context->threads)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const int32_t* v = mesh->vertices + 4 * cell;

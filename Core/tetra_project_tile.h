@@ -51,19 +51,6 @@ static int place_of(int x, int y)
   return (y / PACKET_Y * ACROSS + x / PACKET_X) * WIDTH + y % PACKET_Y * PACKET_X + x % PACKET_X;
 }
 
-/* What is seen of a ray ends at the far plane, or at what is opaque; in z. */
-static float end_of(const stratus_tetra_projection* projection, int x, int y)
-{
-  const stratus_tetra_frame* frame = projection->frame;
-  const stratus_camera* c = &frame->camera;
-  if (!frame->image.opaque_depth) {
-    return projection->end;
-  }
-  const double extent = (double)frame->image.opaque_depth[(size_t)y * (size_t)frame->image.width + (size_t)x] * (c->far_k - c->near_k);
-  const double end = c->parallel ? c->near_k + extent : c->near_k * c->far_k / (c->far_k - extent);
-  return (float)fmin((end - frame->middle) / frame->per_z, 1e30);
-}
-
 /* Nothing gathered yet. Pixels beyond the picture are closed. */
 static void clear_pixel(project_tile* t, int p, bool inside)
 {
@@ -103,7 +90,9 @@ static void begin_tile(project_tile* t, int tile)
       }
       t->length[p] = (float)(sqrt(square) * frame->per_z);
       t->offset[p] = (float)(sqrt(square) * frame->middle);
-      t->end[p] = inside ? end_of(t->projection, t->x0 + x, t->y0 + y) : -LARGEST_FLOAT;
+      const size_t pixel = (size_t)(t->y0 + y) * (size_t)image->width + (size_t)(t->x0 + x);
+      const float end = inside && frame->ends ? frame->ends[pixel] : t->projection->end;
+      t->end[p] = inside ? end : -LARGEST_FLOAT;
     }
   }
 }

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Pixels of a tile whose pieces came out of order, drawn again: the nearest pieces of their rays are collected from all cells of the tile, drawn,
+ * and then the nearest behind those. Included by tetra_project_host.c. */
+#ifndef STRATUS_TETRA_PROJECT_AGAIN_H
+#define STRATUS_TETRA_PROJECT_AGAIN_H
+
+#include "tetra_project_cells.h"
+
+#define KEPT 64 /* pieces a pixel, nearest first */
+
+/* As many wrong pixels of a tile as there are lanes. */
+typedef struct nearest_pieces {
+  int pixel[WIDTH], pixels; /* which, how many */
+  float us[WIDTH], uw[WIDTH], vs[WIDTH], vw[WIDTH];
+  int x0, x1, y0, y1; /* about them, of the picture */
+  int count[WIDTH], lost[WIDTH]; /* lost: there are more than KEPT */
+  float at[WIDTH][KEPT], to[WIDTH][KEPT], first[WIDTH][KEPT], last[WIDTH][KEPT];
+  uint32_t rank[WIDTH][KEPT]; /* of the cell, for equal depths */
+  float after[WIDTH];
+  uint32_t after_rank[WIDTH]; /* only what comes behind these counts */
+} nearest_pieces;
+
+static bool comes_before(float at, uint32_t rank, float other, uint32_t other_rank)
+{
+  return at < other || (at <= other && rank < other_rank);
+}
+
+static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint32_t rank)
+{
+  if (n->count[l] == KEPT) {
+    n->lost[l] = 1;
+    if (!comes_before(piece[0], rank, n->at[l][KEPT - 1], n->rank[l][KEPT - 1])) {
+      return;
+    }
+    --n->count[l];
+  }
+  int i = n->count[l]++;
+  for (; i > 0 && comes_before(piece[0], rank, n->at[l][i - 1], n->rank[l][i - 1]); --i) {
+    n->at[l][i] = n->at[l][i - 1];
+    n->to[l][i] = n->to[l][i - 1];
+    n->first[l][i] = n->first[l][i - 1];
+    n->last[l][i] = n->last[l][i - 1];
+    n->rank[l][i] = n->rank[l][i - 1];
+  }
+  n->at[l][i] = piece[0];
+  n->to[l][i] = piece[1];
+  n->first[l][i] = piece[2];
+  n->last[l][i] = piece[3];
+  n->rank[l][i] = rank;
+}
+
+/* The nearest pieces behind those that the pixels have had. */
+static void collect_nearest(const project_tile* t, const uint32_t* cells, uint32_t count, nearest_pieces* n)
+{
+  const vmask on = vi_lt(vi_lanes(), vi_set(n->pixels));
+  for (uint32_t i = 0; i < count; ++i) {
+    const stratus_tetra_rect* rect = t->projection->rects + cells[i];
+    float lanes[4][WIDTH];
+    int met[WIDTH];
+    cell_points c;
+    ray_piece piece;
+    if (rect->x1 < n->x0 || rect->x0 > n->x1 || rect->y1 < n->y0 || rect->y0 > n->y1) {
+      continue;
+    }
+    load_points(t->projection, cells[i], &c);
+    const vmask mask = pass_cell(&c, v_load(n->us), v_load(n->uw), v_load(n->vs), v_load(n->vw), on, &piece);
+    if (!m_any(mask)) {
+      continue;
+    }
+    vi_store(met, vi_select(mask, vi_set(1), vi_set(0)));
+    v_store(lanes[0], piece.at);
+    v_store(lanes[1], piece.to);
+    v_store(lanes[2], piece.first);
+    v_store(lanes[3], piece.last);
+    for (int l = 0; l < n->pixels; ++l) {
+      const float values[4] = { lanes[0][l], lanes[1][l], lanes[2][l], lanes[3][l] };
+      if (met[l] && comes_before(n->after[l], n->after_rank[l], values[0], i + 1)) {
+        keep_piece(n, l, values, i + 1);
+      }
+    }
+  }
+}
+
+/* Whether some pixel has more to come. */
+static bool draw_nearest(project_tile* t, nearest_pieces* n)
+{
+  bool more = false;
+  for (int l = 0; l < n->pixels; ++l) {
+    for (int i = 0; i < n->count[l]; ++i) {
+      t->at[t->count] = n->after[l] = n->at[l][i];
+      t->to[t->count] = n->to[l][i];
+      t->first[t->count] = n->first[l][i];
+      t->last[t->count] = n->last[l][i];
+      t->pixel[t->count++] = n->pixel[l];
+      n->after_rank[l] = n->rank[l][i];
+      if (t->count >= PIECES) {
+        flush(t);
+      }
+    }
+    more = more || n->lost[l];
+  }
+  flush(t);
+  return more;
+}
+
+/* Pixel p of the tile becomes one of those to be drawn again. */
+static void take_pixel(project_tile* t, int p, nearest_pieces* n)
+{
+  const int l = n->pixels++, packet = p / WIDTH, row = packet / ACROSS, column = packet % ACROSS, lane = p % WIDTH;
+  const int x = t->x0 + column * PACKET_X + lane % PACKET_X, y = t->y0 + row * PACKET_Y + lane / PACKET_X;
+  clear_pixel(t, p, true);
+  n->pixel[l] = p;
+  n->us[l] = t->us[column][lane];
+  n->uw[l] = t->uw[column][lane];
+  n->vs[l] = t->vs[row][lane];
+  n->vw[l] = t->vw[row][lane];
+  n->x0 = x < n->x0 ? x : n->x0;
+  n->x1 = x > n->x1 ? x : n->x1;
+  n->y0 = y < n->y0 ? y : n->y0;
+  n->y1 = y > n->y1 ? y : n->y1;
+  n->after[l] = -LARGEST_FLOAT;
+  n->after_rank[l] = 0;
+}
+
+static void draw_again(project_tile* t, const uint32_t* cells, uint32_t count)
+{
+  nearest_pieces n;
+  for (int p = 0; p < PIXELS;) {
+    n.pixels = 0;
+    n.x0 = n.y0 = INT32_MAX;
+    n.x1 = n.y1 = -1;
+    for (int l = 0; l < WIDTH; ++l) { /* lanes without a pixel hold some ray */
+      n.us[l] = n.uw[l] = n.vs[l] = n.vw[l] = 0.0f;
+    }
+    for (; p < PIXELS && n.pixels < WIDTH; ++p) {
+      if (t->pixels[p].wrong) {
+        take_pixel(t, p, &n);
+      }
+    }
+    t->counts->again += (uint64_t)n.pixels;
+    for (bool more = n.pixels > 0; more;) {
+      memset(n.count, 0, sizeof n.count);
+      memset(n.lost, 0, sizeof n.lost);
+      collect_nearest(t, cells, count, &n);
+      more = draw_nearest(t, &n);
+    }
+  }
+}
+
+#endif
