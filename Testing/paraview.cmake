@@ -4,6 +4,10 @@
 set(paraview "${CMAKE_BINARY_DIR}/paraview")
 set(plugin_build "${CMAKE_BINARY_DIR}/paraview_plugin")
 file(GLOB paraview_cmake_names "/usr/lib/*/cmake/VTK-9.1" "/usr/lib/*/cmake/vtk-9.1") # which of Debian's architectures
+if (NOT paraview_cmake_names)
+  message(FATAL_ERROR "STRATUS_TEST_BUILDS tests the plugin in Debian's ParaView, which goes with Debian's VTK 9.1: there is no "
+    "/usr/lib/*/cmake/vtk-9.1. Install libvtk9-dev, or set STRATUS_TEST_BUILDS=OFF.")
+endif ()
 list(GET paraview_cmake_names 0 paraview_cmake)
 get_filename_component(paraview_cmake "${paraview_cmake}/../paraview-5.11" ABSOLUTE)
 

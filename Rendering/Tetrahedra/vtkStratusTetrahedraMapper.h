@@ -6,13 +6,14 @@
  * Takes the place of vtkProjectedTetrahedraMapper and of vtkUnstructuredGridVolumeRayCastMapper: a vtkUnstructuredGrid and the vtkVolume's
  * vtkVolumeProperty go in, the picture is composited with the opaque geometry of the scene.
  *
- * Supported: linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat cells. All but
- * linear tetrahedra are divided into such, neighbours alike across their faces, so that the field is linear in each part; vertices, lines and
- * polygons are ignored and counted, a grid that has nothing else is an error. Point and cell scalars of one
- * component and any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite and
- * maximum intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not
- * finite (whole cells with one are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that cross the near plane are cut there. All else (cells
- * of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping planes) is refused by an error, and nothing is drawn.
+ * Supported: linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
+ * cells. All but linear tetrahedra are divided into such, neighbours alike across their faces, so that the field is linear in each part;
+ * vertices, lines and polygons are ignored and counted, a grid that has nothing else is an error. Point and cell scalars of one component and
+ * any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite and maximum
+ * intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not finite (whole
+ * cells with one are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that cross the near plane
+ * are cut there. All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps,
+ * clipping planes) is refused by an error, and nothing is drawn.
  *
  * What is built is kept: a new view of the same grid rebuilds nothing, a new transfer function a table only.
  *
