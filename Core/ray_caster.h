@@ -37,7 +37,7 @@ typedef struct stratus_ray_look_tables {
   void* memory;                   /* all tables, and gradient opacity, as rays read them */
   size_t bytes;
   int first[4], factor_first[4]; /* in floats; factor_first -1: none */
-  float factor_scale[4];         /* entries per magnitude, which is in parts of the value range */
+  float factor_scale[4];         /* entries per magnitude */
   stratus_table** label_tables;  /* of label 0 and on, NULL: no labels */
   int label_tables_count, label_first;
   uint64_t range_builds, table_builds; /* the caster's, that they belong to */

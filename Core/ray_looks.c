@@ -86,9 +86,7 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
 void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
   const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
-  const stratus_value_range* ranges = caster->ranges;
-  const double extent = (double)ranges->whole_hi - (double)ranges->whole_lo, edge = stratus_ray_voxel_length(volume);
-  const double range = extent > 0.0 && isfinite(extent) ? extent : 1.0;
+  const double edge = stratus_ray_voxel_length(volume);
   double index_to_world[16], world_to_index[16];
   if (!caster->looks && !options->shade) {
     return;
@@ -99,13 +97,13 @@ void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus
   }
   for (int row = 0; row < 3; ++row) {
     for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's transposed, against the gradient */
-      a->normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge / range);
+      a->normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge);
       a->place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
     }
   }
   const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
   for (int axis = 0; axis < 3; ++axis) {
-    a->gradient_length[axis] = (float)(mean / volume->spacing[axis] / range);
+    a->gradient_length[axis] = (float)(mean / volume->spacing[axis]);
   }
   set_tables(caster, a);
   const stratus_shading* shading = &options->shading;

@@ -3,6 +3,7 @@
  * each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
 #include "ray_caster.h"
 
+#include <float.h>
 #include <string.h>
 
 /* Optical depth over a sample of what is opaque. */
@@ -215,7 +216,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
   return create_table(caster, caster->transfers, last, &looks->tables[last]);
 }
 
-/* The function over magnitudes from 0 to its last point, magnitudes as parts of the value range. */
+/* The function over magnitudes from 0 to its last point. */
 static void fill_factors(const stratus_transfer* transfer, float* out)
 {
   const stratus_transfer function = { .opacity = transfer->gradient,
@@ -230,12 +231,6 @@ static void fill_factors(const stratus_transfer* transfer, float* out)
     stratus_transfer_at(&function, most > 0.0 ? most * at / STRATUS_LOOK_FACTORS : most, rgba);
     out[e] = (float)rgba[3];
   }
-}
-
-static double value_extent(const stratus_value_range* ranges)
-{
-  const double extent = (double)ranges->whole_hi - (double)ranges->whole_lo;
-  return extent > 0.0 && isfinite(extent) ? extent : 1.0;
 }
 
 static size_t usual_words(const stratus_table* table)
@@ -288,7 +283,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == looks->components);
     const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
     looks->factor_first[c] = has ? (int)at : -1;
-    looks->factor_scale[c] = most > 0.0 ? (float)(value_extent(caster->ranges) * STRATUS_LOOK_FACTORS / most) : 0.0f;
+    looks->factor_scale[c] = most > 0.0 ? (float)fmin(STRATUS_LOOK_FACTORS / most, (double)FLT_MAX) : 0.0f;
     if (has && out) {
       fill_factors(transfer, out + at);
     }

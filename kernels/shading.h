@@ -6,9 +6,6 @@
 
 #include "ray_segment.h"
 
-/* Below this part of the value range a voxel (squared), a field is flat and has no normal: ambient light only. */
-#define FLAT_SQUARE 1e-28f
-
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
 
 /* rows of m times v */
@@ -19,11 +16,24 @@ INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
   }
 }
 
-/* To length 1; 0 where the square of the length is below `least` or no number. */
+/* By the power of 2 that takes the largest component to 1..4, exactly: squares then neither overflow nor vanish, be the values' range what it may. The
+ * largest as it was. */
+INLINE vfloat v_scale3(vfloat v[3])
+{
+  const vfloat largest = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));
+  const vint exponent = v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is a normal number's */
+  const vfloat scale = v_from_bits(vi_set(0x7f000000) - exponent);
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] = v[axis] * scale;
+  }
+  return largest;
+}
+
+/* To length 1; 0 where no component is above `least` or one is no number. */
 INLINE void v_normalize3(vfloat v[3], float least)
 {
-  const vfloat square = v_dot3(v, v), zero = v_set(0.0f);
-  const vmask any = v_le(v_set(least), square) & v_finite(square);
+  const vfloat largest = v_scale3(v), square = v_dot3(v, v), zero = v_set(0.0f);
+  const vmask any = v_lt(v_set(least), largest) & v_lt(zero, square) & v_finite(square);
   const vfloat scale = v_inverse_root(v_select(any, square, v_set(1.0f)));
   for (int axis = 0; axis < 3; ++axis) {
     v[axis] = v_select(any, v[axis] * scale, zero);
@@ -57,17 +67,17 @@ INLINE vint look_entry(CONSTANT stratus_ray_cast_arguments* a, int c, vfloat val
 INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const vfloat g[3], vmask mask)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  const float last = a->factor_last[c];
   vfloat v[3];
   if (a->factor_first[c] < 0) {
     return one;
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    v[axis] = g[axis] * v_set(a->gradient_length[axis]);
+  for (int axis = 0; axis < 3; ++axis) { /* in entries; a component beyond the last one is as good as at it, and its square is finite */
+    v[axis] = v_clamp(g[axis] * v_set(a->gradient_length[axis]) * v_set(a->factor_scale[c]), -last, last);
   }
   const vfloat square = v_dot3(v, v);
-  const vmask steep = v_le(v_set(FLAT_SQUARE), square) & v_finite(square);
-  const vfloat length = v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero);
-  const vfloat place = v_clamp(length * v_set(a->factor_scale[c]), 0.0f, a->factor_last[c]);
+  const vmask steep = v_le(v_set(1e-28f), square); /* below it the first entry's */
+  const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
   const vint entry = v_to_int(place);
   GLOBAL const int* factors = (GLOBAL const int*)table + a->factor_first[c];
   const vfloat low = v_from_bits(gather_int32(factors, entry, mask)), high = v_from_bits(gather_int32(factors + 1, entry, mask));
@@ -81,10 +91,12 @@ INLINE void ray_light(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3],
 {
   const vfloat zero = v_set(0.0f);
   vfloat normal[3], eye[3], place[3];
-  v_transform3(a->normal, g, normal);
-  v_normalize3(normal, FLAT_SQUARE);
+  vfloat steep[3] = { g[0], g[1], g[2] };
+  v_scale3(steep);
+  v_transform3(a->normal, steep, normal);
+  v_normalize3(normal, 0.0f); /* a field that is flat has no normal: ambient light only */
   v_transform3(a->place, d, eye);
-  v_normalize3(eye, 1e-30f);
+  v_normalize3(eye, 0.0f);
   v_transform3(a->place, x, place);
   const vmask away = v_lt(zero, v_dot3(normal, eye));
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,11 +115,11 @@ INLINE void ray_light(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3],
         light[axis] = light[axis] - place[axis];
       }
     }
-    v_normalize3(light, 1e-30f);
+    v_normalize3(light, 0.0f);
     for (int axis = 0; axis < 3; ++axis) {
       half_way[axis] = light[axis] + eye[axis];
     }
-    v_normalize3(half_way, 1e-12f);
+    v_normalize3(half_way, 1e-6f); /* light and eye opposite: what is left is rounding */
     const vfloat cosine = v_max(v_dot3(normal, light), zero), gloss = v_dot3(normal, half_way);
     const vmask lit = v_lt(zero, cosine), shines = lit & v_lt(v_set(1e-9f), gloss);
     const vfloat matt = cosine * v_set(a->material[1]);

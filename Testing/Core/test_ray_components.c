@@ -142,6 +142,39 @@ static void independent_components_mix_as_the_reference_mixes_them(void** state)
   stratus_context_destroy(context);
 }
 
+/* The second component in other units, its functions too: the same picture, be its range so much less or more than the first one's. */
+static void each_component_has_its_own_units(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int power = -50; power <= 63; power += 113) { /* 1e-15 and 1e19, of which products are exact */
+    many m;
+    double opacity[8], gradient[4] = { 0.0, 0.1, 0.3, 1.0 };
+    many_create(context, &m, STRATUS_FLOAT32, 2, 26, 24, 28, 71);
+    memcpy(opacity, m.c.opacity, sizeof opacity);
+    m.c.options.shade = 1;
+    m.transfers[1].opacity = opacity;
+    m.transfers[1].gradient = gradient;
+    m.transfers[1].gradient_count = 2;
+    draw(context, &m, &drawn);
+    float* values = m.values;
+    for (size_t v = 0; v < 26 * 24 * 28; ++v) {
+      values[2 * v + 1] = ldexpf(values[2 * v + 1], power);
+    }
+    for (int i = 0; i < 4; ++i) {
+      opacity[2 * i] = ldexp(opacity[2 * i], power);
+    }
+    gradient[2] = ldexp(gradient[2], power);
+    draw(context, &m, &other);
+    const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+    print_message("             2^%d: %.1f dB, %d pixels\n", power, db, case_lit(&other));
+    assert_true(case_lit(&drawn) > 200);
+    assert_true(db > 100.0);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 static void dependent_components_are_colour_and_opacity(void** state)
 {
   (void)state;
@@ -326,6 +359,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(gradient_opacity_thins_as_the_reference_says),
     cmocka_unit_test(independent_components_mix_as_the_reference_mixes_them),
+    cmocka_unit_test(each_component_has_its_own_units),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
     cmocka_unit_test(labels_have_colours_and_opacities_of_their_own),
     cmocka_unit_test(no_structure_changes_a_bit),

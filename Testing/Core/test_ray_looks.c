@@ -200,6 +200,39 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   stratus_context_destroy(context);
 }
 
+/* A fill value takes no part in the picture, and neither does the range that it makes: what lies away from it is lit and thinned as before. */
+static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.0, 0.2, 0.4, 0.45, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 26, 24, 28, 71);
+  shine(&c);
+  c.options.crop = 1;
+  for (int a = 0; a < 3; ++a) {
+    c.options.crop_bounds[2 * a] = 3.0;
+    c.options.crop_bounds[2 * a + 1] = 40.0;
+  }
+  for (int thinned = 0; thinned < 2; ++thinned) {
+    c.transfer.gradient = steep;
+    c.transfer.gradient_count = thinned ? 3 : 0;
+    case_store(c.values, STRATUS_FLOAT32, 0, 0.0);
+    case_render(context, &c, &drawn);
+    for (int e = 0; e < 3; ++e) {
+      const double outlier[] = { 1e20, 1e35, 3e38 };
+      case_store(c.values, STRATUS_FLOAT32, 0, outlier[e]);
+      case_render(context, &c, &other);
+      const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+      print_message("             %g%s: %.1f dB, %d pixels\n", outlier[e], thinned ? ", thinned" : "", db, case_lit(&other));
+      assert_true(case_lit(&drawn) > 200);
+      assert_true(db > 100.0);
+    }
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 static void bad_shading_is_refused_where_it_would_be_used(void** state)
 {
   (void)state;
@@ -227,6 +260,7 @@ int main(void)
     cmocka_unit_test(border_voxels_and_every_type_are_lit),
     cmocka_unit_test(no_structure_thread_or_instruction_set_changes_a_bit),
     cmocka_unit_test(each_number_of_the_shading_has_its_effect),
+    cmocka_unit_test(one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity),
     cmocka_unit_test(bad_shading_is_refused_where_it_would_be_used),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
