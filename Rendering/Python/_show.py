@@ -2,13 +2,12 @@
 """NumPy volumes as pictures: `show` draws one, `as_image` hands its memory to VTK."""
 import os
 import sys
+from numbers import Real
 
 import numpy
 import vtkmodules.vtkRenderingOpenGL2  # registers itself, so that there is a window to draw in
 import vtkmodules.vtkRenderingVolumeOpenGL2
-from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkColorTransferFunction, vtkRenderer, vtkRenderWindow, vtkVolume
@@ -100,7 +99,7 @@ def _spread(image):
 
 def _opacity_points(opacity, low, high, common):
     """Pairs of value and opacity: a number is the top of a ramp away from the most frequent value."""
-    if opacity is None or isinstance(opacity, (int, float)):
+    if opacity is None or isinstance(opacity, Real):
         top = 0.3 if opacity is None else float(opacity)
         if not 0 <= top <= 1:
             raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
@@ -118,9 +117,10 @@ def _color_points(color, low, high):
     if color is None:
         middle = 0.5 * (low + high)
         return [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
-    if len(color) == 3 and all(isinstance(part, (int, float)) for part in color):
-        return [(low, *_numbers(color, 3, "color"))]
-    points = [_numbers(point, 4, "a point of color") for point in color]
+    if len(color) == 3 and all(isinstance(part, Real) for part in color):
+        points = [(low, *_numbers(color, 3, "color"))]
+    else:
+        points = [_numbers(point, 4, "a point of color") for point in color]
     if not points or not all(0 <= part <= 1 for point in points for part in point[1:]):
         raise ValueError(f"color is {color!r}, it must be one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1")
     return points
@@ -190,13 +190,7 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     look.SetInterpolationTypeToLinear()
     look.SetScalarOpacityUnitDistance(image.GetLength() / 50 if unit_distance is None else _numbers([unit_distance], 1, "unit_distance")[0])
     mapper = mapper or vtkStratusVolumeMapper()
-    errors = []
-
-    @calldata_type(VTK_STRING)
-    def on_error(caller, event, text):
-        errors.append(text.split("): ", 1)[-1].strip())
-
-    tag = mapper.AddObserver("ErrorEvent", on_error)
+    tag = mapper.AddObserver("ErrorEvent", lambda caller, event: None)  # what would be printed is raised
     mapper.SetInputData(image)
     volume.SetMapper(mapper)
     renderer.AddVolume(volume)
@@ -206,8 +200,9 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     _aim(renderer, camera)
     window.Render()
     mapper.RemoveObserver(tag)
-    last = None if errors else mapper.GetLastImage()
+    asked = renderer.GetNumberOfPropsRendered() > 0  # or what the mapper has is of another picture
+    last, error = (mapper.GetLastImage(), mapper.GetLastError()) if asked else (None, "")
     window.Finalize()
     if last is None:
-        raise RuntimeError(errors[0] if errors else "nothing was drawn: the camera does not see the volume")
+        raise RuntimeError(f"nothing was drawn: {error or 'the camera does not see the volume'}")
     return _paint(vtk_to_numpy(last.GetPointData().GetArray("RGBA")).reshape(height, width, 4), background)

@@ -12,6 +12,7 @@
 #include "vtkVolume.h"
 
 #include <chrono>
+#include <utility>
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
 
@@ -30,11 +31,10 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;
-  if (this->Internal->Render(ren, vol, error)) {
-    this->Internal->LastError.clear();
-  } else if (!error.empty() && error != this->Internal->LastError) {
-    this->Internal->LastError = error; // once, not with every picture
-    vtkErrorMacro(<< error << "; nothing is drawn");
+  this->Internal->Render(ren, vol, error);
+  std::swap(error, this->Internal->LastError);
+  if (!this->Internal->LastError.empty() && this->Internal->LastError != error) { // once, not with every picture
+    vtkErrorMacro(<< this->Internal->LastError << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
   this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -120,6 +120,11 @@ const char* vtkStratusVolumeMapper::GetStructureUsedAsString()
 const char* vtkStratusVolumeMapper::GetSamplingUsedAsString()
 {
   return stratus_sampling_name(this->Internal->Report.sampling);
+}
+
+const char* vtkStratusVolumeMapper::GetLastError()
+{
+  return this->Internal->LastError.c_str();
 }
 
 const char* vtkStratusVolumeMapper::GetReason()

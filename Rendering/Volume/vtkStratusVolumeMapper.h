@@ -293,10 +293,16 @@ public:
   //@}
 
   /**
-   * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4 components,
-   * premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
-   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with CountSamples. A coarse picture is repeated pixel by pixel. nullptr
-   * before the first picture. Copied on each call; it is the mapper's, and the next call overwrites it.
+   * Why the last picture was refused; empty if it was not. An error event tells the same, but only the first of equal ones in a row.
+   */
+  const char* GetLastError();
+
+  /**
+   * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4
+   * components, premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
+   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with CountSamples,
+   * whatever it is now. A coarse picture is repeated pixel by pixel. nullptr before the first picture, and after one that was refused or
+   * aborted. Copied on each call; it is the mapper's, and the next call overwrites it.
    */
   vtkImageData* GetLastImage();
 

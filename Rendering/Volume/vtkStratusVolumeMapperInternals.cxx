@@ -225,7 +225,7 @@ bool vtkStratusVolumeMapper::Internals::SetClipPlanes(stratus_ray_cast_options& 
   return true;
 }
 
-bool vtkStratusVolumeMapper::Internals::SetMask(stratus_ray_cast_options& options, std::string& error) const
+bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   vtkImageData* mask = this->Mapper->MaskInput;
   if (!mask) {
@@ -240,8 +240,11 @@ bool vtkStratusVolumeMapper::Internals::SetMask(stratus_ray_cast_options& option
   } else if (dimensions[0] != wanted[0] || dimensions[1] != wanted[1] || dimensions[2] != wanted[2]) {
     error = "MaskInput has " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
       " points, the input " + std::to_string(wanted[0]) + " x " + std::to_string(wanted[1]) + " x " + std::to_string(wanted[2]) + " values";
+  } else if (bytes->GetNumberOfTuples() < mask->GetNumberOfPoints()) {
+    error = "MaskInput's array has " + std::to_string(bytes->GetNumberOfTuples()) + " values for " + std::to_string(mask->GetNumberOfPoints()) +
+      " points";
   } else {
-    options.label_count = this->HasLabels() ? static_cast<int>(this->Functions.size()) - 1 : 0;
+    options.label_count = this->HasLabels() ? HighestLabel(property) : 0;
     options.mask = this->HasLabels() && options.label_count == 0 ? nullptr : bytes->GetPointer(0);
     options.mask_revision = std::max<uint64_t>(bytes->GetMTime(), mask->GetMTime());
   }
@@ -296,5 +299,5 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   }
   options.jitter = mapper->UseJittering ? 1 : 0;
   options.jitter_seed = mapper->JitterSeed;
-  return this->SetMask(options, error) && this->SetContours(property, options, error) && this->SetClipPlanes(options, error);
+  return this->SetMask(property, options, error) && this->SetContours(property, options, error) && this->SetClipPlanes(options, error);
 }

@@ -43,7 +43,7 @@ public:
   std::vector<vtkStratusTransferView> Transfers; // one a component that has one, or a label ..
   std::vector<stratus_transfer> Functions;       // .. as the core takes them
   vtkStratusDisplay Display;
-  std::string LastError; // told already
+  std::string LastError; // of the last picture, empty: none; told already
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
 
@@ -69,7 +69,7 @@ private:
   void SetShownDepth();
 
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
-  bool SetMask(stratus_ray_cast_options& options, std::string& error) const;
+  bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
@@ -88,6 +88,7 @@ private:
   vtkRenderer* Renderer = nullptr; // while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
+  bool HasSamples = false; // the picture was drawn with CountSamples
   std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples; // empty: not counted

@@ -153,7 +153,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
   this->Depth.resize(pixels);
-  this->Samples.resize(this->Mapper->CountSamples ? pixels : 0);
+  this->Samples.resize(this->HasSamples ? pixels : 0);
   stratus_image image = stratus_image();
   image.width = this->Picture.Size[0];
   image.height = this->Picture.Size[1];
@@ -174,6 +174,8 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
+  this->HasPicture = false; // of one that is refused nothing is left to be asked for
+  this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
   vtkVolumeProperty* property = prop->GetProperty();
   if (!this->CheckMapper(error) || !this->CheckScene(renderer, prop, error) || !this->CheckProperty(property, error) ||
@@ -191,9 +193,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   if (coarseness.Step > 1.0) {
     options.sample_distance = coarseness.Step * this->FullSampleDistance;
   }
-  this->HasPicture = false;
-  if (!this->Picture.Set(renderer, this->Image.GetVolume(), options.crop && options.crop_regions == STRATUS_CROP_INSIDE ? options.crop_bounds : nullptr, coarseness.Pixels,
-        this->IsFirstHit())) {
+  const bool boxed = options.crop && options.crop_regions == STRATUS_CROP_INSIDE;
+  if (!this->Picture.Set(renderer, this->Image.GetVolume(), boxed ? options.crop_bounds : nullptr, coarseness.Pixels, this->IsFirstHit())) {
     error = "the camera's projection has no inverse";
     return false;
   }
@@ -248,7 +249,6 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
   this->LastImage->SetDimensions(width, height, 1);
   vtkNew<vtkFloatArray> rgba, depth;
   vtkNew<vtkTypeUInt32Array> samples;
-  const bool counted = this->Mapper->CountSamples && (this->Picture.IsEmpty() || !this->Samples.empty());
   rgba->SetName("RGBA");
   rgba->SetNumberOfComponents(4);
   depth->SetName("Depth");
@@ -258,7 +258,7 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
   }
   rgba->Fill(0.0);
   depth->Fill(std::numeric_limits<double>::infinity());
-  samples->SetNumberOfTuples(counted ? rgba->GetNumberOfTuples() : 0);
+  samples->SetNumberOfTuples(this->HasSamples ? rgba->GetNumberOfTuples() : 0);
   samples->Fill(0.0);
   for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
     const size_t row = static_cast<size_t>((j + 0.5) * this->Picture.Size[1] / rectangle[3]) * this->Picture.Size[0];
@@ -267,14 +267,14 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
       const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
       std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
       depth->SetValue(to, this->Depth[from]);
-      if (counted) {
+      if (this->HasSamples) {
         samples->SetValue(to, this->Samples[from]);
       }
     }
   }
   this->LastImage->GetPointData()->SetScalars(rgba);
   this->LastImage->GetPointData()->AddArray(depth);
-  if (counted) {
+  if (this->HasSamples) {
     this->LastImage->GetPointData()->AddArray(samples);
   }
   return this->LastImage;

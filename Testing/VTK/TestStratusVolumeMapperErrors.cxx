@@ -166,6 +166,18 @@ void Data()
   bits->GetPointData()->SetScalars(array);
   Refused(
     "bit array", "bit", [&](Scene& s) { s.Mapper->SetInputData(bits); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  vtkNew<vtkImageData> mask;
+  vtkNew<vtkUnsignedCharArray> bytes;
+  bytes->SetNumberOfTuples(3);
+  bytes->Fill(1);
+  mask->GetPointData()->SetScalars(bytes);
+  Refused(
+    "mask too short", "3 values for",
+    [&](Scene& s) {
+      mask->SetDimensions(s.Image->GetDimensions());
+      s.Mapper->SetMaskInput(mask);
+    },
+    [](Scene& s) { s.Mapper->SetMaskInput(nullptr); });
   vtkNew<vtkImageData> shortened;
   shortened->SetDimensions(5, 5, 5);
   vtkNew<vtkFloatArray> few;

@@ -272,6 +272,28 @@ void Rgba()
   CHECK(shown > 1000 && worst < 1e-5, "%d pixels show, colours are wrong by %g", shown, worst);
 }
 
+// A label map without functions of labels leaves several components as they are.
+void LabelsOfNone()
+{
+  Scene scene;
+  vtkNew<vtkImageData> image, map;
+  for (vtkImageData* each : { image.Get(), map.Get() }) {
+    each->SetDimensions(9, 8, 7);
+    each->AllocateScalars(VTK_UNSIGNED_CHAR, each == image ? 3 : 1);
+    for (vtkIdType v = 0; v < each->GetPointData()->GetScalars()->GetNumberOfValues(); ++v) {
+      static_cast<unsigned char*>(each->GetScalarPointer())[v] = static_cast<unsigned char>(v % 5 % 3);
+    }
+  }
+  scene.Mapper->SetInputData(image);
+  scene.Renderer->ResetCamera();
+  const std::vector<float> plain = scene.Picture();
+  scene.Mapper->SetMaskInput(map);
+  scene.Mapper->SetMaskTypeToLabelMap();
+  scene.Render();
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  CHECK(scene.Errors->Count > 0 || scene.Picture() == plain, "a label map without functions changes three components");
+}
+
 // The right half of the image is label 1, a slab below label 7, which has no functions.
 void Labels()
 {
@@ -368,6 +390,7 @@ int main()
   Components();
   Rgba();
   Labels();
+  LabelsOfNone();
   Refusals();
   std::printf("%d failures\n", Failures);
   return Failures ? 1 : 0;

@@ -26,11 +26,16 @@ inline void Refused(const char* what, const char* word, const std::function<void
   scene.Render();
   CHECK(scene.Errors->Count == 1, "%s: %d errors", what, scene.Errors->Count);
   CHECK(scene.Errors->Has(word), "%s: '%s' says nothing of '%s'", what, scene.Errors->Text.c_str(), word);
+  const std::string last = scene.Mapper->GetLastError();
+  CHECK(!last.empty() && scene.Errors->Has(last.c_str()), "%s: '%s' is the last error", what, last.c_str());
   CHECK(IsBlack(scene), "%s: something is drawn", what);
+  CHECK(!scene.Mapper->GetLastImage(), "%s: the picture before it is handed out", what);
   scene.Render();
   CHECK(scene.Errors->Count == 1, "%s: told again with every picture", what);
+  CHECK(*scene.Mapper->GetLastError(), "%s: no last error where it was told before", what);
   mends(scene);
   CHECK(scene.Picture() == before, "%s: the picture after it is another", what);
+  CHECK(!*scene.Mapper->GetLastError(), "%s: still '%s'", what, scene.Mapper->GetLastError());
   CHECK(scene.Errors->Count == 1, "%s: still refused: %s", what, scene.Errors->Text.c_str());
 }
 

@@ -80,6 +80,8 @@ def pictures():
     ground = stratus.show(field, size=(90, 60), background=(0, 0, 1))
     check(tuple(ground[0, 0]) == (0, 0, 255, 255), f"the background: {ground[0, 0]}")
     check(numpy.abs(stratus.show(field, opacity=0.9, size=(90, 60)).astype(int) - stratus.show(field, opacity=0.1, size=(90, 60))).max() > 20, "one number")
+    bright = dict(size=(60, 60), color=numpy.array([1, 0.5, 0], numpy.float32))
+    check(numpy.array_equal(stratus.show(field, opacity=numpy.float32(0.25), **bright), stratus.show(field, opacity=0.25, **bright)), "NumPy's numbers")
     for options in dict(camera=dict(azimuth=70)), dict(camera=dict(elevation=80)), dict(camera=dict(zoom=2)), dict(spacing=(1, 1, 2)), \
             dict(unit_distance=20), dict(color=[(0, 1, 0, 0), (1, 0, 1, 0)]), dict(opacity=[(0.5, 0), (1, 1)]):
         uneven = ball((20, 20, 20), (14, 7, 9), 8) + ball((20, 20, 20), (4, 15, 15), 4)
@@ -138,11 +140,24 @@ def refusals():
     refuse(ValueError, "opacity", show, field, opacity=[(0, 0), (1, 1.5)])
     refuse(ValueError, "opacity", show, field, opacity=[])
     refuse(ValueError, "color", show, field, color=[(0, 2, 0, 0)])
+    refuse(ValueError, "(255, 0, 0)", show, field, color=(255, 0, 0))
+    refuse(ValueError, "color", show, field, color=numpy.array([0.5, -0.5, 0]))
     refuse(ValueError, "size", show, field, size=(0, 10))
     refuse(ValueError, "['roll']", show, field, camera=dict(roll=3))
     mapper = stratus.vtkStratusVolumeMapper()
     mapper.SetBlockSize(3)
-    refuse(RuntimeError, "3", show, field, mapper=mapper)
+    refuse(RuntimeError, "block", show, field, mapper=mapper)
+    refuse(RuntimeError, "block", show, field, mapper=mapper)  # which the mapper itself tells only once
+    mapper.SetBlockSize(0)
+    check(show(field, mapper=mapper, size=(30, 20)).max() > 0 and mapper.GetLastError() == "", "mended, it draws")
+    mapper.SetBlockSize(3)
+    refuse(RuntimeError, "block", show, field, mapper=mapper)  # not the picture that it drew before
+    away = vtk.vtkCamera()
+    away.SetPosition(4, 4, 60), away.SetFocalPoint(4, 4, 90)
+    refuse(RuntimeError, "camera", show, field, mapper=mapper, camera=away)
+    mapper.SetBlockSize(0)
+    show(field, mapper=mapper)
+    refuse(RuntimeError, "camera", show, field, mapper=mapper, camera=away)
     alone = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     code = "import numpy, stratus\nstratus.show(numpy.zeros((4, 4, 4)))"
     ended = subprocess.run([sys.executable, "-c", code], env=alone, capture_output=True, text=True)
