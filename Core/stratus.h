@@ -527,8 +527,8 @@ typedef struct stratus_ray_cast_options {
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
   stratus_mode mode;       /* default composite */
   stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
-  stratus_shading shading; /* first hit; composite with shade */
-  int shade;               /* composite; 1: samples are lit by `shading`. Default 0 */
+  stratus_shading shading; /* first hit; composite and isosurface with shade */
+  int shade;               /* composite and isosurface; 1: samples are lit by `shading`. Default 0 */
   int dependent;           /* composite, volumes of several components. 0 (default): each is a medium of its own, with a transfer function each; where they
                             * mix, their optical depths add up, and so does the light that they send. 1: together they are one medium: of 2, the first
                             * has the colour and the second the opacity of the one transfer function; of 4 (STRATUS_UINT8 only), the first three are
