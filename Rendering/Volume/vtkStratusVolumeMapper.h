@@ -6,16 +6,17 @@
  * Takes the place of vtkSmartVolumeMapper: a vtkImageData and the vtkVolume's vtkVolumeProperty go in, the picture is composited with
  * the opaque geometry of the scene. Setters that mean the same have vtkSmartVolumeMapper's names.
  *
- * Supported: point and cell scalars of any numeric type but bits, linear and nearest interpolation, scalar opacity,
- * colour or grey, ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's
- * matrix, cropping to any of the 27 regions, up to six clipping planes, binary masks, jitter, and the blend modes composite, maximum and minimum
- * intensity, average intensity (AverageIPScalarRange), additive, and isosurface (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear
- * interpolation, every root of the field in each cell). In composite also: light (Shade; the renderer's lights and
- * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over magnitudes in values per mean
- * spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components: independent ones are media that mix (their optical depths
- * add up, times ComponentWeight; their shading must be alike), dependent ones are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char); and label
- * maps. All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, depth peeling of volumes,
- * shaders of the prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn; the module's README has a table of it. Picking
+ * Supported: point and cell scalars of any numeric type but bits, linear and nearest interpolation, scalar opacity, colour or grey,
+ * ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's matrix, cropping
+ * to any of the 27 regions, up to six clipping planes, binary masks, jitter, and the blend modes composite, maximum and minimum
+ * intensity, average intensity (AverageIPScalarRange), additive, and isosurface (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16,
+ * linear interpolation, every root of the field in each cell). In composite also: light (Shade; the renderer's lights and
+ * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over
+ * magnitudes in values per mean spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components:
+ * independent ones are media that mix (their optical depths add up, times ComponentWeight; their shading must be alike), dependent ones
+ * are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char); and label maps. All else (blend mode slice,
+ * two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, depth peeling of volumes, shaders of the
+ * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn; the module's README has a table of it. Picking
  * by hardware finds the volume where it shows.
  *
  * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
@@ -163,9 +164,10 @@ public:
   };
   //@{
   /**
-   * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the values), 0 where
-   * nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of type label map it hides nothing: its bytes are labels, and where label l has
-   * vtkVolumeProperty::SetLabelColor() or SetLabelScalarOpacity(), values have those in place of the property's (composite, one component). Default binary.
+   * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the
+   * values), 0 where nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of type label map it hides nothing: its
+   * bytes are labels, and where label l has vtkVolumeProperty::SetLabelColor() or SetLabelScalarOpacity(), values have those in place of
+   * the property's (composite, one component). Default binary.
    */
   virtual void SetMaskInput(vtkImageData* mask);
   vtkImageData* GetMaskInput();
@@ -177,8 +179,8 @@ public:
 
   //@{
   /**
-   * Move each ray's samples along it by up to a sample distance, so that the wood grain of long steps turns into noise. The noise is the same from picture
-   * to picture, at any number of threads; another seed is another noise. Default off, seed 0.
+   * Move each ray's samples along it by up to a sample distance, so that the wood grain of long steps turns into noise. The noise is the
+   * same from picture to picture, at any number of threads; another seed is another noise. Default off, seed 0.
    */
   vtkSetClampMacro(UseJittering, vtkTypeBool, 0, 1);
   vtkGetMacro(UseJittering, vtkTypeBool);
