@@ -91,13 +91,11 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
   return error.empty();
 }
 
-// What the prop and the renderer may ask of a mapper of volumes beside the property.
-bool vtkStratusVolumeMapper::Internals::CheckScene(vtkRenderer* renderer, vtkVolume* prop, std::string& error) const
+// What the prop may ask of a mapper of volumes beside the property.
+bool vtkStratusVolumeMapper::Internals::CheckScene(vtkVolume* prop, std::string& error) const
 {
   vtkShaderProperty* shaders = prop->GetShaderProperty();
-  if (renderer->GetUseDepthPeeling() && renderer->GetUseDepthPeelingForVolumes()) {
-    error = "depth peeling of volumes is not supported, only UseDepthPeelingForVolumesOff";
-  } else if (shaders && (shaders->GetNumberOfShaderReplacements() > 0 || shaders->HasFragmentShaderCode() || shaders->HasVertexShaderCode())) {
+  if (shaders && (shaders->GetNumberOfShaderReplacements() > 0 || shaders->HasFragmentShaderCode() || shaders->HasVertexShaderCode())) {
     error = "shaders of the prop's own are not supported, there is none that they could change";
   }
   return error.empty();

@@ -56,7 +56,7 @@ private:
 
   bool OnProgress(double fraction);
   bool CheckMapper(std::string& error) const;
-  bool CheckScene(vtkRenderer* renderer, vtkVolume* prop, std::string& error) const;
+  bool CheckScene(vtkVolume* prop, std::string& error) const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
   bool HasLabels() const;

@@ -178,7 +178,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
   vtkVolumeProperty* property = prop->GetProperty();
-  if (!this->CheckMapper(error) || !this->CheckScene(renderer, prop, error) || !this->CheckProperty(property, error) ||
+  if (!this->CheckMapper(error) || !this->CheckScene(prop, error) || !this->CheckProperty(property, error) ||
     !this->PrepareInput(prop, error) || !this->SetOptions(property, options, error) ||
     !this->SetShading(renderer, property, options, error) || !this->PrepareContext(error)) {
     return false;

@@ -103,16 +103,6 @@ void Lights()
 void Props()
 {
   Refused(
-    "depth peeling of volumes", "UseDepthPeelingForVolumes",
-    [](Scene& s) {
-      s.Renderer->SetUseDepthPeeling(1);
-      s.Renderer->SetUseDepthPeelingForVolumes(true);
-    },
-    [](Scene& s) {
-      s.Renderer->SetUseDepthPeeling(0);
-      s.Renderer->SetUseDepthPeelingForVolumes(false);
-    });
-  Refused(
     "shaders of one's own", "shaders",
     [](Scene& s) { s.Volume->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Base::Impl", true, "", false); },
     [](Scene& s) { s.Volume->GetShaderProperty()->ClearAllFragmentShaderReplacements(); });
@@ -138,6 +128,18 @@ void Props()
     [](Scene& s) { s.Mapper->SetInputData(s.Image); });
 }
 
+// ParaView sets it for every view, so it must not keep the volume from being drawn.
+void Peeling()
+{
+  Scene scene(64, 48);
+  const std::vector<float> before = scene.Picture();
+  scene.Renderer->SetUseDepthPeeling(1);
+  scene.Renderer->SetUseDepthPeelingForVolumes(true);
+  CHECK(scene.Picture() == before, "depth peeling of volumes: another picture");
+  CHECK(scene.Light() > 10.0, "depth peeling of volumes: nothing is shown");
+  CHECK(scene.Errors->Count == 0, "depth peeling of volumes: %s", scene.Errors->Text.c_str());
+}
+
 // VTK's own prop of several volumes looks for VTK's own mapper, and says so.
 void SeveralVolumes()
 {
@@ -161,6 +163,7 @@ int main()
   Looks();
   Lights();
   Props();
+  Peeling();
   SeveralVolumes();
   return Failures == 0 ? 0 : 1;
 }
