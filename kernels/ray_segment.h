@@ -223,7 +223,8 @@ INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
 /* 1/a to a rounding or two, by Newton's iteration from the bits: the same on every device, as a division is not. a > 0. */
 INLINE vfloat v_reciprocal(vfloat a)
 {
-  vfloat r = v_from_bits(vi_set(0x7ef311c7) - v_to_bits(a));
+  const vint bits = v_to_bits(a), magnitude = bits & vi_set(0x7fffffff); /* lanes that count for nothing may be negative */
+  vfloat r = v_from_bits((vi_set(0x7ef311c7) - magnitude) | (bits - magnitude));
   for (int iteration = 0; iteration < 3; ++iteration) {
     r = v_fma(r, v_fma(v_set(0.0f) - a, r, v_set(1.0f)), r);
   }
