@@ -111,6 +111,23 @@ static inline void tetra_destroy(tetra_case* c)
   free(c->hidden);
 }
 
+/* Set-up and tear-down of a group: its state is a context of the host. */
+static inline int tetra_start(void** state)
+{
+  stratus_context* context = NULL;
+  stratus_context_options options = stratus_context_options_default();
+  options.device = "host";
+  const stratus_status status = stratus_context_create(&options, &context, NULL, 0);
+  *state = context;
+  return status == STRATUS_OK ? 0 : -1;
+}
+
+static inline int tetra_stop(void** state)
+{
+  stratus_context_destroy(*state);
+  return 0;
+}
+
 /* From outside, camera of record `view` about a cube of edge n. */
 static inline void tetra_look(stratus_context* context, tetra_case* c, int n, int view, int parallel)
 {

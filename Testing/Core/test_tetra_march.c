@@ -171,22 +171,6 @@ static void a_camera_far_away(void** state)
   tetra_destroy(&c);
 }
 
-static int start(void** state)
-{
-  stratus_context* context = NULL;
-  stratus_context_options options = stratus_context_options_default();
-  options.device = "host";
-  const stratus_status status = stratus_context_create(&options, &context, NULL, 0);
-  *state = context;
-  return status == STRATUS_OK ? 0 : -1;
-}
-
-static int stop(void** state)
-{
-  stratus_context_destroy(*state);
-  return 0;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -202,7 +186,7 @@ int main(void)
   };
   int failed = 0;
   for (tetra_method = STRATUS_TETRA_METHOD_MARCH; tetra_method <= STRATUS_TETRA_METHOD_PROJECT; ++tetra_method) {
-    failed += cmocka_run_group_tests_name(stratus_tetra_method_name(tetra_method), tests, start, stop);
+    failed += cmocka_run_group_tests_name(stratus_tetra_method_name(tetra_method), tests, tetra_start, tetra_stop);
   }
   return failed;
 }

@@ -181,22 +181,6 @@ static void auto_chooses_by_what_shows(void** state)
   tetra_destroy(&c);
 }
 
-static int start(void** state)
-{
-  stratus_context* context = NULL;
-  stratus_context_options options = stratus_context_options_default();
-  options.device = "host";
-  const stratus_status status = stratus_context_create(&options, &context, NULL, 0);
-  *state = context;
-  return status == STRATUS_OK ? 0 : -1;
-}
-
-static int stop(void** state)
-{
-  stratus_context_destroy(*state);
-  return 0;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -206,5 +190,5 @@ int main(void)
     cmocka_unit_test(leaves_change_nothing),
     cmocka_unit_test(auto_chooses_by_what_shows),
   };
-  return cmocka_run_group_tests(tests, start, stop);
+  return cmocka_run_group_tests(tests, tetra_start, tetra_stop);
 }
