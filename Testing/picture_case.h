@@ -295,4 +295,17 @@ static inline stratus_context* case_context(const char* device, int threads)
   return context;
 }
 
+/* Set-up and tear-down of a group: its state is a context of the host with two threads. */
+static inline int case_set_up(void** state)
+{
+  *state = case_context("host", 2);
+  return 0;
+}
+
+static inline int case_tear_down(void** state)
+{
+  stratus_context_destroy(*state);
+  return 0;
+}
+
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pictures of the host's ray caster against the double reference: every scalar type, placement, projection and border.
  *
- * With samples a quarter of a voxel apart the sampling's own error leaves more than SMOOTH_DB on a field without jumps; half a voxel or half a step in
- * the wrong place costs more than 20 dB of it. Where the picture has jumps inside (a hole's border, nearest values), a sample stands for a
- * quarter of a voxel across the jump: JUMP_DB. Measured: 75 to 91 and 49 to 61. */
+ * With samples a quarter of a voxel apart the sampling's own error leaves more than SMOOTH_DB on a field without jumps; half a voxel or
+ * half a step in the wrong place costs more than 20 dB of it. Where the picture has jumps inside (a hole's border, nearest values), a
+ * sample stands for a quarter of a voxel across the jump: JUMP_DB. Measured: 75 to 91 and 49 to 61. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS, MAP_NORESERVE */
 #include "../picture_case.h"
 
@@ -15,18 +15,6 @@
 #define JUMP_DB 47.0
 
 static picture drawn;
-
-static int set_up(void** state)
-{
-  *state = case_context("host", 2);
-  return 0;
-}
-
-static int tear_down(void** state)
-{
-  stratus_context_destroy(*state);
-  return 0;
-}
 
 static void expect(stratus_context* context, const char* what, picture_case* c, double least_db)
 {
@@ -350,5 +338,5 @@ int main(void)
     cmocka_unit_test(indices_beyond_32_bits_do_not_overflow),
     cmocka_unit_test(depth_is_where_the_picture_begins),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

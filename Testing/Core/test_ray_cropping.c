@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Crop regions, masks and jitter of the ray cast, in every mode: against a double reference, and against themselves without structure.
  *
- * Planes cut a ray exactly, in both; what is left are the samples' errors, first order for an extreme that lies on a plane. A mask's border is met to half a
- * step, .05 voxel, and a ray that passes it for less than that is wholly right or wholly wrong: MASK_DB. */
+ * Planes cut a ray exactly, in both; what is left are the samples' errors, first order for an extreme that lies on a plane. A mask's border
+ * is met to half a step, .05 voxel, and a ray that passes it for less than that is wholly right or wholly wrong: MASK_DB. */
 #include "../picture_case.h"
 #include "../reference_modes.h"
 
@@ -16,18 +16,6 @@ static float expected[4 * CASE_PIXELS], expected_depth[CASE_PIXELS];
 static const stratus_mode modes[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE,
   STRATUS_MODE_ISOSURFACE };
 enum { MODES = sizeof modes / sizeof *modes };
-
-static int set_up(void** state)
-{
-  *state = case_context("host", 2);
-  return 0;
-}
-
-static int tear_down(void** state)
-{
-  stratus_context_destroy(*state);
-  return 0;
-}
 
 static void set_contours(picture_case* c)
 {
@@ -298,5 +286,5 @@ int main(void)
     cmocka_unit_test(regions_side_by_side_are_one), cmocka_unit_test(masks_take_values_out),
     cmocka_unit_test(a_mask_that_changes_is_read_again), cmocka_unit_test(structures_and_threads_change_no_bit),
     cmocka_unit_test(jitter_moves_samples_and_nothing_else), cmocka_unit_test(first_hits_and_bad_regions_are_refused) };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

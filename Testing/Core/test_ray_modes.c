@@ -3,9 +3,9 @@
  * change a bit.
  *
  * Samples lie a tenth of a voxel apart here, so that what is left against the reference is a second-order error: of the extremes some curvature
- * times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of the peaked functions
- * below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a surface it may meet it in one and not in
- * the other. */
+ * times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of the
+ * peaked functions below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a surface
+ * it may meet it in one and not in the other. */
 #include "internal.h"
 
 #include "../picture_case.h"
@@ -21,18 +21,6 @@ static float expected[4 * CASE_PIXELS], expected_depth[CASE_PIXELS];
 static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE,
   STRATUS_MODE_ISOSURFACE };
 enum { MODES = sizeof modes / sizeof *modes };
-
-static int set_up(void** state)
-{
-  *state = case_context("host", 2);
-  return 0;
-}
-
-static int tear_down(void** state)
-{
-  stratus_context_destroy(*state);
-  return 0;
-}
 
 static void ask_for(picture_case* c, stratus_mode mode)
 {
@@ -229,8 +217,8 @@ static void no_ray_slips_between_cells(void** state)
   case_destroy(&c);
 }
 
-/* A ball, lit from the eye: what is seen is told by depth and geometry alone. Its normals come from central differences over two voxels of a field that
- * bends with a radius of 8: 1 - cos of an angle below .02, and what the field's cubic is off the ball. */
+/* A ball, lit from the eye: what is seen is told by depth and geometry alone. Its normals come from central differences over two voxels of
+ * a field that bends with a radius of 8: 1 - cos of an angle below .02, and what the field's cubic is off the ball. */
 static void surfaces_are_lit_by_the_gradient(void** state)
 {
   picture_case c;
@@ -435,5 +423,5 @@ int main(void)
     cmocka_unit_test(structures_change_no_bit), cmocka_unit_test(extremes_pass_blocks_that_hold_nothing_better),
     cmocka_unit_test(threads_and_instructions_change_no_bit),
     cmocka_unit_test(a_caster_changes_its_mode), cmocka_unit_test(what_no_mode_can_draw_is_refused) };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }
