@@ -30,10 +30,9 @@ typedef struct cell {
   bool shown;
 } cell;
 
-double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k)
+double reference_value_at(const stratus_volume* volume, int64_t number)
 {
-  const int64_t* n = volume->dimensions;
-  const size_t at = (size_t)(((k * n[1] + j) * n[0] + i) * volume->value_stride);
+  const size_t at = (size_t)(number * volume->value_stride);
   switch (volume->type) {
     case STRATUS_INT8:
       return (double)((const int8_t*)volume->values)[at];
@@ -57,6 +56,11 @@ double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64
       return ((const double*)volume->values)[at];
   }
   return (double)NAN;
+}
+
+double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k)
+{
+  return reference_value_at(volume, (k * volume->dimensions[1] + j) * volume->dimensions[0] + i);
 }
 
 double reference_opacity(const stratus_transfer* transfer, double value)

@@ -27,6 +27,10 @@ typedef struct reference_scene {
   int label_count;
 } reference_scene;
 
+/* A value of whatever type as a double, which is what functions of it are defined on: by its indices, or by its number, x fastest. */
+double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k);
+double reference_value_at(const stratus_volume* volume, int64_t number);
+
 /* Draws into rgba (width*height*4 floats, premultiplied, bottom row first). step: length of a step in units of the shortest edge of a voxel
  * in the world, > 0. depth may be NULL: world distance from the eye (parallel: from its plane) to the first sample with opacity, INFINITY
  * where there is none. A ray stops when what is left of its light is below 1e-12. Returns 0, or -1 where memory runs out. */

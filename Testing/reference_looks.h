@@ -27,7 +27,6 @@ stratus_volume reference_component(const stratus_volume* volume, int c);
 void reference_look(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3]);
 
 /* reference.c */
-double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k);
 double reference_opacity(const stratus_transfer* transfer, double value);
 void reference_color(const stratus_transfer* transfer, double value, double rgb[3]);
 

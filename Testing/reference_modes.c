@@ -2,6 +2,8 @@
  * The double-precision reference for maxima, minima, means, sums, isosurfaces, crop regions and masks. */
 #include "reference_modes.h"
 
+#include "reference.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -26,33 +28,6 @@ typedef struct scene {
 } scene;
 
 /* ---- the field */
-
-static double value_at(const stratus_volume* v, int64_t i, int64_t j, int64_t k)
-{
-  const size_t at = (size_t)(((k * v->dimensions[1] + j) * v->dimensions[0] + i) * v->value_stride);
-  switch (v->type) {
-    case STRATUS_INT8:
-      return ((const int8_t*)v->values)[at];
-    case STRATUS_UINT8:
-      return ((const uint8_t*)v->values)[at];
-    case STRATUS_INT16:
-      return ((const int16_t*)v->values)[at];
-    case STRATUS_UINT16:
-      return ((const uint16_t*)v->values)[at];
-    case STRATUS_INT32:
-      return ((const int32_t*)v->values)[at];
-    case STRATUS_UINT32:
-      return ((const uint32_t*)v->values)[at];
-    case STRATUS_INT64:
-      return (double)((const int64_t*)v->values)[at];
-    case STRATUS_UINT64:
-      return (double)((const uint64_t*)v->values)[at];
-    case STRATUS_FLOAT32:
-      return (double)((const float*)v->values)[at];
-    default:
-      return ((const double*)v->values)[at];
-  }
-}
 
 static bool cell_is_hidden(const stratus_volume* v, const int64_t at[3])
 {
@@ -105,7 +80,7 @@ static double field_at(const scene* s, const double p[3])
       weight *= up ? t[a] : 1.0 - t[a];
       c[a] = at[a] + up < v->dimensions[a] ? at[a] + up : at[a];
     }
-    const double value = value_at(v, c[0], c[1], c[2]);
+    const double value = reference_value(v, c[0], c[1], c[2]);
     if (s->options->interpolation == STRATUS_INTERPOLATION_LINEAR || corner == 0) {
       sum += isfinite(value) ? weight * value : (double)NAN;
     }
@@ -430,7 +405,7 @@ void reference_modes_render(const stratus_volume* volume, const stratus_transfer
   for (int64_t k = 0; k < volume->dimensions[2]; ++k) {
     for (int64_t j = 0; j < volume->dimensions[1]; ++j) {
       for (int64_t i = 0; i < volume->dimensions[0]; ++i) {
-        const double value = value_at(volume, i, j, k);
+        const double value = reference_value(volume, i, j, k);
         s.low = isfinite(value) ? fmin(s.low, value) : s.low;
         s.high = isfinite(value) ? fmax(s.high, value) : s.high;
       }

@@ -31,24 +31,6 @@ static double opacity_of(const stratus_transfer* transfer, double x)
   return p[1];
 }
 
-static double case_value(const picture_case* c, size_t at)
-{
-  switch (c->volume.type) {
-    case STRATUS_INT32:
-      return ((const int32_t*)c->values)[at];
-    case STRATUS_UINT32:
-      return ((const uint32_t*)c->values)[at];
-    case STRATUS_INT64:
-      return (double)((const int64_t*)c->values)[at];
-    case STRATUS_UINT64:
-      return (double)((const uint64_t*)c->values)[at];
-    case STRATUS_FLOAT64:
-      return ((const double*)c->values)[at];
-    default: /* no digits are lost */
-      return (double)stratus_volume_fetch(&c->volume, 0.0, at);
-  }
-}
-
 static void oracle_begin(const picture_case* c, oracle* o)
 {
   double index_to_world[16];
@@ -58,7 +40,7 @@ static void oracle_begin(const picture_case* c, oracle* o)
   o->c = c;
   o->effective = calloc((size_t)(n[0] * n[1] * n[2]), 1);
   for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
-    const double value = case_value(c, at);
+    const double value = reference_value_at(&c->volume, (int64_t)at);
     o->effective[at] = isfinite(value) && opacity_of(&c->transfer, value) > 0.0;
     if (c->cell_ghosts && c->volume.cell_centered) {
       o->effective[at] &= !(c->cell_ghosts[at] & (STRATUS_GHOST_HIDDEN_CELL | STRATUS_GHOST_DUPLICATE));
@@ -216,7 +198,7 @@ static void compare(const picture_case* c, const picture* p, uint32_t seed, int*
       print_error("seed %u, pixel %d: depth %g instead of %g\n", seed, at, (double)p->depth[at], expected);
       fail();
     }
-    color_of(c, case_value(c, voxel), rgb);
+    color_of(c, reference_value_at(&c->volume, (int64_t)voxel), rgb);
     assert_true(rgba[3] == 1.0f && p->samples[at] == 1);
     for (int channel = 0; channel < 3; ++channel) {
       assert_true(fabs((double)rgba[channel] - rgb[channel]) < 1e-5);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Effective voxels: exactly those that the criterion shows, whatever the type, stride, centring, ghosts and threads. */
 #include "faulty_allocator.h"
+#include "reference.h"
 #include "structures.h"
 #include "voxels.h"
 
@@ -15,35 +16,6 @@ static stratus_transfer transfer_of(const double* opacity, size_t count, int cla
   t.color_count = 1;
   t.clamp = clamp;
   return t;
-}
-
-/* A value as a double, which is what functions of it are defined on. */
-static double value_of(const stratus_volume* v, int64_t at)
-{
-  at *= v->value_stride;
-  switch (v->type) {
-    case STRATUS_INT8:
-      return ((const int8_t*)v->values)[at];
-    case STRATUS_UINT8:
-      return ((const uint8_t*)v->values)[at];
-    case STRATUS_INT16:
-      return ((const int16_t*)v->values)[at];
-    case STRATUS_UINT16:
-      return ((const uint16_t*)v->values)[at];
-    case STRATUS_INT32:
-      return ((const int32_t*)v->values)[at];
-    case STRATUS_UINT32:
-      return ((const uint32_t*)v->values)[at];
-    case STRATUS_INT64:
-      return (double)((const int64_t*)v->values)[at];
-    case STRATUS_UINT64:
-      return (double)((const uint64_t*)v->values)[at];
-    case STRATUS_FLOAT32:
-      return (double)((const float*)v->values)[at];
-    case STRATUS_FLOAT64:
-      return ((const double*)v->values)[at];
-  }
-  return 0.0;
 }
 
 /* Above 0 between two points if it is at either; at a point, what the last one there says. */
@@ -73,7 +45,7 @@ static bool is_effective(const stratus_volume* v, const stratus_criterion* c, in
 {
   const uint8_t flags = v->cell_centered ? (v->cell_ghosts ? v->cell_ghosts[at] : 0) : (v->point_ghosts ? v->point_ghosts[at] : 0);
   const unsigned out = STRATUS_GHOST_DUPLICATE | (v->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
-  const double x = value_of(v, at);
+  const double x = reference_value_at(v, at);
   return isfinite(x) && !(flags & out) && criterion_shows(c, x);
 }
 
@@ -139,7 +111,7 @@ static void check_volume(stratus_context* const contexts[3], const stratus_volum
 static double some_value(const stratus_volume* v, uint32_t* random)
 {
   const int64_t count = v->dimensions[0] * v->dimensions[1] * v->dimensions[2];
-  const double x = value_of(v, random_below(random, count));
+  const double x = reference_value_at(v, random_below(random, count));
   return isfinite(x) ? x : 0.0;
 }
 
