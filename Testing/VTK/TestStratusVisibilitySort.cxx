@@ -108,8 +108,8 @@ void Orders()
   }
 }
 
-// Points that something moved after the partition: its tree holds no more, the order does.
-void Moved()
+// A partition that something spoils after it was used: its tree is taken no more, the order is right without.
+void Spoiled(const char* what, void (*spoil)(vtkUnstructuredGrid*))
 {
   Grid grid = Tetrahedra(3);
   vtkNew<vtkStratusVisibilitySort> sort;
@@ -121,37 +121,28 @@ void Moved()
   sort->SetDirectionToFrontToBack();
   Traverse(sort, sort->GetMaxCellsReturned());
   CHECK(sort->GetNumberOfLeaves() == 8, "%d leaves", sort->GetNumberOfLeaves());
+  spoil(grid);
+  grid->Modified();
+  const std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
+  CHECK(sort->GetNumberOfLeaves() == 1, "%s: %d leaves of a tree that holds no more", what, sort->GetNumberOfLeaves());
+  CHECK(WrongPairs(grid, cells, camera, identity) == 0, "%s: %d pairs in the wrong order", what, WrongPairs(grid, cells, camera, identity));
+}
+
+void MovePoints(vtkUnstructuredGrid* grid)
+{
   for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
     const Vector p = PointOf(grid, i);
     grid->GetPoints()->SetPoint(i, p[0] + 0.4 * p[1], p[1] + 0.3 * p[2], p[2] + 0.2 * p[0]);
   }
   grid->GetPoints()->Modified();
-  grid->Modified();
-  const std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
-  CHECK(sort->GetNumberOfLeaves() == 1, "%d leaves of a tree that holds no more", sort->GetNumberOfLeaves());
-  CHECK(WrongPairs(grid, cells, camera, identity) == 0, "%d pairs in the wrong order", WrongPairs(grid, cells, camera, identity));
 }
 
-// An array that something else cut short: there is no leaf to be read for each cell, so the order does without the tree.
-void ShortLeaves()
+// There is no leaf to be read for each cell.
+void ShortenLeaves(vtkUnstructuredGrid* grid)
 {
-  Grid grid = Tetrahedra(3);
-  vtkNew<vtkStratusVisibilitySort> sort;
-  vtkNew<vtkCamera> camera;
-  vtkNew<vtkMatrix4x4> identity;
-  camera->SetPosition(13, 7, 9);
-  sort->SetInput(grid);
-  sort->SetCamera(camera);
-  sort->SetDirectionToFrontToBack();
-  Traverse(sort, sort->GetMaxCellsReturned());
-  CHECK(sort->GetNumberOfLeaves() == 8, "%d leaves", sort->GetNumberOfLeaves());
   vtkDataArray* leaf = grid->GetCellData()->GetArray("StratusLeaf");
   leaf->SetNumberOfTuples(grid->GetNumberOfCells() - 1);
   leaf->Modified();
-  grid->Modified();
-  const std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
-  CHECK(sort->GetNumberOfLeaves() == 1, "%d leaves, one cell has none", sort->GetNumberOfLeaves());
-  CHECK(WrongPairs(grid, cells, camera, identity) == 0, "%d pairs in the wrong order", WrongPairs(grid, cells, camera, identity));
 }
 
 void Refused(const char* word, vtkDataSet* input, vtkCamera* camera)
@@ -185,8 +176,8 @@ void Refusals()
 int main()
 {
   Orders();
-  Moved();
-  ShortLeaves();
+  Spoiled("moved points", MovePoints);
+  Spoiled("too few leaves", ShortenLeaves);
   Refusals();
   return Failures == 0 ? 0 : 1;
 }
