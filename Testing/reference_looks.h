@@ -26,7 +26,7 @@ stratus_volume reference_component(const stratus_volume* volume, int c);
  * per unit distance. */
 void reference_look(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3]);
 
-/* reference.c */
+/* reference_field.c */
 double reference_opacity(const stratus_transfer* transfer, double value);
 void reference_color(const stratus_transfer* transfer, double value, double rgb[3]);
 
