@@ -3,6 +3,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
@@ -114,6 +115,19 @@ bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cel
   }
   this->SetGeometry(image, matrix);
   return true;
+}
+
+bool vtkStratusImageView::SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error)
+{
+  if (!image || image->GetNumberOfPoints() < 1) {
+    error = "the input image is empty, it needs at least one point";
+    return false;
+  }
+  if (!array) {
+    error = "there is no such scalar array: " + vtkStratusArrayNames(image);
+    return false;
+  }
+  return this->Set(image, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error);
 }
 
 bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error)

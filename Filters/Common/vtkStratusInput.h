@@ -31,6 +31,8 @@ class VTK_STRATUS_PRIVATE vtkStratusImageView
 public:
   // False, with the reason in `error`, where the core can't take the array. matrix: of the prop, or nullptr.
   bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
+  // A filter's input and the array of it that the filter is to process, each nullptr where there is none.
+  bool SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
   // What the image calls its origin and start, against what the volume does: crop_bounds = planes + offset.
   const double* GetCropOffset() const { return this->CropOffset; }

@@ -104,17 +104,9 @@ bool vtkStratusDistanceMapFilter::Internals::SetTransfer(std::string& error)
 
 bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::string& error)
 {
-  if (!input || input->GetNumberOfPoints() < 1) {
-    error = "the input image is empty, it needs at least one point";
-    return false;
-  }
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  vtkDataArray* array = this->Filter->GetInputArrayToProcess(0, input, association);
-  if (!array) {
-    error = "there is no such scalar array: " + vtkStratusArrayNames(input);
-    return false;
-  }
-  if (!this->Image.Set(input, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error) || !this->SetTransfer(error) ||
+  vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
+  if (!this->Image.SetInput(input, array, association, error) || !this->SetTransfer(error) ||
     (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
     return false;
   }

@@ -109,19 +109,11 @@ stratus_tree_options vtkStratusHybridTreeFilter::Internals::GetOptions() const
 
 bool vtkStratusHybridTreeFilter::Internals::Build(vtkImageData* input, std::string& error)
 {
-  if (!input || input->GetNumberOfPoints() < 1) {
-    error = "the input image is empty, it needs at least one point";
-    return false;
-  }
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  vtkDataArray* array = this->Filter->GetInputArrayToProcess(0, input, association);
-  if (!array) {
-    error = "there is no such scalar array: " + vtkStratusArrayNames(input);
-    return false;
-  }
+  vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
   stratus_criterion criterion;
-  if (!this->Image.Set(input, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error) ||
-    !this->SetCriterion(criterion, error) || (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
+  if (!this->Image.SetInput(input, array, association, error) || !this->SetCriterion(criterion, error) ||
+    (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
     return false;
   }
   stratus_context* context = this->Context.Get();
