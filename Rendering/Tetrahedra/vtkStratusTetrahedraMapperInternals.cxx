@@ -3,19 +3,13 @@
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
-#include "vtkFloatArray.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlaneCollection.h"
-#include "vtkPointData.h"
-#include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
-
-#include <algorithm>
-#include <limits>
 
 vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
@@ -107,28 +101,6 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
 
 // ---------------------------------------------------------------- a picture
 
-// Whether something may have written depth before: reading it back costs as much as a simple scene.
-bool vtkStratusTetrahedraMapper::Internals::HasGeometry(vtkRenderer* renderer, vtkVolume* prop) const
-{
-  bool geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
-  vtkPropCollection* props = renderer->GetViewProps();
-  vtkCollectionSimpleIterator iterator;
-  props->InitTraversal(iterator);
-  while (vtkProp* other = props->GetNextProp(iterator)) {
-    geometry = geometry || (other != prop && other->GetVisibility() && !other->IsA("vtkActor2D"));
-  }
-  return geometry;
-}
-
-const float* vtkStratusTetrahedraMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer)
-{
-  const int* rectangle = this->Picture.Rectangle;
-  const int x = this->Picture.Viewport[0] + rectangle[0], y = this->Picture.Viewport[1] + rectangle[1];
-  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
-  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
-  return this->WindowDepth.data();
-}
-
 bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error)
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
@@ -172,7 +144,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   if (this->HasPicture) {
     return true;
   }
-  const float* opaqueDepth = this->HasGeometry(renderer, prop) ? this->ReadOpaqueDepth(renderer) : nullptr;
+  const bool geometry = vtkStratusPicture::FindOthers(renderer, prop, [](vtkProp*) { return false; }).Geometry;
+  const float* opaqueDepth = geometry ? this->Picture.ReadOpaqueDepth(renderer) : nullptr;
   if (!this->Cast(renderer, opaqueDepth, error)) {
     return false;
   }
@@ -193,28 +166,6 @@ vtkImageData* vtkStratusTetrahedraMapper::Internals::GetLastImage()
   if (!this->HasPicture) {
     return nullptr;
   }
-  const int width = this->Picture.Viewport[2], height = this->Picture.Viewport[3];
-  const int* rectangle = this->Picture.Rectangle;
-  this->LastImage = vtkSmartPointer<vtkImageData>::New();
-  this->LastImage->SetDimensions(width, height, 1);
-  vtkNew<vtkFloatArray> rgba, depth;
-  rgba->SetName("RGBA");
-  rgba->SetNumberOfComponents(4);
-  depth->SetName("Depth");
-  for (vtkFloatArray* array : { rgba.Get(), depth.Get() }) {
-    array->SetNumberOfTuples(static_cast<vtkIdType>(width) * height);
-  }
-  rgba->Fill(0.0);
-  depth->Fill(std::numeric_limits<double>::infinity());
-  for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
-    for (int i = 0; i < rectangle[2]; ++i) {
-      const size_t from = static_cast<size_t>(j) * this->Picture.Size[0] + i;
-      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
-      std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
-      depth->SetValue(to, this->Depth[from]);
-    }
-  }
-  this->LastImage->GetPointData()->SetScalars(rgba);
-  this->LastImage->GetPointData()->AddArray(depth);
+  this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, nullptr);
   return this->LastImage;
 }

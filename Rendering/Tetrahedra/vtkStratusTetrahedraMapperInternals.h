@@ -40,8 +40,6 @@ private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
-  bool HasGeometry(vtkRenderer* renderer, vtkVolume* prop) const;
-  const float* ReadOpaqueDepth(vtkRenderer* renderer);
   bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // while rendering
@@ -49,7 +47,7 @@ private:
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
   bool HasPicture = false;
-  std::vector<float> Rgba, Depth, WindowDepth;
+  std::vector<float> Rgba, Depth;
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

@@ -2,11 +2,18 @@
 #include "vtkStratusPicture.h"
 
 #include "vtkCamera.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkTypeUInt32Array.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 // A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then go to
@@ -158,4 +165,83 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
   }
   PlaceRays(view, rays, center, half, this->Camera);
   return true;
+}
+
+// ---------------------------------------------------------------- ray by ray
+
+vtkStratusPicture::Others vtkStratusPicture::FindOthers(
+  vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay)
+{
+  Others others;
+  others.Geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator iterator;
+  props->InitTraversal(iterator);
+  while (vtkProp* other = props->GetNextProp(iterator)) {
+    if (other != prop && other->GetVisibility()) {
+      others.Geometry = others.Geometry || (!other->IsA("vtkActor2D") && !endsNoRay(other));
+      others.Any = true;
+    }
+  }
+  return others;
+}
+
+const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer)
+{
+  const int* rectangle = this->Rectangle;
+  const int x = this->Viewport[0] + rectangle[0], y = this->Viewport[1] + rectangle[1];
+  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
+  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
+  if (this->Size[0] == rectangle[2] && this->Size[1] == rectangle[3]) {
+    return this->WindowDepth.data();
+  }
+  this->OpaqueDepth.resize(static_cast<size_t>(this->Size[0]) * this->Size[1]);
+  for (int j = 0; j < this->Size[1]; ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * rectangle[3] / this->Size[1]) * rectangle[2];
+    for (int i = 0; i < this->Size[0]; ++i) {
+      const size_t column = static_cast<size_t>((i + 0.5) * rectangle[2] / this->Size[0]);
+      this->OpaqueDepth[static_cast<size_t>(j) * this->Size[0] + i] = this->WindowDepth[row + column];
+    }
+  }
+  return this->OpaqueDepth.data();
+}
+
+vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
+  const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const
+{
+  const int width = this->Viewport[2], height = this->Viewport[3];
+  const vtkIdType pixels = static_cast<vtkIdType>(width) * height;
+  const int* rectangle = this->Rectangle;
+  vtkNew<vtkFloatArray> colors, depths;
+  vtkNew<vtkTypeUInt32Array> counts;
+  colors->SetName("RGBA");
+  colors->SetNumberOfComponents(4);
+  colors->SetNumberOfTuples(pixels);
+  colors->Fill(0.0);
+  depths->SetName("Depth");
+  depths->SetNumberOfTuples(pixels);
+  depths->Fill(std::numeric_limits<double>::infinity());
+  counts->SetName("Samples");
+  counts->SetNumberOfTuples(samples ? pixels : 0);
+  counts->Fill(0.0);
+  for (int j = 0; j < (this->IsEmpty() ? 0 : rectangle[3]); ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * this->Size[1] / rectangle[3]) * this->Size[0];
+    for (int i = 0; i < rectangle[2]; ++i) {
+      const size_t from = row + static_cast<size_t>((i + 0.5) * this->Size[0] / rectangle[2]);
+      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
+      std::copy_n(&rgba[4 * from], 4, colors->GetPointer(4 * to));
+      depths->SetValue(to, depth[from]);
+      if (samples) {
+        counts->SetValue(to, (*samples)[from]);
+      }
+    }
+  }
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(width, height, 1);
+  image->GetPointData()->SetScalars(colors);
+  image->GetPointData()->AddArray(depths);
+  if (samples) {
+    image->GetPointData()->AddArray(counts);
+  }
+  return image;
 }

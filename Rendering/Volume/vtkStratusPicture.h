@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where on the window a volume is drawn, and the rays that go there. Private to the module.
+// Where on the window a volume is drawn, the rays that go there, and what is handed over ray by ray. Private to the modules.
 #ifndef vtkStratusPicture_h
 #define vtkStratusPicture_h
 
@@ -7,6 +7,14 @@
 
 #include "vtkStratusInput.h"
 
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+class vtkImageData;
+class vtkProp;
 class vtkRenderer;
 
 struct VTK_STRATUS_PRIVATE vtkStratusPicture {
@@ -21,8 +29,24 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // False where the camera is degenerate.
   bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
+  // What else the renderer draws: something that may have written depth before, or anything beside the prop. endsNoRay: of another prop, that
+  // it writes no depth.
+  struct Others {
+    bool Geometry = false;
+    bool Any = false;
+  };
+  static Others FindOthers(vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay);
+  // The opaque depth at each ray, until the next call. Not to be asked for where nothing can have been drawn before: it costs as much as a
+  // simple scene.
+  const float* ReadOpaqueDepth(vtkRenderer* renderer);
+  // What the rays brought back, over the whole viewport: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
+  vtkSmartPointer<vtkImageData> MakeImage(
+    const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;
+
 private:
   void SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop, double margin);
+
+  std::vector<float> WindowDepth, OpaqueDepth;
 };
 
 #endif

@@ -73,23 +73,16 @@ private:
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
-  // What else the renderer draws: geometry that may end rays, or volumes beside this one.
-  struct Others {
-    bool Geometry = false;
-    bool Any = false;
-  };
-
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
-  Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
-  const float* ReadOpaqueDepth(vtkRenderer* renderer);
-  vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const Others& others) const;
+  vtkStratusPicture::Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
+  vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others) const;
   void ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels);
 
   vtkRenderer* Renderer = nullptr; // while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
-  std::vector<float> Rgba, Depth, WindowDepth, OpaqueDepth, ShownDepth, Selected;
+  std::vector<float> Rgba, Depth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples; // empty: not counted
   vtkSmartPointer<vtkUnsignedCharArray> Offered; // the tree that the caster was last given ..

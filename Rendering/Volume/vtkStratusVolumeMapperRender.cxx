@@ -2,14 +2,10 @@
 // One picture of vtkStratusVolumeMapper: how coarse, what bounds the rays, cast, show.
 #include "vtkStratusVolumeMapperInternals.h"
 
-#include "vtkFloatArray.h"
 #include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
-#include "vtkPointData.h"
-#include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkTypeUInt32Array.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -75,48 +71,18 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 // ---------------------------------------------------------------- a picture
 
-vtkStratusVolumeMapper::Internals::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
+vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
 {
-  Others others;
-  others.Geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
-  vtkPropCollection* props = renderer->GetViewProps();
-  vtkCollectionSimpleIterator iterator;
-  props->InitTraversal(iterator);
-  while (vtkProp* other = props->GetNextProp(iterator)) {
+  return vtkStratusPicture::FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
     // Our other volumes end no rays, but those that write depth do.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-    const bool ours = other == prop || (mapper && mapper->RenderMode == COMPOSITE_MODE);
-    others.Geometry = others.Geometry || (!ours && other->GetVisibility() && !other->IsA("vtkActor2D"));
-    others.Any = others.Any || (other != prop && other->GetVisibility());
-  }
-  return others;
-}
-
-// The opaque depth at each ray. Not asked for where nothing can have been drawn before: it costs as much as a simple scene.
-const float* vtkStratusVolumeMapper::Internals::ReadOpaqueDepth(vtkRenderer* renderer)
-{
-  const vtkStratusPicture& picture = this->Picture;
-  const int* rectangle = picture.Rectangle;
-  const int x = picture.Viewport[0] + rectangle[0], y = picture.Viewport[1] + rectangle[1];
-  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
-  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
-  if (picture.Size[0] == rectangle[2] && picture.Size[1] == rectangle[3]) {
-    return this->WindowDepth.data();
-  }
-  this->OpaqueDepth.resize(static_cast<size_t>(picture.Size[0]) * picture.Size[1]);
-  for (int j = 0; j < picture.Size[1]; ++j) {
-    const size_t row = static_cast<size_t>((j + 0.5) * rectangle[3] / picture.Size[1]) * rectangle[2];
-    for (int i = 0; i < picture.Size[0]; ++i) {
-      const size_t column = static_cast<size_t>((i + 0.5) * rectangle[2] / picture.Size[0]);
-      this->OpaqueDepth[static_cast<size_t>(j) * picture.Size[0] + i] = this->WindowDepth[row + column];
-    }
-  }
-  return this->OpaqueDepth.data();
+    return mapper && mapper->RenderMode == COMPOSITE_MODE;
+  });
 }
 
 // Bytes are enough where black is behind: nothing is left to round after them. Cast() fills in the rest.
-vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(vtkRenderer* renderer, const Others& others) const
+vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
 {
   vtkStratusDisplay::Pixels pixels;
   pixels.Scale = 1.0f / this->Mapper->FinalColorWindow;
@@ -204,8 +170,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return true;
   }
   const double start = Now();
-  const Others others = this->FindOthers(renderer, prop);
-  const float* opaqueDepth = others.Geometry ? this->ReadOpaqueDepth(renderer) : nullptr;
+  const vtkStratusPicture::Others others = this->FindOthers(renderer, prop);
+  const float* opaqueDepth = others.Geometry ? this->Picture.ReadOpaqueDepth(renderer) : nullptr;
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
@@ -243,39 +209,6 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
   if (!this->HasPicture) {
     return nullptr;
   }
-  const int width = this->Picture.Viewport[2], height = this->Picture.Viewport[3];
-  const int* rectangle = this->Picture.Rectangle;
-  this->LastImage = vtkSmartPointer<vtkImageData>::New();
-  this->LastImage->SetDimensions(width, height, 1);
-  vtkNew<vtkFloatArray> rgba, depth;
-  vtkNew<vtkTypeUInt32Array> samples;
-  rgba->SetName("RGBA");
-  rgba->SetNumberOfComponents(4);
-  depth->SetName("Depth");
-  samples->SetName("Samples");
-  for (vtkFloatArray* array : { rgba.Get(), depth.Get() }) {
-    array->SetNumberOfTuples(static_cast<vtkIdType>(width) * height);
-  }
-  rgba->Fill(0.0);
-  depth->Fill(std::numeric_limits<double>::infinity());
-  samples->SetNumberOfTuples(this->HasSamples ? rgba->GetNumberOfTuples() : 0);
-  samples->Fill(0.0);
-  for (int j = 0; j < (this->Picture.IsEmpty() ? 0 : rectangle[3]); ++j) {
-    const size_t row = static_cast<size_t>((j + 0.5) * this->Picture.Size[1] / rectangle[3]) * this->Picture.Size[0];
-    for (int i = 0; i < rectangle[2]; ++i) {
-      const size_t from = row + static_cast<size_t>((i + 0.5) * this->Picture.Size[0] / rectangle[2]);
-      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
-      std::copy_n(&this->Rgba[4 * from], 4, rgba->GetPointer(4 * to));
-      depth->SetValue(to, this->Depth[from]);
-      if (this->HasSamples) {
-        samples->SetValue(to, this->Samples[from]);
-      }
-    }
-  }
-  this->LastImage->GetPointData()->SetScalars(rgba);
-  this->LastImage->GetPointData()->AddArray(depth);
-  if (this->HasSamples) {
-    this->LastImage->GetPointData()->AddArray(samples);
-  }
+  this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, this->HasSamples ? &this->Samples : nullptr);
   return this->LastImage;
 }
