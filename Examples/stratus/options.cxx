@@ -3,9 +3,9 @@
 #include "support.h"
 #include "transfer.h"
 
-#include <functional>
+#include <algorithm>
+#include <iterator>
 #include <limits>
-#include <map>
 
 namespace cli {
 
@@ -198,6 +198,115 @@ stratus_sampling sampling_named(const std::string& text)
   throw usage("--sampling: '" + text + "' is none of auto, midpoint, preintegrated");
 }
 
+// ---- the words of the command line
+
+template <std::string options::*Text>
+void keep(options& o, const std::string&, const std::string& value)
+{
+  o.*Text = value;
+}
+
+template <double options::*Number>
+void keep_number(options& o, const std::string& word, const std::string& value)
+{
+  o.*Number = number(value, word);
+}
+
+template <double options::*Number>
+void keep_positive(options& o, const std::string& word, const std::string& value)
+{
+  o.*Number = positive(value, word);
+}
+
+template <double options::*Bound>
+void keep_bound(options& o, const std::string& word, const std::string& value)
+{
+  o.*Bound = number(value, word);
+  o.has_range = true;
+}
+
+void set_method(options& o, const std::string&, const std::string& value)
+{
+  if (o.command == "render") {
+    o.tetra_method = tetra_method_named(value);
+  } else {
+    o.method = method_named(value);
+  }
+}
+
+void set_up(options& o, const std::string& word, const std::string& value)
+{
+  if (value != "x" && value != "y" && value != "z") {
+    throw usage(word + ": '" + value + "' is none of x, y, z");
+  }
+  o.up = value;
+}
+
+void set_show(options& o, const std::string& word, const std::string& value)
+{
+  if (value != "picture" && value != "samples") {
+    throw usage(word + ": '" + value + "' is none of picture, samples");
+  }
+  o.shows_samples = value == "samples";
+}
+
+using text = const std::string&;
+
+// In the order of help().
+constexpr struct {
+  const char* word;
+  void (*set)(options& o, text word, text value);
+} with_value[] = {
+  { "-o", keep<&options::output> },
+  { "--output", keep<&options::output> },
+  { "--array", keep<&options::array> },
+  { "--opacity", keep<&options::opacity> },
+  { "--color", keep<&options::color> },
+  { "--crop", [](options& o, text word, text value) { o.crop = numbers(value, word, 6, 6); } },
+  { "--crop-regions", [](options& o, text word, text value) { o.crop_regions = whole_number(value, word, 0, STRATUS_CROP_ALL); } },
+  { "--mask", keep<&options::mask> },
+  { "--unit-distance", keep_positive<&options::unit_distance> },
+  { "--background", keep<&options::background> },
+  { "--size", [](options& o, text, text value) { set_size(o, value); } },
+  { "--azimuth", keep_number<&options::azimuth> },
+  { "--elevation", [](options& o, text word, text value) { o.elevation = within(value, word, -90.0, 90.0); } },
+  { "--zoom", [](options& o, text word, text value) { o.zoom = within(value, word, 0.15, 1e6); } },
+  { "--up", set_up },
+  { "--sample-distance", keep_positive<&options::sample_distance> },
+  { "--sampling", [](options& o, text, text value) { o.sampling = sampling_named(value); } },
+  { "--jitter", [](options& o, text word, text value) { o.jitter = whole_number(value, word, 0, std::numeric_limits<int>::max()); } },
+  { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },
+  { "--mode", [](options& o, text, text value) { o.mode = mode_named(value); } },
+  { "--contours", [](options& o, text word, text value) { o.contours = numbers(value, word, 1, STRATUS_CONTOURS_MAX); } },
+  { "--average-range", [](options& o, text word, text value) { o.average = numbers(value, word, 2, 2); } },
+  { "--method", set_method },
+  { "--normals", [](options& o, text, text value) { o.normals = normals_named(value); } },
+  { "--device", keep<&options::device> },
+  { "--threads", [](options& o, text word, text value) { o.threads = whole_number(value, word, 1, 1024); } },
+  { "--show", set_show },
+  { "--lower", keep_bound<&options::lower> },
+  { "--upper", keep_bound<&options::upper> },
+  { "--depth", [](options& o, text word, text value) { o.depth = whole_number(value, word, 0, 16); } },
+};
+
+constexpr struct {
+  const char* word;
+  bool options::*flag;
+} flags[] = {
+  { "--nearest", &options::nearest },
+  { "--shade", &options::shade },
+  { "--parallel", &options::parallel },
+  { "--audit", &options::audit },
+};
+
+// Of a table, nullptr where it has no such word.
+template <class Table>
+auto find_word(const Table& table, const std::string& word)
+{
+  const auto found = std::find_if(std::begin(table), std::end(table), [&](const auto& entry) { return word == entry.word; });
+  return found == std::end(table) ? nullptr : found;
+}
+
 void check_complete(const options& o)
 {
   if (o.command == "render" || o.command == "info" || o.command == "tree" || o.command == "sort") {
@@ -228,81 +337,19 @@ void check_complete(const options& o)
 options parse(int argc, char* argv[])
 {
   options o;
-  const std::map<std::string, std::function<void(const std::string&)>> with_value = {
-    { "-o", [&](const std::string& v) { o.output = v; } },
-    { "--output", [&](const std::string& v) { o.output = v; } },
-    { "--array", [&](const std::string& v) { o.array = v; } },
-    { "--opacity", [&](const std::string& v) { o.opacity = v; } },
-    { "--color", [&](const std::string& v) { o.color = v; } },
-    { "--background", [&](const std::string& v) { o.background = v; } },
-    { "--device", [&](const std::string& v) { o.device = v; } },
-    { "--show",
-      [&](const std::string& v) {
-        if (v != "picture" && v != "samples") {
-          throw usage("--show: '" + v + "' is none of picture, samples");
-        }
-        o.shows_samples = v == "samples";
-      } },
-    { "--unit-distance", [&](const std::string& v) { o.unit_distance = positive(v, "--unit-distance"); } },
-    { "--size", [&](const std::string& v) { set_size(o, v); } },
-    { "--azimuth", [&](const std::string& v) { o.azimuth = number(v, "--azimuth"); } },
-    { "--elevation", [&](const std::string& v) { o.elevation = within(v, "--elevation", -90.0, 90.0); } },
-    { "--zoom", [&](const std::string& v) { o.zoom = within(v, "--zoom", 0.15, 1e6); } },
-    { "--sample-distance", [&](const std::string& v) { o.sample_distance = positive(v, "--sample-distance"); } },
-    { "--sampling", [&](const std::string& v) { o.sampling = sampling_named(v); } },
-    { "--mode", [&](const std::string& v) { o.mode = mode_named(v); } },
-    { "--contours", [&](const std::string& v) { o.contours = numbers(v, "--contours", 1, STRATUS_CONTOURS_MAX); } },
-    { "--average-range", [&](const std::string& v) { o.average = numbers(v, "--average-range", 2, 2); } },
-    { "--crop", [&](const std::string& v) { o.crop = numbers(v, "--crop", 6, 6); } },
-    { "--crop-regions", [&](const std::string& v) { o.crop_regions = whole_number(v, "--crop-regions", 0, STRATUS_CROP_ALL); } },
-    { "--mask", [&](const std::string& v) { o.mask = v; } },
-    { "--jitter", [&](const std::string& v) { o.jitter = whole_number(v, "--jitter", 0, std::numeric_limits<int>::max()); } },
-    { "--normals", [&](const std::string& v) { o.normals = normals_named(v); } },
-    { "--method",
-      [&](const std::string& v) {
-        if (o.command == "render") {
-          o.tetra_method = tetra_method_named(v);
-        } else {
-          o.method = method_named(v);
-        }
-      } },
-    { "--lower",
-      [&](const std::string& v) {
-        o.lower = number(v, "--lower");
-        o.has_range = true;
-      } },
-    { "--upper",
-      [&](const std::string& v) {
-        o.upper = number(v, "--upper");
-        o.has_range = true;
-      } },
-    { "--structure", [&](const std::string& v) { o.structure = structure_named(v); } },
-    { "--threads", [&](const std::string& v) { o.threads = whole_number(v, "--threads", 1, 1024); } },
-    { "--depth", [&](const std::string& v) { o.depth = whole_number(v, "--depth", 0, 16); } },
-    { "--up",
-      [&](const std::string& v) {
-        if (v != "x" && v != "y" && v != "z") {
-          throw usage("--up: '" + v + "' is none of x, y, z");
-        }
-        o.up = v;
-      } },
-  };
-  const std::map<std::string, bool*> flags = { { "--parallel", &o.parallel }, { "--nearest", &o.nearest }, { "--shade", &o.shade }, { "--audit", &o.audit } };
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const auto value = with_value.find(word);
-    const auto flag = flags.find(word);
     if (word == "--help" || word == "-h") {
       o.command = "help";
       return o;
     }
-    if (value != with_value.end()) {
+    if (const auto* entry = find_word(with_value, word)) {
       if (i + 1 == argc) {
         throw usage(word + " needs a value");
       }
-      value->second(argv[++i]);
-    } else if (flag != flags.end()) {
-      *flag->second = true;
+      entry->set(o, word, argv[++i]);
+    } else if (const auto* flag = find_word(flags, word)) {
+      o.*flag->flag = true;
     } else if (word.size() > 1 && word[0] == '-') {
       throw usage("unknown option '" + word + "'");
     } else if (o.command.empty()) {
