@@ -10,8 +10,6 @@
 #define MAP_BYTES_MOST 2000000000.0
 /* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
 #define OCCUPIED_LARGEST 0.8
-/* Fetched values are kept up to this many bytes. */
-#define FETCHED_BYTES_MOST ((size_t)1 << 31)
 /* Eight maps cost about this many look-ups a block to build, and save every other look-up. */
 #define OCTANT_LOOKUPS_A_BLOCK 6
 
@@ -82,13 +80,6 @@ static void drop_transfer(stratus_ray_caster* caster)
   caster->points = NULL;
 }
 
-static void drop_fetched(stratus_ray_caster* caster)
-{
-  stratus_release(caster->context, caster->fetched);
-  caster->fetched = NULL;
-  caster->samples_since_data = 0;
-}
-
 void stratus_ray_caster_release(stratus_ray_caster* caster)
 {
   if (caster) {
@@ -97,7 +88,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_release(caster->context, caster->hidden);
     caster->ranges = NULL;
     caster->hidden = NULL;
-    drop_fetched(caster);
+    stratus_ray_fetched_drop(caster);
     stratus_first_hit_release(caster);
     stratus_ray_looks_release(caster);
     stratus_ray_device_destroy(caster);
@@ -125,38 +116,6 @@ static bool same_data(const stratus_ray_caster* caster, const stratus_volume* vo
     old->revision == volume->revision;
 }
 
-/* Cell values interpolated between cells: a cell of eight values is hidden with any of them. */
-static stratus_status spread_hidden(stratus_context* context, const stratus_volume* volume, uint8_t** hidden)
-{
-  size_t cells[3], total;
-  void* memory = NULL;
-  for (int axis = 0; axis < 3; ++axis) {
-    cells[axis] = volume->dimensions[axis] > 1 ? (size_t)volume->dimensions[axis] - 1 : 1;
-  }
-  TRY(stratus_product(context, "cells", cells[0], cells[1], cells[2], &total));
-  TRY(stratus_allocate(context, total, 1, &memory));
-  uint8_t* spread = memory;
-  const size_t nx = (size_t)volume->dimensions[0], ny = (size_t)volume->dimensions[1], nz = (size_t)volume->dimensions[2];
-  for (size_t cell = 0; cell < total; ++cell) {
-    const size_t i = cell % cells[0], j = cell / cells[0] % cells[1], k = cell / cells[0] / cells[1];
-    uint8_t any = 0;
-    for (size_t corner = 0; corner < 8; ++corner) {
-      const size_t x = i + (corner & 1), y = j + (corner >> 1 & 1), z = k + (corner >> 2);
-      any |= x < nx && y < ny && z < nz ? (*hidden)[(z * ny + y) * nx + x] : 0;
-    }
-    spread[cell] = any;
-  }
-  stratus_release(context, *hidden);
-  *hidden = spread;
-  return STRATUS_OK;
-}
-
-static stratus_status make_hidden(stratus_context* context, const stratus_volume* volume, bool by_value, uint8_t** hidden)
-{
-  TRY(stratus_volume_hidden_cells(context, volume, hidden));
-  return *hidden && volume->cell_centered && !by_value ? spread_hidden(context, volume, hidden) : STRATUS_OK;
-}
-
 static int chosen_block_size(const stratus_volume* volume, int wanted)
 {
   int size = wanted ? wanted : BLOCK_SIZE_DEFAULT;
@@ -173,71 +132,6 @@ static int chosen_block_size(const stratus_volume* volume, int wanted)
   return size;
 }
 
-/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
-static bool is_regular(const stratus_volume* volume)
-{
-  const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
-  return values < (double)INT32_MAX && volume->dimensions[0] > 1 && volume->dimensions[1] > 1 && volume->dimensions[2] > 1;
-}
-
-int stratus_ray_fetch_type(const stratus_volume* volume)
-{
-  return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
-}
-
-/* Once rays have read more values than there are, types that are slow to read are fetched once and for all: the bits stay the same. */
-static stratus_status update_fetched(stratus_ray_caster* caster)
-{
-  const stratus_volume* volume = &caster->volume;
-  const int type = stratus_ray_fetch_type(volume);
-  const int components = stratus_volume_components(volume);
-  const bool slow = type < 0 || type == STRATUS_FLOAT64;
-  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* each component has an offset of its own */
-  caster->traversed = *volume;
-  if (!slow || (!is_regular(volume) && !must)) {
-    return STRATUS_OK;
-  }
-  const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
-  const bool fits = slice * slices <= FETCHED_BYTES_MOST / sizeof(float) / (size_t)components;
-  if (must && !fits) {
-    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d components of %zu values each of 32 bits and more: together at most %zu values",
-      components, slice * slices, FETCHED_BYTES_MOST / sizeof(float));
-  }
-  if (!caster->fetched) {
-    if (!must && (caster->samples_since_data < slice * slices || !fits)) {
-      return STRATUS_OK;
-    }
-    void* memory = NULL;
-    const stratus_status status = stratus_allocate(caster->context, slice * slices * (size_t)components, sizeof(float), &memory);
-    if (status != STRATUS_OK && must) {
-      return status;
-    }
-    if (status != STRATUS_OK) {
-      stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
-      caster->samples_since_data = 0; /* tried again when as many more have been read */
-      return STRATUS_OK;
-    }
-    float* fetched = memory;
-    for (int c = 0; c < components; ++c) {
-      const stratus_volume view = stratus_volume_component(volume, c);
-      const double bias = stratus_volume_bias(&view);
-      float* plane = fetched + (size_t)c * slice * slices;
-#pragma omp parallel for num_threads(caster->context->threads)
-      for (size_t k = 0; k < slices; ++k) {
-        for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
-          plane[i] = stratus_volume_fetch(&view, bias, i);
-        }
-      }
-    }
-    caster->fetched = fetched;
-    ++caster->data_serial;
-  }
-  caster->traversed.values = caster->fetched;
-  caster->traversed.type = STRATUS_FLOAT32;
-  caster->traversed.value_stride = 1;
-  return STRATUS_OK;
-}
-
 static stratus_status update_ranges(
   stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
 {
@@ -249,7 +143,7 @@ static stratus_status update_ranges(
     stratus_value_range* ranges = NULL;
     uint8_t* hidden = NULL;
     int hides = 0;
-    stratus_status status = make_hidden(caster->context, volume, by_value, &hidden);
+    stratus_status status = stratus_ray_hidden_make(caster->context, volume, by_value, &hidden);
     if (status == STRATUS_OK) {
       status = stratus_ray_mask_join(caster->context, volume, options->mask, options->label_count > 0, by_value, &hidden, &hides);
     }
@@ -272,13 +166,13 @@ static stratus_status update_ranges(
       drop_transfer(caster);
       stratus_value_range_destroy(caster->ranges);
       caster->ranges = ranges;
-      drop_fetched(caster);
+      stratus_ray_fetched_drop(caster);
       ++caster->range_builds;
     }
     *ms = stratus_now_ms() - start;
   }
   caster->volume = *volume;
-  return update_fetched(caster);
+  return stratus_ray_fetched_update(caster);
 }
 
 static bool same_function(const stratus_transfer* old, const stratus_transfer* transfer)

@@ -89,6 +89,10 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report);
+
+/* ray_fetched.c: decides caster->traversed, and makes what it needs. */
+stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster);
+void stratus_ray_fetched_drop(stratus_ray_caster* caster);
 int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE that traversal is compiled for, -1 the generic one */
 
 /* first_hit_picture.c, first_hit_scene.c: the mode of first hits; dropping what it built; that and the offered tree */
@@ -141,7 +145,9 @@ bool stratus_ray_looks_show(const stratus_ray_caster* caster); /* anything at al
 stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
 void stratus_ray_looks_release(stratus_ray_caster* caster);
 
-/* ray_mask.c: whether the mask is the one that caster->hidden was made from; and one put before the bytes of cells (NULL: none are hidden). */
+/* ray_mask.c: the bytes of cells that ghosts hide, NULL: none. */
+stratus_status stratus_ray_hidden_make(stratus_context* context, const stratus_volume* volume, bool by_value, uint8_t** hidden);
+/* Whether the mask is the one that caster->hidden was made from; and one put before the bytes of cells (NULL: none are hidden). */
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_mask_join(
   stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Masks: values that a byte each takes out of the picture, beside the cells that are hidden. */
+ * What is taken out of the picture: cells that are hidden, and values by a mask, a byte each. */
 #include "ray_caster.h"
 
 #include <string.h>
@@ -7,7 +7,8 @@
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   const bool labels = (caster->hides & HIDDEN_LABELS) != 0;
-  return caster->mask == options->mask && labels == (options->mask && options->label_count > 0) && (!options->mask || caster->mask_revision == options->mask_revision);
+  return caster->mask == options->mask && labels == (options->mask && options->label_count > 0) &&
+    (!options->mask || caster->mask_revision == options->mask_revision);
 }
 
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)
@@ -18,6 +19,38 @@ size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)
     cells *= by_value ? n : n > 1 ? n - 1 : 1;
   }
   return cells;
+}
+
+/* Cell values interpolated between cells: a cell of eight values is hidden with any of them. */
+static stratus_status spread_hidden(stratus_context* context, const stratus_volume* volume, uint8_t** hidden)
+{
+  size_t cells[3], total;
+  void* memory = NULL;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells[axis] = volume->dimensions[axis] > 1 ? (size_t)volume->dimensions[axis] - 1 : 1;
+  }
+  TRY(stratus_product(context, "cells", cells[0], cells[1], cells[2], &total));
+  TRY(stratus_allocate(context, total, 1, &memory));
+  uint8_t* spread = memory;
+  const size_t nx = (size_t)volume->dimensions[0], ny = (size_t)volume->dimensions[1], nz = (size_t)volume->dimensions[2];
+  for (size_t cell = 0; cell < total; ++cell) {
+    const size_t i = cell % cells[0], j = cell / cells[0] % cells[1], k = cell / cells[0] / cells[1];
+    uint8_t any = 0;
+    for (size_t corner = 0; corner < 8; ++corner) {
+      const size_t x = i + (corner & 1), y = j + (corner >> 1 & 1), z = k + (corner >> 2);
+      any |= x < nx && y < ny && z < nz ? (*hidden)[(z * ny + y) * nx + x] : 0;
+    }
+    spread[cell] = any;
+  }
+  stratus_release(context, *hidden);
+  *hidden = spread;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_hidden_make(stratus_context* context, const stratus_volume* volume, bool by_value, uint8_t** hidden)
+{
+  TRY(stratus_volume_hidden_cells(context, volume, hidden));
+  return *hidden && volume->cell_centered && !by_value ? spread_hidden(context, volume, hidden) : STRATUS_OK;
 }
 
 stratus_status stratus_ray_mask_join(

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The trilinear field along a ray through one cell: a cubic, cut where it turns, and its roots.
  *
- * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept, their search is not: halving needs
- * no division and ends after the same number of steps in every lane.
+ * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept, their search is not:
+ * halving needs no division and ends after the same number of steps in every lane.
  * Neighbouring cells have the very same bits where a ray passes from one to the other, so that a root there is found in one of them, once. */
 #ifndef STRATUS_CELL_CUBIC_H
 #define STRATUS_CELL_CUBIC_H
 
+#include "packet_math.h"
 #include "ray_segment.h"
 
 /* After so many halvings what is left is taken as straight. */

@@ -4,7 +4,7 @@
 #ifndef STRATUS_RAY_BEST_H
 #define STRATUS_RAY_BEST_H
 
-#include "ray_segment.h"
+#include "transfer_table.h"
 
 /* Lanes of `mask` whose block may hold something better than `best`. */
 INLINE vmask best_may_be_in(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vfloat best, vmask mask)

@@ -10,7 +10,7 @@
 #endif
 
 #include "ray_crop.h"
-#include "ray_segment.h"
+#include "transfer_table.h"
 #include "tree_map.h"
 
 #ifndef STRATUS_RAY_MODE
@@ -230,7 +230,8 @@ INLINE void ray_march_two(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
 #endif
 #endif
 
-/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look; `crop` is set where the frame has any. */
+/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look; `crop` is set where the frame
+ * has any. */
 INLINE void ray_load(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
 {

@@ -4,7 +4,7 @@
 #ifndef STRATUS_SHADING_H
 #define STRATUS_SHADING_H
 
-#include "ray_segment.h"
+#include "transfer_table.h"
 
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
 
@@ -16,8 +16,8 @@ INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
   }
 }
 
-/* By the power of 2 that takes the largest component to 1..4, exactly: squares then neither overflow nor vanish, be the values' range what it may. The
- * largest as it was. */
+/* By the power of 2 that takes the largest component to 1..4, exactly: squares then neither overflow nor vanish, be the values' range what
+ * it may. The largest as it was. */
 INLINE vfloat v_scale3(vfloat v[3])
 {
   const vfloat largest = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));

@@ -4,9 +4,9 @@
 #ifndef STRATUS_TETRA_SHADE_H
 #define STRATUS_TETRA_SHADE_H
 
-#include "ray_segment.h"
 #include "tetra_arguments.h"
 #include "tetra_gather.h"
+#include "transfer_table.h"
 
 /* What a ray has gathered. */
 typedef struct stratus_tetra_light {

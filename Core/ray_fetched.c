@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The values that rays read: the volume's own, or, once rays have read more values than there are, those of a type that is slow to read as
+ * floats, fetched once and for all. The bits of the picture stay the same. */
+#include "ray_caster.h"
+
+/* Fetched values are kept up to this many bytes. */
+#define FETCHED_BYTES_MOST ((size_t)1 << 31)
+
+void stratus_ray_fetched_drop(stratus_ray_caster* caster)
+{
+  stratus_release(caster->context, caster->fetched);
+  caster->fetched = NULL;
+  caster->samples_since_data = 0;
+}
+
+/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
+static bool is_regular(const stratus_volume* volume)
+{
+  const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
+  return values < (double)INT32_MAX && volume->dimensions[0] > 1 && volume->dimensions[1] > 1 && volume->dimensions[2] > 1;
+}
+
+int stratus_ray_fetch_type(const stratus_volume* volume)
+{
+  return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
+}
+
+stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
+{
+  const stratus_volume* volume = &caster->volume;
+  const int type = stratus_ray_fetch_type(volume);
+  const int components = stratus_volume_components(volume);
+  const bool slow = type < 0 || type == STRATUS_FLOAT64;
+  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* each component has an offset of its own */
+  caster->traversed = *volume;
+  if (!slow || (!is_regular(volume) && !must)) {
+    return STRATUS_OK;
+  }
+  const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
+  const bool fits = slice * slices <= FETCHED_BYTES_MOST / sizeof(float) / (size_t)components;
+  if (must && !fits) {
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d components of %zu values each of 32 bits and more: together at most %zu values",
+      components, slice * slices, FETCHED_BYTES_MOST / sizeof(float));
+  }
+  if (!caster->fetched) {
+    if (!must && (caster->samples_since_data < slice * slices || !fits)) {
+      return STRATUS_OK;
+    }
+    void* memory = NULL;
+    const stratus_status status = stratus_allocate(caster->context, slice * slices * (size_t)components, sizeof(float), &memory);
+    if (status != STRATUS_OK && must) {
+      return status;
+    }
+    if (status != STRATUS_OK) {
+      stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
+      caster->samples_since_data = 0; /* tried again when as many more have been read */
+      return STRATUS_OK;
+    }
+    float* fetched = memory;
+    for (int c = 0; c < components; ++c) {
+      const stratus_volume view = stratus_volume_component(volume, c);
+      const double bias = stratus_volume_bias(&view);
+      float* plane = fetched + (size_t)c * slice * slices;
+#pragma omp parallel for num_threads(caster->context->threads)
+      for (size_t k = 0; k < slices; ++k) {
+        for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
+          plane[i] = stratus_volume_fetch(&view, bias, i);
+        }
+      }
+    }
+    caster->fetched = fetched;
+    ++caster->data_serial;
+  }
+  caster->traversed.values = caster->fetched;
+  caster->traversed.type = STRATUS_FLOAT32;
+  caster->traversed.value_stride = 1;
+  return STRATUS_OK;
+}
