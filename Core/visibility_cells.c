@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space, since
  * peeling goes from neighbour to neighbour. All that it asks of a cell then stands together. */
-#include "bvh.h"
+#include "cell_morton.h"
 #include "visibility_order.h"
-
-#include "kernels/morton.h"
 
 #include <string.h>
 
-#define SCATTERED 16    /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
-#define FEW_CELLS 4096  /* that fit a cache in any order */
+#define SCATTERED 16 /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
 #define AXIS_BITS 10
+#define LEAF_BITS 16
 
+/* Of cells that know their neighbours: told by how far apart those are listed. */
 static bool is_scattered(const stratus_visibility_order* order, const int32_t* leaf)
 {
   int64_t pairs = 0;
@@ -23,35 +22,40 @@ static bool is_scattered(const stratus_visibility_order* order, const int32_t* l
     distance += together ? fabs((double)(neighbour - i / 4)) : 0.0;
   }
   const double cells = (double)order->cell_count / order->leaf_count;
-  return cells > FEW_CELLS && distance * SCATTERED > (double)pairs * cells;
+  return cells > STRATUS_MORTON_FEW_CELLS && distance * SCATTERED > (double)pairs * cells;
+}
+
+/* The order's cells, as the curve asks for their places. */
+typedef struct cell_places {
+  const stratus_visibility_order* order;
+  const int32_t* leaf;
+  double scale;
+} cell_places;
+
+static uint32_t place_cell(const void* data, int64_t cell, double at[3])
+{
+  const cell_places* places = data;
+  const stratus_visibility_order* order = places->order;
+  for (int a = 0; a < 3; a++) {
+    double middle = 0.0;
+    for (int v = 0; v < 4; v++) {
+      middle += 0.25 * (order->points[3 * (int64_t)order->vertices[4 * cell + v] + a] - order->bounds[2 * a]);
+    }
+    at[a] = middle * places->scale;
+  }
+  return places->leaf ? (uint32_t)places->leaf[cell] : 0;
 }
 
 /* Cells of a leaf by the Morton code of where they are. */
 static stratus_status list_by_place(stratus_visibility_order* order, const int32_t* leaf)
 {
-  stratus_context* context = order->context;
   const double* b = order->bounds;
-  const double size = fmax(fmax(b[1] - b[0], b[3] - b[2]), b[5] - b[4]), scale = size > 0.0 ? ((1 << AXIS_BITS) - 1) / size : 0.0;
-  void* memory;
-  TRY(stratus_allocate(context, (size_t)order->cell_count, sizeof(uint64_t), &memory));
-  uint64_t* keys = memory;
-#pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    uint32_t at[3];
-    for (int a = 0; a < 3; a++) {
-      double middle = 0.0;
-      for (int v = 0; v < 4; v++) {
-        middle += 0.25 * (order->points[3 * (int64_t)order->vertices[4 * cell + v] + a] - b[2 * a]);
-      }
-      const double scaled = middle * scale;
-      at[a] = scaled > 0.0 ? (scaled < (1 << AXIS_BITS) - 1 ? (uint32_t)scaled : (1 << AXIS_BITS) - 1) : 0;
-    }
-    keys[cell] = (uint64_t)(leaf ? leaf[cell] : 0) << 3 * AXIS_BITS | morton_code(at[0], at[1], at[2], 0);
-    order->listed[cell] = (uint32_t)cell;
-  }
-  const stratus_status status = stratus_radix_sort(context, keys, order->listed, (uint32_t)order->cell_count, 3 * AXIS_BITS + 16);
-  stratus_release(context, keys);
-  return status;
+  const double size = fmax(fmax(b[1] - b[0], b[3] - b[2]), b[5] - b[4]);
+  const cell_places places = { order, leaf, size > 0.0 ? ((1 << AXIS_BITS) - 1) / size : 0.0 };
+  const stratus_morton_cells cells = {
+    .count = order->cell_count, .axis_bits = AXIS_BITS, .group_bits = LEAF_BITS, .data = &places, .place = place_cell
+  };
+  return stratus_morton_order(order->context, &cells, order->listed);
 }
 
 /* leaf_begin, and `listed` if cells are not to stay as they come. */
