@@ -43,7 +43,8 @@ struct scene {
   std::shared_ptr<void> memory;
 };
 
-// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem; with "+shade" behind it lit.
+// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem; with "+shade"
+// behind it lit.
 scene make_scene(stratus_context* context, const std::string& source);
 // The transfer functions of all components.
 std::vector<stratus_transfer> transfers_of(const scene& s);
@@ -90,6 +91,15 @@ std::vector<std::string> all_methods();
 void check_method(const std::string& name); // throws failure
 result run_method(stratus_context* context, const scene& s, const std::string& method, int size);
 floor_result run_floor(stratus_context* context, const scene& s, int size);
+
+// ---- cache.cxx
+
+// With the folders that it lies in, where they are not there; nothing where the name is empty. To be called before anything is measured: a
+// reference takes minutes, and is not to be lost to a folder that is not there.
+void make_folder(const std::string& folder);
+// False where there is no such file, or none of exactly as many floats.
+bool load_picture(const std::string& path, std::vector<float>& rgba);
+void save_picture(const std::string& path, const std::vector<float>& rgba); // whole or not at all
 
 // ---- judge.cxx: fills the errors of all results of one scene
 void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results);

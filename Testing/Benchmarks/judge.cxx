@@ -36,7 +36,8 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
-  uint64_t hash = mix(1, v.values, static_cast<size_t>(v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride) * stratus_type_size(v.type));
+  const int64_t values = v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride;
+  uint64_t hash = mix(1, v.values, static_cast<size_t>(values) * stratus_type_size(v.type));
   hash = mix(hash, v.dimensions, sizeof v.dimensions);
   hash = mix(hash, v.spacing, sizeof v.spacing);
   hash = mix(hash, v.origin, sizeof v.origin);
@@ -73,7 +74,7 @@ public:
   {
     std::vector<float> rgba(4 * static_cast<size_t>(this->Size) * static_cast<size_t>(this->Size));
     const std::string path = this->Cache.empty() ? "" : this->path(view, step);
-    if (!path.empty() && load(path, rgba)) {
+    if (!path.empty() && load_picture(path, rgba)) {
       return rgba;
     }
     const std::vector<stratus_transfer> transfers = transfers_of(this->Scene);
@@ -88,7 +89,7 @@ public:
       throw failure("no memory for the reference");
     }
     if (!path.empty()) {
-      save(path, rgba);
+      save_picture(path, rgba);
     }
     return rgba;
   }
@@ -100,30 +101,6 @@ private:
     std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash),
       this->Size, view, static_cast<int>(std::lround(1.0 / step)));
     return this->Cache + name;
-  }
-
-  static bool load(const std::string& path, std::vector<float>& rgba)
-  {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file) {
-      return false;
-    }
-    const bool whole = std::fread(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size() && std::fgetc(file) == EOF;
-    std::fclose(file);
-    return whole;
-  }
-
-  static void save(const std::string& path, const std::vector<float>& rgba)
-  {
-    const std::string part = path + ".part";
-    std::FILE* file = std::fopen(part.c_str(), "wb");
-    if (!file) {
-      throw failure("cannot write " + part);
-    }
-    const bool whole = std::fwrite(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size();
-    if (std::fclose(file) != 0 || !whole || std::rename(part.c_str(), path.c_str()) != 0) {
-      throw failure("cannot write " + path);
-    }
   }
 
   stratus_context* Context;

@@ -150,6 +150,7 @@ void run(const options& o)
     throw bench::failure(message);
   }
   std::vector<bench::row> rows;
+  bench::make_folder(o.cache);
   for (const std::string& source : o.scenes) {
     run_scene(context, source, o, rows);
   }

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -323,21 +322,12 @@ std::vector<chart_mark> marks_of(const std::vector<row>& rows)
   return marks;
 }
 
-// Before anything is measured: a reference takes minutes, and is not to be lost to a folder that is not there.
-void make_folders(const options& o)
-{
-  for (const std::string& folder : { o.cache, o.reference_cache, o.pictures }) {
-    std::error_code error;
-    if (!folder.empty() && (std::filesystem::create_directories(folder, error), error)) {
-      throw failure("cannot make folder " + folder + ": " + error.message());
-    }
-  }
-}
-
 void run(stratus_context* context, const options& o)
 {
   std::vector<row> rows;
-  make_folders(o);
+  for (const std::string& folder : { o.cache, o.reference_cache, o.pictures }) {
+    make_folder(folder);
+  }
   for (const std::string& source : o.meshes) {
     tetra_mesh mesh;
     std::fprintf(stderr, "%s\n", source.c_str());

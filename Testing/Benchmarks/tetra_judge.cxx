@@ -188,27 +188,6 @@ std::string path_of(const tetra_mesh& mesh, const transfer& t, const stratus_cam
   std::snprintf(name, sizeof name, "/%.80s-%016llx-%d.rgba", mesh.name.c_str(), static_cast<unsigned long long>(hash), size);
   return cache + name;
 }
-
-bool load(const std::string& path, std::vector<float>& rgba)
-{
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (!file) {
-    return false;
-  }
-  const bool whole = std::fread(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size() && std::fgetc(file) == EOF;
-  std::fclose(file);
-  return whole;
-}
-
-void save(const std::string& path, const std::vector<float>& rgba)
-{
-  const std::string part = path + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  const bool whole = file && std::fwrite(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size();
-  if (!file || std::fclose(file) != 0 || !whole || std::rename(part.c_str(), path.c_str()) != 0) {
-    throw failure("cannot write " + path);
-  }
-}
 } // namespace
 
 std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions, const stratus_camera& camera,
@@ -218,7 +197,7 @@ std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const s
   std::vector<std::vector<float>> pictures(functions.size(), std::vector<float>(values)), coarse;
   bool all = !cache.empty() && !agreement;
   for (size_t i = 0; i < functions.size() && all; ++i) {
-    all = load(path_of(mesh, functions[i], camera, size, cache), pictures[i]);
+    all = load_picture(path_of(mesh, functions[i], camera, size, cache), pictures[i]);
   }
   if (all) {
     return pictures;
@@ -244,7 +223,7 @@ std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const s
       agreement->push_back(e.rmse255());
     }
     if (!cache.empty()) {
-      save(path_of(mesh, functions[i], camera, size, cache), pictures[i]);
+      save_picture(path_of(mesh, functions[i], camera, size, cache), pictures[i]);
     }
   }
   return pictures;
