@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Clustering by density peaks (Rodriguez & Laio 2014): a box's density is how many boxes lie within a cutoff distance, delta how far the nearest one of
- * higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its nearest denser
- * neighbour.
+ * Clustering by density peaks (Rodriguez & Laio 2014): a box's density is how many boxes lie within a cutoff distance, delta how far the
+ * nearest one of higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its
+ * nearest denser neighbour.
  *
  * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so none
  * looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */

@@ -114,8 +114,8 @@ static stratus_status begin(launch* l, size_t most)
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4, tree->entries, true,
     &l->buffers[ENTRIES]));
-  TRY(stratus_device_buffer(
-    l->context, CL_MEM_READ_ONLY, tree->row_count ? (size_t)tree->row_count * 4 : 16, tree->row_count ? tree->rows : NULL, tree->row_count > 0, &l->buffers[ROWS]));
+  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->row_count ? (size_t)tree->row_count * 4 : 16,
+    tree->row_count ? tree->rows : NULL, tree->row_count > 0, &l->buffers[ROWS]));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->mask_count ? (size_t)tree->mask_count * 8 : 16,
     tree->mask_count ? tree->masks : NULL, tree->mask_count > 0, &l->buffers[MASKS]));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, most * 13 * 4, NULL, false, &l->buffers[RAYS]));

@@ -53,7 +53,8 @@ static inline bool enters(const stratus_ray* ray, const double from[3], const do
   return before(in, out) && in.t <= ray->t_max && in.t < INFINITY;
 }
 
-static void make_hit(const stratus_hit_batch* batch, const stratus_ray* ray, const double along[3], const int voxel[3], crossing entry, stratus_hit* hit)
+static void make_hit(
+  const stratus_hit_batch* batch, const stratus_ray* ray, const double along[3], const int voxel[3], crossing entry, stratus_hit* hit)
 {
   hit->t = entry.t;
   hit->face = entry.axis == 3 ? -1 : 2 * entry.axis + (along[entry.axis] < 0.0);

@@ -24,7 +24,8 @@ static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 
 /* The ray in voxel coordinates. */
-static void transform(const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* restrict first, double* restrict last)
+static void transform(
+  const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* restrict first, double* restrict last)
 {
   const double* m = batch->to_voxels;
   const int n = chunk->count;

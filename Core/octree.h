@@ -178,7 +178,8 @@ void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_fru
  * decide. turned: the boxes may stand about smaller things: unsure are all that a plane crosses. */
 void stratus_octree_test_packs(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,
   size_t packs, uint16_t* keep, uint16_t* unsure);
-/* Eight children of the cell with this centre and half width `quarter` each (times `looseness`): masks[o] the planes that cross child o, 0x80 if it is outside. */
+/* Eight children of the cell with this centre and half width `quarter` each (times `looseness`): masks[o] the planes that cross child o,
+ * 0x80 if it is outside. */
 void stratus_octree_test_children(
   const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t masks[8]);
 

@@ -102,8 +102,8 @@ static ALWAYS_INLINE void test_packs(const stratus_octree_planes* planes, unsign
 
 /* ---- children */
 
-/* A cube's distance to a plane is its centre's less a constant: the same for all eight, whether of its sphere or of the cube. So the sphere, which comes
- * first in the paper, would save nothing. */
+/* A cube's distance to a plane is its centre's less a constant: the same for all eight, whether of its sphere or of the cube. So the
+ * sphere, which comes first in the paper, would save nothing. */
 static ALWAYS_INLINE void test_children(
   const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t* restrict masks)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Splitting: the nodes of one level that are to be split hand down what they hold, each to eight children, which then stand in Morton order among those of
- * the level below. Memory is there before anything changes. */
+ * Splitting: the nodes of one level that are to be split hand down what they hold, each to eight children, which then stand in Morton order
+ * among those of the level below. Memory is there before anything changes. */
 #include "octree.h"
 
 #include <string.h>

@@ -166,8 +166,11 @@ static const char* obstacle(const stratus_ray_caster* caster)
 static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_ray_variant variant, bool packets, cl_kernel* kernel)
 {
   stratus_context* context = caster->context;
-  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME, [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM, [STRATUS_RAY_CONTOURS] = STRATUS_RAY_SURFACE,
-    [STRATUS_RAY_LOOKS_MIDPOINT] = STRATUS_RAY_LOOKS, [STRATUS_RAY_LOOKS_PREINTEGRATED] = STRATUS_RAY_LOOKS };
+  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME,
+    [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM,
+    [STRATUS_RAY_CONTOURS] = STRATUS_RAY_SURFACE,
+    [STRATUS_RAY_LOOKS_MIDPOINT] = STRATUS_RAY_LOOKS,
+    [STRATUS_RAY_LOOKS_PREINTEGRATED] = STRATUS_RAY_LOOKS };
   char defines[192];
   int used = snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
     type, variant == STRATUS_RAY_PREINTEGRATED || variant == STRATUS_RAY_LOOKS_PREINTEGRATED, packets ? 16 : 1, TILE,

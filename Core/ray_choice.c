@@ -12,7 +12,8 @@
 /* Pre-integration pays where the opacity is this far from linear within a step, relative to itself. */
 #define BEND_LARGEST 0.25
 /* Steps of the midpoint rule, in voxels, by the mean change of alpha from voxel to voxel. Thin smooth media bear more than a voxel (fog at 1.15:
- * 82 dB); at .9 what the step gets wrong is well below what 8 bits round away; where more than SHARPNESS_LARGEST changes, the step shrinks with it. */
+ * 82 dB); at .9 what the step gets wrong is well below what 8 bits round away; where more than SHARPNESS_LARGEST changes, the step shrinks
+ * with it. */
 #define SHARPNESS_THIN 0.005
 #define SHARPNESS_LARGEST 0.08
 #define MIDPOINT_LONGEST 1.15

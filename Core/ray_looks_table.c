@@ -181,8 +181,9 @@ static stratus_status create_label_tables(stratus_ray_caster* caster)
     entries += 2 * (size_t)looks->label_tables[l]->size;
   }
   if (entries > LABEL_ENTRIES_MOST) {
-    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d labels' functions take %zu entries, at most %d: their narrowest features ask for less",
-      caster->transfer_count - 1, entries, LABEL_ENTRIES_MOST);
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
+      "%d labels' functions take %zu entries, at most %d: their narrowest features ask for less", caster->transfer_count - 1, entries,
+      LABEL_ENTRIES_MOST);
   }
   return STRATUS_OK;
 }

@@ -153,7 +153,8 @@ typedef struct stratus_transfer {
   double unit_distance;  /* world length that `opacity` is per, > 0. Default 1. */
   int clamp;             /* 1: the end points' opacity holds beyond them. 0: transparent there. Default 1. Colours always hold. */
   /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1; the ends hold
-   * beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever the volume's matrix. Default NULL, 0: none. */
+   * beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever the volume's matrix. Default NULL,
+   * 0: none. */
   const double* gradient;
   size_t gradient_count;
   double weight; /* independent components: what their optical depth is multiplied by, 0..1. Default 1. */
@@ -255,8 +256,8 @@ typedef struct stratus_voxels stratus_voxels;
 STRATUS_API stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has them;
- * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is cell (i,j,k), between the
- * values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges' blocks. */
+ * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is cell
+ * (i,j,k), between the values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges' blocks. */
 STRATUS_API stratus_status stratus_voxels_create_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* `count` triples of i, j, k, each in 0..dimensions-1; one that comes twice counts once. Index (i,j,k) is world (i+.5, j+.5, k+.5): the
@@ -435,10 +436,10 @@ typedef struct stratus_hit {
   uint32_t visited;   /* nodes and steps in distance fields */
 } stratus_hit;
 
-/* The first effective voxel along each of `count` rays: that of stratus_voxels_first_hit() to the bit, edges and corners included, for origins up to some
- * 1e9 voxels away (farther ones may differ where rays graze edges). Rays with a direction of length 0, or with a number that is not finite
- * (t_max aside): STRATUS_INVALID_ARGUMENT with the first one's index, and `hits` undefined. Threads and device: the context's; trees of one leaf go
- * in packets, or on the device, others ray by ray on the host. */
+/* The first effective voxel along each of `count` rays: that of stratus_voxels_first_hit() to the bit, edges and corners included, for
+ * origins up to some 1e9 voxels away (farther ones may differ where rays graze edges). Rays with a direction of length 0, or with a number
+ * that is not finite (t_max aside): STRATUS_INVALID_ARGUMENT with the first one's index, and `hits` undefined. Threads and device: the
+ * context's; trees of one leaf go in packets, or on the device, others ray by ray on the host. */
 STRATUS_API stratus_status stratus_tree_first_hit(stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count,
   stratus_hit* hits);
 /* The same answer by a plain walk from voxel to voxel in double precision, one thread: slow, and the measure of the other. */
@@ -493,8 +494,8 @@ typedef struct stratus_light {
 } stratus_light;
 
 /* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power).
- * Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn), and specular where N L > 0
- * only; N against the gradient by central differences, 0 where that is 0. */
+ * Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn), and specular
+ * where N L > 0 only; N against the gradient by central differences, 0 where that is 0. */
 typedef struct stratus_shading {
   int on;                /* first hit; 0: c = C. Default 1. Composite: see stratus_ray_cast_options.shade */
   double ambient;        /* finite and >= 0, as the next three; default .1 */
@@ -529,22 +530,23 @@ typedef struct stratus_ray_cast_options {
   stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
   stratus_shading shading; /* first hit; composite and isosurface with shade */
   int shade;               /* composite and isosurface; 1: samples are lit by `shading`. Default 0 */
-  int dependent;           /* composite, volumes of several components. 0 (default): each is a medium of its own, with a transfer function each; where they
-                            * mix, their optical depths add up, and so does the light that they send. 1: together they are one medium: of 2, the first
-                            * has the colour and the second the opacity of the one transfer function; of 4 (STRATUS_UINT8 only), the first three are
-                            * red, green, blue in 0..255, and the fourth has its opacity. The last one's gradient counts. */
+  int dependent;           /* composite, volumes of several components. 0 (default): each is a medium of its own, with a transfer function
+                            * each; where they mix, their optical depths add up, and so does the light that they send. 1: together they are
+                            * one medium: of 2, the first has the colour and the second the opacity of the one transfer function; of 4
+                            * (STRATUS_UINT8 only), the first three are red, green, blue in 0..255, and the fourth has its opacity. The last
+                            * one's gradient counts. */
   double average_range[2]; /* average: values that count, ends included, first <= last, infinities allowed. Default: all. */
   int contour_count;       /* isosurface: 1..16; other modes: not used. Default 0. */
   double contours[STRATUS_CONTOURS_MAX]; /* finite, in any order */
-  /* A byte a value of the volume, NULL: none. A sample is transparent where the byte of the nearest value is 0; pre-integrated, a segment is where one
-   * of its ends is. Not for first hits. Copied when it, its revision or the volume's data changes. */
+  /* A byte a value of the volume, NULL: none. A sample is transparent where the byte of the nearest value is 0; pre-integrated, a segment
+   * is where one of its ends is. Not for first hits. Copied when it, its revision or the volume's data changes. */
   const uint8_t* mask;
   uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
-  int label_count;        /* composite, one component. 1..255: the mask's bytes hide nothing but are labels: l in 1..label_count has the colour and opacity of
-                           * transfer[l] (the nearest value's label; the value as it is sampled), all others those of transfer[0], whose gradient opacity
-                           * counts for all. Never pre-integrated. 0 (default): no labels. */
-  int jitter;             /* 1: each ray's samples are moved along it by 0..1 sample distances, by a number from pixel and jitter_seed, so that wood grain
-                           * turns into noise. Default 0. */
+  int label_count;        /* composite, one component. 1..255: the mask's bytes hide nothing but are labels: l in 1..label_count has the
+                           * colour and opacity of transfer[l] (the nearest value's label; the value as it is sampled), all others those of
+                           * transfer[0], whose gradient opacity counts for all. Never pre-integrated. 0 (default): no labels. */
+  int jitter;             /* 1: each ray's samples are moved along it by 0..1 sample distances, by a number from pixel and jitter_seed, so
+                           * that wood grain turns into noise. Default 0. */
   uint32_t jitter_seed;   /* default 0 */
 } stratus_ray_cast_options;
 
@@ -587,17 +589,18 @@ typedef struct stratus_ray_caster stratus_ray_caster;
 STRATUS_API stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** caster);
 STRATUS_API void stratus_ray_caster_destroy(stratus_ray_caster* caster);
 
-/* Draws. volume->values and ghosts stay borrowed until the next call with another volume, _release or _destroy. What is built is kept, and built anew only when
- * what it is built from changes: ranges with the volume's pointers, type, dimensions, stride, centring, revision or the block size; tables,
- * occupancy and structure with the transfer function, the sampling, and (tables) the sample distance. Geometry and camera rebuild nothing.
- * report may be NULL. A failed call leaves the picture undefined, and the caster fit for the next call. */
+/* Draws. volume->values and ghosts stay borrowed until the next call with another volume, _release or _destroy. What is built is kept, and
+ * built anew only when what it is built from changes: ranges with the volume's pointers, type, dimensions, stride, centring, revision or
+ * the block size; tables, occupancy and structure with the transfer function, the sampling, and (tables) the sample distance. Geometry and
+ * camera rebuild nothing. report may be NULL. A failed call leaves the picture undefined, and the caster fit for the next call. */
 STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);
 
-/* First hits (STRATUS_MODE_FIRST_HIT): voxels count as cubes about their values, so the solid reaches half a voxel beyond a volume of points. In the report, samples are
- * hits, lookups what trees visited, blocks and occupied_blocks bricks of 4^3 voxels with any effective one, occupancy_builds the making of
- * voxels; sampling, sample distance, termination and block size are not used. A change of colours alone rebuilds nothing. */
+/* First hits (STRATUS_MODE_FIRST_HIT): voxels count as cubes about their values, so the solid reaches half a voxel beyond a volume of
+ * points. In the report, samples are hits, lookups what trees visited, blocks and occupied_blocks bricks of 4^3 voxels with any effective
+ * one, occupancy_builds the making of voxels; sampling, sample distance, termination and block size are not used. A change of colours alone
+ * rebuilds nothing. */
 
 /* Offers a tree that comes with the data, as stratus_tree_save() wrote it: structure hybrid, and auto in first hits, use it in place of one of the
  * caster's own where it serves (stratus_tree_covers(); first hits: with the same voxels exactly). The bytes are copied. NULL: none any more. Bytes
@@ -640,8 +643,8 @@ STRATUS_API stratus_side stratus_frustum_side(const stratus_frustum* frustum, co
  * keeps those whose sphere touches a node that is seen whole, and drops those of which no node crosses the frustum.
  *
  * Objects have ids 0.. that stay theirs until removed; the lowest-numbered freed ids are not necessarily the next. Bounds are xmin xmax ymin
- * ymax zmin zmax, min <= max; an empty interval (min > max) is refused. An object with a bound that is NaN, infinite or beyond 1e30 has no bounds: it is in
- * every frustum and box, and in no answer of the other queries. */
+ * ymax zmin zmax, min <= max; an empty interval (min > max) is refused. An object with a bound that is NaN, infinite or beyond 1e30 has no
+ * bounds: it is in every frustum and box, and in no answer of the other queries. */
 
 typedef enum stratus_octree_placement {
   STRATUS_OCTREE_ENCLOSING, /* in the smallest node that encloses it: once. Default. */
@@ -805,7 +808,8 @@ typedef struct stratus_partition_options {
   int planes;                  /* tried an axis and node, 1..4096. Default 64. */
   double growth;               /* the paper's Phi: most new cells per cell of the node, > 0, may be INFINITY. Default INFINITY (paper: .3). */
   double imbalance;            /* the paper's epsilon: |l - r| / ((l + r)/2) is below it, > 0. Default .5. */
-  int rotations;               /* where no plane is admissible at the root the mesh is turned this many times at most, and cut again, 0..64. Default 0. */
+  int rotations;               /* where no plane is admissible at the root the mesh is turned this many times at most, and cut again,
+                                * 0..64. Default 0. */
   int64_t leaf_cells;          /* a node of so many or fewer is not cut, >= 1. Default 1024. */
 } stratus_partition_options;
 

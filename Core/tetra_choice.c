@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * March or projection: which should cost less for a view, told from counts of cells, pixels and segments that a sample of the cells stands for. Nothing
- * of earlier frames goes into it, so that a camera that stands still never changes the method. */
+ * March or projection: which should cost less for a view, told from counts of cells, pixels and segments that a sample of the cells stands
+ * for. Nothing of earlier frames goes into it, so that a camera that stands still never changes the method. */
 #include "tetra_caster.h"
 
 #include "mesh.h"

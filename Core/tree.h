@@ -75,8 +75,9 @@ typedef struct stratus_density_borders {
 stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
   double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders);
 
-/* ---- dbscan.c: 1-D DBSCAN of coordinates given as counts: counts[i] voxels have coordinate i, 0 <= i < n; reach eps >= 1 in coordinates, min_points.
- * Finds the cluster that holds coordinate `peak`: [*lo, *hi); returns its number of core coordinates, 0 if the peak is noise. *clusters: how many. */
+/* ---- dbscan.c: 1-D DBSCAN of coordinates given as counts: counts[i] voxels have coordinate i, 0 <= i < n; reach eps >= 1 in coordinates,
+ * min_points. Finds the cluster that holds coordinate `peak`: [*lo, *hi); returns its number of core coordinates, 0 if the peak is noise.
+ * *clusters: how many. */
 int32_t stratus_dbscan_counts(
   const int64_t* counts, int32_t n, int32_t eps, int64_t min_points, int32_t peak, int32_t* lo, int32_t* hi, int32_t* clusters);
 

@@ -95,7 +95,8 @@ static stratus_status check_leaps(stratus_context* context, const stratus_tree* 
   return STRATUS_OK;
 }
 
-static stratus_status check_field(stratus_context* context, const stratus_tree* tree, const stratus_tree_field* f, census* c, int32_t lo[3], int32_t hi[3])
+static stratus_status check_field(
+  stratus_context* context, const stratus_tree* tree, const stratus_tree_field* f, census* c, int32_t lo[3], int32_t hi[3])
 {
   const int64_t nx = f->cells[0] + 1, ny = f->cells[1] + 1, nz = f->cells[2] + 1;
   stratus_status status = STRATUS_OK;
@@ -111,7 +112,8 @@ static stratus_status check_field(stratus_context* context, const stratus_tree* 
         uint64_t mask;
         stratus_tree_field_leap(tree, f, 0, i, j, k, &mask);
         row += mask != 0;
-        sums[((k + 1) * ny + j + 1) * nx + i + 1] = row + sums[((k + 1) * ny + j) * nx + i + 1] + sums[(k * ny + j + 1) * nx + i + 1] - sums[(k * ny + j) * nx + i + 1];
+        const int64_t at_sum = ((k + 1) * ny + j + 1) * nx + i + 1;
+        sums[at_sum] = row + sums[at_sum - nx] + sums[at_sum - ny * nx] - sums[at_sum - ny * nx - nx];
         int32_t at[3] = { f->at[0] + i, f->at[1] + j, f->at[2] + k };
         if (mask && tree->cell_log2 == 0) {
           mask <<= (at[2] & 3) << 4 | (at[1] & 3) << 2 | (at[0] & 3);

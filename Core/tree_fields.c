@@ -184,8 +184,8 @@ static stratus_status shorten_by_flooding(stratus_context* context, const stratu
 #pragma omp parallel for collapse(2) schedule(static) num_threads(context->threads)
   for (int32_t k = 0; k < n[2]; k++) {
     for (int32_t j = 0; j < n[1]; j++) {
-      const float* row =
-        (const float*)distances + ((size_t)(k + part.lo[2]) * (size_t)part.dimensions[1] + (size_t)(j + part.lo[1])) * (size_t)part.dimensions[0] + part.lo[0];
+      const size_t line = (size_t)(k + part.lo[2]) * (size_t)part.dimensions[1] + (size_t)(j + part.lo[1]);
+      const float* row = (const float*)distances + line * (size_t)part.dimensions[0] + part.lo[0];
       uint8_t* e = tree->entries + 2 * ((size_t)field->first_entry + ((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0]);
       for (int32_t i = 0; i < n[0]; i++, e += 2) {
         const unsigned longest = (unsigned)(e[0] | e[1] << 8) >> 2;

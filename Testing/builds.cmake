@@ -32,7 +32,8 @@ stratus_add_installation(install_core "${CMAKE_BINARY_DIR}/core_by_clang")
 set_tests_properties(core_by_clang PROPERTIES FIXTURES_SETUP core_by_clang)
 set_tests_properties(install_core PROPERTIES FIXTURES_REQUIRED core_by_clang)
 stratus_add_consumer(consumer_of_core Testing/Consumers/Core install_core "${CMAKE_BINARY_DIR}/consumer_of_core/consumer")
-stratus_add_consumer(example_c_alone Examples/C install_core "${CMAKE_BINARY_DIR}/example_c_alone/cloud" "${CMAKE_BINARY_DIR}/example_c_alone/cloud.ppm")
+stratus_add_consumer(example_c_alone Examples/C install_core "${CMAKE_BINARY_DIR}/example_c_alone/cloud"
+  "${CMAKE_BINARY_DIR}/example_c_alone/cloud.ppm")
 if (stratus_vtk)
   stratus_add_installation(install_all "${CMAKE_BINARY_DIR}")
   stratus_add_consumer(consumer_of_vtk Testing/Consumers/VTK install_all ${stratus_display} "${CMAKE_BINARY_DIR}/consumer_of_vtk/consumer")
@@ -62,7 +63,8 @@ foreach (kernel IN LISTS kernels)
 endforeach ()
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
-stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}" "${stratus_test_folder}/test_device_tiny")
+stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
+  "${stratus_test_folder}/test_device_tiny")
 foreach (kind IN ITEMS density distance_field first_hit tetra_march visibility_signs)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     "${stratus_test_folder}/test_${kind}_device" tiny)

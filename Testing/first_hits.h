@@ -98,7 +98,8 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
 }
 
 /* Compares the tree's answers with the walk's, to the bit; rays in the coordinates of lists. */
-static inline void compare_hits(stratus_context* context, const stratus_voxels* voxels, const stratus_tree* tree, const stratus_ray* rays, size_t count)
+static inline void compare_hits(
+  stratus_context* context, const stratus_voxels* voxels, const stratus_tree* tree, const stratus_ray* rays, size_t count)
 {
   stratus_hit* ours = malloc(count * sizeof *ours);
   stratus_hit* theirs = malloc(count * sizeof *theirs);

@@ -95,7 +95,8 @@ static inline void cut_polygon(polygon* face, const double plane[4], long double
   *face = cut;
 }
 
-/* True if the box, widened by room, meets the frustum: some of its faces does, or it holds `inside`, a point of the frustum. Planes of unit normals. */
+/* True if the box, widened by room, meets the frustum: some of its faces does, or it holds `inside`, a point of the frustum. Planes of unit
+ * normals. */
 static inline bool box_meets_frustum(const stratus_frustum* frustum, const double bounds[6], const double inside[3], double room)
 {
   bool holds = true;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Finds OpenEXR's C library and sets stratus_exr: whether to build vtkStratusEXRWriter, and `stratus render -o OUT.exr`. Not by OpenEXR's CMake package:
-# Debian's complains of a Python library that nobody needs here.
+# Finds OpenEXR's C library and sets stratus_exr: whether to build vtkStratusEXRWriter, and `stratus render -o OUT.exr`. Not by OpenEXR's
+# CMake package: Debian's complains of a Python library that nobody needs here.
 set(STRATUS_BUILD_EXR AUTO CACHE STRING "Build vtkStratusEXRWriter, which needs OpenEXR 3.1: ON, OFF, or AUTO (where it is found)")
 set_property(CACHE STRATUS_BUILD_EXR PROPERTY STRINGS AUTO ON OFF)
 set(stratus_exr OFF)

@@ -18,8 +18,8 @@
 
 #include "first_hit.h"
 
-/* rays: arrays of `count` floats: origin x y z, direction x y z, its inverse x y z, end; then of ints: cell x y z. results: arrays of `count` ints: what became of the
- * ray, voxel x y z, steps. */
+/* rays: arrays of `count` floats: origin x y z, direction x y z, its inverse x y z, end; then of ints: cell x y z. results: arrays of
+ * `count` ints: what became of the ray, voxel x y z, steps. */
 __kernel void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,
   __global const int* masks, __global const float* rays, __global int* results)
 {

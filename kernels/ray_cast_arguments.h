@@ -94,6 +94,7 @@ typedef struct stratus_ray_cast_arguments {
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */
-#define STRATUS_RAY_CAST_ARGUMENTS_WORDS (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32 + 2)
+#define STRATUS_RAY_CAST_ARGUMENTS_WORDS                                                                                                   \
+  (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32 + 2)
 
 #endif

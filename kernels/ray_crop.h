@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cropping to any of the 27 regions between two planes along each axis: a ray's way is cut where it passes from a region that is shown to one that is not,
- * and marched piece by piece on its one lattice, so that the march itself knows of no region. */
+ * Cropping to any of the 27 regions between two planes along each axis: a ray's way is cut where it passes from a region that is shown to
+ * one that is not, and marched piece by piece on its one lattice, so that the march itself knows of no region. */
 #ifndef STRATUS_RAY_CROP_H
 #define STRATUS_RAY_CROP_H
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Isosurfaces along a packet of rays, cell by cell: in each the field is a cubic, whose roots are where the ray meets the surfaces. Included by ray_cast.h
- * with STRATUS_RAY_MODE set to STRATUS_RAY_SURFACE.
+ * Isosurfaces along a packet of rays, cell by cell: in each the field is a cubic, whose roots are where the ray meets the surfaces.
+ * Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_SURFACE.
  *
- * Plane n of an axis is met at (n - p) / d, rounded once, and a ray passes from cell to cell at these numbers only. A leap ends at such a number, too, so
- * the cells behind it are those that a walk without leaps would have come to, and the bits do not depend on the structure. */
+ * Plane n of an axis is met at (n - p) / d, rounded once, and a ray passes from cell to cell at these numbers only. A leap ends at such a
+ * number, too, so the cells behind it are those that a walk without leaps would have come to, and the bits do not depend on the
+ * structure. */
 #ifndef STRATUS_RAY_SURFACE_H
 #define STRATUS_RAY_SURFACE_H
 

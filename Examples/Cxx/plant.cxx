@@ -158,7 +158,8 @@ static bool Save(vtkRenderWindow* window, const char* file)
   return writer->GetErrorCode() == 0;
 }
 
-// Cells at the ends of the tree that hold parts: grey where the frustum misses them, orange at its border, green within, lighter the farther down the tree.
+// Cells at the ends of the tree that hold parts: grey where the frustum misses them, orange at its border, green within, lighter the
+// farther down the tree.
 static void ColorCells(vtkPolyData* boxes)
 {
   static const double hues[3][3] = { { 0.55, 0.6, 0.65 }, { 0.95, 0.4, 0.0 }, { 0.0, 0.55, 0.2 } };

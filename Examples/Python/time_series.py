@@ -16,4 +16,5 @@ for step in range(12):
                            camera=dict(azimuth=15, elevation=15, zoom=1.9))
     picture.save(f"{folder}/smoke-{step:02d}.png")
     update_ms = mapper.GetRangeTime() + mapper.GetTableTime() + mapper.GetOccupancyTime() + mapper.GetStructureTime()
-    print(f"step {step:2d}: update_ms {update_ms:.2f}, cast_ms {mapper.GetCastTime():.2f}, {mapper.GetOccupiedBlocks()} of {mapper.GetBlocks()} blocks show")
+    print(f"step {step:2d}: update_ms {update_ms:.2f}, cast_ms {mapper.GetCastTime():.2f},",
+          f"{mapper.GetOccupiedBlocks()} of {mapper.GetBlocks()} blocks show")

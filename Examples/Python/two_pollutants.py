@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# One plume, two pollutants: soot falls out on the way, ozone forms in it. An array of two components, each with its own looks: two_pollutants.py [OUT.png]
+# One plume, two pollutants: soot falls out on the way, ozone forms in it. An array of two components, each with its own looks:
+# two_pollutants.py [OUT.png]
 import sys, numpy, stratus, vtk
 from vtk.util.numpy_support import numpy_to_vtk
 

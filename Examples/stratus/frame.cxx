@@ -61,7 +61,8 @@ std::string frame::describe_samples() const
     sum += count;
     met += count > 0 ? 1 : 0;
   }
-  return format("%.1f samples on average in the %s pixels that took any, at most ", met ? sum / static_cast<double>(met) : 0.0, grouped(met).c_str()) +
+  const double mean = met ? sum / static_cast<double>(met) : 0.0;
+  return format("%.1f samples on average in the %s pixels that took any, at most ", mean, grouped(met).c_str()) +
     grouped(*std::max_element(this->Samples.begin(), this->Samples.end()));
 }
 

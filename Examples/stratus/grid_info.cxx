@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stratus info` of an unstructured grid: its cells, points and arrays, what the tetrahedra that they are divided into are like, and what would be drawn.
+// `stratus info` of an unstructured grid: its cells, points and arrays, what the tetrahedra that they are divided into are like, and what
+// would be drawn.
 #include "grid.h"
 
 #include "input.h"
@@ -71,8 +72,8 @@ void print_arrays(vtkUnstructuredGrid* grid)
 }
 
 // A picture for the sake of its report, which tells what the caster found on the way.
-stratus_tetra_report draw(const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer, const stratus_camera& camera, int width,
-  int height)
+stratus_tetra_report draw(const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer,
+  const stratus_camera& camera, int width, int height)
 {
   std::vector<float> pixels(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
   stratus_image image = {};

@@ -11,7 +11,8 @@ class vtkDataArray;
 
 namespace cli {
 
-// Reads any file of an image or an unstructured grid that VTK reads, and TetGen's. Whatever VTK complains about while it reads is a failure: half a picture is none.
+// Reads any file of an image or an unstructured grid that VTK reads, and TetGen's. Whatever VTK complains about while it reads is a
+// failure: half a picture is none.
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
 // A file of TetGen's, by its name: .node, .ele, .face, .edge, .neigh.
 bool is_tetgen(const std::string& path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of floats -> the bytes of an OpenEXR file: scan lines, ZIP, lossless. Knows nothing of VTK, so that the command line uses it, too. Private to the
-// module.
+// Rows of floats -> the bytes of an OpenEXR file: scan lines, ZIP, lossless. Knows nothing of VTK, so that the command line uses it, too.
+// Private to the module.
 #ifndef vtkStratusEXRFile_h
 #define vtkStratusEXRFile_h
 

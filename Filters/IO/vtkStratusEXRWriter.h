@@ -10,8 +10,8 @@
  * - any other array of one component keeps its name ("Samples"), of more gets a number for each: "name.0", "name.1" ...;
  * - an array without a name is taken for RGBA, RGB or grey (Y) by its 4, 3 or 1 components.
  *
- * A value that no float is (0.1 in double, 16777217) is an error, nothing is rounded. VTK's first row, at the bottom, is EXR's last. The image's origin and
- * spacing are not kept.
+ * A value that no float is (0.1 in double, 16777217) is an error, nothing is rounded. VTK's first row, at the bottom, is EXR's last. The
+ * image's origin and spacing are not kept.
  *
  * The file takes its name when it is complete: where writing fails or is aborted, a file that was there stays as it was.
  *

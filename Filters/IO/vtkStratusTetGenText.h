@@ -38,7 +38,8 @@ public:
   vtkStratusTetGenInput(const vtkStratusTetGenInput&) = delete;
   void operator=(const vtkStratusTetGenInput&) = delete;
 
-  // To the next line with a number on it. The first tells whether there is one, the second fails where there is none: `done` of `all` `things` are read.
+  // To the next line with a number on it. The first tells whether there is one, the second fails where there is none: `done` of `all`
+  // `things` are read.
   bool NextLine();
   void NeedLine(const char* things, vtkIdType done, vtkIdType all);
   // Numbers left on this line.

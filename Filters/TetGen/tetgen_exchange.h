@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkStratusTetGenFilter and its program stratus-tetgen hand each other in files: a request on descriptor 0, an answer on descriptor 3. Both run on
-// one machine and come from one build, so that structs may go as they lie in memory. Private to the module.
+// What vtkStratusTetGenFilter and its program stratus-tetgen hand each other in files: a request on descriptor 0, an answer on
+// descriptor 3. Both run on one machine and come from one build, so that structs may go as they lie in memory. Private to the module.
 #ifndef tetgen_exchange_h
 #define tetgen_exchange_h
 

@@ -3,10 +3,10 @@
  * @class   vtkStratusTetGenFilter
  * @brief   fills a closed surface with tetrahedra, by TetGen
  *
- * Input: a vtkPolyData whose polygons and strips enclose a volume and do not cross each other; polygons are planar. Walls within are kept. Vertices are
- * points that the mesh shall have, lines count for nothing. Points in exactly one place are taken as one, unused ones are left out. Cell data "Marker"
- * (integer) mark facets; field data "Holes" (3 components) and "Regions" (5: a point, an attribute, the largest volume or 0) add to what AddHole() and
- * AddRegion() say: what vtkStratusTetGenReader gives of a .smesh file.
+ * Input: a vtkPolyData whose polygons and strips enclose a volume and do not cross each other; polygons are planar. Walls within are kept.
+ * Vertices are points that the mesh shall have, lines count for nothing. Points in exactly one place are taken as one, unused ones are left
+ * out. Cell data "Marker" (integer) mark facets; field data "Holes" (3 components) and "Regions" (5: a point, an attribute, the largest
+ * volume or 0) add to what AddHole() and AddRegion() say: what vtkStratusTetGenReader gives of a .smesh file.
  *
  * First output: a vtkUnstructuredGrid of linear tetrahedra, none of them inverted, with point data "vtkOriginalPointIds" (-1 for points that TetGen
  * added), and cell data "Region" (double), the attributes of regions, if there are any. Second output: the mesh's boundary and inner walls as

@@ -236,8 +236,8 @@ void vtkStratusTetGenRun(const std::string& program, double time_limit, vtkStrat
   for (int turn = 0; !child.Poll(); ++turn) {
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     if (seconds > time_limit) {
-      Fail("TetGen did not end within TimeLimit, " + std::to_string(time_limit) + " s; a higher RadiusEdgeRatio or MaximumVolume or a limit of Steiner "
-        "points let it end sooner");
+      Fail("TetGen did not end within TimeLimit, " + std::to_string(time_limit) +
+        " s; a higher RadiusEdgeRatio or MaximumVolume or a limit of Steiner points let it end sooner");
     }
     if (stop(seconds)) {
       Fail("TetGen was aborted");

@@ -41,8 +41,8 @@ private:
 // Where the program is: `asked` if it is not empty, else beside the module's library.
 VTK_STRATUS_PRIVATE std::string vtkStratusTetGenFindProgram(const std::string& asked);
 
-// Runs it to its end. `stop` is asked all the while, with the seconds that have passed; throws where the program crashes, runs over its time, is stopped,
-// or says that it failed.
+// Runs it to its end. `stop` is asked all the while, with the seconds that have passed; throws where the program crashes, runs over its
+// time, is stopped, or says that it failed.
 VTK_STRATUS_PRIVATE void vtkStratusTetGenRun(const std::string& program, double time_limit, vtkStratusTetGenSpool& request,
   vtkStratusTetGenSpool& answer, const std::function<bool(double)>& stop);
 

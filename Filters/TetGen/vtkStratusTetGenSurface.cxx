@@ -280,7 +280,8 @@ void vtkStratusTetGenReadAnswer(
   original->SetName("vtkOriginalPointIds");
   for (const vtkIdType point : left) {
     points->InsertNextPoint(&coordinates[3 * static_cast<size_t>(point)]);
-    original->InsertNextValue(point < static_cast<vtkIdType>(surface.OriginalPoints.size()) ? surface.OriginalPoints[static_cast<size_t>(point)] : -1);
+    const bool known = point < static_cast<vtkIdType>(surface.OriginalPoints.size());
+    original->InsertNextValue(known ? surface.OriginalPoints[static_cast<size_t>(point)] : -1);
   }
   vtkNew<vtkCellArray> cells, triangles;
   cells->SetData(4, tetrahedra);

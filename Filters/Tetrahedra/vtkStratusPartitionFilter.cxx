@@ -106,7 +106,8 @@ void CopyCells(vtkCellData* from, const std::vector<vtkIdType>& origins, vtkCell
 }
 
 // A cell with a blanked corner is blanked as a whole: its pieces say so themselves, as not all of them touch the corner.
-void HidePieces(vtkUnstructuredGrid* input, const vtkStratusTetrahedra& tetrahedra, const std::vector<vtkIdType>& origins, vtkUnstructuredGrid* output)
+void HidePieces(
+  vtkUnstructuredGrid* input, const vtkStratusTetrahedra& tetrahedra, const std::vector<vtkIdType>& origins, vtkUnstructuredGrid* output)
 {
   vtkUnsignedCharArray* points = input->GetPointGhostArray();
   if (!points || points->GetNumberOfTuples() < tetrahedra.GridPoints) {

@@ -5,8 +5,9 @@
  *
  * Plugs into vtkProjectedTetrahedraMapper, or any other that takes a vtkVisibilitySort. Input: a vtkUnstructuredGrid of linear tetrahedra.
  * Which of two neighbours is in front follows from their face, in exact arithmetic where double does not tell; which of two cells on both
- * sides of a gap, from where their border faces cover one another in the view. If the input comes from vtkStratusPartitionFilter and still is as that left it, its leaves are
- * sorted apart and in parallel. Neighbours are found when the input has changed; an order is kept while the eye stays.
+ * sides of a gap, from where their border faces cover one another in the view. If the input comes from vtkStratusPartitionFilter and still
+ * is as that left it, its leaves are sorted apart and in parallel. Neighbours are found when the input has changed; an order is kept while
+ * the eye stays.
  *
  * MaxCellsReturned, Direction and ModelTransform are honoured. What cannot be sorted gives an error and no cells.
  *

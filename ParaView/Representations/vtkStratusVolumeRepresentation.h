@@ -3,8 +3,8 @@
  * @class   vtkStratusVolumeRepresentation
  * @brief   ParaView's volume rendering of uniform grids, by vtkStratusVolumeMapper
  *
- * Everything of ParaView's own representation "Volume" that the mapper can do; what it can't it refuses by an error in ParaView's messages. The setters
- * below are vtkStratusVolumeMapper's, which tells what they mean.
+ * Everything of ParaView's own representation "Volume" that the mapper can do; what it can't it refuses by an error in ParaView's messages.
+ * The setters below are vtkStratusVolumeMapper's, which tells what they mean.
  *
  * @sa vtkStratusVolumeMapper
  */

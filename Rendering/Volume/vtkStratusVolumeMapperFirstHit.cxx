@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light that vtkStratusVolumeMapper's pictures are in; what only first hits ask of it: bounds, depth for the window; and the tree that an image may
-// carry.
+// The light that vtkStratusVolumeMapper's pictures are in; what only first hits ask of it: bounds, depth for the window; and the tree that
+// an image may carry.
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkStratusTreeArrays.h"

@@ -27,8 +27,9 @@ const char* const help = R"(stratus-bench distance [options]
   --chart FILE.png    build time against the share of wrong voxels, of the largest size
 
 build_ms: from the set of voxels to the field, median of 5 (floodings and ITK: 3, and 1 beyond 64 voxels). array_ms: the same, and all distances
-as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines that are busy. wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are
-wrong, but in no other error. ITK is judged by what it measures from: the contour.
+as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines that are busy.
+wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are wrong, but in no other error.
+ITK is judged by what it measures from: the contour.
 )";
 
 struct options {
@@ -333,8 +334,9 @@ private:
     rows_.push_back({ scene, name, "unfilled_percent", "%", j.unfilled_percent });
     rows_.push_back({ scene, name, "max_error", "voxel", j.max_error });
     rows_.push_back({ scene, name, "rms_error", "voxel", j.rms_error });
-    std::fprintf(stderr, "  %-22s build %8.2f ms, with floats %8.2f ms, processor %8.2f ms, wrong %8.4f %%, unfilled %8.4f %%, max %7.3f, rms %9.6f\n", name.c_str(),
-      build_ms, array_ms, cpu_ms, j.wrong_percent, j.unfilled_percent, j.max_error, j.rms_error);
+    std::fprintf(stderr, "  %-22s build %8.2f ms, with floats %8.2f ms, processor %8.2f ms, ", name.c_str(), build_ms, array_ms, cpu_ms);
+    std::fprintf(stderr, "wrong %8.4f %%, unfilled %8.4f %%, max %7.3f, rms %9.6f\n", j.wrong_percent, j.unfilled_percent, j.max_error,
+      j.rms_error);
   }
 
   const options& o_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables 1 to 3 of Li & Huang 2024 on our 9454 boxes: what splitting on demand saves, what C does, and what a level costs. (Its table 4, frames a second, is
-// in the rows of actors-9454.) The paper's tree throughout: an object in every child that its sphere touches, split to the last level or C.
+// Tables 1 to 3 of Li & Huang 2024 on our 9454 boxes: what splitting on demand saves, what C does, and what a level costs. (Its table 4,
+// frames a second, is in the rows of actors-9454.) The paper's tree throughout: an object in every child that its sphere touches, split to
+// the last level or C.
 #include "bench.h"
 #include "octree_bench.h"
 

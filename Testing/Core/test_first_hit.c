@@ -266,8 +266,9 @@ static void rays_that_are_none_are_refused(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(every_tree_hits_what_the_walk_hits), cmocka_unit_test(long_rows_and_both_entry_sizes_hit_right),
-    cmocka_unit_test(bits_do_not_depend_on_threads), cmocka_unit_test(far_rays_large_coordinates_and_small_voxels_hit),
-    cmocka_unit_test(no_voxel_no_hit), cmocka_unit_test(rays_that_are_none_are_refused) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(every_tree_hits_what_the_walk_hits),
+    cmocka_unit_test(long_rows_and_both_entry_sizes_hit_right), cmocka_unit_test(bits_do_not_depend_on_threads),
+    cmocka_unit_test(far_rays_large_coordinates_and_small_voxels_hit), cmocka_unit_test(no_voxel_no_hit),
+    cmocka_unit_test(rays_that_are_none_are_refused) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -122,7 +122,8 @@ static uint8_t* make_mask(const stratus_volume* volume, uint32_t seed)
   uint8_t* mask = calloc((size_t)(n[0] * n[1] * n[2]), 1);
   assert_non_null(mask);
   for (int64_t at = 0; at < n[0] * n[1] * n[2]; ++at) {
-    const double x = (double)(at % n[0]) - 0.5 * (double)n[0], y = (double)(at / n[0] % n[1]) - 0.5 * (double)n[1], z = (double)(at / n[0] / n[1]) - 7.0;
+    const double x = (double)(at % n[0]) - 0.5 * (double)n[0], y = (double)(at / n[0] % n[1]) - 0.5 * (double)n[1];
+    const double z = (double)(at / n[0] / n[1]) - 7.0;
     mask[at] = (uint8_t)(x * x + y * y + z * z < 120.0 + seed % 7 ? 1 + at % 255 : 0); /* any number but 0 shows */
   }
   return mask;

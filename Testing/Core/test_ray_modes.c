@@ -394,7 +394,8 @@ static void what_no_mode_can_draw_is_refused(void** state)
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
   const stratus_ray_cast_options plain = c.options;
   for (int wrong = 0; wrong < 7; ++wrong) {
-    static const char* const words[] = { "0 contour", "17 contour", "contour 1 has value nan", "nearest", "average range", "mode 99", "average range" };
+    static const char* const words[] = { "0 contour", "17 contour", "contour 1 has value nan", "nearest", "average range", "mode 99",
+      "average range" };
     c.options = plain;
     ask_for(&c, STRATUS_MODE_ISOSURFACE);
     c.options.contour_count = wrong == 0 ? 0 : wrong == 1 ? 17 : 4;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: what the representation draws is what `stratus render` draws, and filters and reader give what they should.
-pvbatch test_plugin.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder. Rounding to bytes alone gives 58.9 dB
-where all levels come alike."""
+pvbatch test_plugin.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder. Rounding to bytes alone
+gives 58.9 dB where all levels come alike."""
 import os
 import re
 import subprocess
@@ -152,7 +152,8 @@ simple.LoadPlugin(plugin, ns=vars(simple))
 simple._DisableFirstRenderCameraReset()
 cloud_path = os.path.join(folder, "cloud.vti")
 most = write_cloud(cloud_path)
-cloud, shown, view, png, _ = draw(cloud_path, "density", [(0.05, 0), (most, 0.4)], [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)], 1.0, 55)
+colors = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)]
+cloud, shown, view, png, _ = draw(cloud_path, "density", [(0.05, 0), (most, 0.4)], colors, 1.0, 55)
 filters(cloud, shown, view, png)
 tetgen_files()
 isabel = os.path.realpath("../shared/data/isabel_02.vti")

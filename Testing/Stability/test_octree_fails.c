@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where an octree of objects may fail: no objects, one, all at one place, boxes of no size, infinite or NaN, eyes within boxes, tiny and huge scenes, flat
- * frusta, 21 levels, cells' borders, refused memory, arguments that are none. Each case has its outcome. */
+ * Where an octree of objects may fail: no objects, one, all at one place, boxes of no size, infinite or NaN, eyes within boxes, tiny and
+ * huge scenes, flat frusta, 21 levels, cells' borders, refused memory, arguments that are none. Each case has its outcome. */
 #include "faulty_allocator.h"
 #include "octree_case.h"
 

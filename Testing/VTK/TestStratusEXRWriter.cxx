@@ -98,7 +98,8 @@ void CheckRoundTrip(int width, int height)
   const auto rgba = AddFloats(image, "RGBA", 4);
   const auto depth = AddFloats(image, "Depth", 1);
   depth->SetValue(0, std::numeric_limits<float>::infinity());
-  const auto samples = AddArray<vtkTypeUInt32Array>(image, "Samples", 1, [](std::mt19937& random) { return static_cast<vtkTypeUInt32>(random() >> 8); });
+  const auto samples = AddArray<vtkTypeUInt32Array>(
+    image, "Samples", 1, [](std::mt19937& random) { return static_cast<vtkTypeUInt32>(random() >> 8); });
   const auto wide = AddArray<vtkTypeUInt64Array>(image, "wide", 1, [](std::mt19937& random) { return vtkTypeUInt64(random() >> 8) << 40; });
   const auto bytes = AddArray<vtkUnsignedCharArray>(
     image, "a name of more than thirty-one characters", 2, [](std::mt19937& random) { return static_cast<unsigned char>(random()); });
@@ -201,7 +202,8 @@ void CheckRefused(vtkStratusEXRWriter* writer, const char* words)
   const unsigned long tag = writer->AddObserver(vtkCommand::ErrorEvent, errors);
   writer->Write();
   writer->RemoveObserver(tag);
-  CHECK(errors->Count == 1 && errors->Text.find(words) != std::string::npos, "%d errors, wanted '%s': %s", errors->Count, words, errors->Text.c_str());
+  CHECK(errors->Count == 1 && errors->Text.find(words) != std::string::npos, "%d errors, wanted '%s': %s", errors->Count, words,
+    errors->Text.c_str());
   CHECK(writer->GetErrorCode() != 0 || !writer->GetInput(), "%s: an error code", words);
   CHECK(ReadText(path) == "old", "%s: the old file is gone", words);
   CHECK(!std::filesystem::exists(path + ".part"), "%s: half a file was left", words);

@@ -108,7 +108,8 @@ void Cuts()
       Fills(output, n, rule ? "paper" : "median");
       Carries(grid, output);
       // One node or other of so few cells has no plane that leaves its sides alike enough.
-      CHECK(filter->GetNumberOfLeaves() <= 1 << depth && filter->GetNumberOfLeaves() > (1 << depth) - 2, "%d leaves at depth %d", filter->GetNumberOfLeaves(), depth);
+      const int leaves = filter->GetNumberOfLeaves();
+      CHECK(leaves <= 1 << depth && leaves > (1 << depth) - 2, "%d leaves at depth %d", leaves, depth);
       CHECK(rule == 0 || depth == 0 || output->GetNumberOfCells() > filter->GetNumberOfTetrahedra(), "the paper's planes cut nothing");
     }
   }

@@ -40,8 +40,8 @@ void Good(Filter* filter, double volume, const char* what)
   const std::string error = Run(filter);
   CHECK(error.empty(), "%s: %s", what, error.c_str());
   const double found = Volume(filter->GetOutput());
-  CHECK(std::abs(found - volume) < 1e-12 * volume * static_cast<double>(filter->GetOutput()->GetNumberOfCells()), "%s: the volume is %.17g, not %.17g",
-    what, found, volume);
+  const double cells = static_cast<double>(filter->GetOutput()->GetNumberOfCells());
+  CHECK(std::abs(found - volume) < 1e-12 * volume * cells, "%s: the volume is %.17g, not %.17g", what, found, volume);
 }
 
 void Refused(Filter* filter, const char* word)
@@ -105,7 +105,8 @@ void Boxes()
   const vtkIdType many = filter->GetOutput()->GetNumberOfPoints();
   filter->SetMaximumSteinerPoints(5);
   Good(filter, 1.0, "few points");
-  CHECK(filter->GetOutput()->GetNumberOfPoints() <= 8 + 5 && many > 100, "%lld points", static_cast<long long>(filter->GetOutput()->GetNumberOfPoints()));
+  const vtkIdType few = filter->GetOutput()->GetNumberOfPoints();
+  CHECK(few <= 8 + 5 && many > 100, "%lld points", static_cast<long long>(few));
 }
 
 // In a slab, whose corners alone make flat tetrahedra. It has no small angles, beside which TetGen promises nothing.

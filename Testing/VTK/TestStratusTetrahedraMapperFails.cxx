@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where pictures of tetrahedra may fail, in VTK's windows: rings, gaps, interleaved parts, folds, slivers, points that are there twice or for nothing,
-// seams, views along faces, eyes on faces and points, places far away and tiny, values that are none, next to nothing to draw. Each case gives the
-// reference's picture, by either method, or a clear error.
+// Where pictures of tetrahedra may fail, in VTK's windows: rings, gaps, interleaved parts, folds, slivers, points that are there twice or
+// for nothing, seams, views along faces, eyes on faces and points, places far away and tiny, values that are none, next to nothing to draw.
+// Each case gives the reference's picture, by either method, or a clear error.
 #include "tetrahedra_scene.h"
 
 #include "vtkDoubleArray.h"
@@ -22,7 +22,10 @@ struct Case : GridScene {
     this->Tetrahedra->SetInputData(this->Parts);
   }
 
-  vtkIdType AddPoint(const Vector& p) { return this->AddPoint(p, 0.5 + 0.25 * std::sin(1.9 * p[0] + 0.7 * p[1]) + 0.25 * std::cos(1.3 * p[2] - 0.9 * p[1])); }
+  vtkIdType AddPoint(const Vector& p)
+  {
+    return this->AddPoint(p, 0.5 + 0.25 * std::sin(1.9 * p[0] + 0.7 * p[1]) + 0.25 * std::cos(1.3 * p[2] - 0.9 * p[1]));
+  }
   vtkIdType AddPoint(const Vector& p, double value)
   {
     this->Values->InsertNextValue(value);
@@ -140,14 +143,16 @@ void PartsThatInterleave()
   for (int cube = 0; cube < 27; ++cube) {
     const Vector at = { double(cube % 3), double(cube / 3 % 3), double(cube / 9) };
     const double shrink = cube == 13 ? 0.5 : 1.0; // the middle one
-    nested.AddCubes(1, [&](const Vector& p) { return Vector{ at[0] + 0.25 * (1 - shrink) * 2 + shrink * p[0], at[1] + (1 - shrink) / 2 + shrink * p[1],
-                                                at[2] + (1 - shrink) / 2 + shrink * p[2] }; });
+    const double edge = (1 - shrink) / 2;
+    nested.AddCubes(1, [&](const Vector& p) {
+      return Vector{ at[0] + edge + shrink * p[0], at[1] + edge + shrink * p[1], at[2] + edge + shrink * p[2] };
+    });
   }
   nested.Agrees("a cube in a hollow", Close, 2);
 }
 
-// One point in a mesh of 3072 cells pulled through what is behind it: .05 % of them and more are inside out. What overlaps is drawn twice; order does not
-// count in one colour.
+// One point in a mesh of 3072 cells pulled through what is behind it: .05 % of them and more are inside out. What overlaps is drawn twice;
+// order does not count in one colour.
 void InvertedCells()
 {
   Case scene;

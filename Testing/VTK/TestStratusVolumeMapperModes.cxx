@@ -234,7 +234,8 @@ void FirstHits()
   scene.Mapper->SetCroppingRegionPlanes(planes);
   scene.Mapper->SetCroppingRegionFlagsToSubVolume();
   const double part = scene.Light();
-  CHECK(part > 0.1 * whole && part < 0.9 * whole && scene.Errors->Count == 0, "cropped first hits: %g of %g, '%s'", part, whole, scene.Errors->Text.c_str());
+  CHECK(part > 0.1 * whole && part < 0.9 * whole && scene.Errors->Count == 0, "cropped first hits: %g of %g, '%s'", part, whole,
+    scene.Errors->Text.c_str());
   scene.Mapper->SetCroppingRegionFlagsToFence();
   CHECK(scene.Picture().empty() && scene.Errors->Count == 1 && scene.Errors->Has("crop regions"), "a fence: '%s'", scene.Errors->Text.c_str());
   scene.Mapper->CroppingOff();

@@ -59,7 +59,8 @@ for name in "ScatteringAnisotropy", "GlobalIlluminationReach", "VolumetricScatte
 for what, _, tests in table:
     for test in tests.split(";"):
         name, _, cases = test.strip().strip("`").replace("`", "").partition(":")
-        path = "Testing/VTK/" + (name + ".py" if name.startswith("test_") else f"TestStratusVolumeMapper{name.replace('TestStratusVolumeMapper', '')}.cxx")
+        short = name.replace("TestStratusVolumeMapper", "")
+        path = "Testing/VTK/" + (name + ".py" if name.startswith("test_") else f"TestStratusVolumeMapper{short}.cxx")
         check(os.path.exists(path), f"{what}: there is a test {path}")
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene of one grid for the tests of vtkStratusTetrahedraMapper, and the picture that it is judged by, written apart from the core: each ray against
-// every tetrahedron in double precision, what it meets sorted by where it enters, each stretch in many midpoint steps.
+// A scene of one grid for the tests of vtkStratusTetrahedraMapper, and the picture that it is judged by, written apart from the core: each
+// ray against every tetrahedron in double precision, what it meets sorted by where it enters, each stretch in many midpoint steps.
 #ifndef tetrahedra_scene_h
 #define tetrahedra_scene_h
 
