@@ -889,7 +889,8 @@ typedef struct stratus_visibility_result {
   int64_t forced;           /* cells that came by distance alone, as cycles were too many to follow */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
-  int reused;               /* 1: nothing but the camera's turn, zoom or (parallel) shift has changed: the order is the last one */
+  int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
+                             * has not moved (parallel: nor the direction turned). */
   size_t bytes;             /* the order's own */
   double build_ms, signs_ms, peel_ms; /* of its making; of this call */
 } stratus_visibility_result;

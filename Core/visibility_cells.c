@@ -98,10 +98,12 @@ static void fill_cells(stratus_visibility_order* order, const int8_t* side, cons
     const uint32_t cell = stratus_order_cell(order, (uint32_t)place);
     stratus_ordered_cell* ordered = order->ordered + place;
     ordered->side = side[cell];
+    ordered->faces = ordered->state = 0;
     for (int f = 0; f < 4; f++) {
       const int32_t neighbour = order->adjacency->neighbours[4 * (int64_t)cell + f];
       const bool other = neighbour < 0 || (leaf && leaf[neighbour] != leaf[cell]);
       ordered->neighbours[f] = other ? -1 : places ? (int32_t)places[neighbour] : neighbour;
+      ordered->faces |= (uint8_t)(!other << f);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #define CORNERS_MAX 6    /* of two triangles' intersection */
 #define LEAST_SHARE 1e-6 /* of a face that another covers: less is rounding's, of faces that only touch */
+#define DEPTH_SLACK 1e-12 /* beyond roundings of depths near 0: what is seen reaches to 1 */
 #define LEAST_DEPTH 1e-9 /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
 
 void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
@@ -114,8 +115,8 @@ static void find_depths(const stratus_gates* gates, stratus_gate* gate, const st
     radius = fmax(radius, (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y) + (p->z - z) * (p->z - z));
   }
   low = gates->parallel ? low : sqrt(x * x + y * y + z * z) - sqrt(radius);
-  gate->low = (float)(low - 1e-6 * fabs(low));
-  gate->high = (float)(high + 1e-6 * fabs(high));
+  gate->low = (float)(low - 1e-6 * fabs(low) - DEPTH_SLACK);
+  gate->high = (float)(high + 1e-6 * fabs(high) + DEPTH_SLACK);
 }
 
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf)

@@ -152,14 +152,16 @@ cleanup:
   return status;
 }
 
-void stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view)
+bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view)
 {
   /* The far children that are still to come: fewer than there are leaves. leaf_output serves as the stack. */
   int64_t* stack = order->leaf_output;
   int32_t found = 0, pending = 0;
+  bool changed = false;
   for (int32_t n = 0; n >= 0;) {
     const stratus_partition_node* node = order->nodes + n;
     if (node->axis < 0) {
+      changed = changed || order->leaf_order[found] != node->below;
       order->leaf_order[found++] = node->below;
       n = pending > 0 ? (int32_t)stack[--pending] : -1;
       continue;
@@ -175,4 +177,5 @@ void stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_vi
     order->leaf_output[leaf] = output;
     output += order->leaf_begin[leaf + 1] - order->leaf_begin[leaf];
   }
+  return changed;
 }

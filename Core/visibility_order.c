@@ -236,6 +236,7 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
     *result = order->result;
     return STRATUS_OK;
   }
+  const bool sorted = order->sorted && order->peeling == peeling;
   order->sorted = false;
   order->view = view;
   order->peeling = peeling;
@@ -254,8 +255,12 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   }
   const double signs_end = stratus_now_ms();
   TRY(stratus_progress(context, "visibility order", 0.5));
-  stratus_order_sort_leaves(order, &view);
-  peel_leaves(order, peeling, &found);
+  if (stratus_order_sort_leaves(order, &view) || !sorted || order->relations_changed || order->gap_begin[order->leaf_count] > 0) {
+    peel_leaves(order, peeling, &found);
+  } else { /* what hides what is as it was; across gaps it might not be */
+    found.reused = 1;
+    found.layers = order->result.layers;
+  }
   found.signs_ms = signs_end - begin;
   found.peel_ms = stratus_now_ms() - signs_end;
   order->result = found;

@@ -40,7 +40,7 @@ typedef struct stratus_ordered_cell {
   uint8_t state;         /* bit f: its neighbour behind face f comes after it, bit 4 + f: before it */
   uint8_t waiting;       /* neighbours that come before it and have not come yet; and STRATUS_GATE_IN, _OUT */
   int8_t side;           /* of faces on which it lies: 1, -1, 0 for flat ones that fit nowhere */
-  uint8_t reserved;
+  uint8_t faces;         /* bit f: it has a neighbour behind face f */
 } stratus_ordered_cell;
 
 struct stratus_visibility_order {
@@ -72,6 +72,7 @@ struct stratus_visibility_order {
   uint32_t* seen_at; /* of each point; NULL: its number */
   double* seen;     /* 3 a point: stratus_view_signs() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
+  bool relations_changed; /* by the last signs: some cell's state is not what it was */
   struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
   uint32_t* heads;  /* of buckets: as many as the largest leaf has, for each thread that peels */
   int64_t buckets;
@@ -85,7 +86,8 @@ struct stratus_visibility_order {
 };
 
 #define STRATUS_BUCKETS_MAX 65536
-#define STRATUS_CELLS_PER_BUCKET 32
+/* Coarse: within a bucket the cell that became ready last comes first, one of those just looked at, and its neighbours are still in the cache. */
+#define STRATUS_CELLS_PER_BUCKET 8192
 #define STRATUS_GATE_IN 0x80u  /* of a cell that has ways in from gaps */
 #define STRATUS_GATE_OUT 0x40u /* of one that has ways out into gaps */
 
@@ -111,11 +113,13 @@ static inline double* stratus_order_seen(const stratus_visibility_order* order, 
   return order->seen + 3 * (order->seen_at ? (int64_t)order->seen_at[point] : point);
 }
 
-/* before << 4 | after, and all that come before still to come. */
-static inline void stratus_order_take_state(stratus_ordered_cell* ordered, unsigned state)
+/* before << 4 | after, and all that come before still to come. Returns whether the state was another. */
+static inline bool stratus_order_take_state(stratus_ordered_cell* ordered, unsigned state)
 {
+  const bool changed = ordered->state != state;
   ordered->state = (uint8_t)state;
   ordered->waiting = (uint8_t)((state >> 4 & 1) + (state >> 5 & 1) + (state >> 6 & 1) + (state >> 7 & 1));
+  return changed;
 }
 
 static inline unsigned stratus_order_waits_for(const stratus_visibility_order* order, uint32_t cell)
@@ -137,8 +141,8 @@ stratus_status stratus_order_take_cells(stratus_visibility_order* order, const i
 
 /* ---- visibility_leaves.c: takes a tree, NULL: none; checks it against the cells. */
 stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves);
-/* leaf_order and leaf_output of a view. */
-void stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view);
+/* leaf_order and leaf_output of a view. Returns whether leaves come in another order than in the last one. */
+bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view);
 
 /* ---- visibility_gaps.c: gap_faces. After leaves. */
 stratus_status stratus_order_find_gaps(stratus_visibility_order* order);
@@ -196,7 +200,7 @@ void stratus_gate_bins(const stratus_gate_grid* grid, const float box[4], int bi
 /* All ways out. */
 void stratus_gates_fill_bins(stratus_gates* gates);
 
-/* ---- visibility_signs.c: state, waiting and key of all cells. Returns the signs that needed exact arithmetic. */
+/* ---- visibility_signs.c: state, waiting and key of all cells, and relations_changed. Returns the signs that needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
 /* `seen` alone. */
 void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view);

@@ -5,6 +5,13 @@
 
 #include "kernels/face_signs.h"
 
+#if defined(__GNUC__)
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE inline
+#endif
+
+#define LANES 8
 #define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */
 
 /* The power of two that brings all points, seen from `from`, to at most 1. */
@@ -49,6 +56,11 @@ void stratus_order_see_points(stratus_visibility_order* order, const stratus_vie
   }
 }
 
+static face_point seen_point(const stratus_visibility_order* order, int64_t point)
+{
+  return face_point_at(stratus_order_seen(order, point));
+}
+
 int stratus_order_exact_sign(const stratus_visibility_order* order, const stratus_view* view, uint32_t cell, int f)
 {
   const int32_t* v = stratus_order_vertices(order, cell);
@@ -59,56 +71,124 @@ int stratus_order_exact_sign(const stratus_visibility_order* order, const stratu
   return parity * (view->parallel ? stratus_orientation_along(a, b, c, view->direction) : -stratus_orientation(a, b, c, view->eye));
 }
 
+/* ---- a few cells at once, one clone for each instruction set: nothing is contracted, so all give the same bits */
+
+typedef struct cell_lanes {
+  double x[4][LANES], y[4][LANES], z[4][LANES]; /* of the vertices, as seen */
+  int64_t signs[LANES];                         /* bit f: face f's determinant is positive, bit 4 + f: negative; neither: rounding may tell */
+  float key[LANES];
+} cell_lanes;
+
+static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
+{
+  for (int l = 0; l < LANES; l++) {
+    const face_point p0 = { lanes->x[0][l], lanes->y[0][l], lanes->z[0][l] }, p1 = { lanes->x[1][l], lanes->y[1][l], lanes->z[1][l] },
+                     p2 = { lanes->x[2][l], lanes->y[2][l], lanes->z[2][l] }, p3 = { lanes->x[3][l], lanes->y[3][l], lanes->z[3][l] };
+    double det[4];
+    int64_t signs = 0;
+    face_determinants(p0, p1, p2, p3, parallel, det);
+    for (int f = 0; f < 4; f++) {
+      signs |= (det[f] > FACE_SIGNS_ERROR_BOUND ? (int64_t)1 << f : 0) | (det[f] < -FACE_SIGNS_ERROR_BOUND ? (int64_t)16 << f : 0);
+    }
+    lanes->signs[l] = signs;
+    lanes->key[l] = face_signs_key(p0, p1, p2, p3, parallel);
+  }
+}
+
+#define CLONE(name, attribute)                                                                                                             \
+  attribute static void find_lanes_##name(cell_lanes* lanes, int parallel)                                                                 \
+  {                                                                                                                                        \
+    if (parallel) {                                                                                                                        \
+      find_lanes(lanes, 1);                                                                                                                \
+    } else {                                                                                                                               \
+      find_lanes(lanes, 0);                                                                                                                \
+    }                                                                                                                                      \
+  }
+CLONE(portable, )
+#if STRATUS_HAVE_X86_ISAS
+CLONE(avx2, __attribute__((target("avx2"))))
+CLONE(avx512, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"))))
+#endif
+
+typedef void find_lanes_function(cell_lanes* lanes, int parallel);
+
+static find_lanes_function* choose_clone(const stratus_context* context)
+{
+#if STRATUS_HAVE_X86_ISAS
+  static find_lanes_function* const clones[3] = { find_lanes_portable, find_lanes_avx2, find_lanes_avx512 };
+  return clones[context->isa];
+#else
+  (void)context;
+  return find_lanes_portable;
+#endif
+}
+
+/* Where rounding may tell, the exact sign does; both owners of a face agree by it. */
+static int64_t take_signs(stratus_visibility_order* order, const stratus_view* view, int64_t cell, unsigned signs, bool* changed)
+{
+  stratus_ordered_cell* ordered = order->ordered + cell;
+  unsigned positive = signs & ordered->faces, negative = signs >> 4 & ordered->faces, open = ordered->faces & ~(positive | negative);
+  int64_t exact = 0;
+  for (int f = 0; open && ordered->side != 0 && f < 4; f++) {
+    if (open >> f & 1) {
+      const int sign = stratus_order_exact_sign(order, view, (uint32_t)cell, f);
+      positive |= (unsigned)(sign > 0) << f;
+      negative |= (unsigned)(sign < 0) << f;
+      exact++;
+    }
+  }
+  /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
+  const unsigned state = ordered->side > 0 ? positive << 4 | negative : ordered->side < 0 ? negative << 4 | positive : 0;
+  *changed = stratus_order_take_state(ordered, state) || *changed;
+  return exact;
+}
+
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view)
 {
-  stratus_order_see_points(order, view);
+  find_lanes_function* const find = choose_clone(order->context);
   int64_t exact = 0;
-#pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(+ : exact)
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    if (order->listed && cell + AHEAD < order->cell_count) {
-      STRATUS_FETCH(order->vertices + 4 * (int64_t)order->listed[cell + AHEAD]);
-    }
-    const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
-    stratus_ordered_cell* ordered = order->ordered + cell;
-    const int32_t* neighbours = ordered->neighbours;
-    const double *p0 = stratus_order_seen(order, v[0]), *p1 = stratus_order_seen(order, v[1]), *p2 = stratus_order_seen(order, v[2]),
-                 *p3 = stratus_order_seen(order, v[3]);
-    double det[4];
-    unsigned after = 0, before = 0;
-    face_determinants(p0, p1, p2, p3, view->parallel, det);
-    for (int f = 0; f < 4; f++) {
-      int sign = face_sign(det[f]);
-      if (neighbours[f] < 0) {
-        continue;
+  bool changed = false;
+  stratus_order_see_points(order, view);
+#pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(+ : exact) reduction(|| : changed)
+  for (int64_t begin = 0; begin < order->cell_count; begin += LANES) {
+    const int count = order->cell_count - begin < LANES ? (int)(order->cell_count - begin) : LANES;
+    cell_lanes lanes;
+    for (int l = 0; l < LANES; l++) {
+      const int64_t cell = begin + (l < count ? l : 0); /* the first stands in for those that are missing */
+      if (order->listed && cell + AHEAD < order->cell_count) {
+        STRATUS_FETCH(order->vertices + 4 * (int64_t)order->listed[cell + AHEAD]);
       }
-      if (sign == 0 && ordered->side != 0) {
-        sign = stratus_order_exact_sign(order, view, (uint32_t)cell, f);
-        exact++;
+      const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
+      for (int k = 0; k < 4; k++) {
+        const double* p = stratus_order_seen(order, v[k]);
+        lanes.x[k][l] = p[0];
+        lanes.y[k][l] = p[1];
+        lanes.z[k][l] = p[2];
       }
-      /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
-      sign *= ordered->side;
-      before |= (unsigned)(sign > 0) << f;
-      after |= (unsigned)(sign < 0) << f;
     }
-    stratus_order_take_state(ordered, before << 4 | after);
-    ordered->key = face_signs_key(p0, p1, p2, p3, view->parallel);
+    find(&lanes, view->parallel);
+    for (int l = 0; l < count; l++) {
+      exact += take_signs(order, view, begin + l, (unsigned)lanes.signs[l], &changed);
+      order->ordered[begin + l].key = lanes.key[l];
+    }
   }
+  order->relations_changed = changed;
   return exact;
 }
 
 float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* v = stratus_order_vertices(order, cell);
-  return face_signs_key(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
-    stratus_order_seen(order, v[3]), order->view.parallel);
+  return face_signs_key(
+    seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel);
 }
 
 int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
 {
   const int32_t* v = stratus_order_vertices(order, face / 4);
   double det[4];
-  face_determinants(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
-    stratus_order_seen(order, v[3]), order->view.parallel, det);
+  face_determinants(
+    seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel, det);
   return -face_sign(det[face % 4]) * order->ordered[face / 4].side;
 }
 
@@ -116,8 +196,8 @@ double stratus_order_face_size(const stratus_visibility_order* order, uint32_t c
 {
   const int32_t* v = stratus_order_vertices(order, cell);
   double det[4], size = 1.0;
-  face_determinants(stratus_order_seen(order, v[0]), stratus_order_seen(order, v[1]), stratus_order_seen(order, v[2]),
-    stratus_order_seen(order, v[3]), order->view.parallel, det);
+  face_determinants(
+    seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel, det);
   for (int i = 0; i < 4 && !order->view.parallel; i++) {
     const double* p = stratus_order_seen(order, v[i]);
     size *= i == face ? 1.0 : sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);

@@ -42,10 +42,9 @@ static stratus_status send_cells(const stratus_visibility_order* order, stratus_
   for (int64_t i = 0; i < count; i++) {
     const int32_t* v = stratus_order_vertices(order, (uint32_t)(begin + i));
     const stratus_ordered_cell* ordered = order->ordered + begin + i;
-    faces[i] = (uint8_t)((ordered->side + 1) << 4);
+    faces[i] = (uint8_t)((ordered->side + 1) << 4 | ordered->faces);
     for (int f = 0; f < 4; f++) {
       corners[4 * i + f] = order->seen_at ? (int32_t)order->seen_at[v[f]] : v[f];
-      faces[i] |= (uint8_t)((ordered->neighbours[f] >= 0) << f);
     }
   }
   const size_t cells = (size_t)count, first = (size_t)begin;
@@ -103,7 +102,8 @@ static stratus_status run_signs(const stratus_visibility_order* order, const str
 }
 
 /* What the device found of a cell: its key, and its state with what nobody knows in bits 8 to 11. Returns how many of those there were. */
-static int64_t take_result(stratus_visibility_order* order, const stratus_view* view, uint32_t cell, const uint32_t result[2])
+static int64_t take_result(
+  stratus_visibility_order* order, const stratus_view* view, uint32_t cell, const uint32_t result[2], bool* changed)
 {
   stratus_ordered_cell* ordered = order->ordered + cell;
   unsigned state = result[1] & 255u;
@@ -115,7 +115,7 @@ static int64_t take_result(stratus_visibility_order* order, const stratus_view* 
       exact++;
     }
   }
-  stratus_order_take_state(ordered, state);
+  *changed = stratus_order_take_state(ordered, state) || *changed;
   memcpy(&ordered->key, result, sizeof ordered->key);
   return exact;
 }
@@ -126,6 +126,7 @@ stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* orde
   stratus_status status = STRATUS_OK;
   void* memory = NULL;
   int64_t open = 0;
+  bool changed = false;
   if (!order->device_signs) {
     TRY(make_signs(order));
   }
@@ -137,11 +138,12 @@ stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* orde
     const int64_t left = order->cell_count - begin, count = left < PART ? left : PART;
     const size_t cell = 2 * sizeof(uint32_t);
     TRY_CLEANUP(stratus_device_read(context, order->device_signs->results, (size_t)begin * cell, (size_t)count * cell, memory));
-#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : open)
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : open) reduction(|| : changed)
     for (int64_t i = 0; i < count; i++) {
-      open += take_result(order, view, (uint32_t)(begin + i), results + 2 * i);
+      open += take_result(order, view, (uint32_t)(begin + i), results + 2 * i, &changed);
     }
   }
+  order->relations_changed = changed;
   *exact = open;
 
 cleanup:

@@ -13,6 +13,17 @@
 
 #include <cmocka.h>
 
+/* The host. */
+static inline stratus_context* mesh_context(int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = "host";
+  options.threads = threads;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  return context;
+}
+
 /* A mesh that owns its arrays. */
 typedef struct mesh_case {
   double* points;

@@ -6,16 +6,6 @@
 #include "mesh.h"
 #include "mesh_case.h"
 
-static inline stratus_context* make_context(int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  return context;
-}
-
 static inline double volume_of(const double* points, const int32_t* v)
 {
   double m[3][3];

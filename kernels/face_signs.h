@@ -17,13 +17,22 @@
  * 2^-53. Parallel: projected coordinates up to twice as large, with four roundings each: under 250. */
 #define FACE_SIGNS_ERROR_BOUND 0x1p-44
 
-/* Of the triples (1 3 2), (0 2 3), (0 3 1), (0 1 2), one a face, as in stratus_face_points(). */
-static inline void face_determinants(FACE_SIGNS_GLOBAL const double* p0, FACE_SIGNS_GLOBAL const double* p1,
-  FACE_SIGNS_GLOBAL const double* p2, FACE_SIGNS_GLOBAL const double* p3, int parallel, double det[4])
+typedef struct face_point {
+  double x, y, z;
+} face_point;
+
+static inline face_point face_point_at(FACE_SIGNS_GLOBAL const double* p)
 {
-  const double m01 = p0[0] * p1[1] - p0[1] * p1[0], m02 = p0[0] * p2[1] - p0[1] * p2[0], m03 = p0[0] * p3[1] - p0[1] * p3[0];
-  const double m12 = p1[0] * p2[1] - p1[1] * p2[0], m13 = p1[0] * p3[1] - p1[1] * p3[0], m23 = p2[0] * p3[1] - p2[1] * p3[0];
-  const double z0 = parallel ? 1.0 : p0[2], z1 = parallel ? 1.0 : p1[2], z2 = parallel ? 1.0 : p2[2], z3 = parallel ? 1.0 : p3[2];
+  const face_point point = { p[0], p[1], p[2] };
+  return point;
+}
+
+/* Of the triples (1 3 2), (0 2 3), (0 3 1), (0 1 2), one a face, as in stratus_face_points(). */
+static inline void face_determinants(face_point p0, face_point p1, face_point p2, face_point p3, int parallel, double det[4])
+{
+  const double m01 = p0.x * p1.y - p0.y * p1.x, m02 = p0.x * p2.y - p0.y * p2.x, m03 = p0.x * p3.y - p0.y * p3.x;
+  const double m12 = p1.x * p2.y - p1.y * p2.x, m13 = p1.x * p3.y - p1.y * p3.x, m23 = p2.x * p3.y - p2.y * p3.x;
+  const double z0 = parallel ? 1.0 : p0.z, z1 = parallel ? 1.0 : p1.z, z2 = parallel ? 1.0 : p2.z, z3 = parallel ? 1.0 : p3.z;
   det[0] = m13 * z2 - m12 * z3 - m23 * z1;
   det[1] = m02 * z3 - m03 * z2 + m23 * z0;
   det[2] = m03 * z1 - m01 * z3 - m13 * z0;
@@ -37,14 +46,13 @@ static inline int face_sign(double det)
 }
 
 /* How far away a cell is. */
-static inline float face_signs_key(FACE_SIGNS_GLOBAL const double* p0, FACE_SIGNS_GLOBAL const double* p1, FACE_SIGNS_GLOBAL const double* p2,
-  FACE_SIGNS_GLOBAL const double* p3, int parallel)
+static inline float face_signs_key(face_point p0, face_point p1, face_point p2, face_point p3, int parallel)
 {
-  const double z = p0[2] + p1[2] + p2[2] + p3[2];
+  const double z = p0.z + p1.z + p2.z + p3.z;
   if (parallel) {
     return (float)z;
   }
-  const double x = p0[0] + p1[0] + p2[0] + p3[0], y = p0[1] + p1[1] + p2[1] + p3[1];
+  const double x = p0.x + p1.x + p2.x + p3.x, y = p0.y + p1.y + p2.y + p3.y;
   return (float)sqrt(x * x + y * y + z * z);
 }
 

@@ -16,10 +16,10 @@ __kernel void signs(__global const double* seen, __global const int* corners, __
     return;
   }
   __global const int* corner = corners + 4 * cell;
-  __global const double* p0 = seen + 3 * (size_t)corner[0];
-  __global const double* p1 = seen + 3 * (size_t)corner[1];
-  __global const double* p2 = seen + 3 * (size_t)corner[2];
-  __global const double* p3 = seen + 3 * (size_t)corner[3];
+  const face_point p0 = face_point_at(seen + 3 * (size_t)corner[0]);
+  const face_point p1 = face_point_at(seen + 3 * (size_t)corner[1]);
+  const face_point p2 = face_point_at(seen + 3 * (size_t)corner[2]);
+  const face_point p3 = face_point_at(seen + 3 * (size_t)corner[3]);
   const int side = (int)(faces[cell] >> 4) - 1;
   double det[4];
   uint state = 0;

@@ -3,16 +3,6 @@
 #include "mesh.h"
 #include "mesh_case.h"
 
-static stratus_context* make_context(int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  return context;
-}
-
 __extension__ typedef __int128 wide_integer;
 
 static int sign_of(wide_integer x)
@@ -163,7 +153,7 @@ static void neighbours_of_random_cells_are_those_of_all_pairs(void** state)
   int64_t broken = 0, folded = 0, flat = 0, inner = 0;
   (void)state;
   for (int repeat = 0; repeat < 300; repeat++) {
-    stratus_context* context = make_context(1 + repeat % 4);
+    stratus_context* context = mesh_context(1 + repeat % 4);
     mesh_case mesh = mesh_case_allocate(4 + repeat % 12, mesh_random(&random) % 40);
     for (int64_t i = 0; i < 3 * mesh.point_count; i++) {
       mesh.points[i] = mesh_random(&random) % 4;
@@ -196,7 +186,7 @@ static void a_grid_has_the_border_of_its_box(void** state)
   mesh_case mesh = mesh_grid(n, 0.15, 5);
   mesh_shuffle(&mesh, 6);
   for (int threads = 1; threads <= 5; threads += 2) {
-    stratus_context* context = make_context(threads);
+    stratus_context* context = mesh_context(threads);
     const stratus_mesh view = mesh_case_view(&mesh);
     stratus_adjacency* adjacency = NULL;
     assert_int_equal(stratus_adjacency_create(context, &view, &adjacency), STRATUS_OK);
@@ -226,7 +216,7 @@ static void a_view_that_is_wrong_is_refused_with_its_value(void** state)
   static const double nan_points[12] = { 0, 0, 0, 1, 0, 0, 0, NAN, 0, 0, 0, 1 }, points[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   static const int32_t good[4] = { 0, 1, 2, 3 }, high[4] = { 0, 1, 2, 4 }, low[4] = { 0, -1, 2, 3 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   stratus_mesh right = stratus_mesh_default();
   right.points = points;
   right.point_count = 4;

@@ -42,7 +42,7 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
   static const int n[3] = { 6, 5, 7 };
   int64_t added = 0, leaves = 0;
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   for (int repeat = 0; repeat < 16; repeat++) {
     mesh_case mesh = mesh_grid(n, repeat % 4 == 3 ? 0.0 : 0.19, (uint32_t)repeat);
     stratus_partition_options options = stratus_partition_options_default();
@@ -108,7 +108,7 @@ static void what_is_within_rounding_of_a_plane_lies_on_it(void** state)
   static const double offsets[] = { 0.0, -2.0, 6e6 };
   int whole = 0, cut_too = 0;
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   for (int repeat = 0; repeat < 24; repeat++) {
     const double offset = offsets[repeat / 8];
     mesh_case mesh = quadratic_cubes(n, offset, (uint32_t)repeat + 1);
@@ -146,7 +146,7 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   static const double points[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   static const int32_t vertices[8] = { 0, 1, 2, 3, 2, 2, 2, 2 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   for (int cells = 0; cells <= 2; cells++) {
     stratus_mesh mesh = stratus_mesh_default();
     stratus_partition* partition = NULL;
@@ -171,7 +171,7 @@ static void options_out_of_range_are_refused_with_their_values(void** state)
     "rotations 65", "leaf_cells 0" };
   static const int n[3] = { 1, 1, 1 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   const stratus_mesh view = mesh_case_view(&mesh);
   for (int wrong = 0; wrong < 10; wrong++) {

@@ -13,7 +13,7 @@ static void orders_by_leaves_are_right_from_everywhere(void** state)
   options.leaf_cells = 20;
   uint32_t* first = NULL;
   for (int threads = 1; threads <= 3; threads++) {
-    stratus_context* context = make_context(threads);
+    stratus_context* context = mesh_context(threads);
     stratus_partition* partition = make_partition(context, &mesh, &options);
     stratus_partition_result cut;
     stratus_partition_get(partition, &cut);
@@ -65,7 +65,7 @@ static void scattered_cells_are_listed_where_they_are(void** state)
 {
   static const int n[3] = { 20, 20, 20 };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   stratus_partition_options options = stratus_partition_options_default();
   for (int depth = 0; depth < 2; depth++) {
     for (int scattered = 0; scattered < 2; scattered++) {

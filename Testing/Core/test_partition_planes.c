@@ -7,7 +7,7 @@ static void a_grid_is_cut_between_its_cells(void** state)
 {
   static const int n[3] = { 16, 9, 11 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   for (int64_t i = 0; i < mesh.point_count; i++) { /* bent, so that planes are left across x alone */
     double* p = mesh.points + 3 * i;
@@ -35,7 +35,7 @@ static void the_paper_s_plane_is_the_best_of_all_that_are_admissible(void** stat
   static const int share[4][4] = { { 0, 0, 0, 0 }, { 0, 1, 1, 1 }, { 0, 2, 3, 0 }, { 0, 3, 0, 0 } };
   int none = 0, found = 0;
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   for (int repeat = 0; repeat < 12; repeat++) {
     mesh_case mesh = mesh_grid(n, 0.19, (uint32_t)repeat);
     stratus_partition_options options = stratus_partition_options_default();
@@ -90,7 +90,7 @@ static void a_mesh_that_stands_askew_is_turned_before_it_is_cut(void** state)
 {
   static const int n[3] = { 8, 8, 8 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   for (int64_t i = 0; i < mesh.point_count; i++) { /* no plane across x, y or z passes between cells */
     double* p = mesh.points + 3 * i;

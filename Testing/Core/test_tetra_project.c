@@ -121,7 +121,7 @@ static void opaque_things(void** state)
   }
 }
 
-static void leaves_change_nothing(void** state)
+static void leaves_change_nothing_but_roundings(void** state)
 {
   stratus_partition* partition = NULL;
   stratus_partition_options options = stratus_partition_options_default();
@@ -139,7 +139,7 @@ static void leaves_change_nothing(void** state)
   marched = projected;
   c.options.leaves = &cut.leaves;
   tetra_draw(*state, &c, &projected);
-  assert_true(difference() == 0.0);
+  assert_true(difference() <= 1e-4); /* another order, and as right: only what is shorter than rounding may come the other way round */
   stratus_leaves wrong = cut.leaves;
   wrong.leaf_count = 7;
   c.options.leaves = &wrong;
@@ -187,7 +187,7 @@ int main(void)
     cmocka_unit_test(pieces_are_the_march_s_segments),
     cmocka_unit_test(cells_that_overlap_are_drawn_again),
     cmocka_unit_test(opaque_things),
-    cmocka_unit_test(leaves_change_nothing),
+    cmocka_unit_test(leaves_change_nothing_but_roundings),
     cmocka_unit_test(auto_chooses_by_what_shows),
   };
   return cmocka_run_group_tests(tests, tetra_start, tetra_stop);

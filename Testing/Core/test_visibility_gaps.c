@@ -5,16 +5,6 @@
 
 #define RAYS 400
 
-static stratus_context* make_context(int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  return context;
-}
-
 /* View 0..23: six directions, each parallel, perspective, near and from inside. */
 static stratus_camera camera_of(const mesh_case* mesh, int view)
 {
@@ -36,7 +26,7 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
 /* Wrong pairs of all 24 views, in one leaf or in several; no cycle, as there is none. */
 static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratus_peeling peeling)
 {
-  stratus_context* context = make_context(threads);
+  stratus_context* context = mesh_context(threads);
   stratus_visibility_order* order = NULL;
   stratus_partition* partition = NULL;
   stratus_partition_result cut;
@@ -145,7 +135,7 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
   }
   uint32_t first[3];
   for (int threads = 1; threads <= 3; threads++) {
-    stratus_context* context = make_context(threads);
+    stratus_context* context = mesh_context(threads);
     const stratus_mesh view = mesh_case_view(&mesh);
     const stratus_camera camera = { .eye = { 0.0, 0.0, 40.0 }, .forward = { 0, 0, -1 } };
     stratus_visibility_order* order = NULL;
@@ -196,7 +186,7 @@ static void scattered_cells_and_points_come_in_order(void** state)
   mesh = mesh_join(mesh, block(2, 3, 2, (const double[3]){ 3.05, -1, 0 }, (const double[3]){ 6, 4, 3 }, 0.1, 2));
   mesh_shuffle(&mesh, 1);
   shuffle_points(&mesh, 2);
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   const stratus_mesh view = mesh_case_view(&mesh);
   int32_t* leaf = malloc((size_t)mesh.cell_count * sizeof *leaf);
   assert_non_null(leaf);
@@ -229,7 +219,7 @@ static void scattered_cells_and_points_come_in_order(void** state)
 static void only_faces_that_look_at_others_are_gaps(void** state)
 {
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   mesh_case mesh = block(4, 4, 4, (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 }, 0.0, 1);
   for (int blocks = 1; blocks <= 2; blocks++) {
     const stratus_mesh view = mesh_case_view(&mesh);

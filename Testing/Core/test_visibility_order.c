@@ -6,16 +6,6 @@
 
 #define RAYS 120
 
-static stratus_context* make_context(int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  return context;
-}
-
 static stratus_visibility_order* make_order(stratus_context* context, const mesh_case* mesh)
 {
   const stratus_mesh view = mesh_case_view(mesh);
@@ -67,7 +57,7 @@ static void a_convex_mesh_is_in_order_from_everywhere(void** state)
   static const double offsets[][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, { 6e6, -5e6, 100 } };
   (void)state;
   for (int i = 0; i < 8; i++) {
-    stratus_context* context = make_context(1 + i % 3);
+    stratus_context* context = mesh_context(1 + i % 3);
     mesh_case mesh = mesh_grid(n, i % 2 ? 0.0 : 0.19, 7);
     mesh_move(&mesh, scales[i / 2], offsets[i / 2]);
     mesh_shuffle(&mesh, (uint32_t)i);
@@ -86,7 +76,7 @@ static void an_eye_on_points_and_planes_of_the_mesh_sees_the_right_order(void** 
   static const double eyes[][3] = { { 2, 2, 2 }, { 2.5, 2, 2 }, { 2.5, 2.5, 2 }, { 2.5, 2.25, 2 }, { -3, 2, 2 }, { 0, 0, 0 }, { 9, 2.5, 2 },
     { 2.5, 2.5, 2.5 }, { 4, 4, 4 } };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   stratus_visibility_order* order = make_order(context, &mesh);
   for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
@@ -112,7 +102,7 @@ static void flat_cells_pass_on_who_hides_whom(void** state)
 {
   static const int n[3] = { 8, 3, 3 };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   for (int64_t i = 0; i < mesh.point_count; i++) {
     double* x = mesh.points + 3 * i;
@@ -131,7 +121,7 @@ static void faces_that_coincide_are_shared_whatever_points_they_name(void** stat
   static const int n[3] = { 3, 4, 4 };
   static const double one[3] = { 1, 1, 1 }, beside[3] = { 3, 0, 0 };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   mesh_case other = mesh_grid(n, 0.0, 1);
   mesh_move(&other, one, beside);
   mesh_case mesh = mesh_join(mesh_grid(n, 0.0, 1), other);
@@ -191,7 +181,7 @@ static mesh_case iris(int count)
 static void a_ring_of_cells_loses_one_relation(void** state)
 {
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   int64_t found = 0;
   for (int count = 3; count <= 12; count++) {
     mesh_case mesh = iris(count);
@@ -227,7 +217,7 @@ static void many_rings_lose_one_relation_each(void** state)
   mesh_shuffle(&mesh, 2);
   uint32_t* first = NULL;
   for (int threads = 1; threads <= 4; threads++) {
-    stratus_context* context = make_context(threads);
+    stratus_context* context = mesh_context(threads);
     stratus_visibility_order* order = make_order(context, &mesh);
     const stratus_camera camera = { .eye = { 0.01, 0.02, 90.0 }, .forward = { 0, 0, -1 } };
     stratus_visibility_result result;
@@ -248,7 +238,7 @@ static void a_folded_cell_spoils_only_its_neighbours(void** state)
 {
   static const int n[3] = { 6, 6, 6 };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   mesh_case mesh = mesh_grid(n, 0.1, 3);
   mesh.points[3 * (3 + 7 * (3 + 7 * 3))] += 1.6; /* a point through its neighbours */
   stratus_visibility_order* order = make_order(context, &mesh);
@@ -272,7 +262,7 @@ static void a_mirrored_and_sheared_mesh_is_seen_in_its_own_coordinates(void** st
   static const int n[3] = { 4, 5, 3 };
   static const double matrix[16] = { -2, .5, 0, 7, 0, 1, .3, -4, .1, 0, 3, 1, 0, 0, 0, 1 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.15, 3), world = mesh_grid(n, 0.15, 3);
   for (int64_t i = 0; i < world.point_count; i++) {
     stratus_matrix_point(matrix, mesh.points + 3 * i, world.points + 3 * i);
@@ -295,7 +285,7 @@ static void an_order_is_reused_while_the_eye_stays(void** state)
 {
   static const int n[3] = { 3, 3, 3 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.1, 3);
   stratus_visibility_order* order = make_order(context, &mesh);
   stratus_camera camera = { .eye = { 9, 1, 2 }, .forward = { -1, 0, 0 } };
@@ -326,7 +316,7 @@ static void nothing_and_one_cell_have_orders(void** state)
   static const double points[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   static const int32_t vertices[4] = { 0, 1, 2, 3 };
   (void)state;
-  stratus_context* context = make_context(2);
+  stratus_context* context = mesh_context(2);
   const stratus_camera camera = { .eye = { 3, 3, 3 }, .forward = { -1, -1, -1 } };
   for (int kind = 0; kind < 3; kind++) { /* no points, no cells, one */
     stratus_mesh mesh = stratus_mesh_default();
@@ -351,7 +341,7 @@ static void wrong_views_and_leaves_are_refused(void** state)
 {
   static const int n[3] = { 2, 1, 1 };
   (void)state;
-  stratus_context* context = make_context(1);
+  stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 3);
   stratus_visibility_order* order = make_order(context, &mesh);
   stratus_camera camera = { .eye = { NAN, 1, 2 }, .forward = { -1, 0, 0 } };
