@@ -6,6 +6,7 @@
 #include <omp.h>
 #include <string.h>
 
+#define HEADS_APART 32 /* so that no two threads write to a cache line, or its neighbour, in turns */
 #define COORDINATE_MAX 1e300 /* so that differences are finite */
 
 static stratus_status find_bounds(stratus_visibility_order* order)
@@ -58,6 +59,7 @@ static stratus_status allocate_order(stratus_visibility_order* order)
     const int64_t buckets = stratus_order_buckets(order->leaf_begin[l + 1] - order->leaf_begin[l]);
     order->buckets = buckets > order->buckets ? buckets : order->buckets;
   }
+  order->buckets = (order->buckets + HEADS_APART - 1) / HEADS_APART * HEADS_APART;
   TRY(allocate_part(order, (size_t)peeling_threads(order), (size_t)order->buckets * sizeof *order->heads, &memory));
   order->heads = memory;
   return STRATUS_OK;
