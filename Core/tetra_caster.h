@@ -34,7 +34,7 @@ struct stratus_tetra_caster {
   stratus_transfer transfer;
   stratus_tetra_mode mode; /* that the table is for */
   stratus_table* table;
-  int32_t* march_sums; /* the table's, four an entry */
+  int32_t* march_sums; /* stratus_tetra_sums() */
   stratus_tetra_device* device; /* copies on the OpenCL device, NULL on the host */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
@@ -52,7 +52,8 @@ typedef struct stratus_tetra_places {
 
 stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names);
 
-/* tetra_march.c: running sums of a table, those of an entry side by side; NULL where it has none. */
+/* tetra_march.c: running sums of a table up to the middle of each entry, for values are rounded to the nearest one: up to its lower end all
+ * would be taken as half an entry too low. Behind them what each entry is by itself. Four of an entry side by side; NULL where it has none. */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
 /* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept. */

@@ -93,17 +93,19 @@ stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame
 
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums)
 {
-  const size_t row = (size_t)table->size + 1;
+  const size_t size = (size_t)table->size;
   void* memory = NULL;
   *sums = NULL;
   if (!table->sums) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(context, 4 * row, sizeof(int32_t), &memory));
+  TRY(stratus_allocate(context, 2 * size, 4 * sizeof(int32_t), &memory));
   *sums = memory;
-  for (size_t entry = 0; entry < row; ++entry) {
+  for (size_t entry = 0; entry < size; ++entry) {
     for (size_t which = 0; which < 4; ++which) {
-      (*sums)[4 * entry + which] = table->sums[which * row + entry];
+      const int64_t below = table->sums[which * (size + 1) + entry], above = table->sums[which * (size + 1) + entry + 1];
+      (*sums)[4 * entry + which] = (int32_t)((below + above + 1) / 2);
+      (*sums)[4 * (size + entry) + which] = (int32_t)(above - below);
     }
   }
   return STRATUS_OK;

@@ -14,7 +14,7 @@ typedef struct stratus_tetra_light {
   vfloat most; /* maximum: the largest value */
 } stratus_tetra_light;
 
-/* A value in the table: its entry, and the sums (red, green, blue times tau, and tau) over the entries below it. */
+/* A value in the table: the entry nearest to it, and the sums (red, green, blue times tau, and tau) up to that entry's middle. */
 typedef struct stratus_tetra_place {
   vint entry, sum[4];
 } stratus_tetra_place;
@@ -68,11 +68,11 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   for (int c = 0; c < 4; ++c) {
     beyond[c] = to->sum[c];
   }
-  if (m_any(level)) { /* within one entry: that entry */
-    vint next[4];
-    gather_four_ints(sums, to->entry + one, level, next);
+  if (m_any(level)) { /* within one entry: that entry, so that what is transparent stays so beside what is not */
+    vint own[4];
+    gather_four_ints(sums, to->entry + vi_set((int)a->table.table_last + 1), level, own);
     for (int c = 0; c < 4; ++c) {
-      beyond[c] = vi_select(level, next[c], beyond[c]);
+      beyond[c] = vi_select(level, from->sum[c] + own[c], beyond[c]);
     }
   }
   /* sums never fall: differences have the sign of `rise` */
