@@ -928,7 +928,8 @@ STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
 
 typedef struct stratus_tetra_options {
   stratus_tetra_mode mode; /* default composite */
-  double termination;      /* a ray ends when its alpha passes this, 0..1; default .999. Not in mode maximum. */
+  double termination;      /* a ray ends when its alpha passes this, 0..1; default .9999: what is left out is a fortieth of a step of 8 bits.
+                            * Not in mode maximum. */
   stratus_tetra_method method; /* default auto */
   const stratus_leaves* leaves; /* of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster
                                  * draws with others or is released. Default NULL: one leaf. */

@@ -22,7 +22,7 @@ const char* stratus_tetra_method_name(stratus_tetra_method method)
 
 stratus_tetra_options stratus_tetra_options_default(void)
 {
-  return (stratus_tetra_options){ .termination = 0.999 };
+  return (stratus_tetra_options){ .termination = 0.9999 };
 }
 
 stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)

@@ -38,7 +38,7 @@ public:
 
   //@{
   /**
-   * A ray ends when its alpha passes this, 0..1. Default .999. Not in maximum intensity.
+   * A ray ends when its alpha passes this, 0..1. Default 0.9999. Not in maximum intensity.
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
@@ -125,7 +125,7 @@ protected:
   ~vtkStratusTetrahedraMapper() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
 
-  double Termination = 0.999;
+  double Termination = 0.9999;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
 

@@ -99,7 +99,7 @@ check(mapper.GetNumberOfSegments() > mapper.GetNumberOfEntries() >= 0, "segments
 check(mapper.GetBuildMilliseconds() > 0 and mapper.GetMarchMilliseconds() >= 0, "times")
 
 # ---- setters
-check(mapper.GetTermination() == 0.999, "default termination")
+check(mapper.GetTermination() == 0.9999, "default termination")
 mapper.SetTermination(0.5)
 early = picture()
 lit = whole[..., 3] > 0.8
