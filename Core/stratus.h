@@ -952,6 +952,7 @@ typedef struct stratus_tetra_report {
   double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* of this call; 0: not done */
   int64_t cells_in_view;               /* project: that can show something in some pixel */
   uint64_t pairs;                      /* project: of a cell and a tile */
+  int32_t leaves;                      /* project: sorted in parallel */
   int64_t cycles;                      /* project: of the order, see stratus_visibility_result */
   uint64_t again;                      /* project: pixels drawn twice, as their cells had come in a wrong order */
   double sort_ms, bin_ms, project_ms;  /* project: order, outlines and tiles of cells, pixels */

@@ -132,6 +132,7 @@ static stratus_status sort_cells(stratus_tetra_projector* projector, const strat
   TRY(stratus_visibility_order_sort(projector->order, camera, mesh->matrix, STRATUS_PEELING_NEAREST, &result));
   *cells = result.cells;
   report->sort_ms = stratus_now_ms() - sorting;
+  report->leaves = leaves->nodes ? leaves->leaf_count : 1;
   report->cycles = result.cycles;
   report->bytes += result.bytes;
   return STRATUS_OK;

@@ -22,6 +22,7 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
       this->Refusal = this->Tetrahedra.TellLeftOut();
       this->Accepted = false;
     }
+    this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);
   }
   if (!this->Accepted) {
     error = this->Refusal;

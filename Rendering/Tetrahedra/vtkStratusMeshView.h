@@ -6,6 +6,7 @@
 #include "stratus.h"
 
 #include "vtkStratusInput.h"
+#include "vtkStratusLeaves.h"
 #include "vtkStratusTetrahedra.h"
 
 #include "vtkDataArray.h"
@@ -25,6 +26,9 @@ public:
   // when it changes only.
   bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
   const stratus_mesh& GetMesh() const { return this->Mesh; }
+  // Of the grid's partition, nullptr if it carries none; or none any more, once the core has refused it: then the points were moved.
+  const stratus_leaves* GetLeaves() const { return this->HasLeaves ? &this->Leaves.Leaves : nullptr; }
+  void DropLeaves() { this->HasLeaves = false; }
   vtkIdType GetLeftOut() const { return this->Tetrahedra.LeftOut; }
   // A box about it, for who only needs to know where it is.
   stratus_volume GetBox() const;
@@ -42,6 +46,8 @@ private:
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;
+  vtkStratusLeaves Leaves;
+  bool HasLeaves = false;
   std::vector<uint8_t> Hidden; // a tetrahedron, by ghosts and blanking
   // Where cells are divided: a value for each tetrahedron, or for their points.
   vtkSmartPointer<vtkDataArray> Source;

@@ -115,6 +115,11 @@ vtkIdType vtkStratusTetrahedraMapper::GetNumberOfPixelsDrawnAgain()
   return static_cast<vtkIdType>(this->Internal->Report.again);
 }
 
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfLeaves()
+{
+  return this->Internal->Report.leaves;
+}
+
 double vtkStratusTetrahedraMapper::GetBuildMilliseconds()
 {
   return this->Internal->Report.build_ms;

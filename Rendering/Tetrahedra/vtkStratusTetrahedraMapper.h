@@ -112,6 +112,12 @@ public:
   //@}
 
   /**
+   * Of the last picture: leaves that were sorted in parallel for the projection: those of vtkStratusPartitionFilter, if the input carries its
+   * arrays and its points are still where they were, else 1. 0 where rays marched.
+   */
+  vtkIdType GetNumberOfLeaves();
+
+  /**
    * The last picture as floats, as large as the renderer's viewport: point arrays RGBA (premultiplied by alpha) and Depth (world distance
    * along the ray from the eye, infinity where nothing is). nullptr before the first. Made anew with each call.
    */

@@ -116,9 +116,18 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   options.termination = this->Mapper->Termination;
   options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
   options.mode = this->Mapper->BlendMode == MAXIMUM_INTENSITY_BLEND ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+  options.leaves = this->Mesh.GetLeaves();
   this->Renderer = renderer;
-  const stratus_status status = stratus_tetra_caster_render(
-    this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+  const auto draw = [&] {
+    return stratus_tetra_caster_render(
+      this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+  };
+  stratus_status status = draw();
+  if (status == STRATUS_INVALID_ARGUMENT && options.leaves) {
+    this->Mesh.DropLeaves();
+    options.leaves = nullptr;
+    status = draw();
+  }
   this->Renderer = nullptr;
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());

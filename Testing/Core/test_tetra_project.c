@@ -138,7 +138,9 @@ static void leaves_change_nothing_but_roundings(void** state)
   draw_both(*state, &c);
   marched = projected;
   c.options.leaves = &cut.leaves;
+  assert_int_equal(projected.report.leaves, 1);
   tetra_draw(*state, &c, &projected);
+  assert_int_equal(projected.report.leaves, 8);
   assert_true(difference() <= 1e-4); /* another order, and as right: only what is shorter than rounding may come the other way round */
   stratus_leaves wrong = cut.leaves;
   wrong.leaf_count = 7;

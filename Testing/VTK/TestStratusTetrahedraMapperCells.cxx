@@ -4,6 +4,7 @@
 #include "tetrahedra_scene.h"
 #include "vtkStratusPartitionFilter.h"
 
+#include "vtkFieldData.h"
 #include "vtkShortArray.h"
 
 namespace {
@@ -164,6 +165,48 @@ void TheFilterHidesAlike()
   CHECK(direct != whole, "blanked points hide nothing");
 }
 
+// Projection sorts a partition's leaves in parallel, as long as they are where the partition says.
+void LeavesAreSortedInParallel()
+{
+  GridScene scene;
+  vtkNew<vtkStratusPartitionFilter> filter;
+  filter->SetInputData(scene.Grid);
+  filter->SetLeafCells(20);
+  filter->Update();
+  Grid cut = Grid::New(), whole = Grid::New();
+  cut->DeepCopy(filter->GetOutput());
+  whole->DeepCopy(cut);
+  whole->GetFieldData()->Initialize();
+  scene.Tetrahedra->SetMethodToProject();
+  for (int moved = 0; moved < 2; ++moved) {
+    for (vtkIdType i = 0; i < cut->GetNumberOfPoints() && moved; ++i) {
+      const Vector p = PointOf(cut, i);
+      for (vtkUnstructuredGrid* grid : { cut.Get(), whole.Get() }) {
+        grid->GetPoints()->SetPoint(i, p[0] + 0.4 * p[1], p[1] + 0.3 * p[2], p[2] + 0.2 * p[0]);
+        grid->GetPoints()->Modified();
+      }
+    }
+    scene.Tetrahedra->SetInputData(whole);
+    const std::vector<float> plain = scene.GridPicture();
+    CHECK(scene.Tetrahedra->GetNumberOfLeaves() == 1, "%lld leaves of no partition", static_cast<long long>(scene.Tetrahedra->GetNumberOfLeaves()));
+    scene.Tetrahedra->SetInputData(cut);
+    for (int time = 0; time < 2; ++time) {
+      const std::vector<float> picture = scene.GridPicture();
+      double worst = picture.size() == plain.size() && !plain.empty() ? 0.0 : 1.0;
+      for (size_t i = 0; i < plain.size() && worst < 1.0; ++i) {
+        worst = std::max(worst, std::fabs(static_cast<double>(picture[i]) - static_cast<double>(plain[i])));
+      }
+      CHECK(worst < 2e-4, "moved %d: pixels differ by %g", moved, worst);
+      CHECK(scene.Tetrahedra->GetNumberOfLeaves() == (moved ? 1 : 8), "moved %d: %lld leaves", moved,
+        static_cast<long long>(scene.Tetrahedra->GetNumberOfLeaves()));
+    }
+  }
+  scene.Tetrahedra->SetMethodToMarch();
+  scene.GridPicture();
+  CHECK(scene.Tetrahedra->GetNumberOfLeaves() == 0, "a march sorted leaves");
+  CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+}
+
 void WhatHasNoVolumeIsIgnored()
 {
   GridScene scene;
@@ -224,6 +267,7 @@ int main()
   TheFilterDividesAlike();
   WholeCellsAreHidden();
   TheFilterHidesAlike();
+  LeavesAreSortedInParallel();
   WhatHasNoVolumeIsIgnored();
   WhatIsBuiltIsKept();
   return Failures ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays by which a grid carries its partition. Private to the module.
+// The arrays by which a grid carries its partition. Private to the modules that compile it in.
 #ifndef vtkStratusLeaves_h
 #define vtkStratusLeaves_h
 
