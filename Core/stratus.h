@@ -870,7 +870,8 @@ STRATUS_API void stratus_partition_get(const stratus_partition* partition, strat
 typedef struct stratus_visibility_order stratus_visibility_order;
 
 typedef enum stratus_peeling {
-  STRATUS_PEELING_NEAREST, /* of the cells that nothing hides any more, the nearest. Default. */
+  STRATUS_PEELING_NEAREST, /* of the cells that nothing hides any more, one of the nearest: by distance in steps of thousands of cells, within
+                            * these the one that was the last to become free. Default. */
   STRATUS_PEELING_LAYERS   /* all that nothing hides, then all that only these hid, ... (Li et al. 2012, section 3.1) */
 } stratus_peeling;
 
@@ -896,7 +897,7 @@ typedef struct stratus_visibility_result {
 } stratus_visibility_result;
 
 /* The order from the camera's eye (parallel: along its forward), whose right and up don't count. matrix: world = matrix * local, as in
- * stratus_mesh, NULL: the mesh's. The same at any number of threads and on any device: a GPU with doubles finds the signs of meshes that are
+ * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the signs of meshes that are
  * not small, the host what rounding leaves open, and the order. */
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);

@@ -268,7 +268,6 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
   frame.table = caster->table;
-  frame.sums = caster->table->sums;
   frame.march_sums = caster->march_sums;
   set_shading(caster->table, options, image, &frame.arguments);
   report->transform_ms = stratus_now_ms() - start;

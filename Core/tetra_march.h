@@ -49,7 +49,6 @@ typedef struct stratus_tetra_frame {
   uint32_t* first;                /* entries of tile t's pixel p begin at first[256 t + p] */
   int32_t* entries;               /* z's bits and the face: where rays come in. Those of a pixel lie together, nearest first */
   const float* ends;              /* a pixel each, what is opaque in z, or NULL */
-  const int32_t* sums;            /* of the table */
   const int32_t* march_sums;      /* stratus_tetra_sums() */
   const stratus_table* table;
   stratus_camera camera;

@@ -123,33 +123,40 @@ static stratus_status allocate_leaves(stratus_visibility_order* order)
   return STRATUS_OK;
 }
 
-stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves)
+stratus_status stratus_order_check_leaves(const stratus_visibility_order* order, const stratus_leaves* leaves)
 {
   stratus_context* context = order->context;
   stratus_status status = STRATUS_OK;
   void *boxes = NULL, *parents = NULL;
+  if (!leaves) {
+    return STRATUS_OK;
+  }
+  TRY(check_tree(context, leaves));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)leaves->leaf_count, 6 * sizeof(double), &boxes));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)leaves->node_count, sizeof(int32_t), &parents));
+  TRY_CLEANUP(find_boxes(context, leaves, boxes, parents));
+  TRY_CLEANUP(check_cells(order, leaves, boxes));
+
+cleanup:
+  stratus_release(context, boxes);
+  stratus_release(context, parents);
+  return status;
+}
+
+stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves)
+{
   if (!leaves) {
     order->node_count = order->leaf_count = 1;
     TRY(allocate_leaves(order));
     order->nodes[0] = (stratus_partition_node){ .axis = -1 };
     return stratus_order_take_cells(order, order->side, NULL);
   }
-  TRY(check_tree(context, leaves));
   order->node_count = leaves->node_count;
   order->leaf_count = leaves->leaf_count;
   memcpy(order->frame, leaves->frame, sizeof order->frame);
   TRY(allocate_leaves(order));
   memcpy(order->nodes, leaves->nodes, (size_t)leaves->node_count * sizeof *order->nodes);
-  TRY_CLEANUP(stratus_allocate(context, (size_t)leaves->leaf_count, 6 * sizeof(double), &boxes));
-  TRY_CLEANUP(stratus_allocate(context, (size_t)leaves->node_count, sizeof(int32_t), &parents));
-  TRY_CLEANUP(find_boxes(context, leaves, boxes, parents));
-  TRY_CLEANUP(check_cells(order, leaves, boxes));
-  TRY_CLEANUP(stratus_order_take_cells(order, order->side, leaves->leaf));
-
-cleanup:
-  stratus_release(context, boxes);
-  stratus_release(context, parents);
-  return status;
+  return stratus_order_take_cells(order, order->side, leaves->leaf);
 }
 
 bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view)

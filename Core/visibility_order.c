@@ -81,6 +81,7 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   const size_t cells = (size_t)order->cell_count;
   void* memory;
   TRY(find_bounds(order));
+  TRY(stratus_order_check_leaves(order, leaves));
   TRY(stratus_adjacency_create(context, mesh, &order->adjacency));
   order->side = order->adjacency->orientation;
   if (order->adjacency->flat > 0) { /* else no cell needs another side than its own */
@@ -257,7 +258,8 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   }
   const double signs_end = stratus_now_ms();
   TRY(stratus_progress(context, "visibility order", 0.5));
-  if (stratus_order_sort_leaves(order, &view) || !sorted || order->relations_changed || order->gap_begin[order->leaf_count] > 0) {
+  const bool leaves_changed = stratus_order_sort_leaves(order, &view), gaps = order->gap_begin[order->leaf_count] > 0;
+  if (leaves_changed || !sorted || order->relations_changed || gaps || order->result.forced > 0) {
     peel_leaves(order, peeling, &found);
   } else { /* what hides what is as it was; across gaps it might not be */
     found.reused = 1;

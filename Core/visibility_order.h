@@ -70,11 +70,11 @@ struct stratus_visibility_order {
   uint32_t *gate_bins, *gate_entries;
 
   uint32_t* seen_at; /* of each point; NULL: its number */
-  double* seen;     /* 3 a point: stratus_view_signs() */
+  double* seen;     /* 3 a point: stratus_order_see_points() */
   uint32_t* cells;  /* the order, in the mesh's numbers */
   bool relations_changed; /* by the last signs: some cell's state is not what it was */
   struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
-  uint32_t* heads;  /* of buckets: as many as the largest leaf has, for each thread that peels */
+  uint32_t* heads;  /* of buckets: at least as many as the largest leaf has, for each thread that peels */
   int64_t buckets;
   size_t bytes;
   double build_ms;
@@ -139,7 +139,10 @@ stratus_status stratus_order_place_points(stratus_visibility_order* order);
 /* ---- visibility_cells.c: ordered, listed and leaf_begin. leaf NULL: there is one. */
 stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf);
 
-/* ---- visibility_leaves.c: takes a tree, NULL: none; checks it against the cells. */
+/* ---- visibility_leaves.c: whether a tree is one, and has the mesh's cells in its leaves: asked first, as a mesh that has moved since is not
+ * worth building anything for. NULL: there is none. */
+stratus_status stratus_order_check_leaves(const stratus_visibility_order* order, const stratus_leaves* leaves);
+/* Takes a checked tree. */
 stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves);
 /* leaf_order and leaf_output of a view. Returns whether leaves come in another order than in the last one. */
 bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Peeling of one leaf: a cell comes when all that hide it through faces have come. Of several that may come the nearest does, by buckets of
- * distance, so that few have to be held back for others across gaps; or all of a layer do, as in the paper, and gaps are crossed as it comes. */
+ * Peeling of one leaf: a cell comes when all that hide it through faces have come. Of several that may come one of the nearest does,
+ * by coarse buckets of distance, so that few have to be held back for others across gaps; or all of a layer do, as in the paper, and gaps are crossed as it comes. */
 #include "visibility_order.h"
 
 #include <string.h>

@@ -64,19 +64,18 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
 {
   const vint rise = to->entry - from->entry, one = vi_set(1);
   const vmask level = mask & vi_zero(rise);
-  vint beyond[4];
+  vint span[4]; /* sums never fall: these have the sign of `rise` */
   for (int c = 0; c < 4; ++c) {
-    beyond[c] = to->sum[c];
+    span[c] = to->sum[c] - from->sum[c];
   }
   if (m_any(level)) { /* within one entry: that entry, so that what is transparent stays so beside what is not */
     vint own[4];
     gather_four_ints(sums, to->entry + vi_set((int)a->table.table_last + 1), level, own);
     for (int c = 0; c < 4; ++c) {
-      beyond[c] = vi_select(level, from->sum[c] + own[c], beyond[c]);
+      span[c] = vi_select(level, own[c], span[c]);
     }
   }
-  /* sums never fall: differences have the sign of `rise` */
-  const vfloat tau = v_abs(v_from_int(beyond[3] - from->sum[3]));
+  const vfloat tau = v_abs(v_from_int(span[3]));
   mask = mask & v_lt(v_set(0.0f), tau);
   if (!m_any(mask)) {
     return;
@@ -84,9 +83,9 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   const vfloat per_entry = weight * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise))));
   const vfloat depth = tau * per_entry, share = v_absorbed_share(depth, mask);
   const vfloat scale = v_select(mask, light->transparency * (per_entry * share), v_set(0.0f));
-  light->red = v_fma(scale, v_abs(v_from_int(beyond[0] - from->sum[0])), light->red);
-  light->green = v_fma(scale, v_abs(v_from_int(beyond[1] - from->sum[1])), light->green);
-  light->blue = v_fma(scale, v_abs(v_from_int(beyond[2] - from->sum[2])), light->blue);
+  light->red = v_fma(scale, v_abs(v_from_int(span[0])), light->red);
+  light->green = v_fma(scale, v_abs(v_from_int(span[1])), light->green);
+  light->blue = v_fma(scale, v_abs(v_from_int(span[2])), light->blue);
   const vfloat alpha = v_select(mask, v_min(depth * share, v_set(1.0f)), v_set(0.0f));
   light->transparency = v_fma(-light->transparency, alpha, light->transparency);
   if (a->table.want_depth) {

@@ -12,7 +12,7 @@ class vtkUnstructuredGrid;
 
 constexpr const char* vtkStratusLeafArray = "StratusLeaf";                 // cell data: the leaf of each
 constexpr const char* vtkStratusOriginalCellArray = "StratusOriginalCell"; // cell data: the cell of the filter's input
-constexpr const char* vtkStratusPartitionArray = "StratusPartition";       // field data: version, frame, nodes
+constexpr const char* vtkStratusPartitionArray = "StratusPartition";       // field data: version, nodes, leaves, frame, tree
 
 // The tree of a grid's arrays, both ways.
 struct vtkStratusLeaves

@@ -6,8 +6,8 @@
  * Plugs into vtkProjectedTetrahedraMapper, or any other that takes a vtkVisibilitySort. Input: a vtkUnstructuredGrid of linear tetrahedra.
  * Which of two neighbours is in front follows from their face, in exact arithmetic where double does not tell; which of two cells on both
  * sides of a gap, from where their border faces cover one another in the view. If the input comes from vtkStratusPartitionFilter and still
- * is as that left it, its leaves are sorted apart and in parallel. Neighbours are found when the input has changed; an order is kept while
- * the eye stays.
+ * is as that left it, its leaves are sorted apart and in parallel. Neighbours are found when the input has changed; an order is kept
+ * while the eye stays, or where there are no gaps, as long as every cell hides the same neighbours.
  *
  * MaxCellsReturned, Direction and ModelTransform are honoured. What cannot be sorted gives an error and no cells.
  *
@@ -39,7 +39,7 @@ public:
   enum PeelingType { NEAREST, LAYERS };
   //@{
   /**
-   * NEAREST: of the cells that nothing hides any more the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it; gaps may then
+   * NEAREST: of the cells that nothing hides any more one of the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it; gaps may then
    * be crossed in the wrong order. Default NEAREST.
    */
   vtkSetClampMacro(Peeling, int, NEAREST, LAYERS);

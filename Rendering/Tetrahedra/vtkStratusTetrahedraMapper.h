@@ -113,7 +113,7 @@ public:
 
   /**
    * Of the last picture: leaves that were sorted in parallel for the projection: those of vtkStratusPartitionFilter, if the input carries its
-   * arrays and its points are still where they were, else 1. 0 where rays marched.
+   * arrays and its points are still where they were, else 1. 0 where rays marched or nothing showed.
    */
   vtkIdType GetNumberOfLeaves();
 

@@ -124,9 +124,11 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   };
   stratus_status status = draw();
   if (status == STRATUS_INVALID_ARGUMENT && options.leaves) {
-    this->Mesh.DropLeaves();
     options.leaves = nullptr;
     status = draw();
+    if (status == STRATUS_OK) { // it was the leaves
+      this->Mesh.DropLeaves();
+    }
   }
   this->Renderer = nullptr;
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {

@@ -101,6 +101,8 @@ static void a_value_a_cell(void** state)
   }
   tetra_look(*state, &c, 3, 3, 0);
   check(*state, &c, "cell values");
+  c.opacity[7] = 0.9; /* most opaque at the largest value: the table's sums are at their end there */
+  check(*state, &c, "cell values, opaque at their end");
   tetra_destroy(&c);
 }
 

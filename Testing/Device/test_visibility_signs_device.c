@@ -54,6 +54,11 @@ static int64_t compare_signs(stratus_visibility_order* order, const stratus_view
   }
   assert_int_equal(open, exact);
   assert_memory_equal(order->ordered, expected, bytes);
+  assert_true(order->relations_changed || order->cell_count == 0); /* the states were spoilt */
+  if (stratus_order_find_signs_on_device(order, view, &open) != STRATUS_OK) {
+    fail_msg("%s", stratus_context_message(order->context));
+  }
+  assert_false(order->relations_changed);
   free(expected);
   return exact;
 }

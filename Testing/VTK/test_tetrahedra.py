@@ -106,7 +106,7 @@ lit = whole[..., 3] > 0.8
 check((early[lit, 3] < whole[lit, 3] - 0.01).any() and (early[lit, 3] >= 0.5).all(), "rays end early where alpha passes .5")
 mapper.SetTermination(7)
 check(mapper.GetTermination() == 1, "termination is clamped")
-mapper.SetTermination(0.999)
+mapper.SetTermination(0.9999)
 mapper.SetNumberOfThreads(1)
 check((picture() == whole).all(), "one thread draws the same bits")
 mapper.SetNumberOfThreads(-3)
