@@ -7,16 +7,14 @@
  *
  * The rule by which EXACT chooses: in 16 bits zigzag, which takes at most 176 steps a vector and was always the cheaper. Wider, each line (or
  * tile of columns) searches 8 samples; where they take more than FIELD_STEPS_A_LANE steps a lane on the mean, envelopes are cheaper. */
+#include "clones.h"
 #include "distance_field.h"
 
 #include <omp.h>
 #include <string.h>
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if HAVE_CLONES
 #include <immintrin.h>
-#define HAVE_X86 1
-#else
-#define HAVE_X86 0
 #endif
 
 #define FIELD_FAR_LINE_16 176
@@ -78,7 +76,7 @@ static int is_far(const field_work* w)
 #define FIELD_BITS 64
 #define FIELD_ISA 0
 #include "distance_field_body.h"
-#if HAVE_X86
+#if HAVE_CLONES
 #define FIELD_BITS 16
 #define FIELD_ISA 1
 #include "distance_field_body.h"
@@ -95,7 +93,7 @@ static int is_far(const field_work* w)
 
 static const field_passes* choose_passes(const stratus_context* context, int bits)
 {
-#if HAVE_X86
+#if HAVE_CLONES
   if (bits < 64 && context->isa >= 2) {
     return bits == 16 ? &passes_16_2 : &passes_32_2;
   }

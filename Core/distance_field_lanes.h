@@ -8,16 +8,16 @@
 #define NAME(name) FIELD_JOIN(name, FIELD_BITS, FIELD_ISA)
 
 #if FIELD_ISA == 2
-#define FIELD_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl")))
+#define FIELD_TARGET TARGET_AVX512
 #define VECTOR_BYTES 64
 #elif FIELD_ISA == 1
-#define FIELD_TARGET __attribute__((target("avx2")))
+#define FIELD_TARGET TARGET_AVX2
 #define VECTOR_BYTES 32
 #else
 #define FIELD_TARGET
 #define VECTOR_BYTES 16
 #endif
-#define FIELD_INLINE static inline __attribute__((always_inline)) FIELD_TARGET
+#define FIELD_INLINE static ALWAYS_INLINE FIELD_TARGET
 
 /* FAR is a squared distance that says "none known", and FAR_LINE its root: sums of squares stay within a lane up to it. */
 #if FIELD_BITS == 16

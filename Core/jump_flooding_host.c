@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A pass of jump flooding on the host, row by row: the same bits as kernels/jump_flooding.cl. */
+#include "clones.h"
 #include "jump_flooding.h"
 
 #include <omp.h>
@@ -27,27 +28,24 @@ typedef void (*row_function)(const flood_pass* p, int64_t j, int64_t k, void* ro
 #define ULENGTH uint64_t
 #define LENGTH_MAX INT64_MAX
 #include "jump_flooding_rows.h"
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HAVE_X86 1
+#if HAVE_CLONES
 #define FLOOD_NAME(name) name##_32_1
-#define FLOOD_TARGET __attribute__((target("avx2")))
+#define FLOOD_TARGET TARGET_AVX2
 #define LENGTH int32_t
 #define ULENGTH uint32_t
 #define LENGTH_MAX INT32_MAX
 #include "jump_flooding_rows.h"
 #define FLOOD_NAME(name) name##_32_2
-#define FLOOD_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl")))
+#define FLOOD_TARGET TARGET_AVX512
 #define LENGTH int32_t
 #define ULENGTH uint32_t
 #define LENGTH_MAX INT32_MAX
 #include "jump_flooding_rows.h"
-#else
-#define HAVE_X86 0
 #endif
 
 static row_function choose_row(const stratus_context* context, int wide)
 {
-#if HAVE_X86
+#if HAVE_CLONES
   if (!wide && context->isa >= 1) {
     return context->isa >= 2 ? row_32_2 : row_32_1;
   }

@@ -3,7 +3,7 @@
  * that the compiler vectorises. FLOOD_NAME(x) names a function, LENGTH and ULENGTH are the distances, LENGTH_MAX says "unknown". */
 
 /* Squared distances from voxels (x, j, k) to positions[x]. Unsigned: what the sum of an unknown one may overflow does not matter. */
-static inline __attribute__((always_inline)) FLOOD_TARGET LENGTH FLOOD_NAME(squared)(
+static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(
   uint32_t position, int32_t x, int32_t j, int32_t k, flood_layout layout)
 {
   const uint32_t mask_x = (1u << layout.shift_y) - 1, mask_y = (1u << (layout.shift_z - layout.shift_y)) - 1;
@@ -15,7 +15,7 @@ static inline __attribute__((always_inline)) FLOOD_TARGET LENGTH FLOOD_NAME(squa
 }
 
 /* nearest[x] becomes other[x + shift] where that is nearer to voxel (x, j, k), or as near and of a smaller index. */
-static inline __attribute__((always_inline)) FLOOD_TARGET void FLOOD_NAME(ask)(const uint32_t* restrict other, int64_t shift, int64_t n,
+static ALWAYS_INLINE FLOOD_TARGET void FLOOD_NAME(ask)(const uint32_t* restrict other, int64_t shift, int64_t n,
   int32_t j, int32_t k, flood_layout layout, uint32_t* restrict nearest, LENGTH* restrict distance)
 {
   const int64_t first = shift < 0 ? -shift : 0, last = shift > 0 ? n - shift : n;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which blocks the transfer function shows: the range test of Deakin & Knackstedt 2019 on hulls with their halo. */
+#include "clones.h"
 #include "internal.h"
 #include "structures_device.h"
 
@@ -7,15 +8,6 @@
 
 #define SLACK 1e-6f /* as in stratus_table_shows() */
 #define RUN 256     /* blocks tested at once: their entries stay in the first cache */
-
-#if defined(__x86_64__) && defined(__GNUC__)
-/* The entry of a value is a fused operation; without an instruction for it each one is a call. */
-#define HAVE_FUSED_CLONE 1
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-#else
-#define HAVE_FUSED_CLONE 0
-#define ALWAYS_INLINE inline
-#endif
 
 /* stratus_table_shows() of a run of blocks, cut in two so that the half with the arithmetic vectorises. */
 static ALWAYS_INLINE void test_run(
@@ -41,7 +33,8 @@ static void test_run_portable(const stratus_table* table, const float* lo, const
   test_run(table, lo, hi, count, occupied);
 }
 
-#if HAVE_FUSED_CLONE
+#if HAVE_CLONES
+/* The entry of a value is a fused operation; without an instruction for it each one is a call. */
 __attribute__((target("avx2,fma"))) static void test_run_fused(
   const stratus_table* table, const float* lo, const float* hi, int64_t count, uint8_t* occupied)
 {
@@ -51,7 +44,7 @@ __attribute__((target("avx2,fma"))) static void test_run_fused(
 
 static test_function choose_test(void)
 {
-#if HAVE_FUSED_CLONE
+#if HAVE_CLONES
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     return test_run_fused;
   }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Sixteen boxes, or eight nodes, against a frustum's planes at once: by the corner farthest inside (p-vertex) and, where it matters, the one
  * farthest outside (n-vertex). Plane coherency: the plane that rejected a pack last time is asked first. */
+#include "clones.h"
 #include "octree.h"
 
 #include <float.h>
@@ -9,14 +10,6 @@
 /* Six roundings of floats and the outward step of the boxes, relative to the largest term. */
 #define FLOAT_SLACK 8e-7
 #define OUTSIDE 0x80
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HAVE_CLONES 1
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-#else
-#define HAVE_CLONES 0
-#define ALWAYS_INLINE inline
-#endif
 
 void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_frustum_plan* plan, stratus_octree_planes* planes)
 {
@@ -147,8 +140,8 @@ static ALWAYS_INLINE void test_children(
 
 CLONE(portable, )
 #if HAVE_CLONES
-CLONE(avx2, __attribute__((target("avx2"))))
-CLONE(avx512, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"))))
+CLONE(avx2, TARGET_AVX2)
+CLONE(avx512, TARGET_AVX512)
 #endif
 
 void stratus_octree_test_packs(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,

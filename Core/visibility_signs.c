@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which of two neighbours is in front: the side of their face on which the eye is. The four determinants of a cell share their minors in double;
  * where one is smaller than what rounding may have done to it the exact sign decides, so that both owners of a face always agree. */
+#include "clones.h"
 #include "visibility_order.h"
 
 #include "kernels/face_signs.h"
-
-#if defined(__GNUC__)
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-#else
-#define ALWAYS_INLINE inline
-#endif
 
 #define LANES 8
 #define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */
@@ -105,16 +100,16 @@ static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
     }                                                                                                                                      \
   }
 CLONE(portable, )
-#if STRATUS_HAVE_X86_ISAS
-CLONE(avx2, __attribute__((target("avx2"))))
-CLONE(avx512, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"))))
+#if HAVE_CLONES
+CLONE(avx2, TARGET_AVX2)
+CLONE(avx512, TARGET_AVX512)
 #endif
 
 typedef void find_lanes_function(cell_lanes* lanes, int parallel);
 
 static find_lanes_function* choose_clone(const stratus_context* context)
 {
-#if STRATUS_HAVE_X86_ISAS
+#if HAVE_CLONES
   static find_lanes_function* const clones[3] = { find_lanes_portable, find_lanes_avx2, find_lanes_avx512 };
   return clones[context->isa];
 #else
