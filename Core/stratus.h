@@ -870,8 +870,8 @@ STRATUS_API void stratus_partition_get(const stratus_partition* partition, strat
 typedef struct stratus_visibility_order stratus_visibility_order;
 
 typedef enum stratus_peeling {
-  STRATUS_PEELING_NEAREST, /* of the cells that nothing hides any more, one of the nearest: by distance in steps of thousands of cells, within
-                            * these the one that was the last to become free. Default. */
+  STRATUS_PEELING_NEAREST, /* one of the nearest, by distance in steps of hundreds of cells, after all that hide it and have not come yet, which
+                            * are looked for depth first (Williams 1992). Default. */
   STRATUS_PEELING_LAYERS   /* all that nothing hides, then all that only these hid, ... (Li et al. 2012, section 3.1) */
 } stratus_peeling;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space, since
- * peeling goes from neighbour to neighbour. All that it asks of a cell then stands together. */
+ * peeling goes from neighbour to neighbour. */
 #include "cell_morton.h"
 #include "visibility_order.h"
 
@@ -96,36 +96,46 @@ static void fill_cells(stratus_visibility_order* order, const int8_t* side, cons
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
   for (int64_t place = 0; place < order->cell_count; place++) {
     const uint32_t cell = stratus_order_cell(order, (uint32_t)place);
-    stratus_ordered_cell* ordered = order->ordered + place;
-    ordered->side = side[cell];
-    ordered->faces = ordered->state = 0;
+    unsigned sides = (unsigned)(side[cell] + 1) << 4;
     for (int f = 0; f < 4; f++) {
       const int32_t neighbour = order->adjacency->neighbours[4 * (int64_t)cell + f];
       const bool other = neighbour < 0 || (leaf && leaf[neighbour] != leaf[cell]);
-      ordered->neighbours[f] = other ? -1 : places ? (int32_t)places[neighbour] : neighbour;
-      ordered->faces |= (uint8_t)(!other << f);
+      order->neighbours[4 * place + f] = other ? (int32_t)place : places ? (int32_t)places[neighbour] : neighbour;
+      sides |= (unsigned)!other << f;
     }
+    order->sides[place] = (uint8_t)sides;
   }
+}
+
+static stratus_status allocate_cells(stratus_visibility_order* order)
+{
+  stratus_context* context = order->context;
+  const size_t cells = (size_t)order->cell_count;
+  void* memory;
+  TRY(stratus_allocate(context, cells, 4 * sizeof *order->neighbours, &memory));
+  order->neighbours = memory;
+  TRY(stratus_allocate(context, cells, sizeof *order->sides, &memory));
+  order->sides = memory;
+  TRY(stratus_allocate_zero(context, cells, sizeof *order->state, &memory));
+  order->state = memory;
+  TRY(stratus_allocate(context, cells, sizeof *order->waiting, &memory));
+  order->waiting = memory;
+  order->bytes += cells * (4 * sizeof *order->neighbours + sizeof *order->sides + sizeof *order->state + sizeof *order->waiting);
+  return STRATUS_OK;
 }
 
 stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf)
 {
-  stratus_context* context = order->context;
-  stratus_status status = STRATUS_OK;
-  void *memory = NULL, *places = NULL;
+  void* places = NULL;
   TRY(list_cells(order, leaf));
-  TRY(stratus_allocate(context, (size_t)order->cell_count, sizeof *order->ordered, &memory));
-  order->ordered = memory;
-  order->bytes += (size_t)order->cell_count * sizeof *order->ordered;
+  TRY(allocate_cells(order));
   if (order->listed) {
-    TRY_CLEANUP(stratus_allocate(context, (size_t)order->cell_count, sizeof(uint32_t), &places));
+    TRY(stratus_allocate(order->context, (size_t)order->cell_count, sizeof(uint32_t), &places));
     for (int64_t place = 0; place < order->cell_count; place++) {
       ((uint32_t*)places)[order->listed[place]] = (uint32_t)place;
     }
   }
   fill_cells(order, side, leaf, places);
-
-cleanup:
-  stratus_release(context, places);
-  return status;
+  stratus_release(order->context, places);
+  return STRATUS_OK;
 }

@@ -150,8 +150,8 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
     begin[leaf] = count;
     for (int64_t i = order->leaf_begin[leaf]; i < order->leaf_begin[leaf + 1]; i++) {
-      const int32_t* neighbours = order->ordered[i].neighbours;
-      count += (neighbours[0] < 0) + (neighbours[1] < 0) + (neighbours[2] < 0) + (neighbours[3] < 0);
+      const unsigned borders = ~(unsigned)order->sides[i];
+      count += (borders & 1) + (borders >> 1 & 1) + (borders >> 2 & 1) + (borders >> 3 & 1);
     }
   }
   begin[order->leaf_count] = count;
@@ -160,7 +160,7 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   count = 0;
   for (int64_t i = 0; i < order->cell_count; i++) {
     for (uint32_t f = 0; f < 4; f++) {
-      if (order->ordered[i].neighbours[f] < 0) {
+      if (!(order->sides[i] >> f & 1)) {
         (*faces)[count++] = 4 * (uint32_t)i + f;
       }
     }
@@ -176,7 +176,7 @@ static int64_t keep_gaps(gap_search* search, uint32_t* faces, uint8_t* kept)
   build_boxes(search);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
   for (int64_t i = 0; i < search->count; i++) {
-    kept[i] = search->order->ordered[faces[i] / 4].side != 0 && looks_at_others(search, faces[i]);
+    kept[i] = stratus_order_side(search->order, faces[i] / 4) != 0 && looks_at_others(search, faces[i]);
   }
   for (int64_t i = 0; i < search->count; i++) {
     faces[count] = faces[i];
@@ -197,8 +197,17 @@ static stratus_status take_gaps(stratus_visibility_order* order, const uint32_t*
   TRY(stratus_allocate(order->context, (size_t)count, sizeof *order->gap_faces, &memory));
   order->gap_faces = memory;
   memcpy(order->gap_faces, faces, (size_t)count * sizeof *faces);
+  const size_t blocks = (size_t)order->cell_count / STRATUS_GAP_BLOCK + 1;
+  TRY(stratus_allocate(order->context, blocks, sizeof *order->gap_at, &memory));
+  order->gap_at = memory;
+  for (size_t b = 0, face = 0; b < blocks; b++) {
+    while (face < (size_t)count && faces[face] / 4 < b * STRATUS_GAP_BLOCK) {
+      face++;
+    }
+    order->gap_at[b] = (uint32_t)face;
+  }
   TRY(stratus_gates_allocate(order, count));
-  order->bytes += (size_t)count * sizeof *order->gap_faces;
+  order->bytes += (size_t)count * sizeof *order->gap_faces + blocks * sizeof *order->gap_at;
   return STRATUS_OK;
 }
 

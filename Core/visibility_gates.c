@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Order across gaps. A cell that rays enter from a gap is held back until all cells have come from which rays leave into that gap or one
- * before it: those whose faces cover its own in the view and lie before it. */
+ * Order across gaps. Before a cell that rays enter from a gap come all from which rays leave into that gap or one before it: those whose
+ * faces cover its own in the view and lie before it. */
 #include "visibility_order.h"
 
 #include <string.h>
@@ -68,7 +68,7 @@ static bool is_before(const stratus_gates* gates, const stratus_view_point* p, c
 }
 
 /* Whether the face of gate a lies before the one of b in the middle of what they share of the view. */
-static bool lies_before(const stratus_gates* gates, int64_t a, int64_t b)
+bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b)
 {
   stratus_view_point polygon[CORNERS_MAX + 2], front[3], back[3], middle = { 0.0, 0.0, 0.0 };
   double size = 0.0, nearness;
@@ -104,19 +104,25 @@ static void find_depths(const stratus_gates* gates, stratus_gate* gate, const st
   for (int i = 0; i < 3; i++) {
     const stratus_view_point* p = points + i;
     const double depth = gates->parallel ? p->z : sqrt(p->x * p->x + p->y * p->y + p->z * p->z);
-    low = fmin(low, depth);
-    high = fmax(high, depth);
+    low = stratus_smaller(low, depth);
+    high = stratus_larger(high, depth);
     x += p->x / 3.0;
     y += p->y / 3.0;
     z += p->z / 3.0;
   }
   for (int i = 0; i < 3 && !gates->parallel; i++) {
     const stratus_view_point* p = points + i;
-    radius = fmax(radius, (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y) + (p->z - z) * (p->z - z));
+    radius = stratus_larger(radius, (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y) + (p->z - z) * (p->z - z));
   }
   low = gates->parallel ? low : sqrt(x * x + y * y + z * z) - sqrt(radius);
   gate->low = (float)(low - 1e-6 * fabs(low) - DEPTH_SLACK);
   gate->high = (float)(high + 1e-6 * fabs(high) + DEPTH_SLACK);
+}
+
+/* At most so many nodes stand over the gates of the leaves before one: a seventh of those, and one more a level. */
+static int64_t nodes_before(int64_t gates, int64_t leaf)
+{
+  return gates / (STRATUS_GATE_CHILDREN - 1) + STRATUS_GATE_LEVELS_MAX * leaf;
 }
 
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf)
@@ -128,151 +134,72 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     .faces = order->gap_faces + first,
     .count = order->gap_begin[leaf + 1] - first,
     .gates = order->gates + first,
-    .bin_begin = order->gate_bins + 2 * (first + STRATUS_GATE_BINS_EXTRA * (int64_t)leaf),
-    .entries = order->gate_entries + STRATUS_GATE_ENTRIES * first };
-  gates->bin_end = gates->bin_begin + gates->count + STRATUS_GATE_BINS_EXTRA;
+    .nodes = order->gate_nodes + nodes_before(first, leaf) };
   int64_t ways_in = 0, ways_out = 0;
   for (int64_t g = 0; g < gates->count; g++) {
+    stratus_gate* gate = gates->gates + g;
+    const unsigned state = (unsigned)order->state[stratus_gate_cell(gates, g)] >> gates->faces[g] % 4;
     stratus_view_point points[3];
-    stratus_gate_points(gates, g, points);
-    find_depths(gates, gates->gates + g, points);
-    stratus_gate_see(gates, gates->gates + g, points);
-    gates->gates[g].facing = (int8_t)stratus_order_facing(order, gates->faces[g]);
-    gates->gates[g].held = STRATUS_NO_CELL;
-    gates->gates[g].passed = 0;
-    ways_in += gates->gates[g].facing < 0;
-    ways_out += gates->gates[g].facing > 0;
+    gate->facing = (int8_t)((int)(state & 1) - (int)(state >> 4 & 1));
+    gate->passed = 0;
+    ways_in += gate->facing < 0;
+    ways_out += gate->facing > 0;
+    if (gate->facing != 0) {
+      stratus_gate_points(gates, g, points);
+      find_depths(gates, gate, points);
+      stratus_gate_see(gates, gate, points);
+    }
   }
   if (ways_in == 0 || ways_out == 0) {
     return;
   }
-  stratus_gates_fill_bins(gates);
+  stratus_gates_build_tree(gates);
   for (int64_t g = 0; g < gates->count; g++) {
     const int facing = gates->gates[g].facing;
-    order->ordered[stratus_gate_cell(gates, g)].waiting |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
+    order->waiting[stratus_gate_cell(gates, g)] |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
   }
 }
 
 /* A cell's first gate. Its others follow. */
 static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
 {
-  int64_t low = 0, high = gates->count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (gates->faces[middle] < 4 * cell) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
+  int64_t gate = gates->order->gap_at[cell / STRATUS_GAP_BLOCK] - (gates->faces - gates->order->gap_faces);
+  gate = gate > 0 ? gate : 0; /* the block may begin in another leaf */
+  while (gate < gates->count && stratus_gate_cell(gates, gate) < cell) {
+    gate++;
   }
-  return low;
+  return gate;
 }
 
-/* False for most that share a bin: no depth in common, or nothing of what the only side that sees either sees. */
-static bool may_lie_before(const stratus_gate* a, const stratus_gate* b)
-{
-  const float *p = a->box, *q = b->box;
-  const bool one_side = a->sides == b->sides && (a->sides & (a->sides - 1)) == 0;
-  return a->low < b->high && !(one_side && (p[0] > q[1] || q[0] > p[1] || p[2] > q[3] || q[2] > p[3]));
-}
-
-/* A way out whose cell has not come and that lies before a way in; -1: none. What has come leaves its bin. */
-static int64_t find_gate_before(stratus_gates* gates, int64_t way_in)
-{
-  for (int side = 0; side < gates->sides; side++) {
-    const stratus_gate_grid* grid = gates->grids + side;
-    float box[4];
-    int at[4];
-    if (grid->size == 0 || !stratus_gate_box(gates, way_in, side, box)) {
-      continue;
-    }
-    stratus_gate_bins(grid, box, at);
-    for (int bin = at[2] * grid->size + at[0]; bin <= at[3] * grid->size + at[1]; bin++) {
-      if (bin % grid->size < at[0] || bin % grid->size > at[1]) {
-        continue;
-      }
-      const uint32_t begin = gates->bin_begin[grid->first + (uint32_t)bin];
-      uint32_t* end = gates->bin_end + grid->first + bin;
-      for (uint32_t e = begin; e < *end;) {
-        const uint32_t way_out = gates->entries[e];
-        if (gates->gates[way_out].passed) {
-          gates->entries[e] = gates->entries[--*end];
-          continue;
-        }
-        if (may_lie_before(gates->gates + way_out, gates->gates + way_in) &&
-          stratus_gate_cell(gates, way_out) != stratus_gate_cell(gates, way_in) && lies_before(gates, way_out, way_in)) {
-          return way_out;
-        }
-        e++;
-      }
-    }
-  }
-  return -1;
-}
-
-bool stratus_gates_hold(stratus_gates* gates, uint32_t cell)
+uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell)
 {
   for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
-    const int64_t before = gates->gates[g].facing < 0 ? find_gate_before(gates, g) : -1;
+    const int64_t before = gates->gates[g].facing < 0 ? stratus_gates_search(gates, g) : -1;
     if (before >= 0) {
-      gates->order->ordered[cell].next = gates->gates[before].held;
-      gates->gates[before].held = cell;
-      gates->held++;
-      return true;
+      return stratus_gate_cell(gates, before);
     }
   }
-  return false;
+  return STRATUS_NO_CELL;
 }
 
-uint32_t stratus_gates_pass(stratus_gates* gates, uint32_t cell)
+void stratus_gates_pass(stratus_gates* gates, uint32_t cell)
 {
-  uint32_t released = STRATUS_NO_CELL;
   for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
-    stratus_gate* gate = gates->gates + g;
-    gate->passed = 1;
-    while (gate->held != STRATUS_NO_CELL) {
-      const uint32_t first = gate->held;
-      gate->held = gates->order->ordered[first].next;
-      gates->order->ordered[first].next = released;
-      released = first;
-      gates->held--;
+    gates->gates[g].passed = 1;
+    if (gates->gates[g].facing > 0) {
+      stratus_gates_take_from_tree(gates, g);
     }
   }
-  return released;
-}
-
-uint32_t stratus_gates_yield(stratus_gates* gates, int64_t* steps)
-{
-  const stratus_visibility_order* order = gates->order;
-  uint32_t* nearest = NULL; /* there is one, as cells are held */
-  float nearest_key = 0.0f;
-  for (int64_t g = 0; g < gates->count; g++) {
-    for (uint32_t* at = &gates->gates[g].held; *at != STRATUS_NO_CELL; at = &order->ordered[*at].next, ++*steps) {
-      const float key = stratus_order_key(order, *at);
-      if (!nearest || key < nearest_key) {
-        nearest = at;
-        nearest_key = key;
-      }
-    }
-  }
-  *steps += gates->count;
-  const uint32_t cell = *nearest;
-  *nearest = order->ordered[cell].next;
-  order->ordered[cell].waiting &= (uint8_t)~STRATUS_GATE_IN;
-  gates->held--;
-  return cell;
 }
 
 stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps)
 {
-  const size_t count = (size_t)gaps, bins = 2 * (count + STRATUS_GATE_BINS_EXTRA * (size_t)order->leaf_count);
+  const size_t count = (size_t)gaps, nodes = (size_t)nodes_before(gaps, order->leaf_count);
   void* memory;
   TRY(stratus_allocate(order->context, count, sizeof *order->gates, &memory));
   order->gates = memory;
-  TRY(stratus_allocate(order->context, count, STRATUS_GATE_ENTRIES * sizeof *order->gate_entries, &memory));
-  order->gate_entries = memory;
-  TRY(stratus_allocate(order->context, bins, sizeof *order->gate_bins, &memory));
-  order->gate_bins = memory;
-  order->bytes += count * (sizeof *order->gates + STRATUS_GATE_ENTRIES * sizeof *order->gate_entries) + bins * sizeof *order->gate_bins;
+  TRY(stratus_allocate(order->context, nodes, sizeof *order->gate_nodes, &memory));
+  order->gate_nodes = memory;
+  order->bytes += count * sizeof *order->gates + nodes * sizeof *order->gate_nodes;
   return STRATUS_OK;
 }

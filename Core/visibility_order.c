@@ -6,7 +6,6 @@
 #include <omp.h>
 #include <string.h>
 
-#define HEADS_APART 32 /* so that no two threads write to a cache line, or its neighbour, in turns */
 #define COORDINATE_MAX 1e300 /* so that differences are finite */
 
 static stratus_status find_bounds(stratus_visibility_order* order)
@@ -56,12 +55,11 @@ static stratus_status allocate_order(stratus_visibility_order* order)
   TRY(allocate_part(order, cells, sizeof *order->cells, &memory));
   order->cells = memory;
   for (int32_t l = 0; l < order->leaf_count; l++) {
-    const int64_t buckets = stratus_order_buckets(order->leaf_begin[l + 1] - order->leaf_begin[l]);
-    order->buckets = buckets > order->buckets ? buckets : order->buckets;
+    const int64_t seeds = stratus_order_seed_count(order->leaf_begin[l + 1] - order->leaf_begin[l]);
+    order->seed_count = seeds > order->seed_count ? seeds : order->seed_count;
   }
-  order->buckets = (order->buckets + HEADS_APART - 1) / HEADS_APART * HEADS_APART;
-  TRY(allocate_part(order, (size_t)peeling_threads(order), (size_t)order->buckets * sizeof *order->heads, &memory));
-  order->heads = memory;
+  TRY(allocate_part(order, (size_t)peeling_threads(order), (size_t)order->seed_count * sizeof *order->seeds, &memory));
+  order->seeds = memory;
   return STRATUS_OK;
 }
 
@@ -140,20 +138,23 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_context* context = order->context;
   release_adjacency(order);
   stratus_release(context, order->nodes);
-  stratus_release(context, order->ordered);
+  stratus_release(context, order->neighbours);
+  stratus_release(context, order->sides);
+  stratus_release(context, order->state);
+  stratus_release(context, order->waiting);
   stratus_release(context, order->listed);
   stratus_release(context, order->leaf_begin);
   stratus_release(context, order->leaf_order);
   stratus_release(context, order->leaf_output);
   stratus_release(context, order->gap_faces);
   stratus_release(context, order->gap_begin);
+  stratus_release(context, order->gap_at);
   stratus_release(context, order->gates);
-  stratus_release(context, order->gate_bins);
-  stratus_release(context, order->gate_entries);
+  stratus_release(context, order->gate_nodes);
   stratus_release(context, order->seen_at);
   stratus_release(context, order->seen);
   stratus_release(context, order->cells);
-  stratus_release(context, order->heads);
+  stratus_release(context, order->seeds);
   stratus_device_signs_destroy(context, order->device_signs);
   stratus_release(context, order);
 }
@@ -200,14 +201,26 @@ static bool same_view(const stratus_view* p, const stratus_view* q)
   return p->parallel == q->parallel && a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
+static stratus_peel_counts peel_leaf(stratus_visibility_order* order, int32_t leaf, stratus_peeling peeling)
+{
+  stratus_order_seed* seeds = order->seeds + omp_get_thread_num() * order->seed_count;
+  const int64_t cells = order->leaf_begin[leaf + 1] - order->leaf_begin[leaf];
+  uint32_t* out = order->cells + order->leaf_output[leaf];
+  const stratus_peel_counts counts = peeling == STRATUS_PEELING_LAYERS ? stratus_order_leaf_layers(order, leaf, seeds)
+                                                                       : stratus_order_leaf_nearest(order, leaf, seeds);
+  for (int64_t i = 0; i < cells && order->listed; i++) {
+    out[i] = order->listed[out[i]];
+  }
+  return counts;
+}
+
 static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling, stratus_visibility_result* result)
 {
   int64_t cycles = 0, forced = 0;
   int layers = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced) reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; i++) {
-    const stratus_peel_counts counts = stratus_order_peel_leaf(
-      order, order->leaf_order[i], peeling, order->heads + omp_get_thread_num() * order->buckets);
+    const stratus_peel_counts counts = peel_leaf(order, order->leaf_order[i], peeling);
     cycles += counts.cycles;
     forced += counts.forced;
     layers = counts.layers > layers ? counts.layers : layers;

@@ -71,7 +71,6 @@ int stratus_order_exact_sign(const stratus_visibility_order* order, const stratu
 typedef struct cell_lanes {
   double x[4][LANES], y[4][LANES], z[4][LANES]; /* of the vertices, as seen */
   int64_t signs[LANES];                         /* bit f: face f's determinant is positive, bit 4 + f: negative; neither: rounding may tell */
-  float key[LANES];
 } cell_lanes;
 
 static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
@@ -86,7 +85,6 @@ static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
       signs |= (det[f] > FACE_SIGNS_ERROR_BOUND ? (int64_t)1 << f : 0) | (det[f] < -FACE_SIGNS_ERROR_BOUND ? (int64_t)16 << f : 0);
     }
     lanes->signs[l] = signs;
-    lanes->key[l] = face_signs_key(p0, p1, p2, p3, parallel);
   }
 }
 
@@ -118,13 +116,13 @@ static find_lanes_function* choose_clone(const stratus_context* context)
 #endif
 }
 
-/* Where rounding may tell, the exact sign does; both owners of a face agree by it. */
+/* Where rounding may tell between neighbours, the exact sign does; both owners of a face agree by it. */
 static int64_t take_signs(stratus_visibility_order* order, const stratus_view* view, int64_t cell, unsigned signs, bool* changed)
 {
-  stratus_ordered_cell* ordered = order->ordered + cell;
-  unsigned positive = signs & ordered->faces, negative = signs >> 4 & ordered->faces, open = ordered->faces & ~(positive | negative);
+  const int side = stratus_order_side(order, cell);
+  unsigned positive = signs & 15u, negative = signs >> 4, open = order->sides[cell] & 15u & ~(positive | negative);
   int64_t exact = 0;
-  for (int f = 0; open && ordered->side != 0 && f < 4; f++) {
+  for (int f = 0; open && side != 0 && f < 4; f++) {
     if (open >> f & 1) {
       const int sign = stratus_order_exact_sign(order, view, (uint32_t)cell, f);
       positive |= (unsigned)(sign > 0) << f;
@@ -133,8 +131,8 @@ static int64_t take_signs(stratus_visibility_order* order, const stratus_view* v
     }
   }
   /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
-  const unsigned state = ordered->side > 0 ? positive << 4 | negative : ordered->side < 0 ? negative << 4 | positive : 0;
-  *changed = stratus_order_take_state(ordered, state) || *changed;
+  const unsigned state = side > 0 ? positive << 4 | negative : side < 0 ? negative << 4 | positive : 0;
+  *changed = stratus_order_take_state(order, cell, state) || *changed;
   return exact;
 }
 
@@ -164,7 +162,6 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
     find(&lanes, view->parallel);
     for (int l = 0; l < count; l++) {
       exact += take_signs(order, view, begin + l, (unsigned)lanes.signs[l], &changed);
-      order->ordered[begin + l].key = lanes.key[l];
     }
   }
   order->relations_changed = changed;
@@ -176,15 +173,6 @@ float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
   const int32_t* v = stratus_order_vertices(order, cell);
   return face_signs_key(
     seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel);
-}
-
-int stratus_order_facing(const stratus_visibility_order* order, uint32_t face)
-{
-  const int32_t* v = stratus_order_vertices(order, face / 4);
-  double det[4];
-  face_determinants(
-    seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel, det);
-  return -face_sign(det[face % 4]) * order->ordered[face / 4].side;
 }
 
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face)

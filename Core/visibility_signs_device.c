@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back two
- * words a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
+ * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back a word
+ * a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
 #include "device.h"
 #include "visibility_order.h"
 
@@ -11,7 +11,7 @@
 #define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */
 
 struct stratus_device_signs {
-  cl_mem corners, faces, seen, results;
+  cl_mem corners, sides, seen, results;
 };
 
 bool stratus_order_signs_on_device(const stratus_visibility_order* order)
@@ -28,28 +28,25 @@ void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs
 {
   if (signs) {
     stratus_device_buffer_release(signs->corners);
-    stratus_device_buffer_release(signs->faces);
+    stratus_device_buffer_release(signs->sides);
     stratus_device_buffer_release(signs->seen);
     stratus_device_buffer_release(signs->results);
     stratus_release(context, signs);
   }
 }
 
-/* corners and faces, as the kernel has them, of a part of the cells. */
-static stratus_status send_cells(const stratus_visibility_order* order, stratus_device_signs* signs, int64_t begin, int64_t count,
-  int32_t* corners, uint8_t* faces)
+/* Corners, as the kernel has them, of a part of the cells. */
+static stratus_status send_corners(
+  const stratus_visibility_order* order, stratus_device_signs* signs, int64_t begin, int64_t count, int32_t* corners)
 {
   for (int64_t i = 0; i < count; i++) {
     const int32_t* v = stratus_order_vertices(order, (uint32_t)(begin + i));
-    const stratus_ordered_cell* ordered = order->ordered + begin + i;
-    faces[i] = (uint8_t)((ordered->side + 1) << 4 | ordered->faces);
     for (int f = 0; f < 4; f++) {
       corners[4 * i + f] = order->seen_at ? (int32_t)order->seen_at[v[f]] : v[f];
     }
   }
   const size_t cells = (size_t)count, first = (size_t)begin;
-  TRY(stratus_device_write(order->context, signs->corners, 4 * first * sizeof *corners, 4 * cells * sizeof *corners, corners));
-  return stratus_device_write(order->context, signs->faces, first, cells, faces);
+  return stratus_device_write(order->context, signs->corners, 4 * first * sizeof *corners, 4 * cells * sizeof *corners, corners);
 }
 
 static stratus_status make_signs(stratus_visibility_order* order)
@@ -57,26 +54,25 @@ static stratus_status make_signs(stratus_visibility_order* order)
   stratus_context* context = order->context;
   const size_t cells = (size_t)order->cell_count, part = (size_t)(order->cell_count < PART ? order->cell_count : PART);
   stratus_status status = STRATUS_OK;
-  void *memory = NULL, *corners = NULL, *faces = NULL;
+  void *memory = NULL, *corners = NULL;
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_device_signs), &memory));
   stratus_device_signs* signs = memory;
   TRY_CLEANUP(stratus_allocate(context, part, 4 * sizeof(int32_t), &corners));
-  TRY_CLEANUP(stratus_allocate(context, part, sizeof(uint8_t), &faces));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, 4 * cells * sizeof(int32_t), NULL, false, &signs->corners));
-  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, cells, NULL, false, &signs->faces));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, cells, NULL, false, &signs->sides));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)order->point_count * 3 * sizeof(double), NULL, false, &signs->seen));
-  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, 2 * cells * sizeof(uint32_t), NULL, false, &signs->results));
+  TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, cells * sizeof(uint16_t), NULL, false, &signs->results));
   for (int64_t begin = 0; begin < order->cell_count; begin += PART) {
     const int64_t left = order->cell_count - begin;
-    TRY_CLEANUP(send_cells(order, signs, begin, left < PART ? left : PART, corners, faces));
+    TRY_CLEANUP(send_corners(order, signs, begin, left < PART ? left : PART, corners));
   }
+  TRY_CLEANUP(stratus_device_write(context, signs->sides, 0, cells, order->sides));
   order->device_signs = signs;
   signs = NULL;
 
 cleanup:
   stratus_device_signs_destroy(context, signs);
   stratus_release(context, corners);
-  stratus_release(context, faces);
   return status;
 }
 
@@ -89,7 +85,7 @@ static stratus_status run_signs(const stratus_visibility_order* order, const str
   const struct {
     size_t size;
     const void* value;
-  } arguments[] = { { sizeof signs->seen, &signs->seen }, { sizeof signs->corners, &signs->corners }, { sizeof signs->faces, &signs->faces },
+  } arguments[] = { { sizeof signs->seen, &signs->seen }, { sizeof signs->corners, &signs->corners }, { sizeof signs->sides, &signs->sides },
     { sizeof cells, &cells }, { sizeof parallel, &parallel }, { sizeof signs->results, &signs->results } };
   const size_t items = (size_t)cells, local = GROUP;
   cl_kernel kernel;
@@ -101,22 +97,19 @@ static stratus_status run_signs(const stratus_visibility_order* order, const str
   return stratus_device_run(context, kernel, 1, &items, &local);
 }
 
-/* What the device found of a cell: its key, and its state with what nobody knows in bits 8 to 11. Returns how many of those there were. */
-static int64_t take_result(
-  stratus_visibility_order* order, const stratus_view* view, uint32_t cell, const uint32_t result[2], bool* changed)
+/* What the device found of a cell: its state, and what nobody knows in bits 8 to 11. Returns how many of those there were. */
+static int64_t take_result(stratus_visibility_order* order, const stratus_view* view, uint32_t cell, unsigned result, bool* changed)
 {
-  stratus_ordered_cell* ordered = order->ordered + cell;
-  unsigned state = result[1] & 255u;
+  unsigned state = result & 255u;
   int64_t exact = 0;
   for (int f = 0; f < 4; f++) {
-    if (result[1] >> (8 + f) & 1) {
-      const int sign = stratus_order_exact_sign(order, view, cell, f) * ordered->side;
+    if (result >> (8 + f) & 1) {
+      const int sign = stratus_order_exact_sign(order, view, cell, f) * stratus_order_side(order, cell);
       state |= (unsigned)(sign < 0) << f | (unsigned)(sign > 0) << (4 + f);
       exact++;
     }
   }
-  *changed = stratus_order_take_state(ordered, state) || *changed;
-  memcpy(&ordered->key, result, sizeof ordered->key);
+  *changed = stratus_order_take_state(order, cell, state) || *changed;
   return exact;
 }
 
@@ -130,17 +123,17 @@ stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* orde
   if (!order->device_signs) {
     TRY(make_signs(order));
   }
-  TRY(stratus_allocate(context, (size_t)(order->cell_count < PART ? order->cell_count : PART), 2 * sizeof(uint32_t), &memory));
-  const uint32_t* results = memory;
+  TRY(stratus_allocate(context, (size_t)(order->cell_count < PART ? order->cell_count : PART), sizeof(uint16_t), &memory));
+  const uint16_t* results = memory;
   stratus_order_see_points(order, view);
   TRY_CLEANUP(run_signs(order, view));
   for (int64_t begin = 0; begin < order->cell_count; begin += PART) {
     const int64_t left = order->cell_count - begin, count = left < PART ? left : PART;
-    const size_t cell = 2 * sizeof(uint32_t);
+    const size_t cell = sizeof(uint16_t);
     TRY_CLEANUP(stratus_device_read(context, order->device_signs->results, (size_t)begin * cell, (size_t)count * cell, memory));
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : open) reduction(|| : changed)
     for (int64_t i = 0; i < count; i++) {
-      open += take_result(order, view, (uint32_t)(begin + i), results + 2 * i, &changed);
+      open += take_result(order, view, (uint32_t)(begin + i), results[i], &changed);
     }
   }
   order->relations_changed = changed;

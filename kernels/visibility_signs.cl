@@ -5,11 +5,11 @@
 #endif
 #include "face_signs.h"
 
-/* corners: where in `seen` each of a cell's points is. faces: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its faces
- * on which it lies, plus 1. results: the key's bits; then bit f: the neighbour behind face f comes after it, bit 4 + f: before it, bit 8 + f:
- * nobody knows. */
-__kernel void signs(__global const double* seen, __global const int* corners, __global const uchar* faces, ulong count, int parallel,
-  __global uint* results)
+/* corners: where in `seen` each of a cell's points is. sides: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its faces
+ * on which it lies, plus 1. results: bit f: what is behind face f comes after the cell, bit 4 + f: before it, bit 8 + f: of a neighbour nobody
+ * knows. */
+__kernel void signs(__global const double* seen, __global const int* corners, __global const uchar* sides, ulong count, int parallel,
+  __global ushort* results)
 {
   const size_t cell = get_global_id(0);
   if (cell >= count) {
@@ -20,16 +20,13 @@ __kernel void signs(__global const double* seen, __global const int* corners, __
   const face_point p1 = face_point_at(seen + 3 * (size_t)corner[1]);
   const face_point p2 = face_point_at(seen + 3 * (size_t)corner[2]);
   const face_point p3 = face_point_at(seen + 3 * (size_t)corner[3]);
-  const int side = (int)(faces[cell] >> 4) - 1;
+  const int side = (int)(sides[cell] >> 4) - 1;
   double det[4];
   uint state = 0;
   face_determinants(p0, p1, p2, p3, parallel, det);
-  for (int f = 0; f < 4; f++) {
-    if (side != 0 && (faces[cell] >> f & 1)) {
-      const int sign = face_sign(det[f]) * side;
-      state |= (uint)(sign < 0) << f | (uint)(sign > 0) << (4 + f) | (uint)(sign == 0) << (8 + f);
-    }
+  for (int f = 0; f < 4 && side != 0; f++) {
+    const int sign = face_sign(det[f]) * side;
+    state |= (uint)(sign < 0) << f | (uint)(sign > 0) << (4 + f) | (uint)(sign == 0 && (sides[cell] >> f & 1)) << (8 + f);
   }
-  results[2 * cell] = as_uint(face_signs_key(p0, p1, p2, p3, parallel));
-  results[2 * cell + 1] = state;
+  results[cell] = (ushort)state;
 }

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * One leaf's cells, nearest first by steps of some: each comes after all that hide it, through faces or across gaps, which are looked for depth
+ * first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. */
+#include "visibility_order.h"
+
+/* `waiting` of a cell. Bits 0 to 3: neighbours that may have to come before it and were not asked yet. */
+#define FACES 0x0fu
+#define STARTED 0x10u /* it waits, or has come */
+#define CAME 0x20u
+#define GATES (STRATUS_GATE_IN | STRATUS_GATE_OUT)
+
+typedef struct leaf_search {
+  stratus_visibility_order* order;
+  uint8_t* waiting;
+  const int32_t* neighbours;
+  uint32_t first;
+  int64_t count, emitted, steps;
+  int64_t face_rings, gap_rings;
+  uint32_t *out, *bottom; /* cells that wait for the one on top of them are kept where the last ones will come to stand: top..bottom */
+  stratus_gates gates;
+  stratus_peel_counts counts;
+} leaf_search;
+
+/* Of the neighbours asked for, those that have not come. Without branches: they would be guessed wrong half the time. */
+static inline unsigned still_to_come(const uint8_t* waiting, const int32_t neighbours[4], unsigned asked)
+{
+  const unsigned came = (waiting[neighbours[0]] & CAME) | (waiting[neighbours[1]] & CAME) << 1 | (waiting[neighbours[2]] & CAME) << 2 |
+    (waiting[neighbours[3]] & CAME) << 3;
+  return asked & ~(came / CAME);
+}
+
+/* The face through which `before` comes before a cell, -1: it does across a gap. */
+static int face_towards(const stratus_visibility_order* order, uint32_t cell, uint32_t before)
+{
+  const unsigned faces = stratus_order_before(order, cell);
+  int f = 3;
+  while (f >= 0 && !(faces >> f & 1 && order->neighbours[4 * (int64_t)cell + f] == (int32_t)before)) {
+    f--;
+  }
+  return f;
+}
+
+/* The cells from `top` down to `last` wait each for the one above, and top's for `last`. One waits no more, across a gap if any does, else through the face that
+ * is seen smallest; what it waited for has to be looked for again. Returns the place of that cell, which is on top now. */
+static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
+{
+  stratus_visibility_order* order = search->order;
+  uint32_t *least = top, before = last;
+  int least_face = 0;
+  double least_size = INFINITY;
+  for (uint32_t* at = top;; before = *at++) {
+    const int face = face_towards(order, *at, before);
+    const double size = face < 0 ? -1.0 : stratus_order_face_size(order, *at, face);
+    if (size < least_size) {
+      least_size = size;
+      least_face = face;
+      least = at;
+    }
+    search->steps++;
+    if (*at == last) {
+      break;
+    }
+  }
+  for (; top < least; top++, search->steps++) {
+    search->waiting[*top] = (uint8_t)((search->waiting[*top] & GATES) | stratus_order_before(order, *top));
+  }
+  if (least_face < 0) {
+    search->waiting[*least] &= (uint8_t)~STRATUS_GATE_IN;
+    search->gap_rings++;
+  } else {
+    stratus_order_cut(order, *least, least_face);
+    search->face_rings++;
+  }
+  return least;
+}
+
+/* All that a cell has to wait for, and itself. Unless rings were too many. */
+static void bring(leaf_search* search, uint32_t cell)
+{
+  uint8_t* const waiting = search->waiting; /* bytes might be anything's: what is not a local is read again after each */
+  const int32_t* const neighbours = search->neighbours;
+  uint32_t *top = search->bottom, *out = search->out + search->emitted;
+  uint32_t* const bottom = top;
+  for (;;) {
+    const unsigned waits = waiting[cell];
+    const int32_t* const around = neighbours + 4 * (int64_t)cell;
+    const unsigned pending = waits & FACES ? still_to_come(waiting, around, waits & FACES) : 0;
+    uint32_t before = STRATUS_NO_CELL;
+    if (pending) {
+      before = (uint32_t)around[pending & 1 ? 0 : pending & 2 ? 1 : pending & 4 ? 2 : 3];
+    } else if (waits & STRATUS_GATE_IN) {
+      before = stratus_gates_before(&search->gates, cell);
+    }
+    if (before == STRATUS_NO_CELL) {
+      waiting[cell] = STARTED | CAME;
+      *out++ = cell;
+      if (waits & STRATUS_GATE_OUT) {
+        stratus_gates_pass(&search->gates, cell);
+      }
+      if (top == bottom) {
+        break;
+      }
+      cell = *top++;
+      continue;
+    }
+    waiting[cell] = (uint8_t)((waits & GATES) | STARTED | (pending & (pending - 1))); /* not to be asked for again */
+    *--top = cell;
+    cell = before;
+    if (waiting[cell] & STARTED) {
+      top = break_ring(search, top, cell);
+      cell = *top++;
+      if (search->steps > STRATUS_STEPS_PER_CELL * search->count) {
+        break;
+      }
+    }
+  }
+  search->emitted = out - search->out;
+}
+
+static void begin_leaf(leaf_search* search, int32_t leaf)
+{
+  stratus_visibility_order* order = search->order;
+  for (int64_t i = 0; i < search->count; i++) {
+    const uint32_t cell = search->first + (uint32_t)i;
+    search->waiting[cell] = (uint8_t)stratus_order_before(order, cell);
+    if (i % 4 == 0) { /* the whole leaf's are asked for at random soon: now the memory can still be read in a row */
+      STRATUS_FETCH(search->neighbours + 4 * (int64_t)cell);
+    }
+  }
+  stratus_gates_open(&search->gates, order, leaf);
+}
+
+stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds)
+{
+  const int64_t begin = order->leaf_begin[leaf];
+  leaf_search search = { .order = order,
+    .waiting = order->waiting,
+    .neighbours = order->neighbours,
+    .first = (uint32_t)begin,
+    .count = order->leaf_begin[leaf + 1] - begin,
+    .out = order->cells + order->leaf_output[leaf] };
+  search.bottom = search.out + search.count;
+  begin_leaf(&search, leaf);
+  stratus_order_sort_seeds(order, leaf, seeds);
+  const uint32_t end = search.first + (uint32_t)search.count;
+  for (int64_t s = 0; s < stratus_order_seed_count(search.count); s++) {
+    for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; cell++) {
+      if (!(search.waiting[cell] & CAME) && search.steps <= STRATUS_STEPS_PER_CELL * search.count) {
+        bring(&search, cell);
+      }
+      if (!(search.waiting[cell] & CAME)) {
+        search.waiting[cell] = CAME;
+        search.out[search.emitted++] = cell;
+        search.counts.forced++;
+      }
+    }
+  }
+  /* One through faces may well lead across gaps in many places. */
+  search.counts.cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings;
+  return search.counts;
+}
