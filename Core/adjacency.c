@@ -9,16 +9,16 @@
 #define BUCKETS_MAX 2048      /* more streams than this, and the pass that deals spends its time on pages */
 #define SIDE_BIT 0x80000000u  /* point numbers have 31 bits */
 #define NO_FACE UINT32_MAX
+#define MANY (UINT32_MAX - 1) /* for the second: there were more, which all count as broken */
 
 /* b's high bit: the cell lies on the positive side of (a, b, c); c's: on the negative; neither: the cell is flat. */
 typedef struct face_record {
   uint32_t a, b, c, face;
 } face_record;
 
-/* Records of one face: the first two. second is NO_FACE until there is one. */
+/* Records of one face: the first two. NO_FACE until there is one. */
 typedef struct face_slot {
   uint32_t first, second;
-  uint32_t count; /* 0: the slot is free */
 } face_slot;
 
 typedef struct adjacency_build {
@@ -66,10 +66,12 @@ static void count_faces(const adjacency_build* build, int chunk)
   memset(counts, 0, (size_t)build->buckets * sizeof *counts);
   for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
-    for (int f = 0; f < 4 && !names_a_point_twice(v); f++) {
-      int32_t point[3];
-      (void)stratus_face_points(v, f, point);
-      counts[point[0] >> build->shift]++;
+    if (!names_a_point_twice(v)) { /* the lowest point is the lowest of the three faces that have it */
+      const int32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
+      const int32_t other_low = v[2] < v[3] ? v[2] : v[3], other_high = v[2] < v[3] ? v[3] : v[2];
+      const int32_t second = low < other_low ? (high < other_low ? high : other_low) : (other_high < low ? other_high : low);
+      counts[(low < other_low ? low : other_low) >> build->shift] += 3;
+      counts[second >> build->shift]++;
     }
   }
 }
@@ -116,46 +118,52 @@ static inline bool same_face(const face_record* p, const face_record* q)
 
 static inline size_t slot_of(const face_record* record, size_t slots)
 {
-  uint64_t hash = record->a * UINT64_C(0x9e3779b97f4a7c15);
-  hash = (hash ^ (record->b & ~SIDE_BIT)) * UINT64_C(0xbf58476d1ce4e5b9);
-  hash = (hash ^ (record->c & ~SIDE_BIT)) * UINT64_C(0x94d049bb133111eb);
+  const uint64_t hash = record->a * UINT64_C(0x9e3779b97f4a7c15) + (record->b & ~SIDE_BIT) * UINT64_C(0xbf58476d1ce4e5b9) +
+    (record->c & ~SIDE_BIT) * UINT64_C(0x94d049bb133111eb);
   return (size_t)((hash >> 33) * slots >> 31); /* slots below 2^33 */
 }
 
-/* Slots are 32 bits of a bucket's records: no bucket has more, as there are at most 2^32 faces. */
-static void fill_table(const face_record* records, size_t count, face_slot* table, size_t slots)
+/* Cells on the same side of a face are no neighbours through it. */
+static inline bool is_folded(const face_record* p, const face_record* q)
 {
-  memset(table, 0, slots * sizeof *table);
-  for (size_t i = 0; i < count; i++) {
-    size_t s = slot_of(records + i, slots);
-    while (table[s].count > 0 && !same_face(records + table[s].first, records + i)) {
-      s = s + 1 == slots ? 0 : s + 1;
-    }
-    if (table[s].count == 0) {
-      table[s] = (face_slot){ (uint32_t)i, NO_FACE, 1 };
-    } else if (++table[s].count == 2) {
-      table[s].second = (uint32_t)i;
-    }
-  }
+  return (p->b & q->b & SIDE_BIT) || (p->c & q->c & SIDE_BIT);
 }
 
+/* Slots are 32 bits of a bucket's records: no bucket has more, as there are at most 2^32 faces. */
 static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, int64_t* broken, int64_t* folded)
 {
   const size_t* ends = build->places + (size_t)build->chunks * (size_t)build->buckets;
   const size_t begin = bucket == 0 ? 0 : ends[bucket - 1], count = ends[bucket] - begin, slots = count + count / 2 + 1;
   const face_record* records = build->records + begin;
-  fill_table(records, count, table, slots);
-  for (size_t s = 0; s < slots; s++) {
-    if (table[s].count > 2) {
-      *broken += table[s].count;
-    } else if (table[s].count == 2) {
-      const face_record *p = records + table[s].first, *q = records + table[s].second;
-      if ((p->b & q->b & SIDE_BIT) || (p->c & q->c & SIDE_BIT)) {
+  int32_t* neighbours = build->adjacency->neighbours;
+  memset(table, 0xff, slots * sizeof *table);
+  for (size_t i = 0; i < count; i++) {
+    const face_record* q = records + i;
+    size_t s = slot_of(q, slots);
+    while (table[s].first != NO_FACE && !same_face(records + table[s].first, q)) {
+      s = s + 1 == slots ? 0 : s + 1;
+    }
+    face_slot* slot = table + s;
+    const face_record* p = records + slot->first;
+    if (slot->first == NO_FACE) {
+      slot->first = (uint32_t)i;
+    } else if (slot->second == NO_FACE) {
+      slot->second = (uint32_t)i;
+      if (is_folded(p, q)) {
         *folded += 2;
-        continue;
+      } else {
+        neighbours[p->face] = (int32_t)(q->face / 4);
+        neighbours[q->face] = (int32_t)(p->face / 4);
       }
-      build->adjacency->neighbours[p->face] = (int32_t)(q->face / 4);
-      build->adjacency->neighbours[q->face] = (int32_t)(p->face / 4);
+    } else {
+      ++*broken;
+      if (slot->second != MANY) {
+        const face_record* other = records + slot->second;
+        *broken += 2;
+        *folded -= is_folded(p, other) ? 2 : 0;
+        neighbours[p->face] = neighbours[other->face] = -1;
+        slot->second = MANY;
+      }
     }
   }
 }

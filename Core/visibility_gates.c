@@ -97,24 +97,28 @@ bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b)
   return size > LEAST_SHARE * fabs(front_turn) || size_behind > LEAST_SHARE * fabs(turn);
 }
 
+static double length_squared(double x, double y, double z)
+{
+  return x * x + y * y + z * z;
+}
+
 /* Not nearer, nor farther, than any point of the face. */
 static void find_depths(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3])
 {
-  double low = INFINITY, high = -INFINITY, x = 0.0, y = 0.0, z = 0.0, radius = 0.0;
-  for (int i = 0; i < 3; i++) {
-    const stratus_view_point* p = points + i;
-    const double depth = gates->parallel ? p->z : sqrt(p->x * p->x + p->y * p->y + p->z * p->z);
-    low = stratus_smaller(low, depth);
-    high = stratus_larger(high, depth);
-    x += p->x / 3.0;
-    y += p->y / 3.0;
-    z += p->z / 3.0;
+  const stratus_view_point *p = points, *q = points + 1, *r = points + 2;
+  double low, high;
+  if (gates->parallel) {
+    low = stratus_smaller(stratus_smaller(p->z, q->z), r->z);
+    high = stratus_larger(stratus_larger(p->z, q->z), r->z);
+  } else { /* nearest is what a ball around the face would reach */
+    const double x = (p->x + q->x + r->x) / 3.0, y = (p->y + q->y + r->y) / 3.0, z = (p->z + q->z + r->z) / 3.0;
+    double radius = length_squared(p->x - x, p->y - y, p->z - z);
+    radius = stratus_larger(radius, length_squared(q->x - x, q->y - y, q->z - z));
+    radius = stratus_larger(radius, length_squared(r->x - x, r->y - y, r->z - z));
+    high = stratus_larger(length_squared(p->x, p->y, p->z), length_squared(q->x, q->y, q->z));
+    high = sqrt(stratus_larger(high, length_squared(r->x, r->y, r->z)));
+    low = sqrt(length_squared(x, y, z)) - sqrt(radius);
   }
-  for (int i = 0; i < 3 && !gates->parallel; i++) {
-    const stratus_view_point* p = points + i;
-    radius = stratus_larger(radius, (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y) + (p->z - z) * (p->z - z));
-  }
-  low = gates->parallel ? low : sqrt(x * x + y * y + z * z) - sqrt(radius);
   gate->low = (float)(low - 1e-6 * fabs(low) - DEPTH_SLACK);
   gate->high = (float)(high + 1e-6 * fabs(high) + DEPTH_SLACK);
 }

@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#define LEAVES_MAX 65536
 #define FRAME_SLACK 1e-9 /* of the mesh's size: where axes are turned, points on a plane are on it but for rounding */
 
 static stratus_status check_tree(stratus_context* context, const stratus_leaves* leaves)
@@ -12,8 +11,8 @@ static stratus_status check_tree(stratus_context* context, const stratus_leaves*
   if (!leaves->nodes || !leaves->leaf) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: nodes or leaf is NULL");
   }
-  if (leaves->leaf_count < 1 || leaves->leaf_count > LEAVES_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: leaf_count %d outside 1..%d", (int)leaves->leaf_count, LEAVES_MAX);
+  if (leaves->leaf_count < 1 || leaves->leaf_count > STRATUS_LEAVES_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: leaf_count %d outside 1..%d", (int)leaves->leaf_count, STRATUS_LEAVES_MAX);
   }
   if (leaves->node_count != 2 * leaves->leaf_count - 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: node_count %d, a tree of %d leaves has %d", (int)leaves->node_count,

@@ -87,7 +87,7 @@ static void bring(leaf_search* search, uint32_t cell)
     const unsigned pending = waits & FACES ? still_to_come(waiting, around, waits & FACES) : 0;
     uint32_t before = STRATUS_NO_CELL;
     if (pending) {
-      before = (uint32_t)around[pending & 1 ? 0 : pending & 2 ? 1 : pending & 4 ? 2 : 3];
+      before = (uint32_t)around[__builtin_ctz(pending)];
     } else if (waits & STRATUS_GATE_IN) {
       before = stratus_gates_before(&search->gates, cell);
     }

@@ -4,8 +4,10 @@
 #include "visibility_order.h"
 
 #include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
+#define CELLS_PER_GATE 8 /* that take as long as one */
 #define COORDINATE_MAX 1e300 /* so that differences are finite */
 
 static stratus_status find_bounds(stratus_visibility_order* order)
@@ -44,6 +46,26 @@ static stratus_status allocate_part(stratus_visibility_order* order, size_t coun
 static int peeling_threads(const stratus_visibility_order* order)
 {
   return order->leaf_count < order->context->threads ? order->leaf_count : order->context->threads;
+}
+
+static int compare_work(const void* a, const void* b)
+{
+  const int64_t p = *(const int64_t*)a, q = *(const int64_t*)b;
+  return (p < q) - (p > q);
+}
+
+/* A thread that finds no more leaves is idle: those that take longest are peeled first. */
+static stratus_status plan_leaves(stratus_visibility_order* order)
+{
+  void* memory;
+  TRY(allocate_part(order, (size_t)order->leaf_count, sizeof *order->leaf_work, &memory));
+  order->leaf_work = memory;
+  for (int32_t l = 0; l < order->leaf_count; l++) {
+    const int64_t cells = order->leaf_begin[l + 1] - order->leaf_begin[l], gates = order->gap_begin[l + 1] - order->gap_begin[l];
+    order->leaf_work[l] = (cells + CELLS_PER_GATE * gates) * STRATUS_LEAVES_MAX + l;
+  }
+  qsort(order->leaf_work, (size_t)order->leaf_count, sizeof *order->leaf_work, compare_work);
+  return STRATUS_OK;
 }
 
 static stratus_status allocate_order(stratus_visibility_order* order)
@@ -96,6 +118,7 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   TRY(stratus_order_place_points(order));
   TRY(stratus_order_find_gaps(order));
   TRY(allocate_order(order));
+  TRY(plan_leaves(order));
   return stratus_progress(context, "visibility order", 1.0);
 }
 
@@ -146,6 +169,7 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->leaf_begin);
   stratus_release(context, order->leaf_order);
   stratus_release(context, order->leaf_output);
+  stratus_release(context, order->leaf_work);
   stratus_release(context, order->gap_faces);
   stratus_release(context, order->gap_begin);
   stratus_release(context, order->gap_at);
@@ -220,7 +244,7 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
   int layers = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced) reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; i++) {
-    const stratus_peel_counts counts = peel_leaf(order, order->leaf_order[i], peeling);
+    const stratus_peel_counts counts = peel_leaf(order, (int32_t)(order->leaf_work[i] % STRATUS_LEAVES_MAX), peeling);
     cycles += counts.cycles;
     forced += counts.forced;
     layers = counts.layers > layers ? counts.layers : layers;

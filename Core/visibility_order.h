@@ -76,6 +76,7 @@ struct stratus_visibility_order {
   int64_t* leaf_begin;  /* leaf_count + 1 */
   int32_t* leaf_order;  /* front to back */
   int64_t* leaf_output; /* where each begins in the order */
+  int64_t* leaf_work;   /* leaf_count: what each takes, about, times STRATUS_LEAVES_MAX, plus its number: most first */
 
   uint32_t* gap_faces; /* leaf by leaf, rising: border faces beyond whose planes lies more of their leaf */
   int64_t* gap_begin;  /* leaf_count + 1 */
@@ -99,6 +100,7 @@ struct stratus_visibility_order {
   stratus_visibility_result result;
 };
 
+#define STRATUS_LEAVES_MAX 65536
 #define STRATUS_SEED_CELLS 512
 #define STRATUS_GAP_BLOCK 64 /* a power of two */
 #define STRATUS_STEPS_PER_CELL 64 /* that rings may take, before the rest goes by distance */
@@ -114,9 +116,15 @@ static inline const int32_t* stratus_order_vertices(const stratus_visibility_ord
   return order->vertices + 4 * (int64_t)stratus_order_cell(order, place);
 }
 
+/* Where a point stands in `seen`. */
+static inline int64_t stratus_order_seen_at(const stratus_visibility_order* order, int64_t point)
+{
+  return 3 * (order->seen_at ? (int64_t)order->seen_at[point] : point);
+}
+
 static inline double* stratus_order_seen(const stratus_visibility_order* order, int64_t point)
 {
-  return order->seen + 3 * (order->seen_at ? (int64_t)order->seen_at[point] : point);
+  return order->seen + stratus_order_seen_at(order, point);
 }
 
 /* Faces through which a cell's neighbours come before it, or after it: a bit each. */

@@ -69,15 +69,18 @@ int stratus_order_exact_sign(const stratus_visibility_order* order, const stratu
 /* ---- a few cells at once, one clone for each instruction set: nothing is contracted, so all give the same bits */
 
 typedef struct cell_lanes {
-  double x[4][LANES], y[4][LANES], z[4][LANES]; /* of the vertices, as seen */
-  int64_t signs[LANES];                         /* bit f: face f's determinant is positive, bit 4 + f: negative; neither: rounding may tell */
+  const double* seen;
+  int64_t at[4][LANES]; /* of the vertices, in it */
+  int64_t signs[LANES]; /* bit f: face f's determinant is positive, bit 4 + f: negative; neither: rounding may tell */
 } cell_lanes;
 
 static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
 {
   for (int l = 0; l < LANES; l++) {
-    const face_point p0 = { lanes->x[0][l], lanes->y[0][l], lanes->z[0][l] }, p1 = { lanes->x[1][l], lanes->y[1][l], lanes->z[1][l] },
-                     p2 = { lanes->x[2][l], lanes->y[2][l], lanes->z[2][l] }, p3 = { lanes->x[3][l], lanes->y[3][l], lanes->z[3][l] };
+    const double* seen = lanes->seen;
+    const int64_t a = lanes->at[0][l], b = lanes->at[1][l], c = lanes->at[2][l], d = lanes->at[3][l];
+    const face_point p0 = { seen[a], seen[a + 1], seen[a + 2] }, p1 = { seen[b], seen[b + 1], seen[b + 2] },
+                     p2 = { seen[c], seen[c + 1], seen[c + 2] }, p3 = { seen[d], seen[d + 1], seen[d + 2] };
     double det[4];
     int64_t signs = 0;
     face_determinants(p0, p1, p2, p3, parallel, det);
@@ -146,6 +149,7 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
   for (int64_t begin = 0; begin < order->cell_count; begin += LANES) {
     const int count = order->cell_count - begin < LANES ? (int)(order->cell_count - begin) : LANES;
     cell_lanes lanes;
+    lanes.seen = order->seen;
     for (int l = 0; l < LANES; l++) {
       const int64_t cell = begin + (l < count ? l : 0); /* the first stands in for those that are missing */
       if (order->listed && cell + AHEAD < order->cell_count) {
@@ -153,10 +157,7 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
       }
       const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
       for (int k = 0; k < 4; k++) {
-        const double* p = stratus_order_seen(order, v[k]);
-        lanes.x[k][l] = p[0];
-        lanes.y[k][l] = p[1];
-        lanes.z[k][l] = p[2];
+        lanes.at[k][l] = stratus_order_seen_at(order, v[k]);
       }
     }
     find(&lanes, view->parallel);
