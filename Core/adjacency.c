@@ -144,10 +144,12 @@ static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, in
       s = s + 1 == slots ? 0 : s + 1;
     }
     face_slot* slot = table + s;
-    const face_record* p = records + slot->first;
     if (slot->first == NO_FACE) {
       slot->first = (uint32_t)i;
-    } else if (slot->second == NO_FACE) {
+      continue;
+    }
+    const face_record* p = records + slot->first;
+    if (slot->second == NO_FACE) {
       slot->second = (uint32_t)i;
       if (is_folded(p, q)) {
         *folded += 2;

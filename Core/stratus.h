@@ -885,9 +885,9 @@ typedef struct stratus_visibility_result {
   const uint32_t* cells;    /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
   int64_t count;
   int layers;               /* peeling layers: of the leaf that has most; else 0 */
-  int64_t cycles;           /* found, and broken where the face between two of them is seen smallest; rings across gaps count, too, unless
-                             * one through faces was broken in that leaf */
-  int64_t forced;           /* cells that came by distance alone, as cycles were too many to follow */
+  int64_t cycles;           /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
+                             * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
+  int64_t forced;           /* layers: cells that came by distance alone, as cycles were too many to follow */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
   int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye

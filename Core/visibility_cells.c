@@ -4,8 +4,6 @@
 #include "cell_morton.h"
 #include "visibility_order.h"
 
-#include <string.h>
-
 #define SCATTERED 16 /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
 #define AXIS_BITS 10
 #define LEAF_BITS 16

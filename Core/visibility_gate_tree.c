@@ -113,8 +113,8 @@ void stratus_gates_build_tree(stratus_gates* gates)
       for (int64_t c = STRATUS_GATE_CHILDREN * n; c < STRATUS_GATE_CHILDREN * (n + 1) && c < below; c++) {
         if (children) {
           cover(&node, children[c].low, children[c].sides, children[c].box, children[c].left);
-        } else {
-          cover(&node, gates->gates[c].low, gates->gates[c].sides, gates->gates[c].box, gates->gates[c].facing > 0);
+        } else if (gates->gates[c].facing > 0) {
+          cover(&node, gates->gates[c].low, gates->gates[c].sides, gates->gates[c].box, 1);
         }
       }
       gates->nodes[begin + n] = node;

@@ -10,7 +10,7 @@
 #define DEPTH_SLACK 1e-12 /* beyond roundings of depths near 0: what is seen reaches to 1 */
 #define LEAST_DEPTH 1e-9 /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
 
-void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
+static void gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
 {
   const stratus_visibility_order* order = gates->order;
   const int32_t* v = stratus_order_vertices(order, stratus_gate_cell(gates, gate));
@@ -73,8 +73,8 @@ bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b)
   stratus_view_point polygon[CORNERS_MAX + 2], front[3], back[3], middle = { 0.0, 0.0, 0.0 };
   double size = 0.0, nearness;
   int count = 3;
-  stratus_gate_points(gates, a, front);
-  stratus_gate_points(gates, b, back);
+  gate_points(gates, a, front);
+  gate_points(gates, b, back);
   memcpy(polygon, front, sizeof front);
   const double turn = turn_of(gates, back, back + 1, back + 2);
   for (int e = 0; e < 3 && count >= 3; e++) {
@@ -149,7 +149,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     ways_in += gate->facing < 0;
     ways_out += gate->facing > 0;
     if (gate->facing != 0) {
-      stratus_gate_points(gates, g, points);
+      gate_points(gates, g, points);
       find_depths(gates, gate, points);
       stratus_gate_see(gates, gate, points);
     }
@@ -175,15 +175,32 @@ static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
   return gate;
 }
 
-uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell)
+/* The cell that has to come before a way in's, STRATUS_NO_CELL if none is left. */
+static uint32_t cell_before(const stratus_gates* gates, int64_t way_in)
 {
+  const int64_t way_out = gates->gates[way_in].facing < 0 ? stratus_gates_search(gates, way_in) : -1;
+  return way_out < 0 ? STRATUS_NO_CELL : stratus_gate_cell(gates, way_out);
+}
+
+uint32_t stratus_gates_before(const stratus_gates* gates, uint32_t cell)
+{
+  uint32_t before = STRATUS_NO_CELL;
+  for (int64_t g = first_gate(gates, cell); before == STRATUS_NO_CELL && g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+    before = cell_before(gates, g);
+  }
+  return before;
+}
+
+bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before)
+{
+  bool cut = false;
   for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
-    const int64_t before = gates->gates[g].facing < 0 ? stratus_gates_search(gates, g) : -1;
-    if (before >= 0) {
-      return stratus_gate_cell(gates, before);
+    if (cell_before(gates, g) == before) {
+      gates->gates[g].facing = 0;
+      cut = true;
     }
   }
-  return STRATUS_NO_CELL;
+  return cut;
 }
 
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell)

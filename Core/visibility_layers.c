@@ -79,7 +79,7 @@ static uint32_t break_cycle(leaf_peel* peel, uint32_t start)
 static void unstick(leaf_peel* peel, int32_t leaf, stratus_order_seed* seeds)
 {
   stratus_visibility_order* order = peel->order;
-  while (peel->steps < STRATUS_STEPS_PER_CELL * peel->count) {
+  while (peel->steps < order->steps_per_cell * peel->count) {
     const uint32_t cell = break_cycle(peel, find_waiting(peel));
     if (order->waiting[cell] == 0) {
       peel->out[peel->ready++] = cell;

@@ -8,6 +8,7 @@
 #define STARTED 0x10u /* it waits, or has come */
 #define CAME 0x20u
 #define GATES (STRATUS_GATE_IN | STRATUS_GATE_OUT)
+#define STEPS_PER_GATE 32
 
 typedef struct leaf_search {
   stratus_visibility_order* order;
@@ -18,7 +19,6 @@ typedef struct leaf_search {
   int64_t face_rings, gap_rings;
   uint32_t *out, *bottom; /* cells that wait for the one on top of them are kept where the last ones will come to stand: top..bottom */
   stratus_gates gates;
-  stratus_peel_counts counts;
 } leaf_search;
 
 /* Of the neighbours asked for, those that have not come. Without branches: they would be guessed wrong half the time. */
@@ -40,41 +40,53 @@ static int face_towards(const stratus_visibility_order* order, uint32_t cell, ui
   return f;
 }
 
-/* The cells from `top` down to `last` wait each for the one above, and top's for `last`. One waits no more, across a gap if any does, else through the face that
- * is seen smallest; what it waited for has to be looked for again. Returns the place of that cell, which is on top now. */
-static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
+/* The relation of a ring that gives way: across a gap if any is, else the one that is seen smallest. The cells from `top` down to `last` wait each
+ * for the one above, and top's for `last`. Returns the place of the cell that waited. */
+static uint32_t* find_least(leaf_search* search, uint32_t* top, uint32_t last)
 {
-  stratus_visibility_order* order = search->order;
+  const stratus_visibility_order* order = search->order;
   uint32_t *least = top, before = last;
-  int least_face = 0;
   double least_size = INFINITY;
   for (uint32_t* at = top;; before = *at++) {
     const int face = face_towards(order, *at, before);
     const double size = face < 0 ? -1.0 : stratus_order_face_size(order, *at, face);
     if (size < least_size) {
       least_size = size;
-      least_face = face;
       least = at;
     }
     search->steps++;
     if (*at == last) {
-      break;
+      return least;
     }
   }
-  for (; top < least; top++, search->steps++) {
-    search->waiting[*top] = (uint8_t)((search->waiting[*top] & GATES) | stratus_order_before(order, *top));
+}
+
+/* One of a ring waits no more: see find_least(), or, if rings were too many to look at whole, the one on top. What it waited for has to be looked
+ * for again. Returns its place, which is on top now. */
+static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
+{
+  stratus_visibility_order* order = search->order;
+  uint32_t* const least = search->steps > order->steps_per_cell * search->count ? top : find_least(search, top, last);
+  const uint32_t before = least == top ? last : least[-1];
+  const int face = face_towards(order, *least, before);
+  for (; top < least; top++) {
+    const unsigned gates = search->waiting[*top] & GATES;
+    search->waiting[*top] = (uint8_t)(gates | stratus_order_before(order, *top));
+    search->steps += gates & STRATUS_GATE_IN ? STEPS_PER_GATE : 1;
   }
-  if (least_face < 0) {
-    search->waiting[*least] &= (uint8_t)~STRATUS_GATE_IN;
-    search->gap_rings++;
-  } else {
-    stratus_order_cut(order, *least, least_face);
+  if (face >= 0) {
+    stratus_order_cut(order, *least, face);
     search->face_rings++;
+    return least;
   }
+  if (!stratus_gates_cut(&search->gates, *least, before)) {
+    search->waiting[*least] &= (uint8_t)~STRATUS_GATE_IN;
+  }
+  search->gap_rings++;
   return least;
 }
 
-/* All that a cell has to wait for, and itself. Unless rings were too many. */
+/* All that a cell has to wait for, and itself. */
 static void bring(leaf_search* search, uint32_t cell)
 {
   uint8_t* const waiting = search->waiting; /* bytes might be anything's: what is not a local is read again after each */
@@ -109,9 +121,6 @@ static void bring(leaf_search* search, uint32_t cell)
     if (waiting[cell] & STARTED) {
       top = break_ring(search, top, cell);
       cell = *top++;
-      if (search->steps > STRATUS_STEPS_PER_CELL * search->count) {
-        break;
-      }
     }
   }
   search->emitted = out - search->out;
@@ -145,17 +154,11 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
   const uint32_t end = search.first + (uint32_t)search.count;
   for (int64_t s = 0; s < stratus_order_seed_count(search.count); s++) {
     for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; cell++) {
-      if (!(search.waiting[cell] & CAME) && search.steps <= STRATUS_STEPS_PER_CELL * search.count) {
-        bring(&search, cell);
-      }
       if (!(search.waiting[cell] & CAME)) {
-        search.waiting[cell] = CAME;
-        search.out[search.emitted++] = cell;
-        search.counts.forced++;
+        bring(&search, cell);
       }
     }
   }
   /* One through faces may well lead across gaps in many places. */
-  search.counts.cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings;
-  return search.counts;
+  return (stratus_peel_counts){ .cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings };
 }

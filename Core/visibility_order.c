@@ -138,6 +138,7 @@ stratus_status stratus_visibility_order_create(
   stratus_visibility_order* order = memory;
   order->context = context;
   order->bytes = sizeof *order;
+  order->steps_per_cell = STRATUS_STEPS_PER_CELL;
   order->points = mesh->points;
   order->vertices = mesh->vertices;
   order->point_count = mesh->point_count;

@@ -70,7 +70,8 @@ struct stratus_visibility_order {
   double frame[9];
   uint32_t* listed;     /* leaf by leaf: from here on a cell is a place in it, but in `cells`: the mesh's cell of each; NULL: the same */
   int32_t* neighbours;  /* 4 a cell, of its leaf; itself where there is none */
-  uint8_t* sides;       /* bit f: it has a neighbour behind face f; from bit 4 on: on which side of its faces it lies, plus 1; 0 for flat ones that fit nowhere */
+  uint8_t* sides;       /* bit f: it has a neighbour behind face f; from bit 4 on, plus 1: on which side of its faces it lies, 0: flat, and fits
+                         * nowhere */
   uint8_t* state;       /* of a view. Bit f: what is behind face f comes after the cell, bit 4 + f: before it; borders' faces, too */
   uint8_t* waiting;     /* what peeling knows of a cell */
   int64_t* leaf_begin;  /* leaf_count + 1 */
@@ -91,6 +92,7 @@ struct stratus_visibility_order {
   struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
   stratus_order_seed* seeds; /* as many as the largest leaf has, for each thread that peels */
   int64_t seed_count;
+  int64_t steps_per_cell; /* that the search for rings may take: STRATUS_STEPS_PER_CELL, but for tests */
   size_t bytes;
   double build_ms;
 
@@ -103,7 +105,7 @@ struct stratus_visibility_order {
 #define STRATUS_LEAVES_MAX 65536
 #define STRATUS_SEED_CELLS 512
 #define STRATUS_GAP_BLOCK 64 /* a power of two */
-#define STRATUS_STEPS_PER_CELL 64 /* that rings may take, before the rest goes by distance */
+#define STRATUS_STEPS_PER_CELL 64
 
 /* The mesh's number of the cell at a place. */
 static inline uint32_t stratus_order_cell(const stratus_visibility_order* order, uint32_t place)
@@ -200,8 +202,6 @@ static inline uint32_t stratus_gate_cell(const stratus_gates* gates, int64_t gat
   return gates->faces[gate] / 4;
 }
 
-void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3]);
-
 stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps);
 #define STRATUS_GATE_IN 0x80u  /* of `waiting`: the cell has ways in from gaps */
 #define STRATUS_GATE_OUT 0x40u /* ways out into gaps */
@@ -209,9 +209,13 @@ stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t g
 /* After the signs. Marks the cells that have gates. */
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf);
 /* A cell that has not come and has to before one that is marked IN, across a gap; STRATUS_NO_CELL: none. */
-uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell);
+uint32_t stratus_gates_before(const stratus_gates* gates, uint32_t cell);
+/* The ways in by which it has to wait no more. False: there are none. */
+bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before);
 /* A cell marked OUT has come. */
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell);
+/* Whether the face of gate a lies before the one of b in the middle of what they share of the view. */
+bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b);
 
 /* ---- visibility_gate_tree.c: ways out by where they are in the view */
 
@@ -222,9 +226,6 @@ void stratus_gates_build_tree(stratus_gates* gates);
 /* A way out that has not passed, of another cell than a way in's, and lies before that; -1: none. */
 int64_t stratus_gates_search(const stratus_gates* gates, int64_t way_in);
 void stratus_gates_take_from_tree(stratus_gates* gates, int64_t way_out);
-
-/* ---- visibility_gates.c */
-bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b);
 
 /* ---- visibility_signs.c: state of all cells, and relations_changed. Returns the signs that needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
@@ -257,7 +258,7 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
 /* ---- visibility_layers.c */
 stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds);
 
-/* ---- visibility_cycles.c */
+/* ---- visibility_cut.c */
 
 /* A neighbour need no longer come before a cell. */
 void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face);

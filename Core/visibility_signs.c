@@ -172,8 +172,14 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
 float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* v = stratus_order_vertices(order, cell);
-  return face_signs_key(
-    seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel);
+  double sum[3] = { 0.0, 0.0, 0.0 };
+  for (int i = 0; i < 4; i++) {
+    const double* p = stratus_order_seen(order, v[i]);
+    sum[0] += p[0];
+    sum[1] += p[1];
+    sum[2] += p[2];
+  }
+  return (float)(order->view.parallel ? sum[2] : sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]));
 }
 
 double stratus_order_face_size(const stratus_visibility_order* order, uint32_t cell, int face)

@@ -4,8 +4,6 @@
 #include "device.h"
 #include "visibility_order.h"
 
-#include <string.h>
-
 #define GROUP 64
 #define PART ((int64_t)1 << 17)    /* cells that come back at once */
 #define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */

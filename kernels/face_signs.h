@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which side of a tetrahedron's faces is seen, and how far away it is, once for host and device: doubles in one order of operations and never
- * contracted, so the same bits either way. Points are as Core/visibility_signs.c sees them, or with z along parallel rays. */
+ * Which side of a tetrahedron's faces is seen, once for host and device: doubles in one order of operations and never contracted, so the same
+ * bits either way. Points are as Core/visibility_signs.c sees them. */
 #ifndef STRATUS_FACE_SIGNS_H
 #define STRATUS_FACE_SIGNS_H
 
@@ -9,7 +9,6 @@
 #pragma OPENCL FP_CONTRACT OFF
 #define FACE_SIGNS_GLOBAL __global
 #else
-#include <math.h>
 #define FACE_SIGNS_GLOBAL
 #endif
 
@@ -43,17 +42,6 @@ static inline void face_determinants(face_point p0, face_point p1, face_point p2
 static inline int face_sign(double det)
 {
   return (det > FACE_SIGNS_ERROR_BOUND) - (det < -FACE_SIGNS_ERROR_BOUND);
-}
-
-/* How far away a cell is. */
-static inline float face_signs_key(face_point p0, face_point p1, face_point p2, face_point p3, int parallel)
-{
-  const double z = p0.z + p1.z + p2.z + p3.z;
-  if (parallel) {
-    return (float)z;
-  }
-  const double x = p0.x + p1.x + p2.x + p3.x, y = p0.y + p1.y + p2.y + p3.y;
-  return (float)sqrt(x * x + y * y + z * z);
 }
 
 #endif

@@ -23,6 +23,36 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
   return camera;
 }
 
+/* What finds a cell's gates names the first in each block of cells, whichever leaf that is in; and once all cells have come, no way out is left. */
+static void assert_gates_are_found_and_passed(const stratus_visibility_order* order)
+{
+  const int64_t gaps = order->gap_begin[order->leaf_count];
+  for (int64_t block = 0; block <= order->cell_count / STRATUS_GAP_BLOCK; block++) {
+    int64_t first = 0;
+    while (first < gaps && order->gap_faces[first] / 4 < block * STRATUS_GAP_BLOCK) {
+      first++;
+    }
+    assert_int_equal(order->gap_at[block], first);
+  }
+  int64_t nodes = 0, ways_in = 0, ways_out = 0;
+  for (int64_t g = 0; g < gaps; g++) {
+    ways_in += order->gates[g].facing < 0;
+    ways_out += order->gates[g].facing > 0;
+  }
+  if (ways_in == 0 || ways_out == 0 || order->leaf_count > 1) {
+    return;
+  }
+  for (int64_t level = gaps; level > 1; nodes += level) {
+    level = (level + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN;
+  }
+  for (int64_t g = 0; g < gaps; g++) {
+    assert_true(order->gates[g].facing <= 0 || order->gates[g].passed);
+  }
+  for (int64_t n = 0; n < nodes; n++) {
+    assert_int_equal(order->gate_nodes[n].left, 0);
+  }
+}
+
 /* Wrong pairs of all 24 views, in one leaf or in several; no cycle, as there is none. */
 static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratus_peeling peeling)
 {
@@ -48,6 +78,9 @@ static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratu
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, peeling, &result), STRATUS_OK);
     assert_int_equal(result.cycles + result.forced, 0);
     wrong += mesh_wrong_pairs(&pieces, &camera, result.cells, RAYS, (uint32_t)v, &pairs);
+    if (peeling == STRATUS_PEELING_NEAREST) {
+      assert_gates_are_found_and_passed(order);
+    }
   }
   assert_true(pairs > 12 * RAYS);
   stratus_visibility_order_destroy(order);

@@ -203,18 +203,24 @@ static void a_ring_of_cells_loses_one_relation(void** state)
   stratus_context_destroy(context);
 }
 
-/* Many rings at once, and chains behind them: all are broken, at any number of threads alike. */
-static void many_rings_lose_one_relation_each(void** state)
+static mesh_case iris_stack(int count)
 {
-  (void)state;
   mesh_case mesh = iris(5);
-  for (int i = 1; i < 30; i++) {
+  for (int i = 1; i < count; i++) {
     static const double one[3] = { 1, 1, 1 };
     mesh_case other = iris(3 + i % 6);
     mesh_move(&other, one, (const double[3]){ 0, 0, 1.5 * i });
     mesh = mesh_join(mesh, other);
   }
   mesh_shuffle(&mesh, 2);
+  return mesh;
+}
+
+/* Many rings at once, and chains behind them: all are broken, at any number of threads alike. */
+static void many_rings_lose_one_relation_each(void** state)
+{
+  (void)state;
+  mesh_case mesh = iris_stack(30);
   uint32_t* first = NULL;
   for (int threads = 1; threads <= 4; threads++) {
     stratus_context* context = mesh_context(threads);
@@ -231,6 +237,51 @@ static void many_rings_lose_one_relation_each(void** state)
     stratus_context_destroy(context);
   }
   free(first);
+  mesh_case_free(&mesh);
+}
+
+static void assert_each_cell_comes_once(const stratus_visibility_result* result)
+{
+  uint8_t* seen = calloc((size_t)result->count, 1);
+  assert_non_null(seen);
+  for (int64_t i = 0; i < result->count; i++) {
+    assert_true(result->cells[i] < result->count && !seen[result->cells[i]]);
+    seen[result->cells[i]] = 1;
+  }
+  free(seen);
+}
+
+/* With no patience for any ring the order is still one, and tells what it broke: nearest first cuts rings where it meets them, layers let the
+ * rest come by distance. It is made anew for every view then. */
+static void rings_that_take_too_long_are_cut_anywhere(void** state)
+{
+  (void)state;
+  mesh_case mesh = iris_stack(30);
+  uint32_t* first[2] = { NULL, NULL };
+  for (int threads = 1; threads <= 3; threads++) {
+    stratus_context* context = mesh_context(threads);
+    stratus_visibility_order* order = make_order(context, &mesh);
+    order->steps_per_cell = -1;
+    for (int peeling = 0; peeling < 2; peeling++) {
+      stratus_camera camera = { .eye = { 0.01, 0.02, 90.0 }, .forward = { 0, 0, -1 }, .parallel = 1 };
+      stratus_visibility_result result;
+      assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, (stratus_peeling)peeling, &result), STRATUS_OK);
+      assert_int_equal(result.count, mesh.cell_count);
+      assert_each_cell_comes_once(&result);
+      const bool layers = peeling == STRATUS_PEELING_LAYERS;
+      assert_true(layers ? result.forced > 0 && result.cycles == 0 : result.forced == 0 && result.cycles >= 30);
+      const size_t bytes = (size_t)mesh.cell_count * sizeof **first;
+      first[peeling] = first[peeling] ? first[peeling] : memcpy(malloc(bytes), result.cells, bytes);
+      assert_memory_equal(first[peeling], result.cells, bytes);
+      camera.forward[0] = 1e-9;
+      assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, (stratus_peeling)peeling, &result), STRATUS_OK);
+      assert_int_equal(result.reused, 0);
+    }
+    stratus_visibility_order_destroy(order);
+    stratus_context_destroy(context);
+  }
+  free(first[0]);
+  free(first[1]);
   mesh_case_free(&mesh);
 }
 
@@ -396,6 +447,7 @@ int main(void)
     cmocka_unit_test(faces_that_coincide_are_shared_whatever_points_they_name),
     cmocka_unit_test(a_ring_of_cells_loses_one_relation),
     cmocka_unit_test(many_rings_lose_one_relation_each),
+    cmocka_unit_test(rings_that_take_too_long_are_cut_anywhere),
     cmocka_unit_test(a_folded_cell_spoils_only_its_neighbours),
     cmocka_unit_test(a_mirrored_and_sheared_mesh_is_seen_in_its_own_coordinates),
     cmocka_unit_test(an_order_is_reused_while_the_eye_stays),
