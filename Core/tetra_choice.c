@@ -17,7 +17,7 @@
 #define PROJECT_PIECE 6.0
 #define PROJECT_PACKET 14.0
 #define PROJECT_CELL 90.0
-#define PROJECT_SORT 110.0
+#define PROJECT_SORT 70.0
 /* A convex body's box is so many times what it covers, on the mean over directions. */
 #define BOX_OVER_COVERED 2.5
 #define PACKET_EDGE 4.0
