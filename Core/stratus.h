@@ -897,8 +897,8 @@ typedef struct stratus_visibility_result {
 } stratus_visibility_result;
 
 /* The order from the camera's eye (parallel: along its forward), whose right and up don't count. matrix: world = matrix * local, as in
- * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the signs of meshes that are
- * not small, the host what rounding leaves open, and the order. */
+ * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the signs
+ * of meshes that are not small, the host what rounding leaves open, and the order. */
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 
