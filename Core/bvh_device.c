@@ -4,24 +4,6 @@
 #include "device.h"
 #include "structures_device.h"
 
-#define GROUP 64
-
-typedef struct argument {
-  size_t size;
-  const void* value;
-} argument;
-
-static stratus_status run_kernel(stratus_context* context, const char* name, const argument* arguments, unsigned count, size_t items)
-{
-  cl_kernel kernel;
-  const size_t local = GROUP, global = (items + GROUP - 1) / GROUP * GROUP;
-  TRY(stratus_device_kernel(context, "morton", "", name, &kernel));
-  for (unsigned i = 0; i < count; i++) {
-    TRY(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(context, kernel, 1, &global, &local);
-}
-
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count)
 {
   return stratus_structures_on_device(context) && count <= stratus_device_largest_allocation(context->device) / sizeof(stratus_box);
@@ -37,9 +19,9 @@ stratus_status stratus_device_morton_codes(
 
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)count * sizeof *boxes, boxes, true, &input));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, (size_t)count * sizeof *codes, NULL, false, &output));
-  const argument arguments[] = { { sizeof(cl_mem), &input }, { sizeof items, &items }, { sizeof(cl_int), least },
-    { sizeof(cl_int), least + 1 }, { sizeof(cl_int), least + 2 }, { sizeof bits, &bits }, { sizeof(cl_mem), &output } };
-  TRY_CLEANUP(run_kernel(context, "codes", arguments, sizeof arguments / sizeof *arguments, count));
+  const stratus_kernel_argument arguments[] = { ARGUMENT(input), ARGUMENT(items), ARGUMENT(least[0]), ARGUMENT(least[1]),
+    ARGUMENT(least[2]), ARGUMENT(bits), ARGUMENT(output) };
+  TRY_CLEANUP(stratus_device_launch(context, "morton", "", "codes", arguments, COUNT_OF(arguments), (const int64_t[]){ count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, output, 0, (size_t)count * sizeof *codes, codes));
 
 cleanup:
@@ -57,8 +39,9 @@ stratus_status stratus_device_morton_hierarchy(stratus_context* context, const u
 
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)count * sizeof *codes, codes, true, &input));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_WRITE_ONLY, bytes, NULL, false, &output));
-  const argument arguments[] = { { sizeof(cl_mem), &input }, { sizeof items, &items }, { sizeof(cl_mem), &output } };
-  TRY_CLEANUP(run_kernel(context, "hierarchy", arguments, sizeof arguments / sizeof *arguments, count - 1));
+  const stratus_kernel_argument arguments[] = { ARGUMENT(input), ARGUMENT(items), ARGUMENT(output) };
+  const int64_t pair_count[3] = { (int64_t)count - 1, 1, 1 };
+  TRY_CLEANUP(stratus_device_launch(context, "morton", "", "hierarchy", arguments, COUNT_OF(arguments), pair_count));
   TRY_CLEANUP(stratus_device_read(context, output, 0, bytes, pairs));
 
 cleanup:

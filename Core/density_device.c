@@ -3,18 +3,6 @@
 #include "density.h"
 #include "device.h"
 
-#define GROUP 64 /* as in the kernel: an item for each of a brick's voxels */
-
-typedef struct argument {
-  size_t size;
-  const void* value;
-} argument;
-
-#define ARGUMENT(x)                                                                                                                        \
-  {                                                                                                                                        \
-    sizeof(x), &(x)                                                                                                                        \
-  }
-
 typedef struct density_buffers {
   cl_mem bricks, start, rows, table, sums;
 } density_buffers;
@@ -43,20 +31,17 @@ static stratus_status make_buffers(
 static stratus_status run_sums(stratus_context* context, const density_plan* plan, int64_t count, const density_buffers* b)
 {
   const cl_ulong bricks = (cl_ulong)count;
-  const size_t local = GROUP, items = plan->exact ? (size_t)count * GROUP : ((size_t)count + GROUP - 1) / GROUP * GROUP;
   const size_t side = (size_t)(STRATUS_BRICK * (2 * plan->reach + 1));
-  const argument exact[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(b->start), ARGUMENT(plan->reach), ARGUMENT(plan->radius),
-    ARGUMENT(plan->width), ARGUMENT(plan->row_count), ARGUMENT(b->rows), ARGUMENT(b->table), ARGUMENT(b->sums),
+  const stratus_kernel_argument exact[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(b->start), ARGUMENT(plan->reach),
+    ARGUMENT(plan->radius), ARGUMENT(plan->width), ARGUMENT(plan->row_count), ARGUMENT(b->rows), ARGUMENT(b->table), ARGUMENT(b->sums),
     { side * side * sizeof(cl_ulong), NULL } };
-  const argument binned[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(plan->reach), ARGUMENT(b->table), ARGUMENT(b->sums) };
-  const argument* const arguments = plan->exact ? exact : binned;
-  const unsigned argument_count = plan->exact ? sizeof exact / sizeof *exact : sizeof binned / sizeof *binned;
-  cl_kernel kernel;
-  TRY(stratus_device_kernel(context, "density", "", plan->exact ? "exact" : "binned", &kernel));
-  for (unsigned i = 0; i < argument_count; i++) {
-    TRY(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
+  const stratus_kernel_argument binned[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(plan->reach), ARGUMENT(b->table),
+    ARGUMENT(b->sums) };
+  if (plan->exact) { /* a group a brick, an item for each of its voxels */
+    const int64_t items[3] = { count * STRATUS_DEVICE_GROUP, 1, 1 };
+    return stratus_device_launch(context, "density", "", "exact", exact, COUNT_OF(exact), items);
   }
-  return stratus_device_run(context, kernel, 1, &items, &local);
+  return stratus_device_launch(context, "density", "", "binned", binned, COUNT_OF(binned), (const int64_t[]){ count, 1, 1 });
 }
 
 stratus_status stratus_device_density(stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count,

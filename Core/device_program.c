@@ -168,6 +168,19 @@ stratus_status stratus_device_run(
     clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL));
 }
 
+stratus_status stratus_device_launch(stratus_context* context, const char* source, const char* defines, const char* name,
+  const stratus_kernel_argument* arguments, size_t count, const int64_t items[3])
+{
+  cl_kernel kernel;
+  TRY(stratus_device_kernel(context, source, defines, name, &kernel));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
+  }
+  const size_t local[3] = { STRATUS_DEVICE_GROUP, 1, 1 };
+  const size_t global[3] = { (size_t)items[0], (size_t)items[1], (size_t)items[2] };
+  return stratus_device_run(context, kernel, 3, global, local);
+}
+
 stratus_status stratus_device_finish(stratus_context* context)
 {
   stratus_device* device = context->device;

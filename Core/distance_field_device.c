@@ -6,32 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define GROUP 64 /* items along x of a group */
 #define DEFINES_MAX 64
-
-typedef struct argument {
-  size_t size;
-  const void* value;
-} argument;
-
-#define ARGUMENT(x)                                                                                                                        \
-  {                                                                                                                                        \
-    sizeof(x), &(x)                                                                                                                        \
-  }
-#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
-
-static stratus_status run_kernel(stratus_context* context, const char* source, const char* defines, const char* name,
-  const argument* arguments, size_t count, const int64_t items[3])
-{
-  cl_kernel kernel;
-  TRY(stratus_device_kernel(context, source, defines, name, &kernel));
-  for (size_t i = 0; i < count; i++) {
-    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  const size_t local[3] = { GROUP, 1, 1 };
-  const size_t global[3] = { ((size_t)items[0] + GROUP - 1) / GROUP * GROUP, (size_t)items[1], (size_t)items[2] };
-  return stratus_device_run(context, kernel, 3, global, local);
-}
 
 static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
 {
@@ -45,13 +20,13 @@ static stratus_status run_axes(stratus_context* context, const stratus_bits* set
   const cl_long nx = set->n[0], ny = set->n[1], nz = set->n[2], words = set->words;
   const cl_int along_x = 0, along_z = 2, with_sign = is_signed;
   const char* defines = wide ? "-DWIDE=1" : "-DWIDE=0";
-  const argument columns[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words), ARGUMENT(with_sign),
+  const stratus_kernel_argument columns[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words), ARGUMENT(with_sign),
     ARGUMENT(field[0]) };
-  const argument x[] = { ARGUMENT(field[0]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_x), ARGUMENT(field[1]) };
-  const argument z[] = { ARGUMENT(field[1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_z), ARGUMENT(field[0]) };
-  TRY(run_kernel(context, "distance_field", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, nz, 1 }));
-  TRY(run_kernel(context, "distance_field", defines, "search", x, COUNT_OF(x), set->n));
-  return run_kernel(context, "distance_field", defines, "search", z, COUNT_OF(z), set->n);
+  const stratus_kernel_argument x[] = { ARGUMENT(field[0]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_x), ARGUMENT(field[1]) };
+  const stratus_kernel_argument z[] = { ARGUMENT(field[1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_z), ARGUMENT(field[0]) };
+  TRY(stratus_device_launch(context, "distance_field", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, nz, 1 }));
+  TRY(stratus_device_launch(context, "distance_field", defines, "search", x, COUNT_OF(x), set->n));
+  return stratus_device_launch(context, "distance_field", defines, "search", z, COUNT_OF(z), set->n);
 }
 
 stratus_status stratus_device_field_exact(stratus_context* context, const stratus_bits* set, stratus_field* field)
@@ -103,7 +78,7 @@ stratus_status stratus_flood_device_create(stratus_context* context, const int64
   device = memory;
   memcpy(device->n, n, sizeof device->n);
   device->wide = wide;
-  device->groups = rows * (((size_t)n[0] + GROUP - 1) / GROUP);
+  device->groups = rows * (((size_t)n[0] + STRATUS_DEVICE_GROUP - 1) / STRATUS_DEVICE_GROUP);
   TRY_CLEANUP(stratus_allocate(context, device->groups, 2 * sizeof(cl_uint), &memory));
   device->host_sums = memory;
   TRY_CLEANUP(make_buffer(context, bytes, &device->from));
@@ -124,10 +99,10 @@ stratus_status stratus_flood_device_pass(stratus_context* context, flood_device*
   const cl_long nx = device->n[0], ny = device->n[1], nz = device->n[2];
   const cl_int step_argument = step, shift_y = layout.shift_y, shift_z = layout.shift_z;
   char defines[DEFINES_MAX];
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DWIDE=%d -DGROUP=%d", device->wide, GROUP);
-  const argument arguments[] = { ARGUMENT(device->from), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(step_argument),
+  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DWIDE=%d -DGROUP=%d", device->wide, STRATUS_DEVICE_GROUP);
+  const stratus_kernel_argument arguments[] = { ARGUMENT(device->from), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(step_argument),
     ARGUMENT(shift_y), ARGUMENT(shift_z), ARGUMENT(device->to), ARGUMENT(device->sums) };
-  TRY(run_kernel(context, "jump_flooding", defines, "flood", arguments, COUNT_OF(arguments), device->n));
+  TRY(stratus_device_launch(context, "jump_flooding", defines, "flood", arguments, COUNT_OF(arguments), device->n));
   TRY(stratus_device_read(context, device->sums, 0, device->groups * 2 * sizeof(cl_uint), device->host_sums));
   *count = (flood_count){ 0, 0 };
   for (size_t group = 0; group < device->groups; group++) {

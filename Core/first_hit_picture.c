@@ -5,6 +5,8 @@
  * follows, is computed here from the ray and the voxel, so that the picture is the same by every way. */
 #include "first_hit_picture.h"
 
+#include "image.h"
+
 #include <string.h>
 
 /* Rays are handed over tile by tile, so that those of a packet lie together. */
@@ -263,21 +265,6 @@ static void set_window(first_hit_frame* frame)
   }
 }
 
-static void clear_image(const stratus_image* image)
-{
-  const size_t pixels = (size_t)image->width * (size_t)image->height;
-  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
-  for (size_t i = 0; image->depth && i < pixels; ++i) {
-    image->depth[i] = INFINITY;
-  }
-  if (image->samples) {
-    memset(image->samples, 0, pixels * sizeof *image->samples);
-  }
-  if (image->rgba8) {
-    memset(image->rgba8, 0, pixels * 4);
-  }
-}
-
 stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
@@ -299,7 +286,7 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   set_limits(volume, index_to_world, &frame);
   set_window(&frame);
   stratus_shader_set(&frame.shader, volume, transfer, camera, options, index_to_world, world_to_index);
-  clear_image(image);
+  stratus_image_clear(image);
   TRY(draw(context, &frame, report));
   const int64_t* n = volume->dimensions;
   report->blocks = (uint64_t)((n[0] + 3) / 4) * (uint64_t)((n[1] + 3) / 4) * (uint64_t)((n[2] + 3) / 4);

@@ -2,24 +2,12 @@
  * A render of the ray caster: checks what it is given, has rebuilt what changed, draws on device or host, audits, reports. */
 #include "ray_caster.h"
 
+#include "image.h"
+
 #include <stdio.h>
 #include <string.h>
 
-#define SIDE_MOST 65536
-
 /* ---- checks */
-
-static stratus_status check_image(stratus_context* context, const stratus_image* image)
-{
-  if (!image || !image->rgba) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image%s is NULL", image ? "'s rgba buffer" : "");
-  }
-  if (image->width < 1 || image->width > SIDE_MOST || image->height < 1 || image->height > SIDE_MOST) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
-  }
-  return STRATUS_OK;
-}
 
 static stratus_status check_crop(stratus_context* context, const stratus_ray_cast_options* options)
 {
@@ -74,21 +62,6 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
 }
 
 /* ---- drawing */
-
-static void clear_image(const stratus_image* image)
-{
-  const size_t pixels = (size_t)image->width * (size_t)image->height;
-  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
-  for (size_t i = 0; image->depth && i < pixels; ++i) {
-    image->depth[i] = INFINITY;
-  }
-  if (image->samples) {
-    memset(image->samples, 0, pixels * sizeof *image->samples);
-  }
-  if (image->rgba8) {
-    memset(image->rgba8, 0, pixels * 4);
-  }
-}
 
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
   bool with_map, stratus_ray_counts* counts, double* upload_ms)
@@ -199,7 +172,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   const double start = stratus_now_ms();
   if (empty || (!stratus_ray_looks_show(caster) && !covers)) {
-    clear_image(image);
+    stratus_image_clear(image);
     memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->occupancy->count > 0;
@@ -211,7 +184,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
       report_window(arguments.window, report->window);
     } else {
-      clear_image(image);
+      stratus_image_clear(image);
       memset(report->window, 0, sizeof report->window);
     }
     if (options->audit) {
@@ -240,7 +213,7 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_ray_looks_check_volume(caster->context, volume, transfer, options));
   TRY(check_options(caster->context, options));
-  TRY(check_image(caster->context, image));
+  TRY(stratus_image_check(caster->context, image));
   mine.window[1] = image->width;
   mine.window[3] = image->height;
   if (options->mode == STRATUS_MODE_FIRST_HIT) {

@@ -6,32 +6,6 @@
 
 #include <stdio.h>
 
-#define GROUP 64 /* items along x of a group, for every kernel: a device compiles each new shape anew */
-
-typedef struct argument {
-  size_t size;
-  const void* value;
-} argument;
-
-#define ARGUMENT(x)                                                                                                                        \
-  {                                                                                                                                        \
-    sizeof(x), &(x)                                                                                                                        \
-  }
-#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
-
-/* Runs `kernel` over at least nx*ny*nz items. */
-static stratus_status run_kernel(stratus_context* context, const char* source, const char* defines, const char* name,
-  const argument* arguments, size_t count, const int64_t items[3])
-{
-  cl_kernel kernel;
-  TRY(stratus_device_kernel(context, source, defines, name, &kernel));
-  for (size_t i = 0; i < count; i++) {
-    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  const size_t local[3] = { GROUP, 1, 1 };
-  const size_t global[3] = { ((size_t)items[0] + GROUP - 1) / GROUP * GROUP, (size_t)items[1], (size_t)items[2] };
-  return stratus_device_run(context, kernel, 3, global, local);
-}
 
 static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
 {
@@ -103,13 +77,13 @@ static stratus_status run_ranges(
   const cl_float no_bias = 0.0f;
   char defines[64];
   snprintf(defines, sizeof defines, "-DVALUE=%s -DWIDE=%d", value_name(volume->type), wide);
-  const argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
-  const argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride), ARGUMENT(size),
+  const stratus_kernel_argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
+  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride), ARGUMENT(size),
     ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
-  const argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx), ARGUMENT(size),
+  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx), ARGUMENT(size),
     ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
-  TRY(run_kernel(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
-  return run_kernel(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
+  TRY(stratus_device_launch(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
+  return stratus_device_launch(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
 }
 
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
@@ -144,9 +118,9 @@ stratus_status stratus_device_occupancy(
   TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
   TRY_CLEANUP(make_input(context, ((size_t)table->size + 1) * sizeof(int), table->next_shown, &next_shown));
   TRY_CLEANUP(make_buffer(context, count, &occupied));
-  const argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size), ARGUMENT(table->scale),
+  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size), ARGUMENT(table->scale),
     ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
-  TRY_CLEANUP(run_kernel(context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  TRY_CLEANUP(stratus_device_launch(context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:
@@ -170,12 +144,12 @@ bool stratus_device_takes_blocks(const stratus_context* context, const int64_t b
 static stratus_status run_sums(stratus_context* context, const int64_t blocks[3], cl_mem occupied, cl_mem sums)
 {
   const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2], sx = nx + 1, sy = ny + 1, sz = nz + 1, one = 1, plane = sx * sy;
-  const argument along_x[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(sums) };
-  const argument along_y[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sz), ARGUMENT(plane), ARGUMENT(sy), ARGUMENT(sx) };
-  const argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz), ARGUMENT(plane) };
-  TRY(run_kernel(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
-  TRY(run_kernel(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
-  return run_kernel(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
+  const stratus_kernel_argument along_x[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(sums) };
+  const stratus_kernel_argument along_y[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sz), ARGUMENT(plane), ARGUMENT(sy), ARGUMENT(sx) };
+  const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz), ARGUMENT(plane) };
+  TRY(stratus_device_launch(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
+  TRY(stratus_device_launch(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
+  return stratus_device_launch(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
 }
 
 static stratus_status search_maps(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
@@ -190,9 +164,9 @@ static stratus_status search_maps(stratus_context* context, stratus_distance_map
   for (int octant = 0; octant < octants; octant++) {
     const cl_int whole = octants == 1;
     const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
-    const argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x), ARGUMENT(y),
+    const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x), ARGUMENT(y),
       ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
-    TRY_CLEANUP(run_kernel(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
+    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
     TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes + (size_t)octant * map->map_bytes));
   }
 
@@ -206,12 +180,12 @@ static stratus_status run_paper(stratus_context* context, const int64_t blocks[3
 {
   const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2];
   const cl_ulong count = (cl_ulong)(nx * ny * nz);
-  const argument seed[] = { ARGUMENT(occupied), ARGUMENT(target), ARGUMENT(count), ARGUMENT(distance[0]) };
-  TRY(run_kernel(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(target), ARGUMENT(count), ARGUMENT(distance[0]) };
+  TRY(stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
   for (cl_int axis = 0; axis < 3; axis++) {
-    const argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
+    const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
       ARGUMENT(distance[(axis + 1) & 1]) };
-    TRY(run_kernel(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), blocks));
+    TRY(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), blocks));
   }
   return STRATUS_OK;
 }
@@ -227,8 +201,8 @@ static stratus_status paper_map(stratus_context* context, stratus_distance_map* 
   TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &inner));
   TRY_CLEANUP(run_paper(context, map->blocks, occupied, 1, (const cl_mem[]){ swap, outer }));
   TRY_CLEANUP(run_paper(context, map->blocks, occupied, 0, (const cl_mem[]){ swap, inner }));
-  const argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
-  TRY_CLEANUP(run_kernel(context, "distance_map", "", "paper_merge", merge, COUNT_OF(merge), (const int64_t[]){ nx, rows, 1 }));
+  const stratus_kernel_argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
+  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_merge", merge, COUNT_OF(merge), (const int64_t[]){ nx, rows, 1 }));
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 
 cleanup:

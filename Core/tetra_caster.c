@@ -3,12 +3,12 @@
  * reports. */
 #include "tetra_caster.h"
 
+#include "image.h"
 #include "ray_caster.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define SIDE_MOST 65536
 /* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the error. */
 #define PIECES 4.0f
 /* Cells end at any value, tables at entries: what light errs by falls with their width. */
@@ -76,18 +76,6 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
     stratus_tetra_caster_release(caster);
     stratus_release(caster->context, caster);
   }
-}
-
-static stratus_status check_image(stratus_context* context, const stratus_image* image)
-{
-  if (!image || !image->rgba) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "image%s is NULL", image ? "'s rgba buffer" : "");
-  }
-  if (image->width < 1 || image->width > SIDE_MOST || image->height < 1 || image->height > SIDE_MOST) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "image of %d x %d pixels, each side must be 1..%d", image->width, image->height, SIDE_MOST);
-  }
-  return STRATUS_OK;
 }
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
@@ -183,21 +171,6 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 
 /* ---- drawing */
 
-static void clear_image(const stratus_image* image)
-{
-  const size_t pixels = (size_t)image->width * (size_t)image->height;
-  memset(image->rgba, 0, pixels * 4 * sizeof *image->rgba);
-  for (size_t i = 0; image->depth && i < pixels; ++i) {
-    image->depth[i] = INFINITY;
-  }
-  if (image->samples) {
-    memset(image->samples, 0, pixels * sizeof *image->samples);
-  }
-  if (image->rgba8) {
-    memset(image->rgba8, 0, pixels * 4);
-  }
-}
-
 static void set_shading(
   const stratus_table* table, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_arguments* arguments)
 {
@@ -261,7 +234,7 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
-    clear_image(image);
+    stratus_image_clear(image);
     return STRATUS_OK;
   }
   report->method = stratus_tetra_choose(caster, mesh, camera, options, image, report->why, sizeof report->why);
@@ -301,7 +274,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
     return STRATUS_INVALID_ARGUMENT;
   }
   options = options ? options : &defaults;
-  TRY(check_image(caster->context, image));
+  TRY(stratus_image_check(caster->context, image));
   TRY(check_options(caster->context, options));
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_ray_check_camera(caster->context, camera, image));

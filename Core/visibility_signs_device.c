@@ -4,7 +4,6 @@
 #include "device.h"
 #include "visibility_order.h"
 
-#define GROUP 64
 #define PART ((int64_t)1 << 17)    /* cells that come back at once */
 #define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */
 
@@ -80,19 +79,11 @@ static stratus_status run_signs(const stratus_visibility_order* order, const str
   const stratus_device_signs* signs = order->device_signs;
   const cl_ulong cells = (cl_ulong)order->cell_count;
   const cl_int parallel = view->parallel;
-  const struct {
-    size_t size;
-    const void* value;
-  } arguments[] = { { sizeof signs->seen, &signs->seen }, { sizeof signs->corners, &signs->corners }, { sizeof signs->sides, &signs->sides },
-    { sizeof cells, &cells }, { sizeof parallel, &parallel }, { sizeof signs->results, &signs->results } };
-  const size_t items = (size_t)cells, local = GROUP;
-  cl_kernel kernel;
+  const stratus_kernel_argument arguments[] = { ARGUMENT(signs->seen), ARGUMENT(signs->corners), ARGUMENT(signs->sides), ARGUMENT(cells),
+    ARGUMENT(parallel), ARGUMENT(signs->results) };
   TRY(stratus_device_write(context, signs->seen, 0, (size_t)order->point_count * 3 * sizeof *order->seen, order->seen));
-  TRY(stratus_device_kernel(context, "visibility_signs", "", "signs", &kernel));
-  for (unsigned i = 0; i < sizeof arguments / sizeof *arguments; i++) {
-    TRY(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(context, kernel, 1, &items, &local);
+  const int64_t items[3] = { order->cell_count, 1, 1 };
+  return stratus_device_launch(context, "visibility_signs", "", "signs", arguments, COUNT_OF(arguments), items);
 }
 
 /* What the device found of a cell: its state, and what nobody knows in bits 8 to 11. Returns how many of those there were. */
