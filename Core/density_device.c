@@ -44,8 +44,8 @@ static stratus_status run_sums(stratus_context* context, const density_plan* pla
   return stratus_device_launch(context, "density", "", "binned", binned, COUNT_OF(binned), (const int64_t[]){ count, 1, 1 });
 }
 
-stratus_status stratus_device_density(stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count,
-  const int64_t* start, uint64_t* sums)
+stratus_status stratus_device_density(
+  stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums)
 {
   stratus_status status = STRATUS_OK;
   density_buffers b = { .bricks = NULL };

@@ -15,15 +15,18 @@ static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem
 
 /* ---- exact */
 
-static stratus_status run_axes(stratus_context* context, const stratus_bits* set, int is_signed, int wide, cl_mem bits, const cl_mem field[2])
+static stratus_status run_axes(
+  stratus_context* context, const stratus_bits* set, int is_signed, int wide, cl_mem bits, const cl_mem field[2])
 {
   const cl_long nx = set->n[0], ny = set->n[1], nz = set->n[2], words = set->words;
   const cl_int along_x = 0, along_z = 2, with_sign = is_signed;
   const char* defines = wide ? "-DWIDE=1" : "-DWIDE=0";
-  const stratus_kernel_argument columns[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words), ARGUMENT(with_sign),
+  const stratus_kernel_argument columns[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words),
+    ARGUMENT(with_sign), ARGUMENT(field[0]) };
+  const stratus_kernel_argument x[] = { ARGUMENT(field[0]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_x),
+    ARGUMENT(field[1]) };
+  const stratus_kernel_argument z[] = { ARGUMENT(field[1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_z),
     ARGUMENT(field[0]) };
-  const stratus_kernel_argument x[] = { ARGUMENT(field[0]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_x), ARGUMENT(field[1]) };
-  const stratus_kernel_argument z[] = { ARGUMENT(field[1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(along_z), ARGUMENT(field[0]) };
   TRY(stratus_device_launch(context, "distance_field", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, nz, 1 }));
   TRY(stratus_device_launch(context, "distance_field", defines, "search", x, COUNT_OF(x), set->n));
   return stratus_device_launch(context, "distance_field", defines, "search", z, COUNT_OF(z), set->n);

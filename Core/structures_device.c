@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 
-
 static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
 {
   return stratus_device_buffer(context, CL_MEM_READ_WRITE, bytes, NULL, false, buffer);
@@ -78,10 +77,10 @@ static stratus_status run_ranges(
   char defines[64];
   snprintf(defines, sizeof defines, "-DVALUE=%s -DWIDE=%d", value_name(volume->type), wide);
   const stratus_kernel_argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
-  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride), ARGUMENT(size),
-    ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
-  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx), ARGUMENT(size),
-    ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
+  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride),
+    ARGUMENT(size), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
+  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx),
+    ARGUMENT(size), ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
   TRY(stratus_device_launch(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
   return stratus_device_launch(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
 }
@@ -118,9 +117,10 @@ stratus_status stratus_device_occupancy(
   TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
   TRY_CLEANUP(make_input(context, ((size_t)table->size + 1) * sizeof(int), table->next_shown, &next_shown));
   TRY_CLEANUP(make_buffer(context, count, &occupied));
-  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size), ARGUMENT(table->scale),
-    ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
-  TRY_CLEANUP(stratus_device_launch(context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size),
+    ARGUMENT(table->scale), ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
+  TRY_CLEANUP(stratus_device_launch(
+    context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:
@@ -145,8 +145,10 @@ static stratus_status run_sums(stratus_context* context, const int64_t blocks[3]
 {
   const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2], sx = nx + 1, sy = ny + 1, sz = nz + 1, one = 1, plane = sx * sy;
   const stratus_kernel_argument along_x[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(sums) };
-  const stratus_kernel_argument along_y[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sz), ARGUMENT(plane), ARGUMENT(sy), ARGUMENT(sx) };
-  const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz), ARGUMENT(plane) };
+  const stratus_kernel_argument along_y[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sz), ARGUMENT(plane), ARGUMENT(sy),
+    ARGUMENT(sx) };
+  const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz),
+    ARGUMENT(plane) };
   TRY(stratus_device_launch(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
   TRY(stratus_device_launch(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
   return stratus_device_launch(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
@@ -164,8 +166,8 @@ static stratus_status search_maps(stratus_context* context, stratus_distance_map
   for (int octant = 0; octant < octants; octant++) {
     const cl_int whole = octants == 1;
     const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
-    const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x), ARGUMENT(y),
-      ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
+    const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x),
+      ARGUMENT(y), ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
     TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
     TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes + (size_t)octant * map->map_bytes));
   }
@@ -201,7 +203,8 @@ static stratus_status paper_map(stratus_context* context, stratus_distance_map* 
   TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &inner));
   TRY_CLEANUP(run_paper(context, map->blocks, occupied, 1, (const cl_mem[]){ swap, outer }));
   TRY_CLEANUP(run_paper(context, map->blocks, occupied, 0, (const cl_mem[]){ swap, inner }));
-  const stratus_kernel_argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
+  const stratus_kernel_argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch),
+    ARGUMENT(bytes) };
   TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_merge", merge, COUNT_OF(merge), (const int64_t[]){ nx, rows, 1 }));
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 

@@ -4,6 +4,8 @@
 #include "cell_morton.h"
 #include "visibility_order.h"
 
+#include <string.h>
+
 #define SCATTERED 16 /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
 #define AXIS_BITS 10
 #define LEAF_BITS 16
@@ -72,9 +74,8 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
   if (listed && !scattered) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(order->context, (size_t)order->cell_count, sizeof *order->listed, &memory));
+  TRY(stratus_order_allocate(order, (size_t)order->cell_count, sizeof *order->listed, &memory));
   order->listed = memory;
-  order->bytes += (size_t)order->cell_count * sizeof *order->listed;
   if (scattered) {
     return list_by_place(order, leaf);
   }
@@ -107,18 +108,16 @@ static void fill_cells(stratus_visibility_order* order, const int8_t* side, cons
 
 static stratus_status allocate_cells(stratus_visibility_order* order)
 {
-  stratus_context* context = order->context;
   const size_t cells = (size_t)order->cell_count;
   void* memory;
-  TRY(stratus_allocate(context, cells, 4 * sizeof *order->neighbours, &memory));
+  TRY(stratus_order_allocate(order, cells, 4 * sizeof *order->neighbours, &memory));
   order->neighbours = memory;
-  TRY(stratus_allocate(context, cells, sizeof *order->sides, &memory));
+  TRY(stratus_order_allocate(order, cells, sizeof *order->sides, &memory));
   order->sides = memory;
-  TRY(stratus_allocate_zero(context, cells, sizeof *order->state, &memory));
-  order->state = memory;
-  TRY(stratus_allocate(context, cells, sizeof *order->waiting, &memory));
+  TRY(stratus_order_allocate(order, cells, sizeof *order->state, &memory));
+  order->state = memset(memory, 0, cells);
+  TRY(stratus_order_allocate(order, cells, sizeof *order->waiting, &memory));
   order->waiting = memory;
-  order->bytes += cells * (4 * sizeof *order->neighbours + sizeof *order->sides + sizeof *order->state + sizeof *order->waiting);
   return STRATUS_OK;
 }
 

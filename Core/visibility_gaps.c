@@ -5,9 +5,7 @@
 
 #include <string.h>
 
-#define CHILDREN 8
-#define LEVELS_MAX 12 /* 8^12 > 2^32 */
-#define SLACK 1e-13   /* of the mesh's size: gaps that are narrower are rounding's */
+#define SLACK 1e-13 /* of the mesh's size: gaps that are narrower are rounding's */
 
 /* Boxes over border faces that follow one another, boxes over those, .. */
 typedef struct gap_search {
@@ -15,7 +13,7 @@ typedef struct gap_search {
   const uint32_t* faces; /* a leaf's */
   int64_t count;
   double* boxes; /* 6 each: level by level, the finest first */
-  int64_t level_begin[LEVELS_MAX];
+  int64_t level_begin[STRATUS_GATE_LEVELS_MAX];
   int levels;
   double slack;
 } gap_search;
@@ -25,7 +23,7 @@ static int64_t count_boxes(int64_t faces)
 {
   int64_t boxes = 0;
   do {
-    faces = (faces + CHILDREN - 1) / CHILDREN;
+    faces = (faces + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN;
     boxes += faces;
   } while (faces > 1);
   return boxes;
@@ -49,14 +47,15 @@ static void build_boxes(gap_search* search)
   int64_t below = search->count, begin = 0;
   search->levels = 0;
   do {
-    const int64_t count = (below + CHILDREN - 1) / CHILDREN, children = search->levels > 0 ? search->level_begin[search->levels - 1] : 0;
+    const int64_t count = (below + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN,
+                  children = search->levels > 0 ? search->level_begin[search->levels - 1] : 0;
     for (int64_t b = 0; b < count; b++) {
       double* box = search->boxes + 6 * (begin + b);
       for (int a = 0; a < 3; a++) {
         box[2 * a] = INFINITY;
         box[2 * a + 1] = -INFINITY;
       }
-      for (int64_t c = CHILDREN * b; c < CHILDREN * (b + 1) && c < below; c++) {
+      for (int64_t c = STRATUS_GATE_CHILDREN * b; c < STRATUS_GATE_CHILDREN * (b + 1) && c < below; c++) {
         for (int i = 0; i < 3 && search->levels == 0; i++) {
           const double* point = face_point(search->order, search->faces[c], i);
           grow(box, point, point);
@@ -110,7 +109,7 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
   struct {
     int level;
     int64_t box;
-  } stack[CHILDREN * LEVELS_MAX];
+  } stack[STRATUS_GATE_CHILDREN * STRATUS_GATE_LEVELS_MAX];
   double normal[3], least;
   int pending = 1;
   if (!outer_plane(search, face, normal, &least)) {
@@ -126,7 +125,7 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
       continue;
     }
     const int64_t below = level > 0 ? search->level_begin[level] - search->level_begin[level - 1] : search->count;
-    for (int64_t i = CHILDREN * number; i < CHILDREN * (number + 1) && i < below; i++) {
+    for (int64_t i = STRATUS_GATE_CHILDREN * number; i < STRATUS_GATE_CHILDREN * (number + 1) && i < below; i++) {
       if (level > 0) {
         stack[pending].level = level - 1;
         stack[pending++].box = i;
@@ -150,8 +149,7 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
     begin[leaf] = count;
     for (int64_t i = order->leaf_begin[leaf]; i < order->leaf_begin[leaf + 1]; i++) {
-      const unsigned borders = ~(unsigned)order->sides[i];
-      count += (borders & 1) + (borders >> 1 & 1) + (borders >> 2 & 1) + (borders >> 3 & 1);
+      count += stratus_order_count_faces(~(unsigned)order->sides[i]);
     }
   }
   begin[order->leaf_count] = count;
@@ -171,7 +169,7 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
 /* Keeps the leaf's faces that look at others, moved to the front. Returns how many. */
 static int64_t keep_gaps(gap_search* search, uint32_t* faces, uint8_t* kept)
 {
-  const int threads = search->count > CHILDREN * CHILDREN ? search->order->context->threads : 1;
+  const int threads = search->count > STRATUS_GATE_CHILDREN * STRATUS_GATE_CHILDREN ? search->order->context->threads : 1;
   int64_t count = 0;
   build_boxes(search);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
@@ -194,11 +192,11 @@ static double mesh_size(const stratus_visibility_order* order)
 static stratus_status take_gaps(stratus_visibility_order* order, const uint32_t* faces, int64_t count)
 {
   void* memory;
-  TRY(stratus_allocate(order->context, (size_t)count, sizeof *order->gap_faces, &memory));
+  TRY(stratus_order_allocate(order, (size_t)count, sizeof *order->gap_faces, &memory));
   order->gap_faces = memory;
   memcpy(order->gap_faces, faces, (size_t)count * sizeof *faces);
   const size_t blocks = (size_t)order->cell_count / STRATUS_GAP_BLOCK + 1;
-  TRY(stratus_allocate(order->context, blocks, sizeof *order->gap_at, &memory));
+  TRY(stratus_order_allocate(order, blocks, sizeof *order->gap_at, &memory));
   order->gap_at = memory;
   for (size_t b = 0, face = 0; b < blocks; b++) {
     while (face < (size_t)count && faces[face] / 4 < b * STRATUS_GAP_BLOCK) {
@@ -206,9 +204,7 @@ static stratus_status take_gaps(stratus_visibility_order* order, const uint32_t*
     }
     order->gap_at[b] = (uint32_t)face;
   }
-  TRY(stratus_gates_allocate(order, count));
-  order->bytes += (size_t)count * sizeof *order->gap_faces + blocks * sizeof *order->gap_at;
-  return STRATUS_OK;
+  return stratus_gates_allocate(order, count);
 }
 
 stratus_status stratus_order_find_gaps(stratus_visibility_order* order)

@@ -217,10 +217,9 @@ stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t g
 {
   const size_t count = (size_t)gaps, nodes = (size_t)nodes_before(gaps, order->leaf_count);
   void* memory;
-  TRY(stratus_allocate(order->context, count, sizeof *order->gates, &memory));
+  TRY(stratus_order_allocate(order, count, sizeof *order->gates, &memory));
   order->gates = memory;
-  TRY(stratus_allocate(order->context, nodes, sizeof *order->gate_nodes, &memory));
+  TRY(stratus_order_allocate(order, nodes, sizeof *order->gate_nodes, &memory));
   order->gate_nodes = memory;
-  order->bytes += count * sizeof *order->gates + nodes * sizeof *order->gate_nodes;
   return STRATUS_OK;
 }

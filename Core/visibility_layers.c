@@ -108,7 +108,7 @@ stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, i
   for (int64_t i = 0; i < peel.count; i++) {
     const uint32_t cell = peel.first + (uint32_t)i;
     const unsigned before = stratus_order_before(order, cell);
-    order->waiting[cell] = (uint8_t)((before & 1) + (before >> 1 & 1) + (before >> 2 & 1) + (before >> 3 & 1));
+    order->waiting[cell] = (uint8_t)stratus_order_count_faces(before);
     if (before == 0) {
       peel.out[peel.ready++] = cell;
     }

@@ -35,7 +35,7 @@ static stratus_status find_bounds(stratus_visibility_order* order)
   return STRATUS_OK;
 }
 
-static stratus_status allocate_part(stratus_visibility_order* order, size_t count, size_t size, void** memory)
+stratus_status stratus_order_allocate(stratus_visibility_order* order, size_t count, size_t size, void** memory)
 {
   TRY(stratus_allocate(order->context, count, size, memory));
   order->bytes += count * size;
@@ -58,7 +58,7 @@ static int compare_work(const void* a, const void* b)
 static stratus_status plan_leaves(stratus_visibility_order* order)
 {
   void* memory;
-  TRY(allocate_part(order, (size_t)order->leaf_count, sizeof *order->leaf_work, &memory));
+  TRY(stratus_order_allocate(order, (size_t)order->leaf_count, sizeof *order->leaf_work, &memory));
   order->leaf_work = memory;
   for (int32_t l = 0; l < order->leaf_count; l++) {
     const int64_t cells = order->leaf_begin[l + 1] - order->leaf_begin[l], gates = order->gap_begin[l + 1] - order->gap_begin[l];
@@ -72,15 +72,15 @@ static stratus_status allocate_order(stratus_visibility_order* order)
 {
   const size_t cells = (size_t)order->cell_count;
   void* memory;
-  TRY(allocate_part(order, (size_t)order->point_count, 3 * sizeof *order->seen, &memory));
+  TRY(stratus_order_allocate(order, (size_t)order->point_count, 3 * sizeof *order->seen, &memory));
   order->seen = memory;
-  TRY(allocate_part(order, cells, sizeof *order->cells, &memory));
+  TRY(stratus_order_allocate(order, cells, sizeof *order->cells, &memory));
   order->cells = memory;
   for (int32_t l = 0; l < order->leaf_count; l++) {
     const int64_t seeds = stratus_order_seed_count(order->leaf_begin[l + 1] - order->leaf_begin[l]);
     order->seed_count = seeds > order->seed_count ? seeds : order->seed_count;
   }
-  TRY(allocate_part(order, (size_t)peeling_threads(order), (size_t)order->seed_count * sizeof *order->seeds, &memory));
+  TRY(stratus_order_allocate(order, (size_t)peeling_threads(order), (size_t)order->seed_count * sizeof *order->seeds, &memory));
   order->seeds = memory;
   return STRATUS_OK;
 }

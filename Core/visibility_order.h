@@ -106,6 +106,9 @@ struct stratus_visibility_order {
 #define STRATUS_SEED_CELLS 512
 #define STRATUS_GAP_BLOCK 64 /* a power of two */
 #define STRATUS_STEPS_PER_CELL 64
+/* Border faces that follow one another stand under a box, so many of those under another, .. */
+#define STRATUS_GATE_CHILDREN 8
+#define STRATUS_GATE_LEVELS_MAX 12 /* 8^12 > 2^32 */
 
 /* The mesh's number of the cell at a place. */
 static inline uint32_t stratus_order_cell(const stratus_visibility_order* order, uint32_t place)
@@ -140,6 +143,12 @@ static inline unsigned stratus_order_after(const stratus_visibility_order* order
   return order->state[cell] & order->sides[cell] & 15u;
 }
 
+/* Of the lowest four bits, those that are set. */
+static inline int stratus_order_count_faces(unsigned bits)
+{
+  return (int)((bits & 1) + (bits >> 1 & 1) + (bits >> 2 & 1) + (bits >> 3 & 1));
+}
+
 /* before << 4 | after. Returns whether a neighbour that came before comes after, or the like. */
 static inline bool stratus_order_take_state(stratus_visibility_order* order, int64_t cell, unsigned state)
 {
@@ -153,6 +162,9 @@ static inline int stratus_order_side(const stratus_visibility_order* order, int6
 {
   return (order->sides[cell] >> 4) - 1;
 }
+
+/* ---- visibility_order.c: memory that lasts as long as the order, counted in its bytes. */
+stratus_status stratus_order_allocate(stratus_visibility_order* order, size_t count, size_t size, void** memory);
 
 /* ---- visibility_flat.c: sides of cells without volume. What does not fit together is no neighbour any more. */
 stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order);
@@ -178,8 +190,6 @@ bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_vi
 stratus_status stratus_order_find_gaps(stratus_visibility_order* order);
 
 /* ---- visibility_gates.c: a leaf's gap faces in one view */
-#define STRATUS_GATE_CHILDREN 8
-#define STRATUS_GATE_LEVELS_MAX 12 /* 8^12 > 2^32 */
 
 typedef struct stratus_gates {
   stratus_visibility_order* order;

@@ -28,9 +28,8 @@ stratus_status stratus_order_place_points(stratus_visibility_order* order)
   if (!is_scattered(order)) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(order->context, points, sizeof *order->seen_at, &memory));
+  TRY(stratus_order_allocate(order, points, sizeof *order->seen_at, &memory));
   order->seen_at = memset(memory, 0xff, points * sizeof *order->seen_at);
-  order->bytes += points * sizeof *order->seen_at;
   for (int64_t i = 0; i < order->cell_count; i++) {
     const int32_t* v = stratus_order_vertices(order, (uint32_t)i);
     for (int k = 0; k < 4; k++) {
