@@ -36,7 +36,8 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
-  this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  this->TimeToDraw = seconds + (this->Internal->DrawsAgain ? this->TimeToDraw : 0.0);
 }
 
 void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)

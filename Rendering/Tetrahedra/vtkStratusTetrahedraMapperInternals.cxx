@@ -139,6 +139,14 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
 
 bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
+  const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+  const vtkStratusPeels::Draw peel = this->Display.Begin(prop, this->Mapper);
+  this->DrawsAgain = peel == vtkStratusPeels::LATER;
+  if (this->DrawsAgain) {
+    const bool drawn = this->Display.DrawAgain();
+    error = drawn ? this->LastError : unshown;
+    return drawn && error.empty();
+  }
   bool empty = false;
   this->HasPicture = false;
   if (!this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
@@ -165,8 +173,12 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   pixels.Rgba = this->Rgba.data();
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
+  if (peel == vtkStratusPeels::FIRST) {
+    this->Picture.ToWindowDepth(this->Depth, this->ShownDepth);
+    pixels.Depth = this->ShownDepth.data();
+  }
   if (!this->Display.Draw(renderer, this->Picture, pixels)) {
-    error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+    error = unshown;
     return false;
   }
   return true;

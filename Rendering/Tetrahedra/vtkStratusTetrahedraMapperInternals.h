@@ -35,6 +35,7 @@ public:
   stratus_tetra_report Report = stratus_tetra_report();
   vtkStratusDisplay Display;
   std::string LastError; // told already
+  bool DrawsAgain = false; // the last Render() showed the frame's picture once more, between other peels
 
 private:
   bool OnProgress(double fraction);
@@ -47,7 +48,7 @@ private:
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
   bool HasPicture = false;
-  std::vector<float> Rgba, Depth;
+  std::vector<float> Rgba, Depth, ShownDepth;
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

@@ -51,6 +51,8 @@ void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
   this->Depth->ReleaseGraphicsResources(window);
   this->Quad.reset();
   this->DepthQuad.reset();
+  this->Peels.ReleaseGraphicsResources(window);
+  this->Peeled = vtkStratusPeels::Picture();
   this->Window = nullptr;
 }
 
@@ -87,8 +89,8 @@ bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
-  if (!pixels.Bytes || !pixels.Alone || pixels.Depth || renderer->GetPass() || frame->GetMultiSamples() > 0 || window->GetUsingSRGBColorSpace() ||
-    part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
+  if (!pixels.Bytes || !pixels.Alone || pixels.Depth || renderer->GetPass() || frame->GetMultiSamples() > 0 ||
+    window->GetUsingSRGBColorSpace() || part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
     return false;
   }
   vtkTextureObject* target = frame->GetNumberOfColorAttachments() > 0 ? frame->GetColorAttachmentAsTextureObject(0) : nullptr;
@@ -135,7 +137,8 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  const int filter = coarse && !pixels.Depth ? vtkTextureObject::Linear : vtkTextureObject::Nearest; // an edge has one depth
+  const bool writesDepth = pixels.Depth && this->Stage == vtkStratusPeels::NONE; // an edge has one depth
+  const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);
   if (!this->Texture->GetHandle() || this->Texture->GetWidth() != width || this->Texture->GetHeight() != height ||
@@ -146,24 +149,24 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   }
   this->Texture->Activate();
   CopyPixels(window, picture, pixels, part, 0, 0);
-  std::unique_ptr<vtkOpenGLQuadHelper>& quad = pixels.Depth ? this->DepthQuad : this->Quad;
+  return !pixels.Depth || this->UploadDepth(window, picture, pixels, part);
+}
+
+bool vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth)
+{
+  std::unique_ptr<vtkOpenGLQuadHelper>& quad = writesDepth ? this->DepthQuad : this->Quad;
   if (!quad) {
     const std::string shader = FragmentShader;
     const size_t first = shader.find('\n') + 1; // the version comes before it
     const std::string writer = shader.substr(0, first) + "#define WRITES_DEPTH\n" + shader.substr(first);
-    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, pixels.Depth ? writer.c_str() : FragmentShader, ""));
+    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, writesDepth ? writer.c_str() : FragmentShader, ""));
   } else {
     window->GetShaderCache()->ReadyShaderProgram(quad->Program);
   }
-  if (!quad->Program || !quad->Program->GetCompiled() || (pixels.Depth && !this->UploadDepth(window, picture, pixels, part))) {
-    this->Texture->Deactivate();
-    return false;
-  }
-  return true;
+  return quad->Program && quad->Program->GetCompiled();
 }
 
-bool vtkStratusDisplay::UploadDepth(
-  vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
+bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   const unsigned int width = static_cast<unsigned int>(part.Size[0]), height = static_cast<unsigned int>(part.Size[1]);
   this->Depth->SetContext(window);
@@ -221,12 +224,20 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   }
   quad->Render();
   if (pixels.Depth) {
-    this->Depth->Deactivate();
     state->vtkglDepthFunc(GL_LEQUAL); // VTK's own
   }
   if (!blends) {
     this->Behind->Deactivate();
   }
+}
+
+vtkStratusPeels::Draw vtkStratusDisplay::Begin(vtkProp* prop, vtkAbstractMapper* mapper)
+{
+  this->Stage = this->Peels.Begin(prop, mapper);
+  if (this->Stage != vtkStratusPeels::LATER) {
+    this->Peeled = vtkStratusPeels::Picture();
+  }
+  return this->Stage;
 }
 
 bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels)
@@ -236,17 +247,41 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
     return false;
   }
   const Part part = ChoosePart(picture, pixels);
-  if (part.Size[0] <= 0 || part.Size[1] <= 0 || this->WriteInPlace(renderer, window, picture, pixels, part)) {
+  const bool outside = this->Stage != vtkStratusPeels::NONE && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
+  const bool peeled = this->Stage != vtkStratusPeels::NONE && !outside;
+  if (part.Size[0] <= 0 || part.Size[1] <= 0 || (!peeled && this->WriteInPlace(renderer, window, picture, pixels, part))) {
     return true;
   }
   if (this->Window && this->Window != window) {
     this->ReleaseGraphicsResources(this->Window);
   }
   this->Window = window;
-  if (!this->Upload(window, picture, pixels, part)) {
-    return false;
+  bool drawn = this->Upload(window, picture, pixels, part);
+  if (drawn && peeled) {
+    this->Peeled.Colors = this->Texture;
+    this->Peeled.Depths = this->Depth;
+    for (int a = 0; a < 2; ++a) {
+      this->Peeled.To[a] = part.To[a] - picture.Viewport[a];
+      this->Peeled.Size[a] = part.ToSize[a];
+      this->Peeled.Viewport[a] = picture.Viewport[2 + a];
+    }
+    this->Peeled.Scale = pixels.Scale;
+    this->Peeled.Bias = pixels.Bias;
+    drawn = this->DrawAgain();
+  } else if (drawn && this->PrepareQuad(window, pixels.Depth != nullptr)) {
+    const std::unique_ptr<vtkStratusPeels::Outside> frame(outside ? new vtkStratusPeels::Outside(window) : nullptr);
+    this->Blend(renderer, window, pixels, part);
+  } else {
+    drawn = false;
   }
-  this->Blend(renderer, window, pixels, part);
+  if (pixels.Depth) {
+    this->Depth->Deactivate();
+  }
   this->Texture->Deactivate();
-  return true;
+  return drawn;
+}
+
+bool vtkStratusDisplay::DrawAgain()
+{
+  return !this->Peeled.Colors || this->Peels.Render(this->Window, this->Peeled);
 }

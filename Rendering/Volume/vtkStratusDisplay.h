@@ -6,6 +6,7 @@
 #ifndef vtkStratusDisplay_h
 #define vtkStratusDisplay_h
 
+#include "vtkStratusPeels.h"
 #include "vtkStratusPicture.h"
 
 #include "vtkNew.h"
@@ -27,8 +28,8 @@ public:
     int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
     float Scale = 1.0f;
     float Bias = 0.0f;
-    const float* Depth = nullptr; // of the window, to be written where alpha is; or nullptr: none is
-    bool Alone = false; // nothing has been drawn before: the bytes are what the window has to hold
+    const float* Depth = nullptr; // of the window, to be written where alpha is; or nullptr: none is. Peels need it.
+    bool Alone = false;           // nothing has been drawn before: the bytes are what the window has to hold
   };
 
   vtkStratusDisplay();
@@ -36,8 +37,12 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
+  // To be asked before each draw. LATER: DrawAgain() is all that is left to do.
+  vtkStratusPeels::Draw Begin(vtkProp* prop, vtkAbstractMapper* mapper);
   // False if the window is not an OpenGL one.
   bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
+  // What Draw() showed in this frame, between the peels of now; nothing if it was not called.
+  bool DrawAgain();
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
@@ -56,6 +61,7 @@ private:
     vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
+  bool PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth);
   bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   void Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
 
@@ -63,7 +69,10 @@ private:
   vtkNew<vtkTextureObject> Behind;
   vtkNew<vtkTextureObject> Depth;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad, DepthQuad; // the second writes depth, too
-  vtkOpenGLRenderWindow* Window = nullptr; // only compared
+  vtkOpenGLRenderWindow* Window = nullptr;              // that the textures belong to
+  vtkStratusPeels Peels;
+  vtkStratusPeels::Draw Stage = vtkStratusPeels::NONE;
+  vtkStratusPeels::Picture Peeled; // what is drawn between peels in this frame; without textures: nothing
 };
 
 #endif

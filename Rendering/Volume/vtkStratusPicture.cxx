@@ -206,6 +206,28 @@ const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer)
   return this->OpaqueDepth.data();
 }
 
+void vtkStratusPicture::ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const
+{
+  const stratus_camera& camera = this->Camera;
+  const int width = this->Size[0], height = this->Size[1];
+  depth.resize(distances.size());
+  for (int j = 0; j < height; ++j) {
+    const double v = (2.0 * j + 1.0) / height - 1.0;
+    for (int i = 0; i < width; ++i) {
+      const double u = (2.0 * i + 1.0) / width - 1.0;
+      const size_t at = static_cast<size_t>(j) * width + i;
+      double square = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        const double along = camera.forward[a] + (camera.parallel ? 0.0 : u * camera.right[a] + v * camera.up[a]);
+        square += along * along;
+      }
+      const double k = distances[at] / std::sqrt(square);
+      const double z = (k - camera.near_k) / (camera.far_k - camera.near_k) * (camera.parallel ? 1.0 : camera.far_k / k);
+      depth[at] = std::isfinite(k) && z < 1.0 ? static_cast<float>(std::max(0.0, z)) : 1.0f;
+    }
+  }
+}
+
 vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
   const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const
 {

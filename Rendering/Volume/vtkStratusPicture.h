@@ -39,6 +39,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // The opaque depth at each ray, until the next call. Not to be asked for where nothing can have been drawn before: it costs as much as a
   // simple scene.
   const float* ReadOpaqueDepth(vtkRenderer* renderer);
+  // The window's depths, 0..1, of distances along the rays; 1 where nothing is.
+  void ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const;
   // What the rays brought back, over the whole viewport: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
   vtkSmartPointer<vtkImageData> MakeImage(
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;

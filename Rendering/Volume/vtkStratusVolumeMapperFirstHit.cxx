@@ -114,26 +114,3 @@ void vtkStratusVolumeMapper::Internals::OfferTree()
       self, << "the input's tree is not used: " << stratus_context_message(this->Context.Get()) << "; one is built");
   }
 }
-
-// From distances along the rays to what the depth buffer holds.
-void vtkStratusVolumeMapper::Internals::SetShownDepth()
-{
-  const stratus_camera& camera = this->Picture.Camera;
-  const int width = this->Picture.Size[0], height = this->Picture.Size[1];
-  this->ShownDepth.resize(this->Depth.size());
-  for (int j = 0; j < height; ++j) {
-    const double v = (2.0 * j + 1.0) / height - 1.0;
-    for (int i = 0; i < width; ++i) {
-      const double u = (2.0 * i + 1.0) / width - 1.0;
-      const size_t at = static_cast<size_t>(j) * width + i;
-      double square = 0.0;
-      for (int a = 0; a < 3; ++a) {
-        const double along = camera.forward[a] + (camera.parallel ? 0.0 : u * camera.right[a] + v * camera.up[a]);
-        square += along * along;
-      }
-      const double k = this->Depth[at] / std::sqrt(square);
-      const double z = (k - camera.near_k) / (camera.far_k - camera.near_k) * (camera.parallel ? 1.0 : camera.far_k / k);
-      this->ShownDepth[at] = std::isfinite(k) && z < 1.0 ? static_cast<float>(std::max(0.0, z)) : 1.0f;
-    }
-  }
-}

@@ -44,6 +44,7 @@ public:
   std::vector<stratus_transfer> Functions;       // .. as the core takes them
   vtkStratusDisplay Display;
   std::string LastError; // of the last picture, empty: none; told already
+  bool DrawsAgain = false; // the last Render() showed the frame's picture once more, between other peels
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
 
@@ -66,7 +67,6 @@ private:
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   void OfferTree();
-  void SetShownDepth();
 
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;

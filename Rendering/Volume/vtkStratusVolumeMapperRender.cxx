@@ -140,6 +140,14 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
+  const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+  const vtkStratusPeels::Draw peel = this->Display.Begin(prop, this->Mapper);
+  this->DrawsAgain = peel == vtkStratusPeels::LATER;
+  if (this->DrawsAgain) {
+    const bool drawn = this->Display.DrawAgain();
+    error = drawn ? this->LastError : unshown;
+    return drawn;
+  }
   this->HasPicture = false; // of one that is refused nothing is left to be asked for
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
@@ -176,6 +184,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
   vtkStratusDisplay::Pixels pixels = this->ChoosePixels(renderer, others);
+  if (peel == vtkStratusPeels::FIRST) {
+    pixels.Bytes = nullptr;
+  }
   if (!this->Cast(renderer, options, opaqueDepth, pixels.Bytes != nullptr, error)) {
     return false;
   }
@@ -188,8 +199,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   if (selector) {
     this->ChooseSelected(selector, pixels);
   }
-  if (this->IsFirstHit() || selector) {
-    this->SetShownDepth();
+  if (this->IsFirstHit() || selector || peel == vtkStratusPeels::FIRST) {
+    this->Picture.ToWindowDepth(this->Depth, this->ShownDepth);
     pixels.Depth = this->ShownDepth.data();
   }
   const bool drawn = this->Display.Draw(renderer, this->Picture, pixels);
@@ -197,7 +208,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     selector->EndRenderProp();
   }
   if (!drawn) {
-    error = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+    error = unshown;
     return false;
   }
   this->DrawMilliseconds = Now() - cast + read - start;
