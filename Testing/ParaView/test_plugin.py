@@ -9,7 +9,7 @@ import sys
 
 import numpy
 from paraview import simple
-from paraview.vtk import vtkIOXML, vtkCommonDataModel
+from paraview.vtk import vtkIOImage, vtkIOXML, vtkCommonDataModel
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 plugin, stratus, compare, folder = sys.argv[1:5]
@@ -71,6 +71,7 @@ def make_view(width, height):
     view.UseColorPaletteForBackground = 0
     view.Background = [0, 0, 0]
     view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0  # it blurs where colours change fast
     return view
 
 
@@ -104,6 +105,51 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400):
 
 def pixels(path):
     return open(path, "rb").read()
+
+
+def shot(view, name):
+    """What a view shows, in 0..1, rows from below."""
+    path = os.path.join(folder, name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
+    reader = vtkIOImage.vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3] / 255
+
+
+def translucent(shown, view):
+    """A sheet across the view before, within and behind the volume, which is wholly before or behind it in each pixel: ParaView peels volumes."""
+    alone = shot(view, "cloud-on-black")
+    view.Background = [1, 1, 1]
+    clear = shot(view, "cloud-on-white") - alone  # what the volume lets through
+    view.Background = [0, 0, 0]
+    eye, focus = numpy.array(view.CameraPosition), numpy.array(view.CameraFocalPoint)
+    forward = (focus - eye) / numpy.linalg.norm(focus - eye)
+    right = numpy.cross(forward, view.CameraViewUp)
+    right, up = right / numpy.linalg.norm(right), numpy.cross(right / numpy.linalg.norm(right), forward)
+    low, high = numpy.array([100.0, -20, 5]), numpy.array([100 + 71, -20 + 59 * 1.2, 5 + 47 * 0.9])
+    depths = [numpy.dot([x, y, z] - eye, forward) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    color, opacity = numpy.array([0.2, 0.4, 1.0]), 0.5
+    lit = clear.mean(axis=1) < 0.8
+    check(lit.sum() > 5000, "the volume covers a part of the view")
+    for name, depth in ("before", min(depths) - 5), ("within", (min(depths) + max(depths)) / 2), ("behind", max(depths) + 5):
+        corner = eye + depth * (forward - right - up)
+        sheet = simple.Plane(Origin=list(corner), Point1=list(corner + 2 * depth * right), Point2=list(corner + 2 * depth * up))
+        surface = simple.Show(sheet, view)
+        surface.Ambient, surface.Diffuse, surface.Specular, surface.Opacity = 1, 0, 0, opacity
+        surface.AmbientColor = surface.DiffuseColor = list(color)
+        seen = shot(view, "cloud-and-sheet-" + name)
+        simple.Delete(surface)
+        simple.Delete(sheet)
+        orders = {"before": opacity * color + (1 - opacity) * alone, "behind": alone + clear * opacity * color}
+        errors = {side: numpy.abs(seen - picture).max(axis=1) * 255 for side, picture in orders.items()}
+        error = errors[name] if name in errors else numpy.minimum(errors["before"], errors["behind"])
+        # Two pictures that were rounded to bytes go into what is expected, two layers of bytes into what is seen.
+        print(f"a translucent sheet {name} the volume: {error.max():.2f} of 255")
+        check(error.max() <= 2, f"a translucent sheet {name} the volume: {error.max():.2f} of 255")
+        if name == "within":
+            sides = [int((errors[side][lit] <= 2).sum()) for side in ("before", "behind")]
+            check(min(sides) > 100, f"a sheet within the volume lies before some of it and behind some: {sides}")
 
 
 def filters(cloud, shown, view, before):
@@ -154,6 +200,7 @@ cloud_path = os.path.join(folder, "cloud.vti")
 most = write_cloud(cloud_path)
 colors = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)]
 cloud, shown, view, png, _ = draw(cloud_path, "density", [(0.05, 0), (most, 0.4)], colors, 1.0, 55)
+translucent(shown, view)
 filters(cloud, shown, view, png)
 tetgen_files()
 isabel = os.path.realpath("../shared/data/isabel_02.vti")
