@@ -272,7 +272,9 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   first_hit_frame frame = { .options = options, .image = image, .camera = camera };
   double index_to_world[16], world_to_index[16];
   TRY(stratus_ray_check_camera(context, camera, image));
-  TRY(stratus_shading_check(context, &options->shading));
+  if (options->shading.on) {
+    TRY(stratus_shading_check(context, &options->shading));
+  }
   stratus_volume_index_to_world(volume, index_to_world);
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");

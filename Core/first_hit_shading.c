@@ -103,7 +103,9 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
     }
     (void)normalize(shader->plane[p]);
   }
-  set_lights(shader, camera, &options->shading);
+  if (options->shading.on) {
+    set_lights(shader, camera, &options->shading);
+  }
 }
 
 /* ---- colour */

@@ -106,8 +106,11 @@ void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus
     a->gradient_length[axis] = (float)(mean / volume->spacing[axis]);
   }
   set_tables(caster, a);
+  if (!options->shade) { /* nobody has checked the lights, and nothing asks for them */
+    return;
+  }
   const stratus_shading* shading = &options->shading;
-  a->shade = options->shade != 0;
+  a->shade = 1;
   a->two_sided = !shading->one_sided;
   a->material[0] = (float)shading->ambient;
   a->material[1] = (float)shading->diffuse;

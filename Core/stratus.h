@@ -495,7 +495,8 @@ typedef struct stratus_light {
 
 /* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power).
  * Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn), and specular
- * where N L > 0 only; N against the gradient by central differences, 0 where that is 0. */
+ * where N L > 0 only; N against the gradient by central differences, 0 where that is 0. Where nothing is lit (first hit: on is 0; composite and
+ * isosurface: shade is 0; other modes), no other number of it is read or refused. */
 typedef struct stratus_shading {
   int on;                /* first hit; 0: c = C. Default 1. Composite: see stratus_ray_cast_options.shade */
   double ambient;        /* finite and >= 0, as the next three; default .1 */

@@ -354,6 +354,42 @@ static void what_it_cannot_show_is_refused(void** state)
   stratus_context_destroy(context);
 }
 
+/* Gradient opacity, labels and components share their arguments with the light, which nothing checks where nothing is lit. */
+static void a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.0, 0.2, 0.4, 0.45, 1.0 };
+  static const int counts[] = { 9, 1024, INT32_MAX, -2, INT32_MIN };
+  static uint8_t labels[24 * 22 * 26];
+  stratus_context* context = case_context("host", 2);
+  for (int kind = 0; kind < 4; ++kind) {
+    many m;
+    many_create(context, &m, STRATUS_UINT8, kind == 1 ? 2 : 1, 24, 22, 26, 91);
+    m.transfers[0].gradient = steep;
+    m.transfers[0].gradient_count = kind == 0 ? 3 : 0;
+    if (kind == 2) {
+      set_labels(&m, labels);
+    }
+    if (kind == 3) {
+      m.c.options.mode = STRATUS_MODE_FIRST_HIT;
+      m.c.options.shading.on = 0;
+    }
+    draw(context, &m, &other);
+    assert_true(case_lit(&other) > 50);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+      m.c.options.shading.light_count = counts[i];
+      draw(context, &m, &drawn);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    }
+    m.c.options.shading.on = m.c.options.shade = 1;
+    m.c.options.shading.light_count = 9;
+    assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(context), "9 lights"));
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -362,6 +398,7 @@ int main(void)
     cmocka_unit_test(each_component_has_its_own_units),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
     cmocka_unit_test(labels_have_colours_and_opacities_of_their_own),
+    cmocka_unit_test(a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit),
     cmocka_unit_test(no_structure_changes_a_bit),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
