@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * OpenCL 1.2: choice of a device, buffers. Calls that release are never refused, so that a lost device frees all. */
+#define _POSIX_C_SOURCE 200809L
 #include "device_state.h"
 
 #include <ctype.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,7 +91,12 @@ void stratus_device_fail_after(stratus_device* device, int64_t calls, int error)
 
 /* ---------------------------------------------------------------- choice */
 
-static device_list list_devices(void)
+/* The core's only state that is not a context's. Platforms may be asked by several threads at once, but PoCL (3.1) finds its devices when they are
+ * first asked for, and a thread that asks while another one's question makes it do so sees none, or crashes. Whoever uses a device has asked for
+ * the list before, so that nothing else needs the lock: programs of several contexts are built, and drawn with, at once. */
+static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
+
+static device_list find_devices(void)
 {
   device_list list = { .call = "clGetPlatformIDs" };
   cl_platform_id platforms[PLATFORMS_MAX];
@@ -110,6 +117,14 @@ static device_list list_devices(void)
       list.error = error;
     }
   }
+  return list;
+}
+
+static device_list list_devices(void)
+{
+  pthread_mutex_lock(&listing);
+  const device_list list = find_devices();
+  pthread_mutex_unlock(&listing);
   return list;
 }
 

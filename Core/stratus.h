@@ -9,7 +9,11 @@
  *   Inputs are borrowed const views, read during the call unless a comment says longer; what _create makes, _destroy
  *   frees, and _destroy takes NULL. A call that fails returns a status, leaves its outputs as they were, and leaves a
  *   sentence with the value and the allowed range in stratus_context_message().
- *   One context serves one thread at a time; different contexts are independent.
+ *   NULL: only what a comment says may be. Else a call that returns a status refuses it with STRATUS_INVALID_ARGUMENT (without a message where
+ *   there is no object to leave it in); a call without a status takes an object that is NULL for an empty one, and writes to no address that is.
+ *   One context serves one thread at a time; different contexts are independent, and several threads may make theirs at once. One lock for the
+ *   process, the core's only global state, lets a single thread at a time ask OpenCL for its devices, as not every platform's first answer
+ *   bears more; nothing else is done under it.
  */
 #ifndef STRATUS_H
 #define STRATUS_H
