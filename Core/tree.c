@@ -152,7 +152,6 @@ static stratus_status build(
   stratus_status status = STRATUS_OK;
   tree->octants = options->method != STRATUS_TREE_DISTANCE && options->method != STRATUS_TREE_HYBRID_PAPER;
   tree->cell_log2 = options->method == STRATUS_TREE_HYBRID_PAPER ? 0 : 2;
-  tree->entry_bytes = 2;
   if (options->method >= STRATUS_TREE_SAH) {
     return hierarchy(context, voxels, options, tree);
   }
@@ -249,6 +248,7 @@ stratus_status stratus_tree_create(
   tree = memory;
   tree->context = context;
   tree->origin = voxels->origin;
+  tree->entry_bytes = 2; /* until distance fields ask for more; a tree without fields, or without a node, has a width, too */
   memcpy(tree->index_to_world, voxels->index_to_world, sizeof tree->index_to_world);
   stratus_matrix_invert_affine(tree->index_to_world, tree->world_to_index);
   for (int a = 0; a < 3; a++) {

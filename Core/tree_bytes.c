@@ -149,6 +149,7 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   for (int32_t i = 0; fine && i < h->origin.intervals; i++) {
     const double* interval = h->origin.interval[i];
     const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY; /* equal to nobody's */
+    (h->node_count == 0) == (h->voxels == 0) &&
     fine = emptied || (interval[0] <= interval[1] && (i == 0 || h->origin.interval[i - 1][1] < interval[0]));
   }
   return fine ? STRATUS_OK : WRONG("a tree whose header contradicts itself");

@@ -63,6 +63,58 @@ static void what_is_saved_comes_back(void** state)
   stratus_context_destroy(context);
 }
 
+/* As a criterion that nothing meets leaves it. */
+static void a_tree_of_no_voxel_comes_back_and_nothing_hits_it(void** state)
+{
+  (void)state;
+  uint32_t random = 3;
+  const int64_t dimensions[3] = { 40, 30, 50 };
+  const int32_t nowhere[3] = { 0 };
+  stratus_context* context = open_context();
+  stratus_voxels* voxels = NULL;
+  assert_int_equal(stratus_voxels_create_list(context, dimensions, nowhere, 0, &voxels), STRATUS_OK);
+  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+    stratus_tree_options options = stratus_tree_options_default();
+    stratus_tree *tree = NULL, *back = NULL, *damaged = NULL;
+    size_t size, again;
+    options.method = (stratus_tree_method)method;
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    unsigned char* bytes = save(tree, &size);
+    if (stratus_tree_load(context, bytes, size, &back) != STRATUS_OK) {
+      fail_msg("%s: %s", stratus_tree_method_name(options.method), stratus_context_message(context));
+    }
+    void* copy = save(back, &again);
+    assert_int_equal(size, again);
+    assert_memory_equal(bytes, copy, size);
+    assert_int_equal(stratus_tree_check(context, back, voxels), STRATUS_OK);
+    for (int i = 0; i < 100; i++) {
+      const stratus_ray ray = random_ray(dimensions, &random);
+      stratus_hit hit = { .t = 0 };
+      assert_int_equal(stratus_tree_first_hit(context, back, &ray, 1, &hit), STRATUS_OK);
+      assert_true(isinf(hit.t) && hit.voxel[0] == -1 && hit.face == -1);
+    }
+    for (size_t cut = 0; cut < size; cut++) {
+      assert_int_equal(stratus_tree_load(context, bytes, cut, &damaged), STRATUS_INVALID_ARGUMENT);
+    }
+    for (size_t at = 0; at < size; at++) {
+      bytes[at] ^= 0x10;
+      assert_int_equal(stratus_tree_load(context, bytes, size, &damaged), STRATUS_INVALID_ARGUMENT);
+      bytes[at] ^= 0x10;
+    }
+    tree->statistics.voxels = 1; /* but no node */
+    free(copy);
+    copy = save(tree, &again);
+    assert_int_equal(stratus_tree_load(context, copy, again, &damaged), STRATUS_INVALID_ARGUMENT);
+    assert_null(damaged);
+    free(bytes);
+    free(copy);
+    stratus_tree_destroy(tree);
+    stratus_tree_destroy(back);
+  }
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
 static void damaged_bytes_are_refused(void** state)
 {
   (void)state;
@@ -227,7 +279,8 @@ static void a_tree_covers_only_what_it_was_made_of(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(what_is_saved_comes_back), cmocka_unit_test(damaged_bytes_are_refused),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(what_is_saved_comes_back),
+    cmocka_unit_test(a_tree_of_no_voxel_comes_back_and_nothing_hits_it), cmocka_unit_test(damaged_bytes_are_refused),
     cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(forged_places_and_intervals_are_refused),
     cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
   return cmocka_run_group_tests(tests, NULL, NULL);
