@@ -138,7 +138,8 @@ typedef struct stratus_volume {
   int cell_centered;           /* 1: a value belongs to a cell: the volume is dimensions*spacing wide and, where linear, clamps
                             * within half a cell of its border. Default 0: values sit on points, the volume is (dimensions-1)*spacing wide. */
   const uint8_t* point_ghosts; /* dimensions[] flags, NULL: none; not used if cell_centered */
-  const uint8_t* cell_ghosts;  /* a flag a cell: dimensions-1 (cell_centered: dimensions) along each axis, NULL: none */
+  const uint8_t* cell_ghosts;  /* a flag a cell, NULL: none. Cells along an axis: dimensions-1, but 1 where that is 0, as VTK counts those of flat
+                                * images; cell_centered: dimensions. */
   uint64_t revision;           /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
   int components;              /* 1..4, default 1 (0 is 1): value v's component c is values[v*value_stride + c]. More than 1: ray casts in composite
                                 * mode only; everything else takes component 0. */

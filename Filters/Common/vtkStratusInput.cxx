@@ -206,15 +206,11 @@ bool vtkStratusImageView::SetGhosts(vtkImageData* image, bool cells, std::string
     return false;
   }
   stratus_volume& volume = this->Volume;
-  int points[3];
-  image->GetDimensions(points);
-  // An image of one layer of points has VTK cells along that axis, the core's view of points has none.
-  const bool flat = !cells && (points[0] < 2 || points[1] < 2 || points[2] < 2);
   if (pointGhosts && !cells) {
     volume.point_ghosts = pointGhosts->GetPointer(0);
     volume.revision = Mix(volume.revision, pointGhosts->GetMTime());
   }
-  if (cellGhosts && !flat) {
+  if (cellGhosts) { // of flat images, too: the core counts their cells as VTK does
     volume.cell_ghosts = cellGhosts->GetPointer(0);
     volume.revision = Mix(volume.revision, cellGhosts->GetMTime());
   }

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The view of a volume: where its voxels are, what its ghosts mean, and what is no volume. */
+#define _DEFAULT_SOURCE
 #include "structures.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 static stratus_volume cube_of(const void* values, int64_t n)
 {
@@ -326,6 +330,94 @@ static void what_is_no_volume_is_refused_with_the_value(void** state)
   stratus_context_destroy(context);
 }
 
+/* Memory of so many bytes before a page that nobody may read. */
+static void* guarded(size_t bytes, void** whole, size_t* size)
+{
+  const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+  *size = (bytes + page - 1) / page * page + page;
+  *whole = mmap(NULL, *size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  assert_true(*whole != MAP_FAILED);
+  char* wall = (char*)*whole + *size - page;
+  assert_int_equal(mprotect(wall, page, PROT_NONE), 0);
+  return wall - bytes;
+}
+
+static void read_everything(stratus_context* context, stratus_ray_caster* caster, const stratus_volume* v)
+{
+  static const double opacity[] = { 0, 0, 40, 0.5 }, color[] = { 0, 1, 1, 1 };
+  float rgba[4 * 8 * 8];
+  const stratus_image image = { .width = 8, .height = 8, .rgba = rgba };
+  const double eye[3] = { 20, 14, 9 }, focal[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
+  stratus_transfer transfer = stratus_transfer_default();
+  stratus_camera camera;
+  stratus_voxels* voxels = NULL;
+  const stratus_criterion all = stratus_criterion_default();
+  transfer.opacity = opacity;
+  transfer.opacity_count = 2;
+  transfer.color = color;
+  transfer.color_count = 1;
+  assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 30, 1, &camera), STRATUS_OK);
+  for (int setting = 0; setting < 12; setting++) {
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    options.structure = (stratus_structure)(setting % 6);
+    options.interpolation = (stratus_interpolation)(setting / 6);
+    assert_int_equal(stratus_ray_caster_render(caster, v, &transfer, &camera, &options, &image, NULL), STRATUS_OK);
+    options.mode = STRATUS_MODE_FIRST_HIT;
+    assert_int_equal(stratus_ray_caster_render(caster, v, &transfer, &camera, &options, &image, NULL), STRATUS_OK);
+  }
+  stratus_ray_caster_release(caster);
+  assert_int_equal(stratus_voxels_create(context, v, &all, &voxels), STRATUS_OK);
+  stratus_voxels_destroy(voxels);
+  assert_int_equal(stratus_voxels_create_cells(context, v, &all, &voxels), STRATUS_OK);
+  stratus_voxels_destroy(voxels);
+}
+
+/* As many values and flags as the header says, to the byte: flat images have the cells that VTK gives them. */
+static void nothing_behind_values_and_flags_is_read(void** state)
+{
+  (void)state;
+  static const int64_t lengths[] = { 1, 2, 6 };
+  static const stratus_type types[] = { STRATUS_UINT8, STRATUS_INT16, STRATUS_FLOAT32, STRATUS_INT64 };
+  stratus_context* context = make_context("host", 1);
+  stratus_ray_caster* caster = NULL;
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  for (int shape = 0; shape < 27 * 2 * 4; shape++) {
+    stratus_volume v = stratus_volume_default();
+    size_t points = 1, cells = 1, sizes[3];
+    void *wholes[3], *buffers[3];
+    v.type = types[shape / 54];
+    v.cell_centered = shape / 27 % 2;
+    for (int a = 0, digit = shape % 27; a < 3; a++, digit /= 3) {
+      const int64_t n = lengths[digit % 3];
+      v.dimensions[a] = n;
+      points *= (size_t)n;
+      cells *= (size_t)(v.cell_centered || n == 1 ? n : n - 1);
+    }
+    const size_t bytes[3] = { points * stratus_type_size(v.type), points, cells };
+    for (int b = 0; b < 3; b++) {
+      buffers[b] = guarded(bytes[b], &wholes[b], &sizes[b]);
+      memset(buffers[b], b == 0 ? 30 : 0, bytes[b]);
+    }
+    ((uint8_t*)buffers[1])[points - 1] = STRATUS_GHOST_HIDDEN_POINT; /* the last ones, so that all have been looked at */
+    ((uint8_t*)buffers[2])[cells - 1] = STRATUS_GHOST_HIDDEN_CELL;
+    v.values = buffers[0];
+    read_everything(context, caster, &v);
+    v.point_ghosts = buffers[1];
+    v.cell_ghosts = buffers[2];
+    read_everything(context, caster, &v);
+    uint8_t* hidden = NULL;
+    assert_int_equal(stratus_volume_hidden_cells(context, &v, &hidden), STRATUS_OK);
+    assert_non_null(hidden);
+    assert_int_equal(hidden[cells - 1], 1);
+    stratus_release(context, hidden);
+    for (int b = 0; b < 3; b++) {
+      munmap(wholes[b], sizes[b]);
+    }
+  }
+  stratus_ray_caster_destroy(caster);
+  stratus_context_destroy(context);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -335,6 +427,7 @@ int main(void)
     cmocka_unit_test(every_type_is_fetched_as_it_is),
     cmocka_unit_test(hidden_points_hide_every_cell_they_touch),
     cmocka_unit_test(the_owned_box_leaves_out_another_pieces_cells),
+    cmocka_unit_test(nothing_behind_values_and_flags_is_read),
     cmocka_unit_test(the_default_is_a_unit_grid),
     cmocka_unit_test(sizes_that_overflow_are_refused_and_large_ones_are_not),
     cmocka_unit_test(what_is_no_volume_is_refused_with_the_value),
