@@ -51,6 +51,8 @@ stratus_status stratus_allocate_zero(stratus_context* context, size_t count, siz
 void stratus_release(stratus_context* context, void* memory);
 /* a*b*c into *product; STRATUS_OVERFLOW with `what` in the message. */
 stratus_status stratus_product(stratus_context* context, const char* what, size_t a, size_t b, size_t c, size_t* product);
+/* STRATUS_OVERFLOW where `count` items of `size` bytes, "points" say, can't be in any array. */
+stratus_status stratus_array_check(stratus_context* context, const char* what, size_t count, size_t size);
 double stratus_now_ms(void); /* monotonic clock */
 
 /* ---- volume.c
@@ -63,6 +65,17 @@ float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t ind
 /* Size of the index box: cells between value positions, dimensions-1 at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
 bool stratus_type_is_wide(stratus_type type);
+/* The least float that is not below a number, and the greatest that is not above. */
+static inline float stratus_float_above(double number)
+{
+  const float nearest = (float)number;
+  return (double)nearest < number ? nextafterf(nearest, INFINITY) : nearest;
+}
+static inline float stratus_float_below(double number)
+{
+  const float nearest = (float)number;
+  return (double)nearest > number ? nextafterf(nearest, -INFINITY) : nearest;
+}
 /* 4x4 row-major affine: index coordinates -> world, and back. */
 void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[16]);
 bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16]);
@@ -79,6 +92,7 @@ struct stratus_value_range {
   int64_t blocks[3]; /* at least 1 each */
   int block_size;
   double bias; /* of the fetched values */
+  bool wide;   /* whether several values may be fetched as one */
   float* lo;   /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
   float* hi;
   uint8_t* gaps;  /* 1 where some voxel of the block is not finite or some cell hidden */

@@ -3,6 +3,7 @@
 #include "clones.h"
 #include "internal.h"
 #include "structures_device.h"
+#include "voxels_build.h"
 
 #include <string.h>
 
@@ -119,21 +120,32 @@ static void test_rows(
   }
 }
 
+static stratus_status create_empty(stratus_context* context, const stratus_value_range* ranges, stratus_occupancy** out)
+{
+  void* memory;
+  TRY(stratus_allocate_zero(context, 1, sizeof **out, &memory));
+  stratus_occupancy* occupancy = memory;
+  occupancy->context = context;
+  occupancy->block_size = ranges->block_size;
+  memcpy(occupancy->blocks, ranges->blocks, sizeof occupancy->blocks);
+  const stratus_status status = stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), 1, &memory);
+  if (status != STRATUS_OK) {
+    stratus_occupancy_destroy(occupancy);
+    return status;
+  }
+  occupancy->occupied = memory;
+  *out = occupancy;
+  return STRATUS_OK;
+}
+
 stratus_status stratus_occupancy_build(
   stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy** out)
 {
   stratus_status status = STRATUS_OK;
   stratus_occupancy* occupancy = NULL;
-  void* memory;
 
   TRY(stratus_progress(context, "occupancy", 0.0));
-  TRY(stratus_allocate_zero(context, 1, sizeof *occupancy, &memory));
-  occupancy = memory;
-  occupancy->context = context;
-  occupancy->block_size = ranges->block_size;
-  memcpy(occupancy->blocks, ranges->blocks, sizeof occupancy->blocks);
-  TRY_CLEANUP(stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), 1, &memory));
-  occupancy->occupied = memory;
+  TRY(create_empty(context, ranges, &occupancy));
   if (stratus_structures_on_device(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
     TRY_CLEANUP(stratus_device_occupancy(context, ranges, table, occupancy));
     test_rows(context, NULL, NULL, occupancy);
@@ -181,6 +193,45 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   const stratus_status status = stratus_occupancy_build(context, ranges, table, out);
   stratus_table_destroy(table);
   return status;
+}
+
+/* The least and the greatest of the fetched values that may stand for one in lower..upper. Wide types: fetching is monotone, so that what a value
+ * beyond an end is fetched as lies beyond what the end is, or is the same. */
+static void find_ends(const stratus_value_range* ranges, double lower, double upper, float* first, float* last)
+{
+  *first = ranges->wide ? (float)(lower - ranges->bias) : stratus_float_above(lower); /* narrow types are floats as they are */
+  *last = ranges->wide ? (float)(upper - ranges->bias) : stratus_float_below(upper);
+}
+
+stratus_status stratus_occupancy_create_between(
+  stratus_context* context, const stratus_value_range* ranges, double lower, double upper, stratus_occupancy** out)
+{
+  stratus_occupancy* occupancy = NULL;
+  float first, last;
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!ranges || !out) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", ranges ? "occupancy" : "ranges");
+  }
+  const stratus_criterion criterion = { .lower = lower, .upper = upper };
+  TRY(stratus_criterion_check(context, &criterion));
+  TRY(stratus_progress(context, "occupancy", 0.0));
+  TRY(create_empty(context, ranges, &occupancy));
+  find_ends(ranges, lower, upper, &first, &last);
+  const int64_t blocks = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+#pragma omp parallel for schedule(static) num_threads(context->threads)
+  for (int64_t b = 0; b < blocks; b++) {
+    occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
+  }
+  test_rows(context, NULL, NULL, occupancy); /* counts and bounds */
+  const stratus_status status = stratus_progress(context, "occupancy", 1.0);
+  if (status != STRATUS_OK) {
+    stratus_occupancy_destroy(occupancy);
+    return status;
+  }
+  *out = occupancy;
+  return STRATUS_OK;
 }
 
 void stratus_occupancy_destroy(stratus_occupancy* occupancy)

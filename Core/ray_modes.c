@@ -179,17 +179,6 @@ stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratu
   return STRATUS_OK;
 }
 
-/* The float nearest to `value` that is not below it (or above, where upward is 0): no value in the range may be left out. */
-static float outward(double value, bool upward)
-{
-  const float nearest = (float)value;
-  if (isinf(value) || isinf(nearest)) {
-    return nearest;
-  }
-  return upward ? ((double)nearest < value ? nextafterf(nearest, INFINITY) : nearest)
-                : ((double)nearest > value ? nextafterf(nearest, -INFINITY) : nearest);
-}
-
 void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const stratus_value_range* ranges = caster->ranges;
@@ -198,8 +187,9 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
   a->sum = is_sum(options->mode);
-  a->counted_first = additive ? -INFINITY : outward(options->average_range[0] - ranges->bias, false);
-  a->counted_last = additive ? INFINITY : outward(options->average_range[1] - ranges->bias, true);
+  /* outward: no value in the range may be left out */
+  a->counted_first = additive ? -INFINITY : stratus_float_below(options->average_range[0] - ranges->bias);
+  a->counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
   a->grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->grey_offset = a->grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->sum_scale = additive ? (float)(caster->choice.sample_distance / caster->transfer.unit_distance) : 0.0f;

@@ -151,7 +151,7 @@ STRATUS_API stratus_status stratus_volume_check(stratus_context* context, const 
 
 /* A transfer function: piecewise linear between points of non-decreasing value (equal values make a step). */
 typedef struct stratus_transfer {
-  const double* opacity; /* opacity_count pairs: value, opacity in 0..1 per unit_distance */
+  const double* opacity; /* opacity_count pairs: value, opacity in 0..1 per unit_distance; 1 is opaque, however short the way through it */
   size_t opacity_count;  /* >= 1 */
   const double* color;   /* color_count quadruples: value, red, green, blue in 0..1 */
   size_t color_count;    /* >= 1 */
@@ -221,6 +221,11 @@ typedef struct stratus_occupancy stratus_occupancy;
 STRATUS_API stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges,
   const stratus_transfer* transfer, stratus_sampling sampling, stratus_occupancy** occupancy);
 STRATUS_API void stratus_occupancy_destroy(stratus_occupancy* occupancy);
+/* A block is occupied if a value from the least to the largest in it lies in lower..upper, ends included, lower <= upper, infinities allowed.
+ * Compared exactly, but types of more than 24 bits as the floats that stand for them, the ends rounded as the values are: such a float counts if
+ * any value that it may stand for does. */
+STRATUS_API stratus_status stratus_occupancy_create_between(
+  stratus_context* context, const stratus_value_range* ranges, double lower, double upper, stratus_occupancy** occupancy);
 STRATUS_API void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks[3], int* block_size);
 STRATUS_API int64_t stratus_occupancy_count(const stratus_occupancy* occupancy); /* occupied blocks */
 STRATUS_API int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k);

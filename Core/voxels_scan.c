@@ -108,9 +108,7 @@ static bool float_bounds(double lo, double hi, bounds* result)
   if (lo > FLT_MAX || hi < -FLT_MAX) {
     return false;
   }
-  float first = lo <= -FLT_MAX ? -FLT_MAX : (float)lo, last = hi >= FLT_MAX ? FLT_MAX : (float)hi;
-  first = (double)first < lo ? nextafterf(first, INFINITY) : first;
-  last = (double)last > hi ? nextafterf(last, -INFINITY) : last;
+  const float first = lo <= -FLT_MAX ? -FLT_MAX : stratus_float_above(lo), last = hi >= FLT_MAX ? FLT_MAX : stratus_float_below(hi);
   result->lo.d = (double)first;
   result->hi.d = (double)last;
   return first <= last;

@@ -17,7 +17,6 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 vtkStandardNewMacro(vtkStratusDistanceMapFilter);
@@ -46,12 +45,11 @@ public:
   stratus_occupancy* Occupancy = nullptr;
 
 private:
-  bool SetTransfer(std::string& error);
+  bool CheckShown(std::string& error);
+  stratus_status MakeOccupancy(stratus_context* context);
 
   vtkStratusImageView Image;
   vtkStratusTransferView PropertyView;
-  stratus_transfer Transfer;
-  std::vector<double> Opacity;
   stratus_value_range* Ranges = nullptr;
   stratus_distance_map* Map = nullptr;
 };
@@ -67,53 +65,39 @@ void vtkStratusDistanceMapFilter::Internals::Clear()
   this->Image.Release();
 }
 
-bool vtkStratusDistanceMapFilter::Internals::SetTransfer(std::string& error)
+bool vtkStratusDistanceMapFilter::Internals::CheckShown(std::string& error)
 {
   if (this->Property) {
-    if (!this->PropertyView.Set(this->Property, error)) {
-      return false;
-    }
-    this->Transfer = this->PropertyView.GetTransfer();
-    return true;
+    return this->PropertyView.Set(this->Property, error);
   }
   const double lower = this->Filter->LowerThreshold, upper = this->Filter->UpperThreshold;
   if (!(lower <= upper)) {
     error = "LowerThreshold is " + std::to_string(lower) + " and UpperThreshold " + std::to_string(upper) + ", lower must be <= upper";
-    return false;
   }
-  // One where the range is, steps at its finite ends.
-  const double infinity = std::numeric_limits<double>::infinity();
-  this->Opacity.clear();
-  if (std::isfinite(lower)) {
-    this->Opacity = { std::nextafter(lower, -infinity), 0.0, lower, 1.0 };
-  }
-  if (std::isfinite(upper)) {
-    this->Opacity.insert(this->Opacity.end(), { upper, 1.0, std::nextafter(upper, infinity), 0.0 });
-  }
-  if (this->Opacity.empty()) {
-    this->Opacity = { 0.0, 1.0 };
-  }
-  static const double white[4] = { 0, 1, 1, 1 };
-  this->Transfer = stratus_transfer_default();
-  this->Transfer.opacity = this->Opacity.data();
-  this->Transfer.opacity_count = this->Opacity.size() / 2;
-  this->Transfer.color = white;
-  this->Transfer.color_count = 1;
-  return true;
+  return lower <= upper;
+}
+
+stratus_status vtkStratusDistanceMapFilter::Internals::MakeOccupancy(stratus_context* context)
+{
+  stratus_occupancy** occupancy = &this->Occupancy;
+  const double lower = this->Filter->LowerThreshold, upper = this->Filter->UpperThreshold;
+  return this->Property
+    ? stratus_occupancy_create(context, this->Ranges, &this->PropertyView.GetTransfer(), STRATUS_SAMPLING_MIDPOINT, occupancy)
+    : stratus_occupancy_create_between(context, this->Ranges, lower, upper, occupancy);
 }
 
 bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::string& error)
 {
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
-  if (!this->Image.SetInput(input, array, association, error) || !this->SetTransfer(error) ||
+  if (!this->Image.SetInput(input, array, association, error) || !this->CheckShown(error) ||
     (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
     return false;
   }
   stratus_context* context = this->Context.Get();
   const stratus_distance_kind kinds[] = { STRATUS_DISTANCE_BLOCK, STRATUS_DISTANCE_FULL, STRATUS_DISTANCE_PAPER, STRATUS_DISTANCE_OCTANT };
   if (stratus_value_range_create(context, &this->Image.GetVolume(), this->Filter->BlockSize, &this->Ranges) != STRATUS_OK ||
-    stratus_occupancy_create(context, this->Ranges, &this->Transfer, STRATUS_SAMPLING_MIDPOINT, &this->Occupancy) != STRATUS_OK ||
+    this->MakeOccupancy(context) != STRATUS_OK ||
     stratus_distance_map_create(context, this->Occupancy, kinds[this->Filter->Kind], &this->Map) != STRATUS_OK) {
     error = stratus_context_message(context);
     return false;

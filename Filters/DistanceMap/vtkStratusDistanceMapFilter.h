@@ -9,7 +9,8 @@
  * as interpolation does.
  *
  * A block is occupied if something of VolumeProperty's scalar opacity shows between the smallest and the largest value in it, or, without a
- * VolumeProperty, something in LowerThreshold..UpperThreshold. Bounds are rounded outward, never inward.
+ * VolumeProperty, something in LowerThreshold..UpperThreshold, ends included. Values of 24 bits or fewer are compared exactly; of wider types
+ * those that one float stands for are told as one. So no bound is ever rounded inward.
  *
  * Where the filter fails its output stays what it was.
  *

@@ -190,6 +190,182 @@ static void wrong_arguments_are_refused_with_a_reason(void** state)
   stratus_context_destroy(context);
 }
 
+static long double exact_value(const stratus_volume* v, int64_t at)
+{
+  at *= v->value_stride;
+  switch (v->type) {
+    case STRATUS_INT8:
+      return ((const int8_t*)v->values)[at];
+    case STRATUS_UINT8:
+      return ((const uint8_t*)v->values)[at];
+    case STRATUS_INT16:
+      return ((const int16_t*)v->values)[at];
+    case STRATUS_UINT16:
+      return ((const uint16_t*)v->values)[at];
+    case STRATUS_INT32:
+      return ((const int32_t*)v->values)[at];
+    case STRATUS_UINT32:
+      return ((const uint32_t*)v->values)[at];
+    case STRATUS_INT64:
+      return (long double)((const int64_t*)v->values)[at];
+    case STRATUS_UINT64:
+      return (long double)((const uint64_t*)v->values)[at];
+    case STRATUS_FLOAT32:
+      return (long double)((const float*)v->values)[at];
+    case STRATUS_FLOAT64:
+      return (long double)((const double*)v->values)[at];
+  }
+  return 0;
+}
+
+/* Least and greatest of the values in block `at` whose fetched values are finite, as they are; false if there is none. */
+static bool exact_range(const stratus_volume* v, int size, double bias, const int64_t at[3], long double range[2])
+{
+  const int64_t* n = v->dimensions;
+  range[0] = (long double)INFINITY;
+  range[1] = -(long double)INFINITY;
+  for (int64_t k = at[2] * size; k <= (at[2] + 1) * size && k < n[2]; k++) {
+    for (int64_t j = at[1] * size; j <= (at[1] + 1) * size && j < n[1]; j++) {
+      for (int64_t i = at[0] * size; i <= (at[0] + 1) * size && i < n[0]; i++) {
+        const int64_t voxel = (k * n[1] + j) * n[0] + i;
+        const long double value = exact_value(v, voxel);
+        if (isfinite(stratus_volume_fetch(v, bias, (size_t)voxel))) {
+          range[0] = value < range[0] ? value : range[0];
+          range[1] = value > range[1] ? value : range[1];
+        }
+      }
+    }
+  }
+  return range[0] <= range[1];
+}
+
+/* 1 if the value and an end are the same float, so that neither side of the end can be told. */
+static bool is_fetched_as(const stratus_volume* v, double bias, long double value, double end)
+{
+  return stratus_type_is_wide(v->type) && (float)((double)value - bias) == (float)(end - bias);
+}
+
+/* Blocks that wide types' rounding alone made occupied. */
+static int64_t check_between(stratus_context* context, const stratus_volume* v, const stratus_value_range* r, double lower, double upper)
+{
+  stratus_occupancy* o = NULL;
+  int64_t count = 0, rounded = 0;
+  assert_int_equal(stratus_occupancy_create_between(context, r, lower, upper, &o), STRATUS_OK);
+  for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; b++) {
+    const int64_t at[3] = { b % r->blocks[0], b / r->blocks[0] % r->blocks[1], b / r->blocks[0] / r->blocks[1] };
+    long double range[2];
+    const bool any = exact_range(v, r->block_size, r->bias, at, range);
+    const bool expected = any && range[0] <= (long double)upper && range[1] >= (long double)lower;
+    const bool occupied = stratus_occupancy_get(o, at[0], at[1], at[2]);
+    if (expected != occupied) {
+      if (expected || !(is_fetched_as(v, r->bias, range[0], upper) || is_fetched_as(v, r->bias, range[1], lower))) {
+        fail_msg("type %d, block %d of values %.20Lg..%.20Lg, interval %.17g..%.17g: occupied is %d", (int)v->type, (int)b, range[0], range[1],
+          lower, upper, (int)occupied);
+      }
+      rounded++;
+    }
+    count += occupied;
+  }
+  assert_int_equal(stratus_occupancy_count(o), count);
+  stratus_occupancy_destroy(o);
+  return rounded;
+}
+
+static void no_label_of_any_type_is_missed_or_taken_for_another(void** state)
+{
+  enum { LABELS = 11 };
+  uint32_t random = 5;
+  (void)state;
+  stratus_context* context = make_context("host", 3);
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
+    for (int size = 2; size <= 8; size *= 2) {
+      test_volume v = make_volume((stratus_type)type, 17, 9, 12, 1 + type % 2, &random);
+      const int64_t count = 17 * 9 * 12;
+      const size_t bytes = stratus_type_size((stratus_type)type);
+      for (int64_t i = 0; i < count; i++) { /* one label a block's width, so that blocks of one label are many */
+        const int label = (int)((i % 17 / size + i / 17 % 9 / size * 3 + i / 17 / 9 / size * 5) % LABELS);
+        const double number = label;
+        const float single = (float)label;
+        void* to = (char*)v.values + (size_t)(i * v.view.value_stride) * bytes;
+        const int64_t whole = label; /* little-endian, as all that this is tested on */
+        memcpy(to, type == STRATUS_FLOAT64 ? (const void*)&number : type == STRATUS_FLOAT32 ? (const void*)&single : (const void*)&whole, bytes);
+      }
+      stratus_value_range* r = NULL;
+      assert_int_equal(stratus_value_range_create(context, &v.view, size, &r), STRATUS_OK);
+      for (int k = -1; k <= LABELS; k++) {
+        stratus_occupancy* o = NULL;
+        const double ends[][2] = { { k, k }, { k - 0.25, k + 0.25 }, { k + 0.25, k + 0.75 }, { k, INFINITY }, { -INFINITY, k },
+          { nextafter(k, INFINITY), k + 0.5 }, { k - 0.5, nextafter(k, -INFINITY) } };
+        for (size_t e = 0; e < sizeof ends / sizeof *ends; e++) {
+          const int64_t rounded = check_between(context, &v.view, r, ends[e][0], ends[e][1]);
+          assert_true(e >= 5 || rounded == 0);
+        }
+        assert_int_equal(stratus_occupancy_create_between(context, r, k, k, &o), STRATUS_OK);
+        assert_int_equal(stratus_occupancy_count(o) > 0, k >= 0 && k < LABELS);
+        stratus_occupancy_destroy(o);
+      }
+      stratus_value_range_destroy(r);
+      free_volume(&v);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
+static void blocks_are_between_the_ends_exactly_where_their_values_are(void** state)
+{
+  uint32_t random = 6;
+  int64_t rounded = 0;
+  (void)state;
+  stratus_context* context = make_context("host", 2);
+  for (int repeat = 0; repeat < 200; repeat++) {
+    const stratus_type type = (stratus_type)(repeat % 10);
+    test_volume v = make_volume(type, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+      1 + random_below(&random, 2), &random);
+    const int64_t* n = v.view.dimensions;
+    spoil(&v, 1 + random_below(&random, 60), &random);
+    stratus_value_range* r = NULL;
+    assert_int_equal(stratus_value_range_create(context, &v.view, 1 << (1 + repeat / 10 % 3), &r), STRATUS_OK);
+    for (int interval = 0; interval < 40; interval++) {
+      double ends[2];
+      for (int e = 0; e < 2; e++) { /* values of the volume, and the doubles about them */
+        const double value = (double)exact_value(&v.view, random_below(&random, n[0] * n[1] * n[2]));
+        const int64_t way = random_below(&random, 6);
+        ends[e] = isnan(value) || way == 0 ? (e ? (double)INFINITY : -(double)INFINITY)
+          : way == 1                       ? nextafter(value, INFINITY)
+          : way == 2                       ? nextafter(value, -INFINITY)
+                                           : value;
+      }
+      const bool rises = ends[0] <= ends[1];
+      rounded += check_between(context, &v.view, r, rises ? ends[0] : ends[1], rises ? ends[1] : ends[0]);
+    }
+    check_between(context, &v.view, r, INFINITY, INFINITY);
+    check_between(context, &v.view, r, -INFINITY, -INFINITY);
+    check_between(context, &v.view, r, -INFINITY, INFINITY);
+    stratus_value_range_destroy(r);
+    free_volume(&v);
+  }
+  print_message("             %d blocks occupied for their floats' sake\n", (int)rounded);
+  stratus_context_destroy(context);
+}
+
+static void reversed_and_unknown_ends_are_refused(void** state)
+{
+  static const double ends[][2] = { { 1, 0.5 }, { NAN, 1 }, { 0, NAN }, { NAN, NAN }, { INFINITY, -INFINITY } };
+  uint32_t random = 3;
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  stratus_value_range r;
+  stratus_occupancy* o = NULL;
+  random_ranges(context, (const int64_t[]){ 2, 2, 2 }, &r, &random);
+  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+    assert_int_equal(stratus_occupancy_create_between(context, &r, ends[i][0], ends[i][1], &o), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(context), isnan(ends[i][0]) || isnan(ends[i][1]) ? "nan" : "lower end"));
+  }
+  assert_null(o);
+  free_ranges(&r);
+  stratus_context_destroy(context);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -197,6 +373,9 @@ int main(void)
     cmocka_unit_test(a_peak_between_two_voxel_values_is_occupied),
     cmocka_unit_test(a_volume_without_values_is_empty),
     cmocka_unit_test(wrong_arguments_are_refused_with_a_reason),
+    cmocka_unit_test(no_label_of_any_type_is_missed_or_taken_for_another),
+    cmocka_unit_test(blocks_are_between_the_ends_exactly_where_their_values_are),
+    cmocka_unit_test(reversed_and_unknown_ends_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -174,6 +174,42 @@ void Property()
     filter->GetOccupiedBlocks() < before, "an edit of the opacity leaves %lld blocks", static_cast<long long>(filter->GetOccupiedBlocks()));
 }
 
+// A threshold of one label finds the blocks between whose least and greatest label it lies, whatever the type.
+void Labels()
+{
+  constexpr int Side = 33, Size = 4, Across = Side / Size, Kinds = 11;
+  for (const int type : { VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_INT, VTK_LONG_LONG, VTK_FLOAT, VTK_DOUBLE }) {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(Side, Side, Side);
+    image->AllocateScalars(type, 1);
+    vtkDataArray* labels = image->GetPointData()->GetScalars();
+    for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i) {
+      labels->SetTuple1(i, static_cast<double>((i % Side / 5 + i / Side % Side / 7 * 3 + i / Side / Side / 6 * 4) % Kinds));
+    }
+    for (int label = -1; label <= Kinds; ++label) {
+      vtkIdType expected = 0;
+      for (int b = 0; b < Across * Across * Across; ++b) {
+        double least = Kinds, greatest = -1;
+        for (int v = 0; v < (Size + 1) * (Size + 1) * (Size + 1); ++v) {
+          const int x = b % Across * Size + v % (Size + 1), y = b / Across % Across * Size + v / (Size + 1) % (Size + 1);
+          const int z = b / Across / Across * Size + v / (Size + 1) / (Size + 1);
+          const double value = labels->GetTuple1((static_cast<vtkIdType>(z) * Side + y) * Side + x);
+          least = std::min(least, value);
+          greatest = std::max(greatest, value);
+        }
+        expected += least <= label && greatest >= label;
+      }
+      vtkNew<vtkStratusDistanceMapFilter> filter;
+      filter->SetInputData(image);
+      filter->ThresholdBetween(label, label);
+      filter->Update();
+      CHECK(filter->GetOccupiedBlocks() == expected && (expected > 0) == (label >= 0 && label < Kinds),
+        "label %d of type %d is in %lld blocks of %lld", label, type, static_cast<long long>(filter->GetOccupiedBlocks()),
+        static_cast<long long>(expected));
+    }
+  }
+}
+
 void Refused(const char* word, const std::function<void(vtkStratusDistanceMapFilter*)>& breaks)
 {
   Scene scene;
@@ -223,6 +259,7 @@ int main()
   BruteForce();
   Geometry();
   Property();
+  Labels();
   Refusals();
   return Failures == 0 ? 0 : 1;
 }
