@@ -96,6 +96,12 @@ stratus_status stratus_product(stratus_context* context, const char* what, size_
   return STRATUS_OK;
 }
 
+stratus_status stratus_array_check(stratus_context* context, const char* what, size_t count, size_t size)
+{
+  const size_t most = PTRDIFF_MAX / size;
+  return count <= most ? STRATUS_OK : stratus_fail(context, STRATUS_OVERFLOW, "%zu %s exceed the %zu that an array holds", count, what, most);
+}
+
 stratus_status stratus_allocate(stratus_context* context, size_t count, size_t size, void** memory)
 {
   size_t bytes = 0;
@@ -171,6 +177,9 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
     message[0] = '\0';
   }
   if (!out) {
+    if (message && capacity) {
+      snprintf(message, capacity, "no place for the context: its address is NULL");
+    }
     return STRATUS_INVALID_ARGUMENT;
   }
   *out = NULL;

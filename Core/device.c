@@ -152,12 +152,12 @@ int stratus_device_count(void)
 
 stratus_status stratus_device_name(int index, char* name, size_t capacity)
 {
+  if (!name || !capacity) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
   const device_list list = list_devices();
   if (index < 0 || index >= list.count) {
     return STRATUS_NO_DEVICE;
-  }
-  if (!name || !capacity) {
-    return STRATUS_INVALID_ARGUMENT;
   }
   device_name(list.ids[index], name, capacity);
   return STRATUS_OK;

@@ -212,6 +212,9 @@ static double signed_root(double squared)
 
 double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64_t k)
 {
+  if (!field || i < 0 || j < 0 || k < 0 || i >= field->n[0] || j >= field->n[1] || k >= field->n[2]) {
+    return INFINITY;
+  }
   const int64_t at = (k * field->n[1] + j) * field->n[0] + i;
   if (field->nearest) {
     return flooded_distance(field, flood_shifts(field->n), i, j, k);
@@ -267,6 +270,9 @@ static void read_row(const stratus_field* field, int64_t j, int64_t k, float* di
 
 void stratus_field_distances(const stratus_field* field, float* distances)
 {
+  if (!field || !distances) {
+    return;
+  }
   const int64_t nx = field->n[0], ny = field->n[1], rows = ny * field->n[2];
 #pragma omp parallel for schedule(static) num_threads(field->context->threads)
   for (int64_t row = 0; row < rows; row++) {

@@ -108,6 +108,9 @@ void stratus_distance_map_destroy(stratus_distance_map* map)
 
 int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_t i, int64_t j, int64_t k)
 {
+  if (!map || i < 0 || j < 0 || k < 0 || i >= map->blocks[0] || j >= map->blocks[1] || k >= map->blocks[2]) {
+    return 0;
+  }
   const size_t first = map->kind == STRATUS_DISTANCE_OCTANT ? (size_t)(octant & 7) * map->map_bytes : 0;
   const uint8_t byte = map->bytes[first + (size_t)(k * map->blocks[1] + j) * map->pitch + (size_t)i];
   return byte < DISTANCE_OCCUPIED ? byte : 0;
@@ -115,5 +118,5 @@ int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_
 
 size_t stratus_distance_map_bytes(const stratus_distance_map* map)
 {
-  return map->bytes_size;
+  return map ? map->bytes_size : 0;
 }

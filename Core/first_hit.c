@@ -145,6 +145,7 @@ stratus_status stratus_tree_first_hit(
   if (!tree || (count && (!rays || !hits))) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", !tree ? "tree" : !rays ? "rays" : "hits");
   }
+  TRY(stratus_array_check(context, "rays", count, sizeof *rays));
   if (count == 0) {
     return STRATUS_OK;
   }

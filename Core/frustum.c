@@ -218,6 +218,9 @@ stratus_side stratus_plan_side_turned(const stratus_frustum_plan* plan, unsigned
 stratus_side stratus_frustum_side(const stratus_frustum* frustum, const double bounds[6], int exact)
 {
   stratus_frustum_plan plan;
+  if (!frustum || !bounds) {
+    return STRATUS_SIDE_CROSSING;
+  }
   stratus_frustum_prepare(frustum, exact != 0, &plan);
   if (plan.empty) {
     return STRATUS_SIDE_OUTSIDE;

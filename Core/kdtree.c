@@ -261,6 +261,12 @@ void stratus_partition_destroy(stratus_partition* partition)
 
 void stratus_partition_get(const stratus_partition* partition, stratus_partition_result* result)
 {
+  if (!partition || !result) {
+    if (result) {
+      *result = (stratus_partition_result){ 0 };
+    }
+    return;
+  }
   *result = (stratus_partition_result){ .points = partition->points,
     .point_count = partition->point_count,
     .vertices = partition->vertices,

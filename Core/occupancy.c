@@ -245,6 +245,8 @@ void stratus_occupancy_destroy(stratus_occupancy* occupancy)
 
 void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks[3], int* block_size)
 {
+  static const stratus_occupancy none;
+  occupancy = occupancy ? occupancy : &none;
   if (blocks) {
     memcpy(blocks, occupancy->blocks, sizeof occupancy->blocks);
   }
@@ -255,16 +257,25 @@ void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks
 
 int64_t stratus_occupancy_count(const stratus_occupancy* occupancy)
 {
-  return occupancy->count;
+  return occupancy ? occupancy->count : 0;
 }
 
 int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k)
 {
+  if (!occupancy || i < 0 || j < 0 || k < 0 || i >= occupancy->blocks[0] || j >= occupancy->blocks[1] || k >= occupancy->blocks[2]) {
+    return 0;
+  }
   return occupancy->occupied[(k * occupancy->blocks[1] + j) * occupancy->blocks[0] + i];
 }
 
 void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3])
 {
-  memcpy(lo, occupancy->lo, sizeof occupancy->lo);
-  memcpy(hi, occupancy->hi, sizeof occupancy->hi);
+  for (int a = 0; a < 3; a++) {
+    if (lo) {
+      lo[a] = occupancy ? occupancy->lo[a] : 0;
+    }
+    if (hi) {
+      hi[a] = occupancy ? occupancy->hi[a] : 0;
+    }
+  }
 }

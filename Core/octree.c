@@ -107,6 +107,9 @@ void stratus_octree_destroy(stratus_octree* tree)
 
 void stratus_octree_clear(stratus_octree* tree)
 {
+  if (!tree) {
+    return;
+  }
   stratus_context* context = tree->context;
   /* Level 0 keeps its one group: what has been made needs no memory again. */
   for (int l = 0; l <= tree->depth; l++) {

@@ -167,8 +167,10 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
   }
   size_t told = tree->unbounded.count;
   for (int64_t j = 0; j < jobs; j++) {
-    tell_job(view, &view->jobs[j], view->ids + told);
-    told += view->jobs[j].kept;
+    if (view->jobs[j].kept > 0) { /* without any there may be no place to tell them */
+      tell_job(view, &view->jobs[j], view->ids + told);
+      told += view->jobs[j].kept;
+    }
   }
   visible->objects_tested = tested;
   visible->objects_retested = retested;

@@ -39,6 +39,12 @@ cleanup:
 
 void stratus_octree_get_statistics(const stratus_octree* tree, stratus_octree_statistics* statistics)
 {
+  if (!tree || !statistics) {
+    if (statistics) {
+      *statistics = (stratus_octree_statistics){ 0 };
+    }
+    return;
+  }
   stratus_octree_statistics s = { .objects = tree->count, .unbounded = tree->unbounded_count, .depth = tree->depth };
   size_t bytes = sizeof *tree, lists = 0;
   for (int l = 0; l <= tree->depth; l++) {

@@ -116,6 +116,7 @@ static stratus_status check_call(const stratus_octree* tree, const double* numbe
   if (count > 0 && (!numbers || !ids)) {
     return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree %s is NULL", numbers ? "ids" : "bounds");
   }
+  TRY(stratus_array_check(tree->context, "boxes", count, (turned ? 12 : 6) * sizeof *numbers));
   for (size_t i = 0; i < count; i++) {
     given g;
     TRY(read_bounds(tree->context, numbers + (turned ? 12 : 6) * i, turned, i, &g));
@@ -374,6 +375,7 @@ stratus_status stratus_octree_remove(stratus_octree* tree, const uint32_t* ids, 
   if (count > 0 && !ids) {
     return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree ids is NULL");
   }
+  TRY(stratus_array_check(tree->context, "ids", count, sizeof *ids));
   TRY(stratus_octree_check_ids(tree, ids, count));
   /* A high bit on each kind finds those that come twice. */
   stratus_status status = STRATUS_OK;

@@ -291,7 +291,7 @@ cleanup:
 
 void stratus_scene_destroy(stratus_context* context, stratus_scene* scene)
 {
-  if (scene) {
+  if (context && scene) {
     scene_storage* storage = (scene_storage*)scene;
     stratus_release(context, storage->values);
     stratus_release(context, storage);

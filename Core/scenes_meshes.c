@@ -234,7 +234,7 @@ stratus_status stratus_mesh_scene_create(stratus_context* context, const char* n
 
 void stratus_mesh_scene_destroy(stratus_context* context, stratus_mesh_scene* scene)
 {
-  if (scene) {
+  if (context && scene) {
     mesh_storage* storage = (mesh_storage*)scene;
     stratus_release(context, storage->points);
     stratus_release(context, storage->vertices);

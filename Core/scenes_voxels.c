@@ -308,7 +308,9 @@ cleanup:
 
 void stratus_voxel_scene_release(stratus_context* context, int32_t* positions)
 {
-  stratus_release(context, positions);
+  if (context) {
+    stratus_release(context, positions);
+  }
 }
 
 /* ---------------------------------------------------------------- rays */

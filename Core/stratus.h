@@ -9,8 +9,9 @@
  *   Inputs are borrowed const views, read during the call unless a comment says longer; what _create makes, _destroy
  *   frees, and _destroy takes NULL. A call that fails returns a status, leaves its outputs as they were, and leaves a
  *   sentence with the value and the allowed range in stratus_context_message().
- *   NULL: only what a comment says may be. Else a call that returns a status refuses it with STRATUS_INVALID_ARGUMENT (without a message where
- *   there is no object to leave it in); a call without a status takes an object that is NULL for an empty one, and writes to no address that is.
+ *   NULL: options may be, and mean the defaults; else only what a comment says. Otherwise a call that returns a status refuses it with
+ *   STRATUS_INVALID_ARGUMENT (without a message where there is no object to leave it in); a call without a status takes an object that is NULL
+ *   for an empty one, and writes to no address that is.
  *   One context serves one thread at a time; different contexts are independent, and several threads may make theirs at once. One lock for the
  *   process, the core's only global state, lets a single thread at a time ask OpenCL for its devices, as not every platform's first answer
  *   bears more; nothing else is done under it.
@@ -204,7 +205,7 @@ STRATUS_API void stratus_value_range_destroy(stratus_value_range* ranges);
 STRATUS_API void stratus_value_range_blocks(const stratus_value_range* ranges, int64_t blocks[3], int* block_size);
 /* Range of the finite values of the whole volume; STRATUS_INVALID_ARGUMENT if there is none. */
 STRATUS_API stratus_status stratus_value_range_whole(const stratus_value_range* ranges, double* low, double* high);
-/* Range of one block's finite values, low > high if it has none; and whether a value in it is not finite or hidden. */
+/* Range of one block's finite values, low > high if it has none or is none; and whether a value in it is not finite or hidden. */
 STRATUS_API void stratus_value_range_block(
   const stratus_value_range* ranges, int64_t i, int64_t j, int64_t k, double* low, double* high, int* gaps);
 
@@ -220,15 +221,15 @@ typedef struct stratus_occupancy stratus_occupancy;
 /* A block is occupied if the transfer function, as it is sampled, shows anything over the hull of the block's range. */
 STRATUS_API stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges,
   const stratus_transfer* transfer, stratus_sampling sampling, stratus_occupancy** occupancy);
-STRATUS_API void stratus_occupancy_destroy(stratus_occupancy* occupancy);
 /* A block is occupied if a value from the least to the largest in it lies in lower..upper, ends included, lower <= upper, infinities allowed.
  * Compared exactly, but types of more than 24 bits as the floats that stand for them, the ends rounded as the values are: such a float counts if
  * any value that it may stand for does. */
 STRATUS_API stratus_status stratus_occupancy_create_between(
   stratus_context* context, const stratus_value_range* ranges, double lower, double upper, stratus_occupancy** occupancy);
+STRATUS_API void stratus_occupancy_destroy(stratus_occupancy* occupancy);
 STRATUS_API void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks[3], int* block_size);
 STRATUS_API int64_t stratus_occupancy_count(const stratus_occupancy* occupancy); /* occupied blocks */
-STRATUS_API int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k);
+STRATUS_API int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k); /* 0 beyond the blocks */
 /* Smallest box of occupied blocks, [lo, hi) in blocks; lo = hi = 0 if none. */
 STRATUS_API void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3]);
 
@@ -245,7 +246,7 @@ STRATUS_API stratus_status stratus_distance_map_create(
   stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_kind kind, stratus_distance_map** map);
 STRATUS_API void stratus_distance_map_destroy(stratus_distance_map* map);
 /* Distance in blocks from block (i,j,k), 0 in occupied ones, at most 127 (a longer one is told as 127). octant 0..7, bit a set: the ray
- * moves towards + on axis a; ignored by the other kinds. */
+ * moves towards + on axis a; ignored by the other kinds. 0 beyond the blocks. */
 STRATUS_API int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_t i, int64_t j, int64_t k);
 STRATUS_API size_t stratus_distance_map_bytes(const stratus_distance_map* map);
 
@@ -335,7 +336,7 @@ STRATUS_API stratus_status stratus_field_create(stratus_context* context, const 
   stratus_field** field, stratus_field_report* report);
 STRATUS_API void stratus_field_destroy(stratus_field* field);
 /* Distance in voxels; INFINITY where no effective voxel is known (none at all, or a flooding left it unfilled), -INFINITY inside a signed
- * field that is all effective. */
+ * field that is all effective; INFINITY beyond the dimensions. */
 STRATUS_API double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64_t k);
 /* dimensions[0]*[1]*[2] distances, x fastest. */
 STRATUS_API void stratus_field_distances(const stratus_field* field, float* distances);

@@ -27,6 +27,7 @@ static stratus_status check_points(stratus_context* context, const char* what, c
   if (!points || count == 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s function has %zu points, needs at least 1", what, points ? count : 0);
   }
+  TRY(stratus_array_check(context, "points of a transfer function", count, width * sizeof *points));
   for (size_t i = 0; i < count; ++i) {
     const double* point = points + i * width;
     if (!isfinite(point[0])) {
@@ -48,6 +49,9 @@ static stratus_status check_points(stratus_context* context, const char* what, c
 
 stratus_status stratus_transfer_check(stratus_context* context, const stratus_transfer* transfer)
 {
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
   if (!transfer) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "transfer function is NULL");
   }

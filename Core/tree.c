@@ -288,7 +288,9 @@ void stratus_tree_destroy(stratus_tree* tree)
 
 void stratus_tree_get_statistics(const stratus_tree* tree, stratus_tree_statistics* statistics)
 {
-  *statistics = tree->statistics;
+  if (statistics) {
+    *statistics = tree ? tree->statistics : (stratus_tree_statistics){ 0 };
+  }
 }
 
 /* ---------------------------------------------------------------- boxes */
@@ -310,6 +312,9 @@ static int64_t voxels_of_field(const stratus_tree* tree, const stratus_tree_fiel
 
 void stratus_tree_boxes(const stratus_tree* tree, stratus_node_box* boxes)
 {
+  if (!tree || !boxes) {
+    return;
+  }
   for (uint32_t n = 0; n < tree->node_count; n++) {
     const stratus_tree_node* node = &tree->nodes[n];
     stratus_node_box* box = &boxes[n];

@@ -2,6 +2,7 @@
  * Trees as bytes: a header, then the arrays, each at a multiple of 8. What is read back is trusted with nothing: sizes, numbers and leaps are
  * all checked before the tree is handed out, so that no bytes can lead traversal astray. */
 #include "tree.h"
+#include "voxels_build.h"
 
 #include <string.h>
 
@@ -90,11 +91,14 @@ static header header_of(const stratus_tree* tree)
 
 uint64_t stratus_tree_hash(const stratus_tree* tree)
 {
-  return tree->origin.hash;
+  return tree ? tree->origin.hash : 0;
 }
 
 size_t stratus_tree_bytes(const stratus_tree* tree)
 {
+  if (!tree) {
+    return 0;
+  }
   const header h = header_of(tree);
   size_t sizes[ARRAYS];
   return array_sizes(&h, sizes);
@@ -102,6 +106,9 @@ size_t stratus_tree_bytes(const stratus_tree* tree)
 
 void stratus_tree_save(const stratus_tree* tree, void* bytes)
 {
+  if (!tree || !bytes) {
+    return;
+  }
   header h = header_of(tree);
   const void* const arrays[ARRAYS] = { tree->nodes, tree->bricks, tree->fields, tree->entries, tree->rows, tree->masks };
   size_t sizes[ARRAYS];
@@ -142,6 +149,7 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   bool fine = h->method >= 0 && h->method < STRATUS_TREE_METHODS && (h->octants == 0 || h->octants == 1) &&
     (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->octants || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 &&
     h->origin.intervals >= 0 && h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 &&
+    (h->node_count == 0) == (h->voxels == 0) &&
     (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX && h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
   for (int a = 0; a < 3; a++) {
     fine = fine && h->dimensions[a] >= 1 && h->dimensions[a] <= STRATUS_AXIS_MAX;
@@ -149,7 +157,6 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   for (int32_t i = 0; fine && i < h->origin.intervals; i++) {
     const double* interval = h->origin.interval[i];
     const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY; /* equal to nobody's */
-    (h->node_count == 0) == (h->voxels == 0) &&
     fine = emptied || (interval[0] <= interval[1] && (i == 0 || h->origin.interval[i - 1][1] < interval[0]));
   }
   return fine ? STRATUS_OK : WRONG("a tree whose header contradicts itself");
@@ -247,6 +254,7 @@ stratus_status stratus_tree_covers(
     return WRONG("%s is NULL", tree ? "covers" : "tree");
   }
   TRY(stratus_volume_check(context, volume));
+  TRY(stratus_criterion_check(context, criterion));
   *covers = 0;
   if (tree->origin.hash == 0 || tree->origin.cells != (cells != 0) || !stratus_tree_fits(tree, volume)) {
     return STRATUS_OK;

@@ -382,10 +382,10 @@ void stratus_value_range_destroy(stratus_value_range* ranges)
 void stratus_value_range_blocks(const stratus_value_range* ranges, int64_t blocks[3], int* block_size)
 {
   for (int a = 0; blocks && a < 3; a++) {
-    blocks[a] = ranges->blocks[a];
+    blocks[a] = ranges ? ranges->blocks[a] : 0;
   }
   if (block_size) {
-    *block_size = ranges->block_size;
+    *block_size = ranges ? ranges->block_size : 0;
   }
 }
 
@@ -405,14 +405,15 @@ stratus_status stratus_value_range_whole(const stratus_value_range* ranges, doub
 
 void stratus_value_range_block(const stratus_value_range* ranges, int64_t i, int64_t j, int64_t k, double* low, double* high, int* gaps)
 {
-  const int64_t block = (k * ranges->blocks[1] + j) * ranges->blocks[0] + i;
+  const bool there = ranges && i >= 0 && j >= 0 && k >= 0 && i < ranges->blocks[0] && j < ranges->blocks[1] && k < ranges->blocks[2];
+  const int64_t block = there ? (k * ranges->blocks[1] + j) * ranges->blocks[0] + i : 0;
   if (low) {
-    *low = (double)ranges->lo[block] + ranges->bias;
+    *low = there ? (double)ranges->lo[block] + ranges->bias : (double)INFINITY;
   }
   if (high) {
-    *high = (double)ranges->hi[block] + ranges->bias;
+    *high = there ? (double)ranges->hi[block] + ranges->bias : -(double)INFINITY;
   }
   if (gaps) {
-    *gaps = ranges->gaps[block];
+    *gaps = there && ranges->gaps[block];
   }
 }

@@ -207,6 +207,7 @@ stratus_status stratus_voxels_first_hit(
   if (!voxels || (count > 0 && (!rays || !hits))) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", !voxels ? "voxels" : !rays ? "rays" : "hits");
   }
+  TRY(stratus_array_check(context, "rays", count, sizeof *rays));
   double corner[16];
   if (!stratus_voxels_world_to_corner(voxels->index_to_world, corner)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the voxels' matrix is singular");

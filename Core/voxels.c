@@ -162,18 +162,26 @@ void stratus_voxels_destroy(stratus_voxels* voxels)
 
 int64_t stratus_voxels_count(const stratus_voxels* voxels)
 {
-  return voxels->count;
+  return voxels ? voxels->count : 0;
 }
 
 void stratus_voxels_dimensions(const stratus_voxels* voxels, int64_t dimensions[3])
 {
-  memcpy(dimensions, voxels->dimensions, sizeof voxels->dimensions);
+  for (int a = 0; dimensions && a < 3; a++) {
+    dimensions[a] = voxels ? voxels->dimensions[a] : 0;
+  }
 }
 
 void stratus_voxels_bounds(const stratus_voxels* voxels, int64_t lo[3], int64_t hi[3])
 {
-  memcpy(lo, voxels->lo, sizeof voxels->lo);
-  memcpy(hi, voxels->hi, sizeof voxels->hi);
+  for (int a = 0; a < 3; a++) {
+    if (lo) {
+      lo[a] = voxels ? voxels->lo[a] : 0;
+    }
+    if (hi) {
+      hi[a] = voxels ? voxels->hi[a] : 0;
+    }
+  }
 }
 
 uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k)
@@ -196,6 +204,9 @@ uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j,
 
 int stratus_voxels_get(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k)
 {
+  if (!voxels) {
+    return 0;
+  }
   const int64_t* n = voxels->dimensions;
   if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) {
     return 0;

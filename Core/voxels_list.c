@@ -128,11 +128,7 @@ static stratus_status check_list(
   if (!positions && count > 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "positions is NULL, but count is %zu", count);
   }
-  if (count > PTRDIFF_MAX / (3 * sizeof *positions)) {
-    return stratus_fail(
-      context, STRATUS_OVERFLOW, "%zu positions exceed the %zu that an array holds", count, PTRDIFF_MAX / (3 * sizeof *positions));
-  }
-  return STRATUS_OK;
+  return stratus_array_check(context, "positions", count, 3 * sizeof *positions);
 }
 
 stratus_status stratus_voxels_create_list(

@@ -351,6 +351,39 @@ static void what_is_wholly_in_sight_needs_no_tree(void** state)
 }
 
 /* A cube in the middle of a window of twice its sphere's width, and one that hangs half over its border. */
+/* In its first frame, before there is room for what is seen. */
+static void a_view_of_nothing_sees_nothing(void** state)
+{
+  (void)state;
+  const double behind[12] = { -2, -1, -1, 1, -1, 1, -9, -8, 0, 1, 0, 1 };
+  const stratus_frustum frustum = { .planes = { { 1, 0, 0, 0 }, { 1, 0, 0, 5 }, { 0, 1, 0, 9 }, { 0, -1, 0, 9 }, { 0, 0, 1, 9 }, { 0, 0, -1, 9 } } };
+  const stratus_octree_cull_options measured = { .coverage = 1 };
+  stratus_context* context = make_context("host", 1);
+  for (int variant = 0; variant < VARIANTS; variant++) {
+    const stratus_octree_options options = options_of(variant);
+    stratus_octree* tree = make_tree(context, &options);
+    stratus_octree_view* view = make_view(tree);
+    stratus_octree_visible visible = { .count = 7 };
+    uint32_t ids[2];
+    size_t count = 7;
+    assert_int_equal(stratus_octree_cull(view, &frustum, &measured, &visible), STRATUS_OK);
+    assert_int_equal(visible.count, 0);
+    assert_int_equal(stratus_octree_query_box(tree, behind, NULL, 0, &count), STRATUS_OK);
+    assert_int_equal(count, 0);
+    assert_int_equal(stratus_octree_check(tree), STRATUS_OK);
+    assert_int_equal(stratus_octree_insert(tree, behind, 2, ids), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, &measured, &visible), STRATUS_OK);
+    assert_int_equal(visible.count, 0);
+    assert_int_equal(stratus_octree_remove(tree, ids, 2), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, &measured, &visible), STRATUS_OK);
+    assert_int_equal(visible.count, 0);
+    stratus_octree_clear(tree);
+    stratus_octree_view_destroy(view);
+    stratus_octree_destroy(tree);
+  }
+  stratus_context_destroy(context);
+}
+
 static void coverage_is_the_window_s_share(void** state)
 {
   (void)state;
@@ -390,6 +423,7 @@ int main(void)
     cmocka_unit_test(views_share_a_tree),
     cmocka_unit_test(nodes_come_with_the_border_and_go_without_it),
     cmocka_unit_test(what_is_wholly_in_sight_needs_no_tree),
+    cmocka_unit_test(a_view_of_nothing_sees_nothing),
     cmocka_unit_test(coverage_is_the_window_s_share),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

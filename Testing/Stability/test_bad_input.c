@@ -113,6 +113,47 @@ static void sizes_whose_product_overflows_are_refused(void** state)
   REFUSED_AS(f, STRATUS_OVERFLOW, "1099511627776", in.volume.dimensions[0] = in.volume.dimensions[1] = in.volume.dimensions[2] = big);
   REFUSED_AS(f, STRATUS_OVERFLOW, "9223372036854775807", in.volume.dimensions[0] = INT64_MAX);
   REFUSED_AS(f, STRATUS_OVERFLOW, "9223372036854775807", in.volume.value_stride = INT64_MAX);
+  REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.opacity_count = SIZE_MAX);
+  REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.color_count = SIZE_MAX);
+  REFUSED_AS(f, STRATUS_OVERFLOW, "576460752303423488", in.transfer.opacity_count = SIZE_MAX / 32 + 1); /* its bytes overflow a pointer's steps */
+  REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", (in.transfer.gradient = in.transfer.opacity, in.transfer.gradient_count = SIZE_MAX));
+}
+
+/* Lists of items that no array can hold are refused before the first item is read. */
+static void counts_beyond_any_array_are_refused(void** state)
+{
+  fixture* f = *state;
+  static const double boxes[12] = { 0 };
+  static const stratus_ray ray = { .direction = { 1, 0, 0 } };
+  static const int32_t place[3] = { 0 };
+  const int64_t n[3] = { 4, 4, 4 };
+  const size_t counts[] = { SIZE_MAX, SIZE_MAX / 4, SIZE_MAX / 2 + 2 };
+  stratus_octree* octree = NULL;
+  stratus_voxels* voxels = NULL;
+  stratus_tree* tree = NULL;
+  stratus_hit hit;
+  uint32_t id = 0;
+  assert_int_equal(stratus_octree_create(f->context, NULL, &octree), STRATUS_OK);
+  assert_int_equal(stratus_octree_insert(octree, boxes, 1, &id), STRATUS_OK);
+  assert_int_equal(stratus_voxels_create_list(f->context, n, place, 1, &voxels), STRATUS_OK);
+  assert_int_equal(stratus_tree_create(f->context, voxels, NULL, &tree), STRATUS_OK);
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+    const size_t count = counts[i];
+    stratus_voxels* none = NULL;
+    assert_int_equal(stratus_octree_insert(octree, boxes, count, &id), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_octree_insert_oriented(octree, boxes, count, &id), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_octree_move(octree, &id, boxes, count), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_octree_move_oriented(octree, &id, boxes, count), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_octree_remove(octree, &id, count), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_voxels_create_list(f->context, n, place, count, &none), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_tree_first_hit(f->context, tree, &ray, count, &hit), STRATUS_OVERFLOW);
+    assert_int_equal(stratus_voxels_first_hit(f->context, voxels, &ray, count, &hit), STRATUS_OVERFLOW);
+    assert_null(none);
+  }
+  assert_int_equal(stratus_octree_count(octree), 1);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(voxels);
+  stratus_octree_destroy(octree);
 }
 
 static void spoilt_transfer_functions_are_refused(void** state)
@@ -295,7 +336,8 @@ static void a_volume_without_a_finite_value_gives_an_empty_picture(void** state)
 
 #define ON(fixture, test) cmocka_unit_test_prestate(test, fixture)
 #define ALL(f)                                                                                                                             \
-  ON(f, spoilt_volumes_are_refused), ON(f, sizes_whose_product_overflows_are_refused), ON(f, spoilt_transfer_functions_are_refused),       \
+  ON(f, spoilt_volumes_are_refused), ON(f, sizes_whose_product_overflows_are_refused), ON(f, counts_beyond_any_array_are_refused),         \
+    ON(f, spoilt_transfer_functions_are_refused),                                                                                          \
     ON(f, spoilt_cameras_are_refused), ON(f, spoilt_options_are_refused), ON(f, spoilt_images_are_refused),                                \
     ON(f, null_pointers_are_refused), ON(f, spoilt_camera_parameters_are_refused),                                                         \
     ON(f, a_volume_without_a_finite_value_gives_an_empty_picture)
