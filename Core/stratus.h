@@ -927,9 +927,10 @@ typedef enum stratus_tetra_mode {
 } stratus_tetra_mode;
 
 /* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same sums. They differ by the rounding of
- * floats: below .01 of 255 on the mean (root mean square). A pixel in which projection finds its cells out of order is drawn again, nearest piece
- * first, so that no order of cells is trusted. Only where cells overlap do the ways differ: pieces in order of depth, or one way through neighbours
- * after the other. */
+ * floats: below .01 of 255 on the mean (root mean square), from whatever distance, and however a parallel camera's right and up lean towards its
+ * forward. (A perspective one's are taken as they are: beyond 60 degrees off the right angle thickness loses digits.) A pixel in which projection
+ * finds its cells out of order is drawn again, nearest piece first, so that no order of cells is trusted. Only where cells overlap do the ways
+ * differ: pieces in order of depth, or one way through neighbours after the other. */
 typedef enum stratus_tetra_method {
   STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it.
                                 * Where the context has a device: march */

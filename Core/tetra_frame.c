@@ -12,6 +12,7 @@
 #define NEAREST_OUTLINE 0x1p-6
 /* More than an edge is wrong by for the floats' sake: coordinates are below 1 (parallel: what is beyond the window need not be found). */
 #define EDGE_SLACK 1e-5
+#define RIGHT_ANGLE 0x1p-50 /* a cosine of some roundings */
 
 typedef struct frame_build {
   stratus_context* context;
@@ -49,17 +50,42 @@ void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffe
   }
 }
 
+static double dot(const double p[3], const double q[3])
+{
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/* The part of a parallel camera's right or up that is along its forward, in forwards; what rounding leaves of a right angle is none. */
+static double lean_of(const double side[3], const double forward[3])
+{
+  const double along = dot(side, forward), square = dot(forward, forward);
+  return fabs(along) > RIGHT_ANGLE * sqrt(dot(side, side) * square) ? along / square : 0.0;
+}
+
+/* Parallel rays are the same from wherever along them k is counted: from a plane at right angles to them, so that a mesh is as deep as it is, and
+ * not as its width leans along a sheared camera's right and up. Perspective: as the camera is. */
+static void find_basis(frame_build* build, double basis[16])
+{
+  stratus_tetra_frame* frame = build->frame;
+  const stratus_camera* camera = &frame->camera;
+  const double* sides[2] = { camera->right, camera->up };
+  for (int side = 0; side < 2; ++side) {
+    frame->lean[side] = camera->parallel ? lean_of(sides[side], camera->forward) : 0.0;
+  }
+  for (int row = 0; row < 3; ++row) {
+    basis[4 * row] = camera->right[row] - frame->lean[0] * camera->forward[row];
+    basis[4 * row + 1] = camera->up[row] - frame->lean[1] * camera->forward[row];
+    basis[4 * row + 2] = camera->forward[row];
+  }
+}
+
 /* a, b, c of a local point, the eye subtracted before anything is lost. */
 static stratus_status find_matrix(frame_build* build)
 {
   const stratus_camera* camera = &build->frame->camera;
   const double* m = build->mesh->matrix;
   double basis[16] = { [15] = 1.0 }, inverse[16];
-  for (int row = 0; row < 3; ++row) {
-    basis[4 * row] = camera->right[row];
-    basis[4 * row + 1] = camera->up[row];
-    basis[4 * row + 2] = camera->forward[row];
-  }
+  find_basis(build, basis);
   if (!stratus_matrix_invert_affine(basis, inverse)) {
     return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right, up and forward lie in one plane, must not");
   }
@@ -161,11 +187,13 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_camera* c = &frame->camera;
   const stratus_image* image = &frame->image;
-  const double *f = c->forward, *r = c->right, *u = c->up, square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-  const double products[6] = { square, 2.0 * (f[0] * r[0] + f[1] * r[1] + f[2] * r[2]), 2.0 * (f[0] * u[0] + f[1] * u[1] + f[2] * u[2]),
-    r[0] * r[0] + r[1] * r[1] + r[2] * r[2], 2.0 * (r[0] * u[0] + r[1] * u[1] + r[2] * u[2]), u[0] * u[0] + u[1] * u[1] + u[2] * u[2] };
+  const double *f = c->forward, *r = c->right, *u = c->up, square = dot(f, f);
+  const double products[6] = { square, 2.0 * dot(f, r), 2.0 * dot(f, u), dot(r, r), 2.0 * dot(r, u), dot(u, u) };
   for (int i = 0; i < 6; ++i) {
     a->square[i] = (float)(products[i] / square);
+  }
+  for (int side = 0; side < 2; ++side) {
+    a->lean[side] = (float)(frame->lean[side] / frame->per_z);
   }
   a->per_z = (float)(sqrt(square) * frame->per_z);
   a->per_frame = (float)(sqrt(square) * frame->middle);
@@ -183,7 +211,8 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   for (size_t i = 0; i < pixels; ++i) {
     const double extent = (double)image->opaque_depth[i] * range;
     const double end = c->parallel ? c->near_k + extent : c->near_k * c->far_k / (c->far_k - extent);
-    ends[i] = (float)fmin((end - frame->middle) / frame->per_z, 1e30);
+    const double from = stratus_tetra_middle(frame, (int)(i % (size_t)image->width), (int)(i / (size_t)image->width));
+    ends[i] = (float)fmin((end - from) / frame->per_z, 1e30);
   }
   frame->ends = ends;
   return STRATUS_OK;

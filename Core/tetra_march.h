@@ -52,9 +52,16 @@ typedef struct stratus_tetra_frame {
   const int32_t* march_sums;      /* stratus_tetra_sums() */
   const stratus_table* table;
   stratus_camera camera;
-  double middle, per_z; /* k = middle + per_z*z */
+  double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;
+
+/* k of a pixel's ray where z is 0. */
+static inline double stratus_tetra_middle(const stratus_tetra_frame* frame, int x, int y)
+{
+  const double u = (2.0 * x + 1.0) / frame->image.width - 1.0, v = (2.0 * y + 1.0) / frame->image.height - 1.0;
+  return frame->middle - (frame->lean[0] * u + frame->lean[1] * v);
+}
 
 /* counting: writes how many entries each pixel of the tile has to first[]; else fills the entries, marches and stores the pixels. */
 typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts);

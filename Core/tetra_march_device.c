@@ -13,7 +13,7 @@
 #define GROUP 64 /* work items where each is a pixel */
 
 /* 4-byte scalars throughout: no padding in either language. */
-_Static_assert(sizeof(stratus_tetra_arguments) == sizeof(stratus_ray_cast_arguments) + 4 * 17, "arguments must have no padding");
+_Static_assert(sizeof(stratus_tetra_arguments) == sizeof(stratus_ray_cast_arguments) + 4 * 19, "arguments must have no padding");
 _Static_assert(sizeof(stratus_tetra_border_face) == 4 * TETRA_FACE, "a face must have no padding");
 
 typedef enum buffer_name {

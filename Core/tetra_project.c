@@ -255,13 +255,15 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
   stratus_context* context = projector->context;
   stratus_tetra_project_counts counts = { 0 };
   const uint32_t* cells = NULL;
+  const double lean = fabs(frame->lean[0]) + fabs(frame->lean[1]); /* at most, at the window's edge */
   stratus_tetra_projection projection = { .frame = frame,
     .vertices = mesh->vertices,
     .cell_values = projector->cell_values,
     .shown = projector->shown,
     .cell_count = mesh->cell_count,
-    .begin = (float)((frame->camera.near_k - frame->middle) / frame->per_z),
-    .end = (float)fmin((frame->camera.far_k - frame->middle) / frame->per_z, 1e30),
+    .begin = (float)((frame->camera.near_k - frame->middle - lean) / frame->per_z),
+    .end = (float)fmin((frame->camera.far_k - frame->middle + lean) / frame->per_z, 1e30),
+    .rays_differ = frame->image.opaque_depth || lean > 0.0,
     .columns = (frame->image.width + PROJECT_TILE - 1) / PROJECT_TILE,
     .rows = (frame->image.height + PROJECT_TILE - 1) / PROJECT_TILE };
   if (!frame->arguments.maximum) { /* the largest value is the same in any order */

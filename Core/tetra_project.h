@@ -26,7 +26,8 @@ typedef struct stratus_tetra_projection {
   const float* cell_values; /* NULL: values belong to points */
   const uint8_t* shown;     /* a byte a cell */
   int64_t cell_count;
-  float begin, end; /* near and far plane, in z */
+  float begin, end; /* near and far plane, in z: of the ray that begins first, and of the one that ends last */
+  bool rays_differ; /* in where they begin or end */
   stratus_tetra_rect* rects;
   int columns, rows;         /* of tiles */
   const uint32_t* bin_begin; /* columns*rows + 1 places in bins */

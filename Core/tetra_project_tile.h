@@ -37,7 +37,8 @@ typedef struct project_tile {
   int x0, y0, width, height, alive;
   float us[ACROSS][WIDTH], uw[ACROSS][WIDTH], vs[UPWARDS][WIDTH], vw[UPWARDS][WIDTH];
   float dx[ACROSS][WIDTH], dy[UPWARDS][WIDTH]; /* from the tile's first pixel, in pixels */
-  float length[PIXELS], offset[PIXELS], end[PIXELS]; /* world distance = offset + length z */
+  float length[PIXELS], offset[PIXELS];        /* world distance = offset + length z */
+  float begin[PIXELS], end[PIXELS];            /* what is seen, in z */
   float open[PIXELS]; /* what begins behind it need not be looked at: no end, until the pixel is opaque */
   tile_pixel pixels[PIXELS];
   int wrong; /* pixels */
@@ -88,10 +89,12 @@ static void begin_tile(project_tile* t, int tile)
         const double along = c->forward[axis] + (c->parallel ? 0.0 : u * c->right[axis] + v * c->up[axis]);
         square += along * along;
       }
+      const double middle = stratus_tetra_middle(frame, t->x0 + x, t->y0 + y);
       t->length[p] = (float)(sqrt(square) * frame->per_z);
-      t->offset[p] = (float)(sqrt(square) * frame->middle);
+      t->offset[p] = (float)(sqrt(square) * middle);
       const size_t pixel = (size_t)(t->y0 + y) * (size_t)image->width + (size_t)(t->x0 + x);
-      const float end = inside && frame->ends ? frame->ends[pixel] : t->projection->end;
+      const float end = inside && frame->ends ? frame->ends[pixel] : (float)fmin((c->far_k - middle) / frame->per_z, 1e30);
+      t->begin[p] = (float)((c->near_k - middle) / frame->per_z);
       t->end[p] = inside ? end : -LARGEST_FLOAT;
     }
   }
@@ -147,8 +150,10 @@ INLINE void shade_pieces(project_tile* t, int i, layers* out)
   vfloat first = v_load(t->first + i), last = v_load(t->last + i), near = zero;
   vmask mask = vi_lt(vi_lanes(), vi_set(t->count - i));
   const vfloat length = gather_floats(t->length, pixel, mask);
-  const vfloat far = frame->image.opaque_depth ? gather_floats(t->end, pixel, mask) : v_set(t->projection->end);
-  const vfloat begin = v_max(at, v_set(t->projection->begin)), end = v_min(to, far);
+  const bool differ = t->projection->rays_differ;
+  const vfloat nearest = differ ? gather_floats(t->begin, pixel, mask) : v_set(t->projection->begin);
+  const vfloat farthest = differ ? gather_floats(t->end, pixel, mask) : v_set(t->projection->end);
+  const vfloat begin = v_max(at, nearest), end = v_min(to, farthest);
   mask = mask & v_lt(begin, end);
   const vmask cut = mask & (v_lt(at, begin) | v_lt(end, to));
   if (m_any(cut)) {

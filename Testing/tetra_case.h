@@ -210,11 +210,21 @@ static inline int tetra_meet(const tetra_case* c, int64_t cell, const double ori
   if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
     return 0;
   }
-  /* a second point of the ray, as far away as the cell: another scale would drown the cell's in rounding */
-  double reach = 0.0;
+  /* the ray from where it comes nearest to the cell, and a second point of it, as far away as the cell: another scale would drown the cell's in
+   * rounding */
+  double reach = 0.0, nearest = 0.0, square = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    nearest += 0.25 * (p[0][a] + p[1][a] + p[2][a] + p[3][a]) * along[a];
+    square += along[a] * along[a];
+  }
+  nearest /= square;
+  from -= nearest;
+  to -= nearest;
   for (int i = 0; i < 4; ++i) {
-    reach = fmax(reach, sqrt((p[i][0] * p[i][0] + p[i][1] * p[i][1] + p[i][2] * p[i][2]) /
-                          (along[0] * along[0] + along[1] * along[1] + along[2] * along[2])));
+    for (int a = 0; a < 3; ++a) {
+      p[i][a] -= nearest * along[a];
+    }
+    reach = fmax(reach, sqrt((p[i][0] * p[i][0] + p[i][1] * p[i][1] + p[i][2] * p[i][2]) / square));
   }
   for (int i = 0; i < 4; ++i) {
     for (int end = 0; end < 2; ++end) {
@@ -235,7 +245,7 @@ static inline int tetra_meet(const tetra_case* c, int64_t cell, const double ori
   if (!(from < to)) {
     return 0;
   }
-  *stretch = (tetra_stretch){ .from = from, .to = to };
+  *stretch = (tetra_stretch){ .from = nearest + from, .to = nearest + to };
   for (int i = 0; i < 4; ++i) {
     const double rise = (coordinate[1][i] - coordinate[0][i]) / reach;
     stretch->first += value[i] * (coordinate[0][i] + from * rise);

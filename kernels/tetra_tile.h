@@ -58,13 +58,15 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   const vfloat square = v_fma(u, v_fma(u, v_set(a->square[3]), v_fma(w, v_set(a->square[4]), v_set(a->square[1]))),
     v_fma(w, v_fma(w, v_set(a->square[5]), v_set(a->square[2])), v_set(a->square[0])));
   const vfloat length = v_root(square);
+  /* where there is a lean rays are parallel: uw and vw are u and v */
+  const vfloat lean = v_fma(r->uw, v_set(a->lean[0]), r->vw * v_set(a->lean[1]));
   r->length = v_select(mask, length * v_set(a->per_z), r->length);
-  r->offset = v_select(mask, length * v_set(a->per_frame), r->offset);
-  r->begin = v_set(a->begin);
+  r->offset = v_select(mask, length * v_fma(-lean, v_set(a->per_z), v_set(a->per_frame)), r->offset);
+  r->begin = v_select(mask, lean + v_set(a->begin), r->begin);
   if (a->has_ends) {
     r->end = v_select(mask, gather_float(v->ends, x + y * vi_set(a->table.width), mask), r->end);
   } else {
-    r->end = v_set(a->end);
+    r->end = v_select(mask, lean + v_set(a->end), r->end);
   }
   const vint place = pixel + vi_set(TETRA_PIXELS * t->tile);
   k->pixel = vi_select(mask, pixel, k->pixel);

@@ -59,6 +59,106 @@ static void pieces_are_the_march_s_segments(void** state)
   }
 }
 
+/* A direction at random, and two at right angles to it. */
+static void random_axes(uint32_t* s, double axes[3][3])
+{
+  double length = 0.0;
+  while (length < 0.01) {
+    length = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      axes[0][i] = tetra_uniform(s, -1, 1);
+      length += axes[0][i] * axes[0][i];
+    }
+  }
+  const double x = fabs(axes[0][0]), y = fabs(axes[0][1]), z = fabs(axes[0][2]);
+  const int least = x < y ? (x < z ? 0 : 2) : (y < z ? 1 : 2);
+  double square = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    axes[0][i] /= sqrt(length);
+  }
+  for (int i = 0; i < 3; ++i) {
+    axes[1][i] = (i == least) - axes[0][least] * axes[0][i];
+    square += axes[1][i] * axes[1][i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    axes[1][i] /= sqrt(square);
+  }
+  for (int i = 0; i < 3; ++i) {
+    axes[2][i] = axes[0][(i + 1) % 3] * axes[1][(i + 2) % 3] - axes[0][(i + 2) % 3] * axes[1][(i + 1) % 3];
+  }
+}
+
+/* From inside or near or far away, right and up at any angle with each other and with forward, which has any length: parallel, window planes that
+ * lean over thousands of the mesh's widths; perspective, up to 60 degrees off, for what leans more has less depth than floats can tell. Every
+ * other one cuts the mesh by a near plane, a far one, or by both and by what is opaque between them. */
+static void look_at_random(tetra_case* c, int n, int parallel, uint32_t seed)
+{
+  static float opaque[TETRA_PIXELS];
+  uint32_t s = seed * 48271u + 11u;
+  double axes[3][3];
+  stratus_camera* k = &c->camera;
+  random_axes(&s, axes);
+  const double distance = exp(tetra_uniform(&s, parallel ? 0.0 : -2.0, log(1e5))), length = exp(tetra_uniform(&s, -2, 2));
+  const double turn = tetra_uniform(&s, 0, 6.28), apart = tetra_uniform(&s, 0.5, 2.6), most = parallel ? log(5e4) : log(1.7);
+  const double at_mesh = parallel ? 1.0 : length / fmax(distance, 1.0), angles[2] = { turn, turn + apart };
+  *k = (stratus_camera){ .parallel = parallel, .near_k = parallel ? -1e7 : 0.0, .far_k = INFINITY };
+  for (int side = 0; side < 2; ++side) {
+    double* to = side ? k->up : k->right;
+    const double half = at_mesh * n * tetra_uniform(&s, 0.3, 1.0), sign = tetra_uniform(&s, -1, 1) < 0 ? -1 : 1;
+    const double lean = sign * exp(tetra_uniform(&s, most - 3.0, most));
+    for (int i = 0; i < 3; ++i) {
+      to[i] = half * (cos(angles[side]) * axes[1][i] + sin(angles[side]) * axes[2][i] + lean * axes[0][i]);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    k->forward[i] = length * axes[0][i];
+    k->eye[i] = n * tetra_uniform(&s, 0.3, 0.7) - distance * axes[0][i];
+  }
+  const int cut = (int)(seed / 2 % 6);
+  if (cut == 1 || cut == 3) {
+    k->near_k = fmax(distance + n * tetra_uniform(&s, -0.4, 0.2), 0.01 * distance) / length;
+  }
+  if (cut == 2 || cut == 3) {
+    k->far_k = fmax((distance + n * tetra_uniform(&s, 0.2, 0.6)) / length, 1.01 * k->near_k);
+  }
+  for (int i = 0; cut == 3 && i < TETRA_PIXELS; ++i) {
+    opaque[i] = (float)tetra_uniform(&s, 0.5, 1.0);
+    c->opaque_depth = opaque;
+  }
+}
+
+/* Whichever camera: both ways show what the reference does, at full length and with what lies behind alpha .9999 left out. */
+static void any_camera_sees_the_same_by_both_ways(void** state)
+{
+  enum { N = 4, CAMERAS = 60 };
+  for (uint32_t seed = 0; seed < CAMERAS; ++seed) {
+    tetra_case c;
+    double largest;
+    tetra_create(&c, N, seed % 3 == 0 ? 0.2 : 0.0, 0.0, seed);
+    c.opacity[1] = 0.1; /* everything shows */
+    look_at_random(&c, N, seed & 1, seed);
+    c.options.termination = seed % 5 == 0 ? stratus_tetra_options_default().termination : 1.0;
+    draw_both(*state, &c);
+    tetra_reference(&c, reference, NULL);
+    const double march = tetra_error(marched.rgba, reference, &largest), project = tetra_error(projected.rgba, reference, &largest);
+    const double apart = difference();
+    if (!(march <= RMSE_MOST) || !(project <= RMSE_MOST) || !(apart <= DIFFERENCE_MOST)) {
+      print_error("camera %u: RMSE %.4f of 255 by march, %.4f by projection, at most %g; they differ by %.4f, at most %g\n", seed, march,
+        project, RMSE_MOST, apart, DIFFERENCE_MOST);
+    }
+    assert_true(march <= RMSE_MOST && project <= RMSE_MOST && apart <= DIFFERENCE_MOST);
+    double farthest = 0.0;
+    for (int i = 0; i < TETRA_PIXELS; ++i) {
+      farthest = isinf(marched.depth[i]) ? farthest : fmax(farthest, fabs((double)marched.depth[i]));
+    }
+    for (int i = 0; i < TETRA_PIXELS; ++i) { /* some roundings of a float, of the picture's depths */
+      const double behind = fabs((double)marched.depth[i] - (double)projected.depth[i]);
+      assert_true(!isfinite(behind) || behind <= 1e-3 + 0x1p-21 * farthest);
+    }
+    tetra_destroy(&c);
+  }
+}
+
 /* Copies of a mesh that overlap it, moved a little each: no order of whole cells is right, and a ray has more pieces than are sorted at once. */
 static void cells_that_overlap_are_drawn_again(void** state)
 {
@@ -187,6 +287,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pieces_are_the_march_s_segments),
+    cmocka_unit_test(any_camera_sees_the_same_by_both_ways),
     cmocka_unit_test(cells_that_overlap_are_drawn_again),
     cmocka_unit_test(opaque_things),
     cmocka_unit_test(leaves_change_nothing_but_roundings),
