@@ -93,11 +93,12 @@ typedef struct cell_planes {
   int fronts[WIDTH];        /* bit k: plane k faces the eye; 0: planes won't do */
 } cell_planes;
 
+/* Each with a relative error of a float's, so that points in one line, or in one place, make nothing out of roundings. */
 INLINE void cross_product(const vfloat p[3], const vfloat q[3], vfloat out[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-    out[axis] = v_fma(p[i], q[j], v_set(0.0f) - p[j] * q[i]);
+    out[axis] = tetra_edge(p[i], p[j], q[i], q[j]);
   }
 }
 
