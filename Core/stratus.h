@@ -899,7 +899,12 @@ typedef struct stratus_visibility_result {
   int layers;               /* peeling layers: of the leaf that has most; else 0 */
   int64_t cycles;           /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
                              * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
-  int64_t forced;           /* layers: cells that came by distance alone, as cycles were too many to follow */
+  int64_t forced;     /* cells that came before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
+                             * after those that hide them through faces only, as gaps were given up, see `overlaps` and `gate_tests` */
+  int64_t overlaps;   /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
+                             * A leaf of n cells gives up gaps after 64 + sqrt(n) */
+  int64_t gate_tests; /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make. A
+                             * leaf of which n border faces lie at gaps gives them up after 64 n sqrt(n) */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
   int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye

@@ -125,7 +125,7 @@ void stratus_gates_build_tree(stratus_gates* gates)
   } while (below > 1);
 }
 
-int64_t stratus_gates_search(const stratus_gates* gates, int64_t way_in)
+int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in)
 {
   struct {
     int level;
@@ -136,11 +136,13 @@ int64_t stratus_gates_search(const stratus_gates* gates, int64_t way_in)
   int pending = 1;
   stack[0].level = gates->levels - 1;
   stack[0].node = 0;
-  while (pending > 0) {
+  while (pending > 0 && gates->tests_left >= 0) {
     const int level = stack[--pending].level;
     const int64_t number = stack[pending].node, first = STRATUS_GATE_CHILDREN * number;
     const int64_t below = level > 0 ? gates->level_begin[level] - gates->level_begin[level - 1] : gates->count;
     const int64_t end = first + STRATUS_GATE_CHILDREN < below ? first + STRATUS_GATE_CHILDREN : below;
+    gates->tests += end - first;
+    gates->tests_left -= end - first;
     for (int64_t i = first; i < end; i++) {
       if (level > 0) {
         const stratus_gate_node* node = gates->nodes + gates->level_begin[level - 1] + i;

@@ -123,6 +123,13 @@ static void find_depths(const stratus_gates* gates, stratus_gate* gate, const st
   gate->high = (float)(high + 1e-6 * fabs(high) + DEPTH_SLACK);
 }
 
+/* So that the work is bounded. Rings take from it, as those of cells that overlap hardly end, and what leads to each passes many cells. */
+static void set_bounds(stratus_gates* gates, int64_t cells)
+{
+  gates->tests_left = (int64_t)(STRATUS_GATE_TESTS * (double)gates->count * sqrt((double)gates->count));
+  gates->ring_tests = gates->tests_left / (STRATUS_GATE_RINGS + (int64_t)sqrt((double)cells)) + 1;
+}
+
 /* At most so many nodes stand over the gates of the leaves before one: a seventh of those, and one more a level. */
 static int64_t nodes_before(int64_t gates, int64_t leaf)
 {
@@ -139,6 +146,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     .count = order->gap_begin[leaf + 1] - first,
     .gates = order->gates + first,
     .nodes = order->gate_nodes + nodes_before(first, leaf) };
+  set_bounds(gates, order->leaf_begin[leaf + 1] - order->leaf_begin[leaf]);
   int64_t ways_in = 0, ways_out = 0;
   for (int64_t g = 0; g < gates->count; g++) {
     stratus_gate* gate = gates->gates + g;
@@ -176,13 +184,13 @@ static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
 }
 
 /* The cell that has to come before a way in's, STRATUS_NO_CELL if none is left. */
-static uint32_t cell_before(const stratus_gates* gates, int64_t way_in)
+static uint32_t cell_before(stratus_gates* gates, int64_t way_in)
 {
   const int64_t way_out = gates->gates[way_in].facing < 0 ? stratus_gates_search(gates, way_in) : -1;
   return way_out < 0 ? STRATUS_NO_CELL : stratus_gate_cell(gates, way_out);
 }
 
-uint32_t stratus_gates_before(const stratus_gates* gates, uint32_t cell)
+uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell)
 {
   uint32_t before = STRATUS_NO_CELL;
   for (int64_t g = first_gate(gates, cell); before == STRATUS_NO_CELL && g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
@@ -200,6 +208,7 @@ bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before)
       cut = true;
     }
   }
+  gates->tests_left -= gates->ring_tests;
   return cut;
 }
 

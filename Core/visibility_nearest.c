@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One leaf's cells, nearest first by steps of some: each comes after all that hide it, through faces or across gaps, which are looked for depth
- * first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. */
+ * first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. Where rings across gaps, or what has to be
+ * looked at to find what hides a cell there, are too many, no gap is looked across any more: cells come after those that hide them through faces. */
 #include "visibility_order.h"
 
 /* `waiting` of a cell. Bits 0 to 3: neighbours that may have to come before it and were not asked yet. */
@@ -16,7 +17,7 @@ typedef struct leaf_search {
   const int32_t* neighbours;
   uint32_t first;
   int64_t count, emitted, steps;
-  int64_t face_rings, gap_rings;
+  int64_t face_rings, gap_rings, forced;
   uint32_t *out, *bottom; /* cells that wait for the one on top of them are kept where the last ones will come to stand: top..bottom */
   stratus_gates gates;
 } leaf_search;
@@ -102,6 +103,7 @@ static void bring(leaf_search* search, uint32_t cell)
       before = (uint32_t)around[__builtin_ctz(pending)];
     } else if (waits & STRATUS_GATE_IN) {
       before = stratus_gates_before(&search->gates, cell);
+      search->forced += before == STRATUS_NO_CELL && search->gates.tests_left < 0;
     }
     if (before == STRATUS_NO_CELL) {
       waiting[cell] = STARTED | CAME;
@@ -160,5 +162,8 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
     }
   }
   /* One through faces may well lead across gaps in many places. */
-  return (stratus_peel_counts){ .cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings };
+  return (stratus_peel_counts){ .cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings,
+    .forced = search.forced,
+    .overlaps = search.gap_rings,
+    .gate_tests = search.gates.tests };
 }

@@ -241,17 +241,22 @@ static stratus_peel_counts peel_leaf(stratus_visibility_order* order, int32_t le
 
 static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling, stratus_visibility_result* result)
 {
-  int64_t cycles = 0, forced = 0;
+  int64_t cycles = 0, forced = 0, overlaps = 0, tests = 0;
   int layers = 0;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced) reduction(max : layers)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced, overlaps, tests)           \
+  reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; i++) {
     const stratus_peel_counts counts = peel_leaf(order, (int32_t)(order->leaf_work[i] % STRATUS_LEAVES_MAX), peeling);
     cycles += counts.cycles;
     forced += counts.forced;
+    overlaps += counts.overlaps;
+    tests += counts.gate_tests;
     layers = counts.layers > layers ? counts.layers : layers;
   }
   result->cycles = cycles;
   result->forced = forced;
+  result->overlaps = overlaps;
+  result->gate_tests = tests;
   result->layers = layers;
 }
 

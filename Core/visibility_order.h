@@ -109,6 +109,10 @@ struct stratus_visibility_order {
 /* Border faces that follow one another stand under a box, so many of those under another, .. */
 #define STRATUS_GATE_CHILDREN 8
 #define STRATUS_GATE_LEVELS_MAX 12 /* 8^12 > 2^32 */
+/* Times n sqrt(n) for a leaf's n gates: some times what one out of which every third cell is missing takes. */
+#define STRATUS_GATE_TESTS 64
+/* More rings across gaps than this and the root of a leaf's cells: they overlap, and no order is right. */
+#define STRATUS_GATE_RINGS 64
 
 /* The mesh's number of the cell at a place. */
 static inline uint32_t stratus_order_cell(const stratus_visibility_order* order, uint32_t place)
@@ -200,6 +204,9 @@ typedef struct stratus_gates {
   stratus_gate_node* nodes; /* over gates that follow one another, over those nodes, ..: level by level, the finest first */
   int64_t level_begin[STRATUS_GATE_LEVELS_MAX];
   int levels;
+  int64_t tests;      /* boxes and faces that were held against ways in */
+  int64_t tests_left; /* may still be; below 0: no way in waits for anything any more */
+  int64_t ring_tests; /* that a ring across gaps costs */
 } stratus_gates;
 
 /* As seen: from the eye, or with z along the rays. */
@@ -219,8 +226,8 @@ stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t g
 /* After the signs. Marks the cells that have gates. */
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf);
 /* A cell that has not come and has to before one that is marked IN, across a gap; STRATUS_NO_CELL: none. */
-uint32_t stratus_gates_before(const stratus_gates* gates, uint32_t cell);
-/* The ways in by which it has to wait no more. False: there are none. */
+uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell);
+/* A ring's: the ways in by which it has to wait no more. False: there are none. */
 bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before);
 /* A cell marked OUT has come. */
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell);
@@ -234,7 +241,7 @@ void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stra
 /* Over all gates that have been seen. */
 void stratus_gates_build_tree(stratus_gates* gates);
 /* A way out that has not passed, of another cell than a way in's, and lies before that; -1: none. */
-int64_t stratus_gates_search(const stratus_gates* gates, int64_t way_in);
+int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in);
 void stratus_gates_take_from_tree(stratus_gates* gates, int64_t way_out);
 
 /* ---- visibility_signs.c: state of all cells, and relations_changed. Returns the signs that needed exact arithmetic. */
@@ -259,7 +266,7 @@ void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs
 /* One leaf's cells into order->cells. seeds: room for the leaf's. */
 typedef struct stratus_peel_counts {
   int layers;
-  int64_t cycles, forced;
+  int64_t cycles, forced, overlaps, gate_tests;
 } stratus_peel_counts;
 
 /* ---- visibility_nearest.c */

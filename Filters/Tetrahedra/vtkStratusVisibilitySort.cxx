@@ -126,6 +126,8 @@ void vtkStratusVisibilitySort::InitTraversal()
   }
   internal.Count = static_cast<vtkIdType>(internal.Result.count);
   this->NumberOfCycles = static_cast<vtkIdType>(internal.Result.cycles);
+  this->NumberOfOverlaps = static_cast<vtkIdType>(internal.Result.overlaps);
+  this->NumberOfForcedCells = static_cast<vtkIdType>(internal.Result.forced);
   this->NumberOfLayers = internal.Result.layers;
   this->BuildMilliseconds = internal.Result.build_ms;
   this->SortMilliseconds = internal.Result.signs_ms + internal.Result.peel_ms;
@@ -156,6 +158,8 @@ void vtkStratusVisibilitySort::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfLeaves: " << this->NumberOfLeaves << "\n";
   os << indent << "NumberOfCycles: " << this->NumberOfCycles << "\n";
+  os << indent << "NumberOfOverlaps: " << this->NumberOfOverlaps << "\n";
+  os << indent << "NumberOfForcedCells: " << this->NumberOfForcedCells << "\n";
   os << indent << "NumberOfLayers: " << this->NumberOfLayers << "\n";
   os << indent << "BuildMilliseconds: " << this->BuildMilliseconds << "\n";
   os << indent << "SortMilliseconds: " << this->SortMilliseconds << "\n";

@@ -56,11 +56,14 @@ public:
 
   //@{
   /**
-   * Of the last traversal: leaves; rings of cells that hide one another, each broken once; layers (peeling in layers); milliseconds that
-   * neighbours took, once, and signs and peeling, each time.
+   * Of the last traversal: leaves; rings of cells that hide one another, each broken once; those of them that lead across gaps, as where cells
+   * overlap; cells that came before some that hide them, as rings were too many; layers (peeling in layers); milliseconds that neighbours took,
+   * once, and signs and peeling, each time.
    */
   vtkGetMacro(NumberOfLeaves, int);
   vtkGetMacro(NumberOfCycles, vtkIdType);
+  vtkGetMacro(NumberOfOverlaps, vtkIdType);
+  vtkGetMacro(NumberOfForcedCells, vtkIdType);
   vtkGetMacro(NumberOfLayers, int);
   vtkGetMacro(BuildMilliseconds, double);
   vtkGetMacro(SortMilliseconds, double);
@@ -74,6 +77,8 @@ protected:
   int NumberOfThreads = 0;
   int NumberOfLeaves = 0;
   vtkIdType NumberOfCycles = 0;
+  vtkIdType NumberOfOverlaps = 0;
+  vtkIdType NumberOfForcedCells = 0;
   int NumberOfLayers = 0;
   double BuildMilliseconds = 0.0;
   double SortMilliseconds = 0.0;

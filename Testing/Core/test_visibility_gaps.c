@@ -177,6 +177,7 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
     assert_int_equal(result.count, mesh.cell_count);
     assert_int_equal(result.cycles, 1);
+    assert_int_equal(result.overlaps, 1); /* across gaps no cell can tell a ring from cells that overlap */
     assert_int_equal(result.forced, 0);
     assert_int_equal(1u << result.cells[0] | 1u << result.cells[1] | 1u << result.cells[2], 7);
     if (threads == 1) {
@@ -187,6 +188,68 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
     stratus_context_destroy(context);
   }
   mesh_case_free(&mesh);
+}
+
+/* Cells at random in a box, all over one another; a third of them flat: with two points in one place, or all in a plane, or a point named twice. */
+static mesh_case soup(int64_t cells, bool flat)
+{
+  uint32_t seed = (uint32_t)cells;
+  mesh_case mesh = mesh_case_allocate(4 * cells, cells);
+  for (int64_t i = 0; i < 12 * cells; i++) {
+    mesh.points[i] = 4.0 * mesh_random_unit(&seed);
+  }
+  for (int64_t i = 0; i < 4 * cells; i++) {
+    mesh.vertices[i] = (int32_t)i;
+  }
+  for (int64_t i = 0; i < cells && flat; i += 3) {
+    double* p = mesh.points + 12 * i;
+    for (int a = 0; a < 3; a++) {
+      p[9 + a] = i % 2 ? p[a] : p[a] + p[3 + a] - p[6 + a]; /* the fourth in the first's place, or a parallelogram */
+    }
+    mesh.vertices[4 * i + 3] -= i % 4 == 0 ? 2 : 0; /* or a point named twice */
+  }
+  return mesh;
+}
+
+/* No order is right. One is given, the same by any number of threads, for some tests a cell (thousands, and more the more cells there are, if rings
+ * are followed as long as there are any), and it is told that cells overlap. */
+static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
+{
+  (void)state;
+  for (int flat = 0; flat < 2; flat++) {
+    for (int size = 0; size < 2; size++) {
+      mesh_case mesh = soup(size ? 8000 : 2000, flat != 0);
+      uint32_t* first = malloc((size_t)mesh.cell_count * sizeof *first);
+      uint8_t* came = calloc((size_t)mesh.cell_count, 1);
+      assert_true(first && came);
+      for (int threads = 1; threads <= 2; threads++) {
+        stratus_context* context = mesh_context(threads);
+        const stratus_mesh view = mesh_case_view(&mesh);
+        const stratus_camera camera = { .eye = { 12, 9, 7 }, .forward = { -10, -7, -5 } };
+        stratus_visibility_order* order = NULL;
+        stratus_visibility_result result;
+        assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);
+        assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
+        const double gaps = (double)order->gap_begin[1];
+        assert_true((double)result.gate_tests <= 64.0 * gaps * sqrt(gaps));
+        assert_true(result.overlaps > 0 && (double)result.overlaps <= 64.0 + sqrt((double)mesh.cell_count));
+        assert_true(result.cycles > 0 && result.forced > 0 && result.forced <= result.count);
+        assert_true(result.gate_tests <= 256 * mesh.cell_count);
+        if (threads == 1) {
+          memcpy(first, result.cells, (size_t)mesh.cell_count * sizeof *first);
+        }
+        assert_memory_equal(first, result.cells, (size_t)mesh.cell_count * sizeof *first);
+        stratus_visibility_order_destroy(order);
+        stratus_context_destroy(context);
+      }
+      for (int64_t i = 0; i < mesh.cell_count; i++) {
+        assert_int_equal(came[first[i]]++, 0);
+      }
+      free(first);
+      free(came);
+      mesh_case_free(&mesh);
+    }
+  }
 }
 
 /* Points in another order, cells that name them along. */
@@ -237,7 +300,8 @@ static void scattered_cells_and_points_come_in_order(void** state)
       const stratus_camera camera = camera_of(&mesh, v);
       stratus_visibility_result result;
       assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
-      assert_int_equal(result.cycles + result.forced, 0);
+      assert_int_equal(result.cycles + result.forced + result.overlaps, 0);
+      assert_true(result.gate_tests > 0 || leaf_count == 2);
       assert_int_equal(mesh_wrong_pairs(&mesh, &camera, result.cells, 60, (uint32_t)v, &pairs), 0);
     }
     assert_true(pairs > 300);
@@ -275,6 +339,7 @@ int main(void)
     cmocka_unit_test(long_cells_hide_short_ones_behind_a_gap),
     cmocka_unit_test(parts_within_hollows_of_others_are_in_order),
     cmocka_unit_test(cells_that_hide_one_another_in_a_ring_are_told),
+    cmocka_unit_test(cells_that_overlap_take_bounded_work_and_are_told),
     cmocka_unit_test(scattered_cells_and_points_come_in_order),
     cmocka_unit_test(only_faces_that_look_at_others_are_gaps),
   };
