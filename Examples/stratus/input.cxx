@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
+#include "vtkStratusArrays.h"
 #include "vtkStratusTetGenReader.h"
 
 #include <vtkAlgorithmOutput.h>
@@ -330,12 +331,18 @@ stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)
       volume.origin[r] += direction[3 * r + c] * first[c];
     }
   }
-  const auto ghosts = [](vtkDataSetAttributes* data) -> const uint8_t* {
-    auto* flags = vtkUnsignedCharArray::SafeDownCast(data->GetAbstractArray("vtkGhostType"));
-    return flags && flags->GetNumberOfComponents() == 1 ? flags->GetPointer(0) : nullptr;
+  const auto ghosts = [](vtkDataSetAttributes* data, vtkIdType count, const char* things) -> const uint8_t* {
+    vtkUnsignedCharArray* flags = nullptr;
+    std::string error;
+    if (!vtkStratusFindGhosts(data, count, things, flags, error)) {
+      throw failure(error);
+    }
+    return flags ? flags->GetPointer(0) : nullptr;
   };
-  volume.point_ghosts = on_cells || sheet ? nullptr : ghosts(image->GetPointData());
-  volume.cell_ghosts = sheet ? nullptr : ghosts(image->GetCellData());
+  const uint8_t* point_ghosts = ghosts(image->GetPointData(), image->GetNumberOfPoints(), "points of the image");
+  const uint8_t* cell_ghosts = ghosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image");
+  volume.point_ghosts = on_cells || sheet ? nullptr : point_ghosts;
+  volume.cell_ghosts = sheet ? nullptr : cell_ghosts;
   volume.values = array->GetVoidPointer(0);
   return volume;
 }

@@ -3,6 +3,8 @@
 
 #include "input.h"
 
+#include "vtkStratusArrays.h"
+
 #include <vtkDataArray.h>
 
 #include <algorithm>
@@ -38,6 +40,10 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path)
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
   if (!grid) {
     throw failure("'" + path + "' holds " + (data ? data->GetClassName() : "nothing") + ", not an unstructured grid");
+  }
+  std::string error;
+  if (!vtkStratusCheckGrid(grid, error)) {
+    throw failure("'" + path + "': " + error);
   }
   return grid;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusInput.h"
 
+#include "vtkStratusArrays.h"
+
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -198,11 +200,10 @@ void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
 
 bool vtkStratusImageView::SetGhosts(vtkImageData* image, bool cells, std::string& error)
 {
-  vtkUnsignedCharArray* pointGhosts = image->GetPointGhostArray();
-  vtkUnsignedCharArray* cellGhosts = image->GetCellGhostArray();
-  if ((pointGhosts && pointGhosts->GetNumberOfTuples() < image->GetNumberOfPoints()) ||
-    (cellGhosts && cellGhosts->GetNumberOfTuples() < image->GetNumberOfCells())) {
-    error = "the array vtkGhostType is shorter than the image";
+  vtkUnsignedCharArray* pointGhosts = nullptr;
+  vtkUnsignedCharArray* cellGhosts = nullptr;
+  if (!vtkStratusFindGhosts(image->GetPointData(), image->GetNumberOfPoints(), "points of the image", pointGhosts, error) ||
+    !vtkStratusFindGhosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image", cellGhosts, error)) {
     return false;
   }
   stratus_volume& volume = this->Volume;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetrahedra.h"
 
+#include "vtkStratusArrays.h"
+
 #include "vtkAbstractArray.h"
 #include "vtkCell.h"
 #include "vtkCellType.h"
@@ -205,7 +207,7 @@ void vtkStratusTetrahedra::AddQuadratic(const Kind& kind, const vtkIdType* ids, 
   }
 }
 
-bool vtkStratusTetrahedra::AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
+void vtkStratusTetrahedra::AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
   vtkIdType count = 0;
   const vtkIdType* stream = nullptr;
@@ -214,16 +216,8 @@ bool vtkStratusTetrahedra::AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType ce
   for (Face& face : faces) {
     face.assign(stream + 1, stream + 1 + *stream);
     stream += 1 + *stream;
-    for (vtkIdType point : face) {
-      if (point < 0 || point >= this->GridPoints) {
-        error = "cell " + std::to_string(cell) + " names point " + std::to_string(point) + ", outside 0.." +
-          std::to_string(this->GridPoints - 1);
-        return false;
-      }
-    }
   }
   this->AddLinear(faces, cell);
-  return true;
 }
 
 void vtkStratusTetrahedra::AddConvexPointSet(vtkUnstructuredGrid* grid, vtkIdType cell)
@@ -257,19 +251,13 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
     error = TellCell(cell, type) + " of " + std::to_string(count) + " points, it must have " + std::to_string(kind.Points);
     return false;
   }
-  for (vtkIdType i = 0; i < count; ++i) {
-    if (ids[i] < 0 || ids[i] >= this->GridPoints) {
-      error = "cell " + std::to_string(cell) + " names point " + std::to_string(ids[i]) + ", outside 0.." + std::to_string(this->GridPoints - 1);
-      return false;
-    }
-  }
   if (type == VTK_TETRA) { // as it is, whatever it is
     this->Vertices.insert(this->Vertices.end(), ids, ids + 4);
     this->Cells.push_back(cell);
   } else if (kind.Way == Kind::Quadratic) {
     this->AddQuadratic(kind, ids, cell);
   } else if (kind.Way == Kind::Polyhedron) {
-    return this->AddPolyhedron(grid, cell, error);
+    this->AddPolyhedron(grid, cell);
   } else if (kind.Way == Kind::ConvexPointSet) {
     this->AddConvexPointSet(grid, cell);
   } else {
@@ -294,6 +282,9 @@ bool vtkStratusTetrahedra::Set(vtkUnstructuredGrid* grid, std::string& error)
   if (this->GridPoints > NumbersMax || cells > NumbersMax / 2) {
     error = "the grid has " + std::to_string(this->GridPoints) + " points and " + std::to_string(cells) +
       " cells, at most 2^31-1 and 2^30-1 are allowed";
+    return false;
+  }
+  if (!vtkStratusCheckGrid(grid, error)) {
     return false;
   }
   this->Points.resize(static_cast<size_t>(3 * this->GridPoints));

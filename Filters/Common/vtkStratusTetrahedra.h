@@ -44,7 +44,7 @@ private:
 
   static const Kind& GetKind(int type);
   bool AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error);
-  bool AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error);
+  void AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell);
   void AddConvexPointSet(vtkUnstructuredGrid* grid, vtkIdType cell);
   void AddLinear(const std::vector<Face>& faces, vtkIdType cell);
   void AddQuadratic(const Kind& kind, const vtkIdType* ids, vtkIdType cell);

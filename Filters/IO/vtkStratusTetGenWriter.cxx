@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetGenWriter.h"
 
+#include "vtkStratusArrays.h"
 #include "vtkStratusTetGenWriterFiles.h"
 
 #include "vtkCellData.h"
@@ -9,6 +10,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -105,6 +107,13 @@ vtkStratusTetGenOutput& vtkStratusTetGenWriter::Internals::Open(const std::strin
 void vtkStratusTetGenWriter::Internals::WriteMesh(vtkUnstructuredGrid* mesh, vtkPolyData* surface)
 {
   const vtkIdType first = this->Writer->FirstNumber;
+  std::string error;
+  if (!vtkStratusCheckGrid(mesh, error) ||
+    !vtkStratusCheckArrays(mesh->GetPointData(), mesh->GetNumberOfPoints(), "points of the mesh", error) ||
+    !vtkStratusCheckArrays(mesh->GetCellData(), mesh->GetNumberOfCells(), "cells of the mesh", error) ||
+    (surface && !vtkStratusCheckSurface(surface, error))) {
+    Fail(error);
+  }
   if (surface) {
     CheckSamePoints(mesh, surface);
   }
@@ -112,6 +121,10 @@ void vtkStratusTetGenWriter::Internals::WriteMesh(vtkUnstructuredGrid* mesh, vtk
   if (mesh->GetNumberOfCells() > 0) {
     vtkStratusTetGenWriteElements(this->Open(".ele"), mesh, first);
     vtkDataArray* neighbors = mesh->GetCellData()->GetArray("Neighbors");
+    if (neighbors && neighbors->GetNumberOfTuples() != mesh->GetNumberOfCells()) {
+      Fail("cell data 'Neighbors' have " + std::to_string(neighbors->GetNumberOfTuples()) + " tuples, they must have one for each of the " +
+        std::to_string(mesh->GetNumberOfCells()) + " cells");
+    }
     if (neighbors && neighbors->GetNumberOfComponents() == 4) {
       vtkStratusTetGenWriteNeighbors(this->Open(".neigh"), neighbors, first);
     }
@@ -129,6 +142,10 @@ void vtkStratusTetGenWriter::Internals::WriteMesh(vtkUnstructuredGrid* mesh, vtk
 
 void vtkStratusTetGenWriter::Internals::WriteSurface(vtkPolyData* surface)
 {
+  std::string error;
+  if (!vtkStratusCheckSurface(surface, error)) {
+    Fail(error);
+  }
   vtkStratusTetGenOutput& file = this->Open(this->Extension);
   vtkStratusTetGenWriteNodes(file, surface, this->Writer->FirstNumber);
   vtkStratusTetGenWriteComplex(file, surface, this->Extension == ".smesh", this->Writer->FirstNumber);

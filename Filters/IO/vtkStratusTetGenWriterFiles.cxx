@@ -143,6 +143,9 @@ void vtkStratusTetGenWriteElements(vtkStratusTetGenOutput& output, vtkUnstructur
     vtkIdType size = 0;
     const vtkIdType* points = nullptr;
     mesh->GetCells()->GetCellAtId(cell, size, points);
+    if (size != corners) {
+      Fail("cell " + Number(cell) + " has " + Number(size) + " points, a tetrahedron of type " + Number(type) + " has " + Number(corners));
+    }
     output.Put(first + cell);
     for (vtkIdType corner = 0; corner < corners; ++corner) {
       output.Put(first + points[corner_of_vtk[corner]]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetGenSurface.h"
 
+#include "vtkStratusArrays.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -139,6 +141,10 @@ void vtkStratusTetGenSurface::Set(vtkPolyData* surface)
 {
   if (surface->GetFieldData()->GetAbstractArray("FacetHoles")) {
     Fail("the surface has field data 'FacetHoles', facets with holes in them are not taken");
+  }
+  std::string error;
+  if (!vtkStratusCheckSurface(surface, error)) {
+    Fail(error);
   }
   std::vector<vtkIdType> ours;
   this->SetPoints(surface, ours);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusPartitionFilter.h"
 
+#include "vtkStratusArrays.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusLeaves.h"
 #include "vtkStratusTetrahedra.h"
@@ -37,6 +38,16 @@ public:
 };
 
 namespace {
+bool CheckAttributes(vtkUnstructuredGrid* grid, std::string& error)
+{
+  vtkUnsignedCharArray* flags = nullptr;
+  const vtkIdType points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
+  return vtkStratusCheckArrays(grid->GetPointData(), points, "points of the grid", error) &&
+    vtkStratusCheckArrays(grid->GetCellData(), cells, "cells of the grid", error) &&
+    vtkStratusFindGhosts(grid->GetPointData(), points, "points of the grid", flags, error) &&
+    vtkStratusFindGhosts(grid->GetCellData(), cells, "cells of the grid", flags, error);
+}
+
 // Attributes that stay attributes: what is copied under the same name.
 void KeepAttributes(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
@@ -110,7 +121,7 @@ void HidePieces(
   vtkUnstructuredGrid* input, const vtkStratusTetrahedra& tetrahedra, const std::vector<vtkIdType>& origins, vtkUnstructuredGrid* output)
 {
   vtkUnsignedCharArray* points = input->GetPointGhostArray();
-  if (!points || points->GetNumberOfTuples() < tetrahedra.GridPoints) {
+  if (!points) {
     return;
   }
   std::vector<bool> hidden(static_cast<size_t>(input->GetNumberOfCells()));
@@ -160,7 +171,8 @@ int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
   std::string error;
   vtkStratusTetrahedra tetrahedra;
-  if (!tetrahedra.Set(input, error) || (!this->Internal->Context.Get() && !this->Internal->Context.Create("host", 0, error))) {
+  if (!CheckAttributes(input, error) || !tetrahedra.Set(input, error) ||
+    (!this->Internal->Context.Get() && !this->Internal->Context.Create("host", 0, error))) {
     vtkErrorMacro(<< error);
     return 0;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMeshView.h"
 
+#include "vtkStratusArrays.h"
+
 #include "vtkCellData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
@@ -62,12 +64,11 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
 // Cells that another piece owns, blanked ones, and those that touch a blanked point.
 bool vtkStratusMeshView::SetHidden(vtkUnstructuredGrid* grid, std::string& error)
 {
-  vtkUnsignedCharArray* points = grid->GetPointGhostArray();
-  vtkUnsignedCharArray* cells = grid->GetCellGhostArray();
+  vtkUnsignedCharArray* points = nullptr;
+  vtkUnsignedCharArray* cells = nullptr;
   this->Hidden.clear();
-  if ((points && points->GetNumberOfTuples() < grid->GetNumberOfPoints()) ||
-    (cells && cells->GetNumberOfTuples() < grid->GetNumberOfCells())) {
-    error = "the array vtkGhostType is shorter than the grid";
+  if (!vtkStratusFindGhosts(grid->GetPointData(), grid->GetNumberOfPoints(), "points of the grid", points, error) ||
+    !vtkStratusFindGhosts(grid->GetCellData(), grid->GetNumberOfCells(), "cells of the grid", cells, error)) {
     return false;
   }
   if (!points && !cells) {

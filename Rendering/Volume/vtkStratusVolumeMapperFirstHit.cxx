@@ -98,13 +98,17 @@ void vtkStratusVolumeMapper::Internals::OfferTree()
 {
   vtkStratusVolumeMapper* self = this->Mapper;
   vtkFieldData* fields = self->GetInput()->GetFieldData();
-  vtkUnsignedCharArray* tree =
-    fields ? vtkUnsignedCharArray::SafeDownCast(fields->GetAbstractArray(vtkStratusTreeArray)) : nullptr;
-  const vtkMTimeType time = tree ? tree->GetMTime() : 0;
-  if (tree == this->Offered && time == this->OfferedTime && this->Caster == this->OfferedTo) {
+  vtkAbstractArray* offered = fields ? fields->GetAbstractArray(vtkStratusTreeArray) : nullptr;
+  vtkUnsignedCharArray* tree = vtkUnsignedCharArray::SafeDownCast(offered);
+  const vtkMTimeType time = offered ? offered->GetMTime() : 0;
+  if (offered == this->Offered && time == this->OfferedTime && this->Caster == this->OfferedTo) {
     return;
   }
-  this->Offered = tree;
+  if (offered && !tree) {
+    vtkWarningWithObjectMacro(self, << "the input's tree is not used: array '" << vtkStratusTreeArray << "' is of type "
+                                    << offered->GetDataTypeAsString() << ", not unsigned char; one is built");
+  }
+  this->Offered = offered;
   this->OfferedTime = time;
   this->OfferedTo = this->Caster;
   const size_t size = tree ? static_cast<size_t>(tree->GetNumberOfValues()) : 0;

@@ -85,7 +85,7 @@ private:
   std::vector<float> Rgba, Depth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples; // empty: not counted
-  vtkSmartPointer<vtkUnsignedCharArray> Offered; // the tree that the caster was last given ..
+  vtkSmartPointer<vtkAbstractArray> Offered; // the tree that the caster was last given ..
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;
   std::array<double, 18> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to

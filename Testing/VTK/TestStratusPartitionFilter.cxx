@@ -4,10 +4,13 @@
 
 #include "tetrahedra_testing.h"
 
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkIntArray.h"
+#include "vtkPointData.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 
 namespace {
 double Linear(const Vector& p)
@@ -242,6 +245,25 @@ void EmptyAndRefused()
   grid->Modified();
   filter->Update();
   CHECK(errors->Has("names point 9, outside 0..3"), "'%s'", errors->Text.c_str());
+  const auto distrusts = [&](vtkDataSetAttributes* data, vtkDataArray* array, const char* name, vtkIdType tuples, const char* word) {
+    grid->Allocate(1);
+    grid->InsertNextCell(VTK_TETRA, 4, ids);
+    array->SetName(name);
+    array->SetNumberOfTuples(tuples);
+    array->Fill(0);
+    data->AddArray(array);
+    grid->Modified();
+    const int before = errors->Count;
+    filter->Update();
+    CHECK(errors->Count == before + 1 && errors->Has(word), "%lld tuples: '%s'", static_cast<long long>(tuples), errors->Text.c_str());
+    data->RemoveArray(name);
+  };
+  vtkPointData* of_points = grid->GetPointData();
+  vtkCellData* of_cells = grid->GetCellData();
+  distrusts(of_points, vtkNew<vtkDoubleArray>(), "short", 3, "array 'short' has 3 tuples, it must have one for each of the 4 points");
+  distrusts(of_cells, vtkNew<vtkDoubleArray>(), "short", 0, "array 'short' has 0 tuples, it must have one for each of the 1 cells");
+  distrusts(of_points, vtkNew<vtkIntArray>(), "vtkGhostType", 4, "'vtkGhostType' has 4 tuples of 1 int, it must have one unsigned char");
+  distrusts(of_cells, vtkNew<vtkUnsignedCharArray>(), "vtkGhostType", 2, "'vtkGhostType' has 2 tuples");
 }
 } // namespace
 

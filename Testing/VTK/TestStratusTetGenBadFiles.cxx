@@ -263,7 +263,9 @@ void StoppingAndWriting()
     CHECK(writer->Write() == 0 && errors->Count == 1 && errors->Has(word), "'%s' says nothing of '%s'", errors->Text.c_str(), word);
     for (const auto& file : Good) { // what was there is there
       CHECK(ReadText(Folder + "/mesh" + file.first) == file.second, "%s: %s was overwritten", word, file.first.c_str());
-      CHECK(!std::filesystem::exists(Folder + "/mesh" + file.first + ".part"), "%s: %s was left", word, file.first.c_str());
+    }
+    for (const auto& file : std::filesystem::directory_iterator(Folder)) {
+      CHECK(file.path().extension() != ".part", "%s: %s was left", word, file.path().c_str());
     }
   };
   using W = vtkStratusTetGenWriter;
@@ -279,6 +281,7 @@ void StoppingAndWriting()
   });
   refuses("no points", [&](W*, G* g, P*) { g->Initialize(); });
   refuses("type 5", [&](W*, G* g, P*) {
+    g->GetCellData()->Initialize();
     const vtkIdType corners[3] = { 0, 1, 2 };
     g->InsertNextCell(VTK_TRIANGLE, 3, corners);
   });
@@ -288,6 +291,28 @@ void StoppingAndWriting()
   });
   refuses("'Attribute1' hold", [&](W*, G* g, P*) { g->GetCellData()->GetArray("Attribute1")->SetComponent(1, 0, HUGE_VAL); });
   refuses("'Neighbors' hold", [&](W*, G* g, P*) { g->GetCellData()->GetArray("Neighbors")->SetComponent(1, 0, 2); });
+  const auto cut = [](vtkDataSetAttributes* data, const char* name, vtkIdType tuples) { data->GetArray(name)->SetNumberOfTuples(tuples); };
+  refuses(
+    "'Attribute1' has 1 tuples, it must have one for each of the 2 cells", [&](W*, G* g, P*) { cut(g->GetCellData(), "Attribute1", 1); });
+  refuses(
+    "'Attribute1' has 3 tuples, it must have one for each of the 5 points", [&](W*, G* g, P*) { cut(g->GetPointData(), "Attribute1", 3); });
+  refuses("'Neighbors' has 1 tuples", [&](W*, G* g, P*) { cut(g->GetCellData(), "Neighbors", 1); });
+  refuses("'Neighbors' have 3 tuples", [&](W*, G* g, P*) { cut(g->GetCellData(), "Neighbors", 3); });
+  refuses("'Marker' has 1 tuples", [&](W*, G*, P* p) { cut(p->GetCellData(), "Marker", 1); });
+  refuses("names point 77, outside", [&](W*, G*, P* p) {
+    const vtkIdType corners[3] = { 0, 1, 77 };
+    p->GetPolys()->InsertNextCell(3, corners);
+  });
+  refuses("names point 77, outside", [&](W*, G* g, P*) {
+    const vtkIdType corners[4] = { 0, 1, 2, 77 };
+    g->GetCellData()->Initialize();
+    g->InsertNextCell(VTK_TETRA, 4, corners);
+  });
+  refuses("3 points, a tetrahedron of type 10 has 4", [&](W*, G* g, P*) {
+    const vtkIdType corners[3] = { 0, 1, 2 };
+    g->GetCellData()->Initialize();
+    g->InsertNextCell(VTK_TETRA, 3, corners);
+  });
   refuses("point 2 of the surface", [&](W*, G*, P* p) { p->GetPoints()->SetPoint(2, 9, 9, 9); });
   refuses("72", [&](W*, G* g, P*) {
     vtkNew<vtkDoubleArray> wide;
@@ -302,6 +327,7 @@ void StoppingAndWriting()
     const vtkIdType corners[4] = { 0, 1, 2, 3 };
     strips->InsertNextCell(4, corners);
     p->SetStrips(strips);
+    p->GetCellData()->Initialize();
     w->SetInputData(p);
   });
 }

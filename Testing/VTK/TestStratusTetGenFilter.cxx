@@ -307,6 +307,16 @@ void Refusals()
     markers->FillValue(0.5);
     p->GetCellData()->AddArray(markers);
   });
+  refuses("array 'Marker' has 2 tuples, it must have one for each of the 6 cells", [](Filter*, P* p) {
+    vtkNew<vtkDoubleArray> markers;
+    markers->SetName("Marker");
+    markers->SetNumberOfValues(2);
+    p->GetCellData()->AddArray(markers);
+  });
+  refuses("cell 6 names point 99, outside 0..7", [](Filter*, P* p) {
+    const vtkIdType corners[3] = { 0, 1, 99 };
+    p->GetPolys()->InsertNextCell(3, corners);
+  });
 }
 } // namespace
 

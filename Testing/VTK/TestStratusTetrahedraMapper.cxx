@@ -161,6 +161,18 @@ void TestRefusals()
   scene.Tetrahedra->AddClippingPlane(plane);
   refuses("clipping planes");
   scene.Tetrahedra->RemoveAllClippingPlanes();
+  vtkNew<vtkFloatArray> flags;
+  vtkNew<vtkUnsignedCharArray> few;
+  flags->SetNumberOfTuples(scene.Grid->GetNumberOfPoints());
+  few->SetNumberOfTuples(3);
+  for (vtkDataArray* ghosts : { static_cast<vtkDataArray*>(flags), static_cast<vtkDataArray*>(few) }) {
+    ghosts->SetName("vtkGhostType");
+    ghosts->Fill(0);
+    scene.Grid->GetPointData()->AddArray(ghosts);
+    scene.Grid->Modified();
+    refuses(ghosts == flags ? "float, it must have one unsigned char for each" : "'vtkGhostType' has 3 tuples");
+    scene.Grid->GetPointData()->RemoveArray("vtkGhostType");
+  }
   scene.Grid->InsertNextCell(VTK_LAGRANGE_TETRAHEDRON, 4, scene.Grid->GetCell(0)->GetPointIds()->GetPointer(0));
   scene.Grid->Modified();
   refuses("(71)");

@@ -185,6 +185,26 @@ void Data()
   shortened->GetPointData()->SetScalars(few);
   Refused(
     "array too short", "100", [&](Scene& s) { s.Mapper->SetInputData(shortened); }, [](Scene& s) { s.Mapper->SetInputData(s.Image); });
+  const auto ghosts = [](const char* what, const char* word, vtkDataArray* flags, int components, vtkIdType tuples) {
+    flags->SetName("vtkGhostType");
+    flags->SetNumberOfComponents(components);
+    flags->SetNumberOfTuples(tuples);
+    flags->Fill(0);
+    Refused(
+      what, word,
+      [flags](Scene& s) {
+        s.Image->GetPointData()->AddArray(flags);
+        s.Image->Modified();
+      },
+      [](Scene& s) {
+        s.Image->GetPointData()->RemoveArray("vtkGhostType");
+        s.Image->Modified();
+      });
+  };
+  const vtkIdType points = Scene(8, 8).Image->GetNumberOfPoints();
+  ghosts("few ghosts", "'vtkGhostType' has 9 tuples of 1 unsigned char", vtkNew<vtkUnsignedCharArray>(), 1, 9);
+  ghosts("ghosts of two components", "of 2 unsigned char, it must have one", vtkNew<vtkUnsignedCharArray>(), 2, points);
+  ghosts("ghosts in floats", "of 1 float, it must have one", vtkNew<vtkFloatArray>(), 1, points);
   for (double bad : { 0.0, -1.0, std::numeric_limits<double>::quiet_NaN() }) {
     vtkNew<vtkImageData> image;
     image->SetDimensions(5, 5, 5);

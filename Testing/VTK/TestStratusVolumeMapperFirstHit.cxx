@@ -263,6 +263,19 @@ void CarriedTrees()
   const vtkIdType last = bytes(tampered)->GetNumberOfValues() - 20;
   bytes(tampered)->SetValue(last, static_cast<unsigned char>(bytes(tampered)->GetValue(last) ^ 1));
   ExpectCarried("tampered", tampered, false);
+  vtkSmartPointer<vtkImageData> floats = fresh();
+  vtkNew<vtkFloatArray> numbers;
+  numbers->DeepCopy(bytes(floats));
+  floats->GetFieldData()->AddArray(numbers);
+  ExpectCarried("in floats", floats, false);
+  Scene told;
+  vtkNew<ErrorObserver> warnings;
+  told.Mapper->AddObserver(vtkCommand::WarningEvent, warnings);
+  told.Mapper->SetInputData(floats);
+  FirstHits(told);
+  told.Render();
+  CHECK(warnings->Count == 1 && warnings->Has("'StratusHybridTree' is of type float"), "%d warnings: %s", warnings->Count,
+    warnings->Text.c_str());
 }
 
 // ---- the cloud of record
