@@ -3,6 +3,7 @@
 #pragma once
 
 #include "options.h"
+#include "output.h"
 #include "picture.h"
 
 #include <vector>

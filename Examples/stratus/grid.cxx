@@ -83,7 +83,6 @@ void render_grid(const options& o)
     row("a pixel", picture.describe_samples());
   }
   picture.write(out);
-  out.commit();
   row("picture", o.output);
 }
 } // namespace cli

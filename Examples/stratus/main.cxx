@@ -6,6 +6,7 @@
 #include "input.h"
 #include "mesh.h"
 #include "options.h"
+#include "output.h"
 #include "picture.h"
 #include "sort.h"
 #include "transfer.h"
@@ -125,7 +126,6 @@ void render(const cli::options& o)
     row("a pixel", frame.describe_samples());
   }
   frame.write(out);
-  out.commit();
   row("picture", o.output);
   if (o.audit && report.differing_pixels > 0) {
     throw cli::failure("audit: skipping changed " + cli::grouped(report.differing_pixels) + " pixels");

@@ -8,11 +8,8 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace cli {
 
@@ -107,65 +104,5 @@ std::vector<uint8_t> encode_png(const std::vector<uint8_t>& bytes, int width, in
     throw failure("the picture could not be encoded as PNG");
   }
   return std::vector<uint8_t>(result->GetPointer(0), result->GetPointer(0) + result->GetNumberOfValues());
-}
-
-output_file::output_file(const std::string& path) : Path(path)
-{
-  struct stat status;
-  const bool exists = stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) {
-    throw failure("cannot write '" + path + "': it is a folder");
-  }
-  if (exists && access(path.c_str(), W_OK) != 0) { // a rename would not ask
-    throw failure("cannot write '" + path + "': " + std::strerror(errno));
-  }
-  if (!exists || S_ISREG(status.st_mode)) {
-    this->Temporary = path + ".part" + std::to_string(getpid());
-  }
-  this->File = std::fopen(this->Temporary.empty() ? path.c_str() : this->Temporary.c_str(), "wb");
-  if (!this->File) {
-    throw failure("cannot write '" + path + "': " + std::strerror(errno));
-  }
-}
-
-output_file::~output_file()
-{
-  if (this->File) {
-    std::fclose(this->File);
-  }
-  if (!this->Temporary.empty()) {
-    std::remove(this->Temporary.c_str());
-  }
-}
-
-void output_file::fail(int reason)
-{
-  throw failure("cannot write '" + this->Path + "': " + std::strerror(reason));
-}
-
-void output_file::write(const std::vector<uint8_t>& bytes)
-{
-  if (std::fwrite(bytes.data(), 1, bytes.size(), this->File) != bytes.size()) {
-    this->fail(errno);
-  }
-}
-
-void output_file::commit()
-{
-  // On the disk before the name: after a crash there is the old picture or the new one. A pipe has no disk to reach.
-  if (std::fflush(this->File) != 0 || (fsync(fileno(this->File)) != 0 && !this->Temporary.empty())) {
-    this->fail(errno);
-  }
-  std::FILE* file = this->File;
-  this->File = nullptr;
-  if (std::fclose(file) != 0) {
-    this->fail(errno);
-  }
-  if (!this->Temporary.empty()) {
-    if (std::rename(this->Temporary.c_str(), this->Path.c_str()) != 0) {
-      this->fail(errno);
-    }
-    this->Temporary.clear();
-  }
 }
 } // namespace cli

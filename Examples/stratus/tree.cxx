@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree.h"
 #include "input.h"
-#include "picture.h"
+#include "output.h"
 #include "support.h"
 #include "transfer.h"
 
@@ -104,7 +104,6 @@ void print_tree(const options& o)
   print(statistics);
   if (out) {
     out->write(encode(tree.get(), in.volume, o.mode == STRATUS_MODE_COMPOSITE));
-    out->commit();
     row("boxes", o.output);
   }
 }

@@ -2,6 +2,7 @@
 #include "vtkStratusEXRWriter.h"
 
 #include "vtkStratusEXRFile.h"
+#include "vtkStratusTemporaryFile.h"
 
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
@@ -112,10 +113,10 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
 // Beside its final name first, so that there is the old file or the new one, and no half of it.
 void Store(const std::vector<unsigned char>& bytes, const std::string& path)
 {
-  const std::string part = path + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
+  std::string part;
+  std::FILE* file = vtkStratusOpenTemporary(path, part);
   if (!file) {
-    Fail("can't open " + part + " for writing: " + std::strerror(errno), vtkErrorCode::CannotOpenFileError);
+    Fail("can't open " + part + " for writing " + path + ": " + std::strerror(errno), vtkErrorCode::CannotOpenFileError);
   }
   bool done = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   int reason = errno;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetGenText.h"
 
+#include "vtkStratusTemporaryFile.h"
+
 #include "vtkErrorCode.h"
 
 #include <algorithm>
@@ -242,12 +244,13 @@ void vtkStratusTetGenInput::EndFile(const char* things, vtkIdType all)
 }
 
 vtkStratusTetGenOutput::vtkStratusTetGenOutput(const std::string& path, const vtkStratusTetGenProgress& progress)
-    : Path(path), Part(path + ".part"), Progress(progress)
+    : Path(path), Progress(progress)
 {
   this->Buffer.reserve(ChunkBytes + 64);
-  this->File = std::fopen(this->Part.c_str(), "wb");
+  this->File = vtkStratusOpenTemporary(path, this->Part);
   if (!this->File) {
-    throw vtkStratusTetGenError{ "can't open " + this->Part + " for writing: " + std::strerror(errno), vtkErrorCode::CannotOpenFileError };
+    throw vtkStratusTetGenError{ "can't open " + this->Part + " for writing " + path + ": " + std::strerror(errno),
+      vtkErrorCode::CannotOpenFileError };
   }
 }
 

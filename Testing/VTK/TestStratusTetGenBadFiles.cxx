@@ -279,6 +279,12 @@ void StoppingAndWriting()
     w->SetInputData(p);
     w->SetFileName((Folder + "/mesh.node").c_str());
   });
+  {
+    vtkNew<vtkStratusTetGenWriter> writer;
+    writer->SetInputData(mesh->GetSurface());
+    writer->SetFileName((Folder + "/" + std::string(249, 'n') + ".smesh").c_str()); // 255 bytes, which is as long as file systems take
+    CHECK(writer->Write() == 1, "a long name is not written");
+  }
   refuses("no points", [&](W*, G* g, P*) { g->Initialize(); });
   refuses("type 5", [&](W*, G* g, P*) {
     g->GetCellData()->Initialize();

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output.h"
+
+#include "support.h"
+
+#include "vtkStratusTemporaryFile.h"
+
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+// What a handler removes: there is one file at a time. The name stands before the file is made, and until it is gone.
+char temporary[PATH_MAX];
+std::atomic<bool> has_temporary = { false };
+
+constexpr int endings[] = { SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGXCPU };
+constexpr size_t ending_count = sizeof endings / sizeof endings[0];
+struct sigaction before[ending_count]; // an OpenCL compiler in this process may have files of its own to remove
+
+void remove_and_end(int number)
+{
+  if (has_temporary) {
+    unlink(temporary);
+  }
+  for (size_t i = 0; i < ending_count; ++i) {
+    if (endings[i] == number) {
+      sigaction(number, &before[i], nullptr);
+    }
+  }
+  raise(number); // comes when this returns
+}
+
+// What ends a program. What is ignored (nohup) stays so. A file that grows beyond its limit is an error like a full disk.
+void catch_signals()
+{
+  for (size_t i = 0; i < ending_count; ++i) {
+    struct sigaction action = {};
+    action.sa_handler = &remove_and_end;
+    sigemptyset(&action.sa_mask);
+    if (sigaction(endings[i], nullptr, &before[i]) == 0 && before[i].sa_handler != SIG_IGN) {
+      sigaction(endings[i], &action, nullptr);
+    }
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+} // namespace
+
+namespace cli {
+
+output_file::output_file(const std::string& path) : Path(path), Target(path)
+{
+  struct stat status;
+  const bool exists = stat(path.c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) {
+    this->fail(errno);
+  }
+  if (exists && S_ISDIR(status.st_mode)) {
+    throw failure("cannot write '" + path + "': it is a folder");
+  }
+  if (exists && access(path.c_str(), W_OK) != 0) { // a rename would not ask
+    this->fail(errno);
+  }
+  this->InPlace = exists && !S_ISREG(status.st_mode);
+  if (exists && !this->InPlace) { // the file gets its new bytes, not a link to it; one without a name has no place beside it
+    char* real = realpath(path.c_str(), nullptr);
+    this->InPlace = real == nullptr;
+    this->Target = real ? real : path;
+    std::free(real);
+  }
+  const std::string folder = this->Target.substr(0, this->Target.find_last_of('/') + 1);
+  if (!this->InPlace && access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) {
+    this->fail(errno);
+  }
+}
+
+output_file::~output_file()
+{
+  if (this->File) {
+    std::fclose(this->File);
+  }
+  if (this->HasTemporary) {
+    std::remove(temporary);
+    has_temporary = false;
+  }
+}
+
+void output_file::fail(int reason)
+{
+  throw failure("cannot write '" + this->Path + "': " + std::strerror(reason));
+}
+
+void output_file::open()
+{
+  catch_signals();
+  if (this->InPlace) {
+    this->File = std::fopen(this->Path.c_str(), "wb");
+  }
+  for (int number = 0; !this->InPlace && !this->File && (number == 0 || errno == EEXIST); ++number) {
+    const std::string name = vtkStratusTemporaryName(this->Target, number);
+    if (name.size() >= sizeof temporary) {
+      this->fail(ENAMETOOLONG);
+    }
+    std::strcpy(temporary, name.c_str());
+    has_temporary = true;
+    this->File = std::fopen(temporary, "wbx");
+    has_temporary = this->HasTemporary = this->File != nullptr;
+  }
+  if (!this->File) {
+    this->fail(errno);
+  }
+}
+
+void output_file::write(const std::vector<uint8_t>& bytes)
+{
+  this->open();
+  // On the disk before the name: after a crash there is the old file or the new one. A pipe has no disk to reach.
+  if (std::fwrite(bytes.data(), 1, bytes.size(), this->File) != bytes.size() || std::fflush(this->File) != 0 ||
+    (fsync(fileno(this->File)) != 0 && !this->InPlace)) {
+    this->fail(errno);
+  }
+  std::FILE* file = this->File;
+  this->File = nullptr;
+  if (std::fclose(file) != 0 || (!this->InPlace && std::rename(temporary, this->Target.c_str()) != 0)) {
+    this->fail(errno);
+  }
+  this->HasTemporary = has_temporary = false;
+}
+} // namespace cli
