@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
+#include "reading.h"
+
 #include "vtkStratusArrays.h"
 #include "vtkStratusTetGenReader.h"
 
@@ -27,7 +29,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <iostream>
+#include <new>
 #include <sstream>
 #include <sys/stat.h>
 
@@ -209,6 +213,7 @@ bool is_tetgen(const std::string& path)
 
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
 {
+  reading watched(path, "VTK");
   check_file(path);
   listening listener;
   vtkSmartPointer<vtkAlgorithm> reader = choose_reader(path);
@@ -216,7 +221,14 @@ vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
     throw failure("'" + path + "' is no image file that VTK reads (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
       "and no grid (.vtu .pvtu .vtk .node .ele)");
   }
-  reader->Update();
+  watched.follow(reader);
+  try {
+    reader->Update();
+  } catch (const std::bad_alloc&) {
+    throw failure("cannot read '" + path + "': " + reader->GetClassName() + " wants more memory than there is");
+  } catch (const std::exception& error) {
+    throw failure("cannot read '" + path + "': " + reader->GetClassName() + " failed: " + error.what());
+  }
   const std::string heard = listener.heard();
   if (!heard.empty()) {
     throw failure("cannot read '" + path + "': " + first_message(heard));

@@ -8,6 +8,7 @@
 #include "options.h"
 #include "output.h"
 #include "picture.h"
+#include "reading.h"
 #include "sort.h"
 #include "transfer.h"
 #include "tree.h"
@@ -189,6 +190,7 @@ void devices()
 
 void run(const cli::options& o)
 {
+  cli::set_read_timeout(o.read_timeout);
   if (o.command == "render") {
     render(o);
   } else if (o.command == "info") {

@@ -2,6 +2,7 @@
 #include "mesh.h"
 
 #include "input.h"
+#include "reading.h"
 
 #include "vtkStratusArrays.h"
 
@@ -28,6 +29,7 @@ bool is_grid(const std::string& path)
   if (extension != ".vtk") {
     return false;
   }
+  const reading watched(path, "the look for its kind");
   std::ifstream file(path, std::ios::binary);
   std::string begin(header, ' ');
   file.read(&begin[0], static_cast<std::streamsize>(begin.size()));

@@ -71,6 +71,7 @@ How
   --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
+  --read-timeout S        give INPUT up after S seconds in which its reader neither got a byte nor told of progress; 0: never (default 60)
   --show samples          a heat map of the samples that each pixel took, with a scale, in place of the picture; --color has its colours
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
@@ -283,6 +284,7 @@ constexpr struct {
   { "--normals", [](options& o, text, text value) { o.normals = normals_named(value); } },
   { "--device", keep<&options::device> },
   { "--threads", [](options& o, text word, text value) { o.threads = whole_number(value, word, 1, 1024); } },
+  { "--read-timeout", [](options& o, text word, text value) { o.read_timeout = within(value, word, 0.0, 1e6); } },
   { "--show", set_show },
   { "--lower", keep_bound<&options::lower> },
   { "--upper", keep_bound<&options::upper> },

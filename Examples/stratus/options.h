@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "reading.h"
 #include "stratus.h"
 
 #include <limits>
@@ -27,6 +28,7 @@ struct options {
   int width = 512;
   int height = 512;
   int threads = 0;
+  double read_timeout = usual_read_timeout; // seconds; 0: never
   int depth = 3; // sort: of the K-D tree
   bool parallel = false;
   bool nearest = false;
