@@ -36,7 +36,7 @@ static stratus_status sum_weights(stratus_context* context, const stratus_brick*
   if (stratus_structures_on_device(context) && stratus_device_takes_density(context, &plan, count, voxels)) {
     TRY_CLEANUP(stratus_device_density(context, &plan, bricks, count, density->start, sums));
   } else {
-    stratus_density_rows(&plan, bricks, count, density->start, sums);
+    TRY_CLEANUP(stratus_density_rows(&plan, bricks, count, density->start, sums));
   }
 
 cleanup:

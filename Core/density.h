@@ -43,7 +43,7 @@ stratus_status stratus_density_plan_create(stratus_context* context, double band
 void stratus_density_plan_release(density_plan* plan);
 
 /* Sums of weights in fixed point: exact: a voxel (start[b] is the first of brick b), else a brick. */
-void stratus_density_rows(
+stratus_status stratus_density_rows(
   const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums); /* density_rows.c */
 stratus_status stratus_density_cells(stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact,
   const int64_t* start, uint64_t* sums); /* density_cells.c */

@@ -4,6 +4,9 @@
 #include "density.h"
 #include "tree.h"
 
+#include <omp.h>
+#include <string.h>
+
 #define CHUNKS 64
 #define BINS 4096 /* of a histogram of distances; three refinements leave 2^-36 of the largest squared distance */
 
@@ -81,10 +84,17 @@ static int64_t count_below(stratus_context* context, const stratus_brick* bricks
   return below;
 }
 
+/* A histogram, and what each thread counts for it: stacks of threads may be small. */
+typedef struct histogram {
+  int64_t bins[BINS];
+  uint32_t own[][BINS];
+} histogram;
+
 /* Counts the squared distances in [low, high) by bin. Returns how many are below low. */
-static int64_t fill_bins(stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double low, double high,
-  int64_t bins[BINS])
+static int64_t fill_bins(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double low, double high, histogram* histogram)
 {
+  int64_t* const bins = histogram->bins;
   const double scale = BINS / (high - low);
   int64_t below = 0;
   for (int i = 0; i < BINS; i++) {
@@ -92,8 +102,9 @@ static int64_t fill_bins(stratus_context* context, const stratus_brick* bricks, 
   }
 #pragma omp parallel num_threads(context->threads) if (count >= DENSITY_PARALLEL)
   {
-    uint32_t own[BINS] = { 0 };
+    uint32_t* const own = histogram->own[omp_get_thread_num()];
     int64_t own_below = 0;
+    memset(own, 0, sizeof histogram->own[0]);
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < count; b++) {
       FOR_EACH_VOXEL (bricks + b, mean, x, y, z, {
@@ -116,22 +127,26 @@ static int64_t fill_bins(stratus_context* context, const stratus_brick* bricks, 
 }
 
 /* The distance that as many voxels are nearer than as are farther (of an even number the upper one of the middle two). */
-static double find_median(
-  stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double largest)
+static stratus_status find_median(stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels,
+  const double mean[3], double largest, double* median)
 {
-  int64_t bins[BINS];
+  void* memory;
+  TRY(stratus_allocate(context, 1, sizeof(histogram) + (size_t)context->threads * sizeof(uint32_t[BINS]), &memory));
+  histogram* const histogram = memory;
   double low = 0.0, high = largest * (1.0 + 1e-9);
   for (int refinement = 0; refinement < 3 && low < high; refinement++) {
-    int64_t before = fill_bins(context, bricks, count, mean, low, high, bins);
+    int64_t before = fill_bins(context, bricks, count, mean, low, high, histogram);
     const double width = (high - low) / BINS;
     int bin = 0;
-    while (bin < BINS - 1 && before + bins[bin] <= voxels / 2) {
-      before += bins[bin++];
+    while (bin < BINS - 1 && before + histogram->bins[bin] <= voxels / 2) {
+      before += histogram->bins[bin++];
     }
     low += width * bin;
     high = low + width;
   }
-  return sqrt(0.5 * (low + high));
+  stratus_release(context, memory);
+  *median = sqrt(0.5 * (low + high));
+  return STRATUS_OK;
 }
 
 stratus_status stratus_density_bandwidth_of(
@@ -145,7 +160,8 @@ stratus_status stratus_density_bandwidth_of(
     /* The median is looked for only where it is the lesser: where more than half of the voxels are that near. */
     const double near = spread / widen;
     if (count_below(context, bricks, count, mean, near * near) > voxels / 2) {
-      const double median = find_median(context, bricks, count, voxels, mean, largest);
+      double median;
+      TRY(find_median(context, bricks, count, voxels, mean, largest, &median));
       spread = fmin(spread, widen * median);
     }
     printed = 0.9 * spread * pow((double)voxels, -0.2);

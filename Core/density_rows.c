@@ -3,6 +3,7 @@
  * in ascending order, and so are the bricks at a fixed distance from them: each row of neighbours has a cursor that only moves forward. */
 #include "density.h"
 
+#include <omp.h>
 #include <string.h>
 
 #define ROWS_MAX ((2 * DENSITY_REACH_MAX + 1) * (2 * DENSITY_REACH_MAX + 1))
@@ -192,13 +193,23 @@ static uint64_t sum_neighbours(const density_plan* plan, const stratus_brick* br
   return sum;
 }
 
-void stratus_density_rows(const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums)
+/* What a thread works in: stacks of threads may be small. */
+typedef struct room {
+  uint64_t rows[DENSITY_SIDE_MAX * DENSITY_SIDE_MAX];
+  int64_t cursors[ROWS_MAX];
+} room;
+
+stratus_status stratus_density_rows(
+  const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums)
 {
+  void* memory;
+  TRY(stratus_allocate(plan->context, (size_t)plan->context->threads, sizeof(room), &memory));
+  room* const rooms = memory;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(plan->context->threads) if (count >= DENSITY_PARALLEL)
   for (int chunk = 0; chunk < CHUNKS; chunk++) {
-    uint64_t rows[DENSITY_SIDE_MAX * DENSITY_SIDE_MAX];
-    int64_t cursors[ROWS_MAX];
-    memset(cursors, 0xff, sizeof cursors);
+    uint64_t* const rows = rooms[omp_get_thread_num()].rows;
+    int64_t* const cursors = rooms[omp_get_thread_num()].cursors;
+    memset(cursors, 0xff, sizeof rooms->cursors);
     for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; b++) {
       if (plan->exact) {
         gather_rows(plan, bricks, count, b, cursors, rows);
@@ -208,4 +219,6 @@ void stratus_density_rows(const density_plan* plan, const stratus_brick* bricks,
       }
     }
   }
+  stratus_release(plan->context, memory);
+  return STRATUS_OK;
 }

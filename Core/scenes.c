@@ -5,6 +5,7 @@
 #include "internal.h"
 #include "scenes_fields.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -58,8 +59,13 @@ static uint32_t sort_key(float value)
 }
 
 /* The rank-th smallest (from 0), exactly, by three counts of 11, 11 and 10 bits: no copy to partition. */
-static float select_rank(const float* values, int64_t count, int64_t rank, int threads)
+static stratus_status select_rank(stratus_context* context, const float* values, int64_t count, int64_t rank, float* value)
 {
+  const int threads = context->threads;
+  void* memory;
+  TRY(stratus_allocate(context, 1 + (size_t)threads, sizeof(int64_t[2048]), &memory)); /* stacks of threads may be small */
+  int64_t(*const rooms)[2048] = memory;
+  int64_t* const total = rooms[threads];
   static const int shifts[] = { 21, 10, 0 };
   static const uint32_t masks[] = { 0x7ff, 0x7ff, 0x3ff };
   uint32_t prefix = 0;
@@ -67,10 +73,11 @@ static float select_rank(const float* values, int64_t count, int64_t rank, int t
     const int shift = shifts[pass];
     const uint32_t mask = masks[pass];
     const uint32_t done = pass ? ~0u << shifts[pass - 1] : 0u;
-    int64_t total[2048] = { 0 };
+    memset(total, 0, sizeof rooms[0]);
 #pragma omp parallel num_threads(threads)
     {
-      int64_t bins[2048] = { 0 };
+      int64_t* const bins = rooms[omp_get_thread_num()];
+      memset(bins, 0, sizeof rooms[0]);
 #pragma omp for nowait
       for (int64_t q = 0; q < count; ++q) {
         const uint32_t key = sort_key(values[q]);
@@ -90,9 +97,9 @@ static float select_rank(const float* values, int64_t count, int64_t rank, int t
     prefix |= bin << shift;
   }
   const uint32_t bits = prefix & 0x80000000u ? prefix & 0x7fffffffu : ~prefix;
-  float value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
+  memcpy(value, &bits, sizeof *value);
+  stratus_release(context, memory);
+  return STRATUS_OK;
 }
 
 /* Fields and shades slab by slab, so that the caller can stop it; `height` is the field's maximum less the threshold. */
@@ -113,7 +120,8 @@ static stratus_status build_values(stratus_context* context, const recipe* recip
       }
     }
   }
-  const float threshold = select_rank(field, count, (int64_t)(recipe->quantile * (double)(count - 1)), threads);
+  float threshold;
+  TRY(select_rank(context, field, count, (int64_t)(recipe->quantile * (double)(count - 1)), &threshold));
   const float height = top - threshold;
   for (int slab = 0; slab < SLABS; ++slab) {
     TRY(stratus_progress(context, "scene", .7 + .3 * slab / SLABS));

@@ -15,6 +15,7 @@
  *   One context serves one thread at a time; different contexts are independent, and several threads may make theirs at once. One lock for the
  *   process, the core's only global state, lets a single thread at a time ask OpenCL for its devices, as not every platform's first answer
  *   bears more; nothing else is done under it.
+ *   A thread that calls, and each of OpenMP's, needs 128 KiB of stack on the host; what an OpenCL implementation needs comes on top.
  */
 #ifndef STRATUS_H
 #define STRATUS_H

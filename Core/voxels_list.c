@@ -9,6 +9,7 @@
 #define FIELD_BYTES_MAX ((size_t)32 << 20)
 #define FIELD_BRICKS_A_VOXEL 32
 #define DIGIT_BITS 11
+#define DIGITS (1 << DIGIT_BITS)
 
 typedef struct voxel_list {
   const int32_t* positions;
@@ -63,20 +64,21 @@ static uint64_t key_of(const int32_t p[3])
 }
 
 /* Sorts by all bits of the brick's place, digit by digit from the lowest; a digit that all keys share is passed over. Returns where the
- * sorted keys are. */
-static uint64_t* sort_keys(uint64_t* keys, uint64_t* other, int64_t count)
+ * sorted keys are. start: room for DIGITS numbers. */
+static uint64_t* sort_keys(uint64_t* keys, uint64_t* other, int64_t count, uint64_t* start)
 {
+  const uint64_t digit = DIGITS - 1;
   for (int shift = 6; count > 0 && shift < 54; shift += DIGIT_BITS) {
-    int64_t start[1 << DIGIT_BITS] = { 0 }, sum = 0;
-    const uint64_t digit = (1 << DIGIT_BITS) - 1;
+    uint64_t sum = 0;
+    memset(start, 0, DIGITS * sizeof *start);
     for (int64_t i = 0; i < count; i++) {
       start[keys[i] >> shift & digit]++;
     }
-    if (start[keys[0] >> shift & digit] == count) {
+    if (start[keys[0] >> shift & digit] == (uint64_t)count) {
       continue;
     }
-    for (int d = 0; d < 1 << DIGIT_BITS; d++) {
-      const int64_t here = start[d];
+    for (int d = 0; d < DIGITS; d++) {
+      const uint64_t here = start[d];
       start[d] = sum;
       sum += here;
     }
@@ -95,12 +97,12 @@ static stratus_status take_by_sorting(stratus_voxels* voxels, const voxel_list* 
   stratus_context* context = voxels->context;
   stratus_status status;
   void *memory = NULL, *bricks = NULL;
-  TRY_CLEANUP(stratus_allocate(context, 2 * (size_t)list->count, sizeof(uint64_t), &memory));
+  TRY_CLEANUP(stratus_allocate(context, 2 * (size_t)list->count + DIGITS, sizeof(uint64_t), &memory));
   uint64_t* keys = memory;
   for (int64_t v = 0; v < list->count; v++) {
     keys[v] = key_of(list->positions + 3 * v);
   }
-  keys = sort_keys(keys, keys + list->count, list->count);
+  keys = sort_keys(keys, keys + list->count, list->count, keys + 2 * list->count);
   voxels->brick_count = 0;
   for (int64_t v = 0; v < list->count; v++) {
     voxels->brick_count += v == 0 || keys[v] >> 6 != keys[v - 1] >> 6;

@@ -24,6 +24,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <sys/resource.h>
 
 namespace {
 
@@ -188,8 +189,21 @@ void devices()
   }
 }
 
+// Compilers of OpenCL and VTK's readers crash where the stack ends.
+void check_stack()
+{
+  constexpr rlim_t least = 256; // KiB; commands were seen to crash at 80, and to work at 96
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur / 1024 < least) {
+    throw cli::failure(cli::format("the stack may have %llu KiB, at least %llu are needed: ulimit -s %llu",
+      static_cast<unsigned long long>(limit.rlim_cur / 1024), static_cast<unsigned long long>(least),
+      static_cast<unsigned long long>(least)));
+  }
+}
+
 void run(const cli::options& o)
 {
+  check_stack();
   cli::set_read_timeout(o.read_timeout);
   if (o.command == "render") {
     render(o);

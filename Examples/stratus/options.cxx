@@ -84,6 +84,7 @@ Trees
 Orders
   --depth N               planes between the mesh and a leaf, 0..16 (default 3)
 
+The stack must be allowed at least 256 KiB (ulimit -s).
 The exit status is 0 only if the picture was written whole; 1 if something failed, 2 if the command was not understood.
 
   stratus render cloud -o cloud.png

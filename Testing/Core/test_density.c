@@ -2,6 +2,8 @@
  * Bandwidth, and density and its derivatives at points, against plain sums over all voxels. */
 #include "density_plain.h"
 
+#include <pthread.h>
+
 /* ---- bandwidth */
 
 static int compare_doubles(const void* a, const void* b)
@@ -215,6 +217,58 @@ static void bad_arguments_are_refused_with_their_value(void** state)
   stratus_voxels_destroy(voxels);
 }
 
+/* ---- stacks */
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SMALL_STACK (40 << 10)
+
+static void* work(void* result)
+{
+  stratus_status* status = result;
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* own = NULL;
+  stratus_voxels* voxels = NULL;
+  stratus_density* density = NULL;
+  stratus_scene* scene = NULL;
+  double bandwidth;
+  options.device = "host";
+  options.threads = 1;
+  *status = stratus_context_create(&options, &own, NULL, 0);
+  *status = *status ? *status : stratus_scene_create(own, "haze", &scene);
+  *status = *status ? *status : stratus_voxels_create_list(own, set.dimensions, &set.at[0][0], set.count, &voxels);
+  *status = *status ? *status : stratus_density_bandwidth(own, voxels, &bandwidth, NULL);
+  *status = *status ? *status : stratus_density_create(own, voxels->bricks, voxels->brick_count, bandwidth, 1, &density);
+  stratus_density_destroy(density);
+  stratus_voxels_destroy(voxels);
+  stratus_scene_destroy(own, scene);
+  stratus_context_destroy(own);
+  return NULL;
+}
+#endif
+
+/* With one thread, OpenMP's own has the caller's stack. */
+static void a_thread_with_a_small_stack_gets_its_answer(void** state)
+{
+  (void)state;
+#ifdef SMALL_STACK
+  pthread_attr_t attributes;
+  pthread_t thread;
+  stratus_status status = STRATUS_INVALID_ARGUMENT;
+  set_begin(&set, 4000, 4000, 4000); /* so sparse that the list is sorted */
+  set_add_box(&set, 148, 153, 148, 153, 148, 153);
+  set_add(&set, 0, 0, 0);
+  set_add(&set, 3999, 3999, 3999);
+  assert_int_equal(pthread_attr_init(&attributes), 0);
+  assert_int_equal(pthread_attr_setstacksize(&attributes, SMALL_STACK), 0);
+  assert_int_equal(pthread_create(&thread, &attributes, work, &status), 0);
+  assert_int_equal(pthread_join(thread, NULL), 0);
+  assert_int_equal(status, STRATUS_OK);
+  pthread_attr_destroy(&attributes);
+#else
+  skip(); /* sanitizers make stacks larger */
+#endif
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -225,6 +279,7 @@ int main(void)
     cmocka_unit_test(derivatives_are_those_of_the_density),
     cmocka_unit_test(density_integrates_to_one),
     cmocka_unit_test(bad_arguments_are_refused_with_their_value),
+    cmocka_unit_test(a_thread_with_a_small_stack_gets_its_answer),
   };
   return cmocka_run_group_tests(tests, open_context, close_context);
 }
