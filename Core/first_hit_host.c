@@ -99,9 +99,11 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
       const float unit = (float)(along[i] * most[i]);
       d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
       inverse[i] = 1.0f / d[i];
-      const double t0 = (lo - from[i]) * (double)inverse[i], t1 = (hi - from[i]) * (double)inverse[i];
+      /* A ray that runs within a face of the box is in it all the way, not from t = 0 on. */
+      const double hair = fabsf(unit) < 1e-30f ? slack : 0.0;
+      const double t0 = (lo - hair - from[i]) * (double)inverse[i], t1 = (hi + hair - from[i]) * (double)inverse[i];
       const double enter = smaller(t0, t1), leave = larger(t0, t1);
-      first[i] = larger(first[i], enter - HAIR * fabs(enter));
+      first[i] = larger(first[i], enter - HAIR * fabs(enter) - slack);
       last[i] = smaller(last[i], leave + HAIR * fabs(leave));
     }
   }

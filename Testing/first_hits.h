@@ -57,7 +57,7 @@ static inline stratus_voxels* random_voxels(stratus_context* context, const int6
   return voxels;
 }
 
-/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, short, from far away. */
+/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, from behind, short, from far away. */
 static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
 {
   stratus_ray ray = { .t_max = INFINITY };
@@ -93,6 +93,9 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
   }
   if (next_random(random) % 4 == 0) {
     ray.direction[next_random(random) % 3] *= -1.0; /* makes -0 of 0, too */
+  }
+  if (next_random(random) % 4 == 0) {
+    ray.t_min -= unit_random(random) * 2.0 * (double)dimensions[0];
   }
   return ray;
 }
