@@ -48,18 +48,6 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
   find_normals(tree, batch->normal);
 }
 
-static bool usable(const stratus_hit_batch* batch, const stratus_ray* ray)
-{
-  const double* m = batch->to_voxels;
-  double sum = ray->t_min, length = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    const double *o = ray->origin, *d = ray->direction;
-    sum += m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
-    length += fabs(m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2]);
-  }
-  return isfinite(sum) && isfinite(length) && isfinite(1.0 / length) && !isnan(ray->t_max);
-}
-
 /* One chunk's answers; false if ray *bad of it can't be used. more: rays behind the chunk's. */
 static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count, size_t more,
   stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
@@ -75,7 +63,7 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
     return true;
   }
   for (int i = 0; i < count; ++i) {
-    if (!usable(batch, &rays[i])) {
+    if (!stratus_ray_usable(batch->to_voxels, &rays[i])) {
       *bad = i;
       return false;
     }
@@ -130,7 +118,7 @@ static stratus_status run_host(
   }
   stratus_release(context, room);
   if (worst != INT64_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %lld has no direction, or a number that is not finite", (long long)worst);
+    return stratus_ray_refuse(context, batch->to_voxels, rays + worst, (size_t)worst);
   }
   return STRATUS_OK;
 }

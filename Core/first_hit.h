@@ -8,7 +8,7 @@
 /* What all rays of a batch need. Voxel coordinates: voxel i is i .. i+1, so they are index coordinates + 1/2. */
 typedef struct stratus_hit_batch {
   const stratus_tree* tree;
-  double to_voxels[12];    /* rows of 4: world -> voxel coordinates */
+  double to_voxels[16];    /* rows of 4: world -> voxel coordinates */
   double lo[3], hi[3];     /* of the root's box */
   double normal[6][3];     /* of face 2*axis + upper, world, of length 1 */
   float slack;             /* how far a float position may be off */

@@ -134,7 +134,7 @@ stratus_status stratus_first_hit_device(
     int bad = -1;
     status = walk(&l, rays + first, count - first < most ? (int)(count - first) : (int)most, hits + first, &bad);
     if (status == STRATUS_OK && bad >= 0) {
-      status = stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %zu has no direction, or a number that is not finite", first + (size_t)bad);
+      status = stratus_ray_refuse(context, batch.to_voxels, rays + first + bad, first + (size_t)bad);
     }
   }
   for (int b = 0; b < BUFFERS; ++b) {

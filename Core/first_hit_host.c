@@ -14,8 +14,7 @@
 
 /* ---------------------------------------------------------------- in */
 
-#define SHORTEST 1e-290 /* of a direction's longest component */
-#define HAIR 4e-7       /* of t found in floats, over t */
+#define HAIR 4e-7 /* of t found in floats, over t */
 
 /* Loops over a chunk, written so that the compiler makes vectors of them. */
 #define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
@@ -44,7 +43,7 @@ static void transform(
   }
 }
 
-/* Lengths of the longest component; 0 is returned if all numbers can be used. */
+/* Lengths of the longest component; 0 is returned if all numbers can be used: as stratus_ray_usable() has it. */
 static double measure(const stratus_hit_chunk* chunk, const double* restrict first, const double* restrict last, double* restrict most)
 {
   const int n = chunk->count;
@@ -54,19 +53,16 @@ static double measure(const stratus_hit_chunk* chunk, const double* restrict fir
     const double longest = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
     const double sum = chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
     most[i] = longest;
-    wrong += 0.0 * (sum + first[i]) + (longest >= SHORTEST ? 0.0 : 1.0) + (last[i] == last[i] ? 0.0 : 1.0);
+    wrong += 0.0 * (sum + first[i]) + (longest >= STRATUS_RAY_SHORTEST ? 0.0 : 1.0) + (last[i] == last[i] ? 0.0 : 1.0);
   }
   return wrong;
 }
 
-static int find_bad(const stratus_hit_chunk* chunk, const double* first, const double* last, const double* most)
+static int find_bad(const stratus_hit_batch* batch, const stratus_ray* rays, int count)
 {
   int i = 0;
-  for (; i < chunk->count - 1; ++i) {
-    const double sum = chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
-    if (!isfinite(sum + first[i]) || !(most[i] >= SHORTEST) || isnan(last[i])) {
-      break;
-    }
+  while (i < count - 1 && stratus_ray_usable(batch->to_voxels, rays + i)) {
+    ++i;
   }
   return i;
 }
@@ -81,7 +77,7 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
   chunk->count = count;
   transform(batch, rays, chunk, first, last);
   if (!(measure(chunk, first, last, most) == 0.0)) {
-    *bad = find_bad(chunk, first, last, most);
+    *bad = find_bad(batch, rays, count);
     return false;
   }
   EACH_RAY

@@ -153,26 +153,38 @@ static bool is_finite3(const double v[3])
   return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-stratus_status stratus_rays_check(stratus_context* context, const double world_to_index[16], const stratus_ray* rays, size_t count)
+bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray)
+{
+  double o[3], d[3];
+  stratus_matrix_point(to_voxels, ray->origin, o);
+  stratus_matrix_vector(to_voxels, ray->direction, d);
+  const double sum = o[0] + o[1] + o[2] + d[0] + d[1] + d[2], longest = fmax(fmax(fabs(d[0]), fabs(d[1])), fabs(d[2]));
+  return isfinite(sum + ray->t_min) && longest >= STRATUS_RAY_SHORTEST && !isnan(ray->t_max);
+}
+
+stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxels[16], const stratus_ray* ray, size_t index)
+{
+  double direction[3];
+  if (!is_finite3(ray->origin) || !is_finite3(ray->direction) || !isfinite(ray->t_min) || isnan(ray->t_max)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "ray %zu has a number that is not finite: origin %g %g %g, direction %g %g %g, t %g..%g", index, ray->origin[0], ray->origin[1],
+      ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2], ray->t_min, ray->t_max);
+  }
+  stratus_matrix_vector(to_voxels, ray->direction, direction);
+  if (fmax(fmax(fabs(direction[0]), fabs(direction[1])), fabs(direction[2])) < STRATUS_RAY_SHORTEST) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %zu has direction %g %g %g, must be longer than 0: its longest component %g voxels",
+      index, ray->direction[0], ray->direction[1], ray->direction[2], STRATUS_RAY_SHORTEST);
+  }
+  return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+    "ray %zu with origin %g %g %g and direction %g %g %g leaves the range of doubles among voxels", index, ray->origin[0], ray->origin[1],
+    ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2]);
+}
+
+stratus_status stratus_rays_check(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count)
 {
   for (size_t r = 0; r < count; r++) {
-    const stratus_ray* ray = rays + r;
-    double origin[3], direction[3];
-    if (!is_finite3(ray->origin) || !is_finite3(ray->direction) || !isfinite(ray->t_min) || isnan(ray->t_max)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-        "ray %zu has a number that is not finite: origin %g %g %g, direction %g %g %g, t %g..%g", r, ray->origin[0], ray->origin[1],
-        ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2], ray->t_min, ray->t_max);
-    }
-    stratus_matrix_point(world_to_index, ray->origin, origin);
-    stratus_matrix_vector(world_to_index, ray->direction, direction);
-    if (direction[0] == 0.0 && direction[1] == 0.0 && direction[2] == 0.0) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %zu has direction %g %g %g, must be longer than 0", r, ray->direction[0],
-        ray->direction[1], ray->direction[2]);
-    }
-    if (!is_finite3(origin) || !is_finite3(direction)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-        "ray %zu with origin %g %g %g and direction %g %g %g leaves the range of doubles among voxels", r, ray->origin[0], ray->origin[1],
-        ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2]);
+    if (!stratus_ray_usable(to_voxels, rays + r)) {
+      return stratus_ray_refuse(context, to_voxels, rays + r, r);
     }
   }
   return STRATUS_OK;

@@ -63,8 +63,13 @@ stratus_status stratus_volume_hash(stratus_context* context, const stratus_volum
 
 /* ---- voxel_walk.c */
 
-/* Refuses a ray that stratus_tree_first_hit() refuses, with its index in the message. */
-stratus_status stratus_rays_check(stratus_context* context, const double world_to_index[16], const stratus_ray* rays, size_t count);
+#define STRATUS_RAY_SHORTEST 1e-290 /* of a direction's longest component, in voxels */
+
+/* Whether a ray can be walked along among voxels: what all ways to first hits ask, in these operations. */
+bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray);
+/* Says why one can't. */
+stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxels[16], const stratus_ray* ray, size_t index);
+stratus_status stratus_rays_check(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count);
 /* World to the frame where voxel (i,j,k) fills [i,i+1] and so on: borders of voxels are whole numbers, to the bit for a list. */
 bool stratus_voxels_world_to_corner(const double index_to_world[16], double world_to_corner[16]);
 

@@ -235,7 +235,7 @@ static void rays_that_are_none_are_refused(void** state)
     stratus_tree* tree = NULL;
     options.method = (stratus_tree_method)methods[m];
     assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
-    for (int wrong = 0; wrong < 5; wrong++) {
+    for (int wrong = 0; wrong < 7; wrong++) {
       stratus_ray rays[40];
       stratus_hit hits[40];
       for (int i = 0; i < 40; i++) {
@@ -250,10 +250,16 @@ static void rays_that_are_none_are_refused(void** state)
         ray->direction[2] = INFINITY;
       } else if (wrong == 3) {
         ray->t_min = -INFINITY;
-      } else {
+      } else if (wrong == 4) {
         ray->t_max = NAN;
+      } else if (wrong == 5) {
+        ray->direction[0] = ray->direction[1] = ray->direction[2] = 1e-300;
+      } else {
+        ray->origin[0] = ray->origin[1] = ray->origin[2] = 1e308;
       }
       assert_int_equal(stratus_tree_first_hit(context, tree, rays, 40, hits), STRATUS_INVALID_ARGUMENT);
+      assert_non_null(strstr(stratus_context_message(context), "ray 17"));
+      assert_int_equal(stratus_voxels_first_hit(context, voxels, rays, 40, hits), STRATUS_INVALID_ARGUMENT);
       assert_non_null(strstr(stratus_context_message(context), "ray 17"));
     }
     assert_int_equal(stratus_tree_first_hit(context, tree, NULL, 1, NULL), STRATUS_INVALID_ARGUMENT);

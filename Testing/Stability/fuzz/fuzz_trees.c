@@ -122,13 +122,17 @@ static void check_hits(fuzz* f, const tree_case* c, const stratus_tree* tree, bo
   stratus_hit *hits = fuzz_output(f, count * sizeof *hits), *plain = fuzz_output(f, count * sizeof *plain);
   const stratus_status status = STATUS(stratus_tree_first_hit(f->context, tree, given, count, hits));
   const stratus_status walked = STATUS(stratus_voxels_first_hit(f->context, c->voxels, given, count, plain));
-  EXPECT(status == walked || !compare, "hits: %s, and by the walk %s", stratus_status_name(status), stratus_status_name(walked));
-  EXPECT(status == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
+  EXPECT(status == walked || !compare, "hits: %s, and by the walk %s: %s", stratus_status_name(status), stratus_status_name(walked),
+    stratus_context_message(f->context));
+  EXPECT(status == STRATUS_OK || !compare || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
   for (size_t r = 0; compare && fuzz_is_tame(f) && status == STRATUS_OK && r < count; ++r) {
     const stratus_hit *h = hits + r, *p = plain + r;
+    const double *o = rays[r].origin, *d = rays[r].direction;
     EXPECT(h->t == p->t && memcmp(h->voxel, p->voxel, sizeof h->voxel) == 0 && h->face == p->face &&
         memcmp(h->normal, p->normal, sizeof h->normal) == 0,
-      "ray %zu hits (%d, %d, %d) at %.17g, face %d; by the walk (%d, %d, %d) at %.17g, face %d", r, h->voxel[0], h->voxel[1], h->voxel[2], h->t,
+      "ray %zu from (%.17g, %.17g, %.17g) along (%.17g, %.17g, %.17g), %.17g to %.17g, hits (%d, %d, %d) at %.17g, face %d; by the walk (%d, %d, %d) "
+      "at %.17g, face %d",
+      r, o[0], o[1], o[2], d[0], d[1], d[2], rays[r].t_min, rays[r].t_max, h->voxel[0], h->voxel[1], h->voxel[2], h->t,
       h->face, p->voxel[0], p->voxel[1], p->voxel[2], p->t, p->face);
     EXPECT(!isnan(h->t), "ray %zu hits at no number", r);
   }

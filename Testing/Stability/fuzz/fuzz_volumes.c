@@ -212,20 +212,25 @@ static void add_ghosts(fuzz* f, stratus_volume* v)
   }
 }
 
-/* What the world is told about it, or a cube where it is refused. */
+/* Where the world has it, or a cube where it is refused; and the longest edge of a voxel. */
 static void look_at(fuzz* f, fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
   double bounds[6];
   const bool known = STATUS(stratus_volume_bounds(f->context, FUZZ_INPUT(f, *v), bounds)) == STRATUS_OK;
-  double width = 0.0, values = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
+    double square = 0.0;
+    for (int row = 0; row < 3; ++row) {
+      double along = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        along += v->matrix[4 * row + i] * v->direction[3 * i + axis] * v->spacing[axis];
+      }
+      square += along * along;
+    }
+    field->edge = known ? fmax(field->edge, sqrt(square)) : 1.0;
     field->bounds[2 * axis] = known ? bounds[2 * axis] : 0.0;
     field->bounds[2 * axis + 1] = known ? bounds[2 * axis + 1] : 1.0;
-    width = fmax(width, field->bounds[2 * axis + 1] - field->bounds[2 * axis]);
-    values = fmax(values, (double)v->dimensions[axis]);
   }
-  field->edge = width > 0.0 && isfinite(width) ? width / fmin(fmax(values, 1.0), 1e6) : 1.0;
 }
 
 /* Lies that no reader could live with are left out: a size is wrong only where the product of all is beyond any memory, or below 1. */
