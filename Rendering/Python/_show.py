@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """NumPy volumes as pictures: `show` draws one, `as_image` hands its memory to VTK."""
 import os
-import sys
 from numbers import Real
 
 import numpy
 import vtkmodules.vtkRenderingOpenGL2  # registers itself, so that there is a window to draw in
 import vtkmodules.vtkRenderingVolumeOpenGL2
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData, vtkPiecewiseFunction
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkCamera, vtkColorTransferFunction, vtkRenderer, vtkRenderWindow, vtkVolume
 
@@ -49,20 +48,30 @@ def _numbers(values, count, name):
     return result
 
 
+def _number(value, name):
+    if not _is_number(value):
+        raise TypeError(f"{name} is {value!r}, it must be a number")
+    if not numpy.isfinite(float(value)):
+        raise ValueError(f"{name} is {value!r}, it must be finite")
+    return float(value)
+
+
 def as_image(array, spacing=(1, 1, 1), origin=(0, 0, 0), axes="zyx"):
     """A vtkImageData over the array's own memory, which lives as long as the image does.
 
     array    three axes of at least 2 values; bool, integers, float32 or float64. One that is not contiguous in memory is copied, no other.
+             What a masked array masks is hidden: the image gets a vtkGhostType.
     spacing  world length between two values along x, y and z, each > 0
     origin   where the first value lies: x, y, z
     axes     which of the array's axes is which: "zyx" is array[z, y, x], "xyz" array[x, y, z]
     """
+    mask = numpy.ma.getmask(array)
     array = numpy.asarray(array)
     if array.ndim != 3 or min(array.shape) < 2:
         raise ValueError(f"the array's shape is {array.shape}, it must have three axes of at least 2 values")
     if array.dtype.kind not in "buif" or array.dtype.itemsize > 8 or array.dtype == numpy.float16 or not array.dtype.isnative:
         raise TypeError(f"the array is of type {array.dtype.str} ({array.dtype}), it must be one of {_TYPES}, in the machine's byte order")
-    if sorted(axes) != ["x", "y", "z"]:
+    if not isinstance(axes, (str, list, tuple)) or sorted(map(str, axes)) != ["x", "y", "z"]:
         raise ValueError(f"axes is {axes!r}, it must name x, y and z once each, as 'zyx'")
     spacing, origin = _numbers(spacing, 3, "spacing"), _numbers(origin, 3, "origin")
     if min(spacing) <= 0:
@@ -79,51 +88,109 @@ def as_image(array, spacing=(1, 1, 1), origin=(0, 0, 0), axes="zyx"):
     scalars = numpy_to_vtk(values.reshape(-1))  # holds on to the array
     scalars.SetName("values")
     image.GetPointData().SetScalars(scalars)
+    if mask is not numpy.ma.nomask:
+        hidden = numpy_to_vtk((numpy.ascontiguousarray(mask).reshape(-1) * numpy.uint8(vtkDataSetAttributes.HIDDENPOINT)).astype(numpy.uint8))
+        hidden.SetName(vtkDataSetAttributes.GhostArrayName())
+        image.GetPointData().AddArray(hidden)
     return image
 
 
-def _spread(image):
-    """Least, most and most frequent of the finite values."""
-    values = vtk_to_numpy(image.GetPointData().GetScalars())
-    values = values[:: max(1, values.size // 2000000)]
-    values = values[numpy.isfinite(values)]
-    if values.size == 0:
-        return 0.0, 1.0, 0.0
+def _scalars(image):
+    """The values that are drawn, a flat array or one row a point, and which of them show: not masked, and finite in all components."""
+    points, cells = image.GetPointData(), image.GetCellData()
+    data = points if points.GetScalars() else cells
+    if not data.GetScalars():
+        raise ValueError("the image has no scalars, neither of points nor of cells")
+    values, hidden = vtk_to_numpy(data.GetScalars()), data.GetArray(vtkDataSetAttributes.GhostArrayName())
+    shown = numpy.isfinite(values.reshape(len(values), -1)).all(axis=1)
+    if hidden and hidden.GetNumberOfValues() == len(values):
+        flag = vtkDataSetAttributes.HIDDENPOINT if data is points else vtkDataSetAttributes.HIDDENCELL
+        shown &= vtk_to_numpy(hidden).astype(numpy.uint8) & flag == 0
+    if not shown.any():
+        raise ValueError(f"none of the {len(values)} values is to be drawn: each is masked or not finite")
+    return values, shown
+
+
+def _scaled(image):
+    """The image and 0, or one whose values are those times 2**-power: floats, which the mapper draws from, hold none above 3.4e38."""
+    values, shown = _scalars(image)
+    finite = values if shown.all() else values[shown]
+    largest = max(abs(float(finite.max())), abs(float(finite.min())))
+    if finite.dtype.kind != "f" or largest == 0 or 1e-30 < largest < 1e37:
+        return image, 0, finite
+    power = int(numpy.frexp(largest)[1])
+    with numpy.errstate(all="ignore"):  # of those that do not show
+        values = numpy.ldexp(values.astype(numpy.float64), -power)
+    result, scalars = vtkImageData(), numpy_to_vtk(values)
+    result.ShallowCopy(image)
+    scalars.SetName("values")
+    (result.GetPointData() if image.GetPointData().GetScalars() else result.GetCellData()).SetScalars(scalars)
+    return result, power, values[shown]
+
+
+def _spread(values):
+    """Least, most and most frequent of the values."""
     low, high = float(values.min()), float(values.max())
     if low == high:
-        return low, low + 1.0, low
-    counts, edges = numpy.histogram(values.astype(numpy.float64), bins=256, range=(low, high))
+        return low, high, low
+    some = values[:: max(1, len(values) // 2000000)]
+    counts, edges = numpy.histogram(some.astype(numpy.float64), bins=256, range=(low, high))
     most = int(counts.argmax())
     return low, high, 0.5 * float(edges[most] + edges[most + 1])
 
 
-def _opacity_points(opacity, low, high, common):
-    """Pairs of value and opacity: a number is the top of a ramp away from the most frequent value."""
-    if opacity is None or isinstance(opacity, Real):
+def _is_number(value):
+    return isinstance(value, Real) or isinstance(value, numpy.ndarray) and value.ndim == 0 and value.dtype.kind in "buif"
+
+
+def _pairs(points, count, name, wanted, power):
+    """Numbers, their values at those of an image that was scaled."""
+    try:
+        pairs = [_numbers(point, count, f"a point of {name}") for point in points]
+    except TypeError:
+        raise TypeError(f"{name} is {points!r}, it must be {wanted}") from None
+    if not pairs or not all(0 <= part <= 1 for pair in pairs for part in pair[1:]):
+        raise ValueError(f"{name} is {points!r}, it must be {wanted}")
+    with numpy.errstate(all="ignore"):
+        return [(float(numpy.clip(numpy.ldexp(pair[0], -power), -1e300, 1e300)), *pair[1:]) for pair in pairs]
+
+
+def _opacity_points(opacity, low, high, common, power):
+    """Pairs of value and opacity: a number is the top of a ramp away from the most frequent value, or the opacity of the only one."""
+    if opacity is None or _is_number(opacity):
         top = 0.3 if opacity is None else float(opacity)
         if not 0 <= top <= 1:
             raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
+        if low == high:
+            return [(low, top)]
         far = high if high - common >= common - low else low
         near = common + 0.05 * (far - common)
         return sorted([(common, 0.0), (near, 0.0), (far, top)])
-    points = [_numbers(point, 2, "a point of opacity") for point in opacity]
-    if not points or not all(0 <= alpha <= 1 for _, alpha in points):
-        raise ValueError(f"opacity is {opacity!r}, it must be pairs of a value and an opacity in 0..1")
-    return points
+    return _pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", power)
 
 
-def _color_points(color, low, high):
+def _color_points(color, low, high, power):
     """Value, red, green and blue: one colour is that of all values."""
     if color is None:
-        middle = 0.5 * (low + high)
-        return [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
-    if len(color) == 3 and all(isinstance(part, Real) for part in color):
-        points = [(low, *_numbers(color, 3, "color"))]
-    else:
-        points = [_numbers(point, 4, "a point of color") for point in color]
-    if not points or not all(0 <= part <= 1 for point in points for part in point[1:]):
-        raise ValueError(f"color is {color!r}, it must be one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1")
-    return points
+        middle = low + 0.5 * (high - low)
+        points = [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
+        return points if low < high else points[1:2]
+    wanted = "one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1"
+    try:
+        if len(color) == 3 and all(_is_number(part) for part in color):
+            if not all(0 <= part <= 1 for part in color):
+                raise ValueError(f"color is {color!r}, it must be {wanted}")
+            return [(low, *(float(part) for part in color))]
+    except TypeError:
+        raise TypeError(f"color is {color!r}, it must be {wanted}") from None
+    return _pairs(color, 4, "color", wanted, power)
+
+
+def _steps(points):
+    """In order; of several at one value the first and the last, which are the ends of a step."""
+    points = sorted(points, key=lambda point: point[0])
+    return [point for n, point in enumerate(points)
+            if not (0 < n < len(points) - 1 and points[n - 1][0] == point[0] == points[n + 1][0])]
 
 
 def _aim(renderer, camera):
@@ -132,18 +199,29 @@ def _aim(renderer, camera):
         renderer.ResetCameraClippingRange()
         return
     wishes = dict(azimuth=30.0, elevation=25.0, zoom=1.15)
+    if camera is not None and not isinstance(camera, dict):
+        raise TypeError(f"camera is {camera!r}, it must be a dict of azimuth, elevation (degrees) and zoom, or a vtkCamera")
     unknown = set(camera or {}) - set(wishes)
     if unknown:
         raise ValueError(f"camera has {sorted(unknown)}, it may have azimuth, elevation (degrees) and zoom, or be a vtkCamera")
-    wishes.update(camera or {})
+    wishes.update({name: _number(value, f"camera's {name}") for name, value in (camera or {}).items()})
+    if wishes["zoom"] <= 0:
+        raise ValueError(f"camera's zoom is {wishes['zoom']}, it must be above 0")
     active = renderer.GetActiveCamera()
     active.SetPosition(0, -1, 0)
     active.SetFocalPoint(0, 0, 0)
     active.SetViewUp(0, 0, 1)
     active.Azimuth(wishes["azimuth"])
     active.Elevation(max(-89.9, min(89.9, wishes["elevation"])))
+    active.OrthogonalizeViewUp()
     renderer.ResetCamera()
     active.Zoom(wishes["zoom"])
+
+
+def _check_display(window):
+    """Windows of X need a display, or VTK before 9.4 crashes; those of EGL and OSMesa, of another class, need none."""
+    if window.IsA("vtkXOpenGLRenderWindow") and not os.environ.get("DISPLAY"):
+        raise RuntimeError("there is no X display to draw by (DISPLAY is not set): run this under xvfb-run")
 
 
 def _paint(floats, background):
@@ -161,9 +239,12 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
          axes="zyx", unit_distance=None, mapper=None):
     """Draws a volume and returns the picture, as an array (height, width, 4) of bytes that notebooks show.
 
-    array          see as_image, also for spacing, origin and axes; its memory is drawn from, not copied
-    opacity        pairs of a value and its opacity in 0..1 per unit_distance; a number: the top of a ramp away from the most frequent value
-    color          (r, g, b) in 0..1 for all values, or some (value, r, g, b)
+    array          see as_image, also for spacing, origin and axes; its memory is drawn from, not copied, unless no value is in
+                   1e-30..1e37: then it is a copy times a power of 2
+                   What is masked (numpy.ma), NaN or infinite is transparent; where nothing else is there, that is a ValueError
+    opacity        pairs of a value and its opacity in 0..1 per unit_distance; a number: the top of a ramp away from the most frequent value,
+                   or, where all values are one, of all of it: a uniform box. Two pairs at one value are a step
+    color          (r, g, b) in 0..1 for all values, or some (value, r, g, b), of which two at one value are a step
     size           width and height in pixels
     camera         dict of azimuth, elevation (degrees) and zoom, or a vtkCamera
     background     (r, g, b) in 0..1, or None for transparent
@@ -171,24 +252,34 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     mapper         a vtkStratusVolumeMapper of yours: with its settings, to ask for its counters, or to draw the next array without building anew
     """
     image = array if isinstance(array, vtkImageData) else as_image(array, spacing, origin, axes)
-    width, height = (int(side) for side in _numbers(size, 2, "size"))
-    if not (1 <= width <= 16384 and 1 <= height <= 16384):
-        raise ValueError(f"size is {size!r}, each must be in 1..16384")
+    width, height = _numbers(size, 2, "size")
+    if not all(1 <= side <= 16384 and side == int(side) for side in (width, height)):
+        raise ValueError(f"size is {size!r}, each must be a whole number in 1..16384")
+    width, height = int(width), int(height)
     if background is not None:
         background = _numbers(background, 3, "background")
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        raise RuntimeError("there is no X display to draw by (DISPLAY is not set): run this under xvfb-run")
-    low, high, common = _spread(image)
-    volume, renderer, window = vtkVolume(), vtkRenderer(), vtkRenderWindow()
+        if not all(0 <= part <= 1 for part in background):
+            raise ValueError(f"background is {background!r}, each must be in 0..1")
+    if unit_distance is not None and _number(unit_distance, "unit_distance") <= 0:
+        raise ValueError(f"unit_distance is {unit_distance!r}, it must be above 0")
+    if mapper is not None and not isinstance(mapper, vtkStratusVolumeMapper):
+        raise TypeError(f"mapper is {mapper!r}, it must be a vtkStratusVolumeMapper")
+    window = vtkRenderWindow()
+    _check_display(window)
+    image, power, values = _scaled(image)
+    low, high, common = _spread(values)
+    volume, renderer = vtkVolume(), vtkRenderer()
     look, fade, hue = volume.GetProperty(), vtkPiecewiseFunction(), vtkColorTransferFunction()
-    for point in _opacity_points(opacity, low, high, common):
+    fade.AllowDuplicateScalarsOn()
+    hue.AllowDuplicateScalarsOn()
+    for point in _steps(_opacity_points(opacity, low, high, common, power)):
         fade.AddPoint(*point)
-    for point in _color_points(color, low, high):
+    for point in _steps(_color_points(color, low, high, power)):
         hue.AddRGBPoint(*point)
     look.SetScalarOpacity(fade)
     look.SetColor(hue)
     look.SetInterpolationTypeToLinear()
-    look.SetScalarOpacityUnitDistance(image.GetLength() / 50 if unit_distance is None else _numbers([unit_distance], 1, "unit_distance")[0])
+    look.SetScalarOpacityUnitDistance(image.GetLength() / 50 if unit_distance is None else float(unit_distance))
     mapper = mapper or vtkStratusVolumeMapper()
     tag = mapper.AddObserver("ErrorEvent", lambda caller, event: None)  # what would be printed is raised
     mapper.SetInputData(image)

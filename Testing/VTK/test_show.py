@@ -99,6 +99,77 @@ def pictures():
     check(not numpy.array_equal(stratus.show(holes, size=(90, 60)), stratus.show(field, size=(90, 60))), "what is no number shows nothing")
 
 
+def masks():
+    field = 0.2 + 0.6 * ball((20, 20, 20), (10, 10, 10), 8)
+    mask = numpy.zeros(field.shape, bool)
+    mask[:, :, :10] = True
+    options = dict(size=(60, 60), background=None, opacity=[(0, 0.5), (1, 0.9)], unit_distance=1)
+    holes = field.copy()
+    holes[mask] = numpy.nan
+    for dtype in numpy.float32, numpy.float64, numpy.int16, bool:
+        values = field if numpy.dtype(dtype).kind == "f" else 100 * (field > 0.3)
+        hidden = numpy.ma.masked_array(values.astype(dtype), mask)
+        image = stratus.as_image(hidden)
+        check(numpy.shares_memory(vtk_to_numpy(image.GetPointData().GetScalars()), hidden.data), f"{hidden.dtype}: masked, not copied")
+        picture, whole = (stratus.show(one, **options)[..., 3] for one in (hidden, hidden.data))
+        check(0 < (picture > 0).sum() < 0.8 * (whole > 0).sum(), f"{hidden.dtype}: what is masked is transparent")
+    masked = stratus.show(numpy.ma.masked_array(field, mask), **options)
+    check(numpy.array_equal(masked, stratus.show(holes, **options)), "masked is drawn as NaN is")
+    turned = numpy.ma.masked_array(field, mask)[::-1, :, ::-1]
+    check(numpy.array_equal(stratus.show(turned, **options), stratus.show(holes[::-1, :, ::-1], **options)), "a mask that is not contiguous")
+    wild = numpy.ma.masked_array(numpy.where(mask, numpy.float32(1e6), field), mask)  # as fill values are
+    plain = dict(size=(60, 60))
+    pictures = [stratus.show(one, **plain).astype(int) for one in (wild, numpy.ma.masked_array(field, mask))]
+    check(numpy.abs(pictures[0] - pictures[1]).max() <= 1, "what is masked is in no range")  # rounding: the mapper's tables reach to 1e6
+    unmasked = numpy.ma.masked_array(field)
+    check(numpy.array_equal(stratus.show(unmasked, **plain), stratus.show(field, **plain)), "a mask of nothing")
+
+
+def steps():
+    field = ball((20, 20, 20), (10, 10, 10), 8)
+    options = dict(size=(60, 60), background=None, unit_distance=1)
+
+    def alpha(points):
+        return stratus.show(field, opacity=points, color=(1, 1, 1), **options)[..., 3].astype(int)
+
+    step, ramp, near = alpha([(0, 0), (0.5, 0), (0.5, 0.8), (1, 0.8)]), alpha([(0, 0), (0.5, 0.8), (1, 0.8)]), \
+        alpha([(0, 0), (0.4999999, 0), (0.5, 0.8), (1, 0.8)])
+    check(numpy.abs(step - ramp).max() > 40, "two opacities at one value are a step, not a ramp")
+    # The narrow ramp lies between two entries of the mapper's tables, the step on one of them.
+    check(numpy.abs(step - near).max() <= 4, f"the step is where it is given: {numpy.abs(step - near).max()}")
+    check(numpy.array_equal(step, alpha([(0, 0), (0.5, 0), (0.5, 0.1), (0.5, 0.8), (1, 0.8)])), "of three at one value the middle one says nothing")
+    check(numpy.array_equal(step, alpha([(1, 0.8), (0.5, 0), (0.5, 0.8), (0, 0)])), "in any order of values")
+    halves = [(0, 1, 0, 0), (0.5, 1, 0, 0), (0.5, 0, 0, 1), (1, 0, 0, 1)]
+    for shown, channel in ([(0, 0), (0.05, 0.8), (0.48, 0.8), (0.49, 0)], 0), ([(0, 0), (0.51, 0), (0.52, 0.8), (1, 0.8)], 2):
+        picture = stratus.show(field, opacity=shown, color=halves, **options)
+        check(picture[..., channel].max() == 255 and picture[..., 2 - channel].max() == 0, "two colours at one value are a step")
+
+
+def ranges():
+    field = ball((20, 20, 20), (10, 10, 10), 8).astype(numpy.float64)
+    options = dict(size=(60, 60), background=None)
+    plain = stratus.show(field, **options).astype(int)
+    for factor in 2.0**1023, 2.0**-1030, 2.0**500, 2.0**-500, 2.0**127, 2.0**-126, 2.0**130:
+        scaled = stratus.show(field * factor, **options).astype(int)
+        check(numpy.abs(plain - scaled).max() <= 2, f"times {factor}: {numpy.abs(plain - scaled).max()} of 255")
+        points = [(0.25 * factor, 0), (0.75 * factor, 0.5)]
+        few = stratus.show(field, opacity=[(0.25, 0), (0.75, 0.5)], **options).astype(int)
+        check(numpy.abs(few - stratus.show(field * factor, opacity=points, **options)).max() <= 2, f"times {factor}: points of one's own")
+    both = stratus.show((field - 0.5) * 2 * 1.7e308, **options).astype(int)
+    check(numpy.abs(plain - both).max() <= 3, f"from -1.7e308 to 1.7e308: {numpy.abs(plain - both).max()}")
+    tiny = stratus.show((field * 1e-42).astype(numpy.float32), **options)
+    check(tiny[..., 3].max() > 0.8 * plain[..., 3].max(), "denormal floats")
+    for value in 7.0, 0.0, -3.0, 1e308, -1e308, 1e-310, 1e17:
+        box = stratus.show(numpy.full((8, 8, 8), value), opacity=0.3, **options)
+        check(box[30, 30, 3] > 100 and box[0, 0, 3] == 0, f"{value} everywhere is a box: {box[30, 30]}")
+    none = stratus.show(numpy.full((8, 8, 8), 7.0), opacity=0, **options)
+    check(none.max() == 0, "of the opacity that is asked for")
+    check(stratus.show(numpy.full((8, 8, 8), 7, numpy.uint8), **options)[30, 30, 3] > 100, "one integer everywhere is a box")
+    refuse(ValueError, "512 values", stratus.show, numpy.full((8, 8, 8), numpy.nan))
+    refuse(ValueError, "masked or not finite", stratus.show, numpy.full((8, 8, 8), numpy.inf))
+    refuse(ValueError, "masked or not finite", stratus.show, numpy.ma.masked_all((8, 8, 8)))
+
+
 def mappers():
     field = ball((40, 40, 40), (20, 20, 20), 15)
     mapper = stratus.vtkStratusVolumeMapper()
@@ -161,10 +232,26 @@ def refusals():
     mapper.SetBlockSize(0)
     show(field, mapper=mapper)
     refuse(RuntimeError, "camera", show, field, mapper=mapper, camera=away)
+    image = vtk.vtkImageData()
+    image.SetDimensions(4, 4, 4)
+    refuse(ValueError, "no scalars", show, image)
+    for options in dict(opacity=1j), dict(opacity="x"), dict(color=3), dict(color="red"), dict(camera=3), dict(camera=dict(zoom="x")), \
+            dict(unit_distance="x"), dict(mapper=3), dict(background=3), dict(size=5), dict(origin=None):
+        refuse(TypeError, next(iter(options)), show, field, **options)
+    for options in dict(size=(10.5, 9)), dict(background=(2, 0, 0)), dict(unit_distance=0), dict(unit_distance=numpy.nan), dict(axes=3), \
+            dict(camera=dict(zoom=0)), dict(camera=dict(azimuth=numpy.inf)), dict(opacity=numpy.nan), dict(origin=(1, 2)):
+        refuse(ValueError, next(iter(options)), show, field, **options)
+    for dtype in numpy.longdouble, object, "M8[s]", "V4":
+        refuse(TypeError, "bool, int8", show, numpy.zeros((4, 4, 4), dtype))
     alone = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     code = "import numpy, stratus\nstratus.show(numpy.zeros((4, 4, 4)))"
     ended = subprocess.run([sys.executable, "-c", code], env=alone, capture_output=True, text=True)
-    check(ended.returncode == 1 and "xvfb-run" in ended.stderr, "without a display there is an error, not a crash: " + ended.stderr)
+    needs_one = vtk.vtkRenderWindow().IsA("vtkXOpenGLRenderWindow")
+    check(ended.returncode == needs_one and ("xvfb-run" in ended.stderr) == needs_one,
+          "without a display a window of X is an error, not a crash, and any other draws: " + ended.stderr)
+    code = "import stratus._show as s\nclass other:\n  def IsA(self, name): return 0\ns._check_display(other())"
+    ended = subprocess.run([sys.executable, "-c", code], env=alone, capture_output=True, text=True)
+    check(ended.returncode == 0, "a window that is not X's is not asked for a display: " + ended.stderr)
 
 
 def told(function, name):
@@ -188,6 +275,9 @@ def helps():
 shares_memory()
 axes()
 pictures()
+masks()
+steps()
+ranges()
 mappers()
 png()
 refusals()
