@@ -112,7 +112,8 @@ typedef struct stratus_table {
   int* next_shown;     /* size+1: smallest entry >= i with any opacity, `size` if none */
   float* rgba;   /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
   int32_t* sums; /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of .. */
-  float sum_scale;   /* .. optical depth per entry and per sample distance */
+  float sum_scale;   /* .. optical depth per entry and per sample distance; then 2 rows of `size` entries, see fill_opaque() */
+  int has_opaque;    /* pre-integrated: 1 if any entry is of opacity 1 */
   float color_slope; /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
   int shown;         /* entries with opacity */
   int last_shown;    /* the last of them, -1 if none */
@@ -124,6 +125,8 @@ stratus_status stratus_table_create(stratus_context* context, const stratus_tran
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
   stratus_sampling sampling, double sample_distance, int entries, stratus_table** table);
 void stratus_table_destroy(stratus_table* table);
+/* Of four bytes, that rgba or sums take with all that stands behind them. */
+size_t stratus_table_words(const stratus_table* table);
 /* The function at one value: colour, not multiplied by it, and opacity. */
 void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4]);
 

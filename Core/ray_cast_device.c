@@ -86,8 +86,7 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
   }
   const uint64_t table_serial = 2 * caster->table_serial + caster->looks; /* with looks it is another table */
   if (d->table_serial != table_serial) {
-    const size_t entries = (size_t)caster->table->size;
-    const size_t bytes = caster->table->rgba ? 8 * entries * sizeof(float) : 4 * (entries + 1) * sizeof(int32_t);
+    const size_t bytes = stratus_table_words(caster->table) * sizeof(float);
     TRY(replace(caster, TABLE, frame->table, caster->looks ? caster->look_tables.bytes : bytes));
     d->table_serial = table_serial;
   }

@@ -345,6 +345,7 @@ void stratus_ray_frame_structures(
     a->shown_beyond = (float)(table->last_shown + 1);
     a->tau_scale = table->sum_scale;
     a->color_slope = table->color_slope;
+    a->has_opaque = table->has_opaque;
   }
   a->structure = map != NULL;
   double lo[3], hi[3];

@@ -6,8 +6,6 @@
 #include <float.h>
 #include <string.h>
 
-/* Optical depth over a sample of what is opaque. */
-#define OPAQUE_DEPTH 16.0f
 /* Floats tell so many entries apart, less what stands before them. */
 #define LABEL_ENTRIES_MOST 16000000
 
@@ -147,11 +145,10 @@ static void thicken(const stratus_table* table, float* out)
   for (size_t e = 0; e < (size_t)table->size; ++e) {
     const float* entry = table->rgba + 4 * e;
     const float alpha = entry[3], depth = table->rgba[4 * ((size_t)table->size + e)];
-    const float thick = alpha >= 1.0f && depth < OPAQUE_DEPTH ? OPAQUE_DEPTH : depth;
     for (size_t i = 0; i < 3; ++i) {
-      out[4 * e + i] = alpha > 0.0f ? entry[i] / alpha * thick : 0.0f;
+      out[4 * e + i] = alpha > 0.0f ? entry[i] / alpha * depth : 0.0f;
     }
-    out[4 * e + 3] = alpha > 0.0f ? thick : 0.0f;
+    out[4 * e + 3] = alpha > 0.0f ? depth : 0.0f;
   }
 }
 
@@ -234,11 +231,6 @@ static void fill_factors(const stratus_transfer* transfer, float* out)
   }
 }
 
-static size_t usual_words(const stratus_table* table)
-{
-  return table->rgba ? 8 * (size_t)table->size : 4 * ((size_t)table->size + 1);
-}
-
 /* Labels: where each one's table stands, and the tables. */
 static size_t lay_out_labels(stratus_ray_look_tables* looks, size_t at, float* out)
 {
@@ -251,9 +243,9 @@ static size_t lay_out_labels(stratus_ray_look_tables* looks, size_t at, float* o
     if (out) {
       const float place[4] = { table->scale, table->offset, (float)(table->size - 1), (float)(at / 4) };
       memcpy(header + 4 * l, place, sizeof place);
-      memcpy(out + at, table->rgba, usual_words(table) * sizeof *out);
+      memcpy(out + at, table->rgba, stratus_table_words(table) * sizeof *out);
     }
-    at += usual_words(table);
+    at += stratus_table_words(table);
   }
   return at;
 }
@@ -264,7 +256,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
   stratus_ray_look_tables* looks = &caster->look_tables;
   size_t at = 0;
   if (looks->components == 1) {
-    at = usual_words(caster->table);
+    at = stratus_table_words(caster->table);
     if (out) {
       memcpy(out, caster->table->rgba ? (const void*)caster->table->rgba : (const void*)caster->table->sums, 4 * at);
     }

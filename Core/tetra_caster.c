@@ -182,6 +182,7 @@ static void set_shading(
   a->shown_beyond = (float)(table->last_shown + 1);
   a->tau_scale = table->sum_scale;
   a->color_slope = PIECES * table->color_slope;
+  a->has_opaque = table->has_opaque;
   a->want_depth = image->depth != NULL;
   a->want_samples = image->samples != NULL;
   a->want_bytes = image->rgba8 != NULL;

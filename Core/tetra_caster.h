@@ -53,7 +53,9 @@ typedef struct stratus_tetra_places {
 stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names);
 
 /* tetra_march.c: running sums of a table up to the middle of each entry, for values are rounded to the nearest one: up to its lower end all
- * would be taken as half an entry too low. Behind them what each entry is by itself. Four of an entry side by side; NULL where it has none. */
+ * would be taken as half an entry too low. Behind them what each entry is by itself. Four of an entry side by side. Then the table's two rows of
+ * opaque entries. NULL where it has none. */
+#define STRATUS_TETRA_SUMS 10 /* ints an entry */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
 /* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept. */

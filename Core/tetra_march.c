@@ -99,8 +99,9 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
   if (!table->sums) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(context, 2 * size, 4 * sizeof(int32_t), &memory));
+  TRY(stratus_allocate(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
   *sums = memory;
+  memcpy(*sums + 8 * size, table->sums + 4 * (size + 1), 2 * size * sizeof(int32_t)); /* where the function is opaque */
   for (size_t entry = 0; entry < size; ++entry) {
     for (size_t which = 0; which < 4; ++which) {
       const int64_t below = table->sums[which * (size + 1) + entry], above = table->sums[which * (size + 1) + entry + 1];

@@ -155,7 +155,7 @@ static stratus_status upload(device_march* m, const stratus_tetra_device_source*
     d->mesh = source->mesh;
   }
   if (d->table != source->table) {
-    TRY(replace(m, SUMS, frame->march_sums, 2 * entries * 4 * sizeof(int32_t)));
+    TRY(replace(m, SUMS, frame->march_sums, STRATUS_TETRA_SUMS * entries * sizeof(int32_t)));
     TRY(replace(m, COLORS, frame->table->rgba, 4 * entries * sizeof(float)));
     d->table = source->table;
   }

@@ -10,7 +10,9 @@
 #define PREINTEGRATED_ENTRIES 16384
 #define MOST_ENTRIES 65536
 #define ENTRIES_A_FEATURE 32
-/* Opacity 1 is an infinite optical depth: this much lets 1e-7 of the light through. */
+/* Opacity 1 is an infinite optical depth. Midpoint samples have one that stays so in any part of a sample that floats tell from none; sums, which
+ * have no room for it, count what is so per unit distance and are told apart by fill_opaque(). */
+#define OPAQUE_DEPTH 1e30f
 #define OPAQUE_TAU 16.0
 /* Segments are cut into pieces where averaging their colours could be wrong by more than about 1/12 of one over this: half of 1/255. */
 #define COLOR_ERROR_INVERSE 48.0
@@ -101,8 +103,7 @@ void stratus_transfer_at(const stratus_transfer* transfer, double value, double 
 /* Optical depth per world unit. */
 static double tau_of(const stratus_transfer* transfer, double opacity)
 {
-  const double tau = opacity > 0.0 ? -log1p(-opacity) : 0.0;
-  return (tau < OPAQUE_TAU ? tau : OPAQUE_TAU) / transfer->unit_distance;
+  return (opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance;
 }
 
 /* Smallest distance between points of different value, where the function does anything. */
@@ -158,7 +159,7 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
     }
     entry[3] = (float)alpha;
     float* depth = table->rgba + 4 * ((size_t)table->size + (size_t)e);
-    depth[0] = (float)(tau_of(transfer, opacity) * sample_distance);
+    depth[0] = opacity >= 1.0 ? OPAQUE_DEPTH : (float)(tau_of(transfer, opacity) * sample_distance);
     depth[1] = depth[2] = depth[3] = 0.0f;
   }
 }
@@ -186,6 +187,32 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   return steepest;
 }
 
+/* Behind the sums, where rays meet opacity 1: for each entry the next one upwards, `size` if there is none, then the next one downwards, or -1.
+ * A ray stops at once at an entry of opacity 1, on its way to others at the first of two neighbours. One alone is a value at which the
+ * function no more than touches 1: its infinite depth there, a logarithm's, adds up to little on the way through, and to all for those who stay. */
+static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
+{
+  const int size = table->size;
+  int32_t *up = table->sums + 4 * ((size_t)size + 1), *down = up + size;
+  ptrdiff_t at = -1;
+  for (int e = 0; e < size; ++e) {
+    const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+    const bool opaque = opacity >= 1.0 && !outside(transfer, x);
+    up[e] = opaque ? e : size;
+    table->has_opaque |= opaque;
+  }
+  for (int e = 0, last = -1; e < size; ++e) {
+    const bool beside = (e > 0 && up[e - 1] == e - 1) || (e + 1 < size && up[e + 1] == e + 1);
+    last = up[e] == e && beside ? e : last;
+    down[e] = up[e] == e ? e : last;
+  }
+  for (int e = size - 1, next = size; e >= 0; --e) {
+    const bool beside = (e > 0 && down[e - 1] == e - 1) || (e + 1 < size && down[e + 1] == e + 1);
+    next = down[e] == e && beside ? e : next;
+    up[e] = down[e] == e ? e : next;
+  }
+}
+
 static stratus_status fill_preintegrated(
   stratus_table* table, const stratus_transfer* transfer, double lo, double width, double sample_distance)
 {
@@ -209,6 +236,7 @@ static stratus_status fill_preintegrated(
     table->sums[3 * row + e] = (int32_t)tau;
   }
   table->sum_scale = any ? (float)(sample_distance / scale) : 0.0f;
+  fill_opaque(table, transfer, lo, width);
   stratus_release(table->context, sums);
   return STRATUS_OK;
 }
@@ -264,7 +292,7 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   TRY_CLEANUP(stratus_allocate(context, (size_t)size + 1, sizeof *table->next_shown, &memory));
   table->next_shown = memory;
   if (sampling == STRATUS_SAMPLING_PREINTEGRATED) {
-    TRY_CLEANUP(stratus_allocate(context, 4 * ((size_t)size + 1), sizeof *table->sums, &memory));
+    TRY_CLEANUP(stratus_allocate(context, 6 * (size_t)size + 4, sizeof *table->sums, &memory));
     table->sums = memory;
     TRY_CLEANUP(fill_preintegrated(table, transfer, from, width, sample_distance));
   } else {
@@ -279,6 +307,11 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
 cleanup:
   stratus_table_destroy(table);
   return status;
+}
+
+size_t stratus_table_words(const stratus_table* table)
+{
+  return table->rgba ? 8 * (size_t)table->size : 6 * (size_t)table->size + 4;
 }
 
 void stratus_table_destroy(stratus_table* table)

@@ -31,7 +31,8 @@ INLINE vfloat v_inverse_root(vfloat a)
 /* 1 - exp(-x), x >= 0, to some 3e-7 of its value: x = n ln 2 + t, a series in t, 2^-n by its bits. */
 INLINE vfloat v_absorbed(vfloat x)
 {
-  const vint n = v_to_int(v_min(x, v_set(80.0f)) * v_set(1.44269504f));
+  x = v_min(x, v_set(80.0f)); /* beyond, nothing is left, and the series would leave its range */
+  const vint n = v_to_int(x * v_set(1.44269504f));
   const vfloat t = v_max(v_fma(v_from_int(n), v_set(-0.69314718f), x), v_set(0.0f)), minus = v_set(0.0f) - t;
   vfloat series = v_set(1.0f / 40320.0f);
   series = v_fma(series, minus, v_set(1.0f / 5040.0f));

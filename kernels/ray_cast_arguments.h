@@ -40,6 +40,7 @@ typedef struct stratus_ray_cast_arguments {
   float shown_first, shown_beyond; /* pre-integrated: entries outside [shown_first, shown_beyond) are transparent */
   float tau_scale;   /* pre-integrated: optical depth of one unit of the sums */
   float color_slope; /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
+  int has_opaque;    /* pre-integrated: entries of opacity 1 are among those that show; behind the sums stands where: opaque_on_the_way() */
   float termination; /* of transparency: 1 - alpha */
   float world_step;  /* the sample distance as a float, for depth */
   int width, height;
@@ -95,6 +96,6 @@ typedef struct stratus_ray_cast_arguments {
 
 /* 4-byte scalars throughout: no padding in either language. */
 #define STRATUS_RAY_CAST_ARGUMENTS_WORDS                                                                                                   \
-  (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 35 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32 + 2)
+  (2 * (12 + 6 + 2 + 1 + 1 + 2 + 6 + 6 + 24) + 6 + 3 + 9 + 36 + 8 + 1 + 3 + 3 + 12 + 80 + 3 + 22 + 56 + 6 + 32 + 2)
 
 #endif

@@ -15,7 +15,7 @@
 typedef struct stratus_tetra_scene {
   GLOBAL const int* cells; /* eight ints a cell: for each of its points, lowest name first, the next cell opposite and its fourth point */
   GLOBAL const float* points;      /* x, y, z, value each */
-  GLOBAL const int* sums;          /* stratus_tetra_sums(): up to each entry's middle, then each entry's own */
+  GLOBAL const int* sums;          /* stratus_tetra_sums(): up to each entry's middle, then each entry's own, then opaque ones */
   GLOBAL const float* cell_values; /* if the arguments say so */
 } stratus_tetra_scene;
 

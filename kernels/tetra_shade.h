@@ -94,8 +94,8 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
 }
 
-/* A stretch from `first` at place `from` to `last` at place `to`, in pieces where averaging colours would show. */
-INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+/* A stretch from `first` at place `from` to `last` at place `to` that meets nothing opaque, in pieces where averaging colours would show. */
+INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
   const vfloat one = v_set(1.0f), weight = length * v_set(a->table.tau_scale);
@@ -120,6 +120,51 @@ INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
     begin = end;
     mask = more;
   } while (m_any(mask));
+}
+
+/* Entry `entry` of opacity 1 behind what the rays have. */
+INLINE void tetra_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
+{
+  vint own[4];
+  gather_four_ints(sums, entry + vi_set((int)a->table.table_last + 1), mask, own);
+  const vfloat zero = v_set(0.0f), per_tau = v_reciprocal(v_max(v_from_int(own[3]), v_set(1.0f)));
+  const vfloat scale = v_select(mask, light->transparency * per_tau, zero);
+  light->red = v_fma(scale, v_from_int(own[0]), light->red);
+  light->green = v_fma(scale, v_from_int(own[1]), light->green);
+  light->blue = v_fma(scale, v_from_int(own[2]), light->blue);
+  light->transparency = v_select(mask, zero, light->transparency);
+  if (a->table.want_depth) {
+    light->depth = v_select(mask & v_le(v_set(LARGEST_FLOAT), light->depth), near, light->depth);
+  }
+}
+
+/* Any stretch: up to the entry before the first opaque one, then that one. */
+INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+  vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
+{
+  stratus_tetra_place end = *to;
+  vint entry = to->entry;
+  vmask opaque = m_none();
+  if (a->table.has_opaque) {
+    GLOBAL const int* rows = sums + 8 * ((int)a->table.table_last + 1);
+    opaque = opaque_on_the_way(&a->table, rows, from->entry, to->entry, mask & v_lt(v_set(0.0f), length), &entry);
+    if (m_any(opaque)) {
+      const vint one = vi_set(1), steps = vi_max(entry, from->entry) - vi_min(entry, from->entry);
+      const vmask before = opaque & vi_lt(one, steps);
+      const vint whole = vi_max(to->entry, from->entry) - vi_min(to->entry, from->entry);
+      const vfloat part = v_select(before, v_from_int(steps - one) * v_reciprocal(v_from_int(vi_max(whole, one))), v_set(1.0f));
+      end.entry = vi_select(before, vi_select(vi_ge(entry, from->entry), entry - one, entry + one), to->entry);
+      gather_four_ints(sums, end.entry, before, end.sum);
+      end = tetra_place_select(before, &end, to);
+      last = v_select(before, v_fma(last - first, part, first), last);
+      length = length * part;
+      mask = m_andnot(mask, opaque) | before;
+    }
+  }
+  tetra_integrate_clear(a, sums, light, mask, first, last, from, &end, length, near);
+  if (m_any(opaque)) {
+    tetra_end(a, sums, light, opaque, entry, near);
+  }
 }
 
 #endif

@@ -136,6 +136,14 @@ INLINE vfloat sum_between(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   return v_from_int(gather_int32(sum, beyond, mask) - gather_int32(sum, low, mask));
 }
 
+/* Lanes whose ways from one entry to another meet an entry of opacity 1, and the first that each meets. rows: behind the sums. */
+INLINE vmask opaque_on_the_way(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* rows, vint from, vint to, vmask mask, vint* first)
+{
+  const vmask rises = vi_ge(to, from);
+  *first = gather_int32(rows, from + vi_select(rises, vi_set(0), vi_set((int)a->table_last + 1)), mask);
+  return mask & ((rises & vi_ge(to, *first)) | m_andnot(vi_ge(*first, to), rises));
+}
+
 /* Into how many pieces a segment goes, so that averaging the colour of each is wrong by little: from optical depth and the most that the
  * colour can change over its entries. The error falls with the square of the number. */
 INLINE vfloat segment_pieces(CONSTANT stratus_ray_cast_arguments* a, vfloat depth, vfloat entries)
@@ -165,14 +173,30 @@ INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   if (!m_any(mask)) {
     return;
   }
-  const vint entry = v_to_int(place), front = v_to_int(front_place);
+  const vint front = v_to_int(front_place);
+  vint entry = v_to_int(place);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
+  vfloat depth_scale = weight * v_set(a->tau_scale), rise = value - k->front;
+  vint opaque_entry = front;
+  vmask opaque = m_none();
+  if (a->has_opaque) {
+    opaque = opaque_on_the_way(a, sums + 4 * ((int)a->table_last + 2), front, entry, mask & v_lt(zero, weight), &opaque_entry);
+    if (m_any(opaque)) { /* the segment ends before that entry, which is put behind it */
+      const vint before = vi_max(opaque_entry, front) - vi_min(opaque_entry, front);
+      const vfloat part = v_from_int(before) * v_reciprocal(v_from_int(beyond - low));
+      depth_scale = v_select(opaque, depth_scale * part, depth_scale);
+      rise = v_select(opaque, rise * part, rise);
+      entry = vi_select(opaque, vi_select(vi_ge(opaque_entry, front), opaque_entry - vi_set(1), opaque_entry + vi_set(1)), entry);
+      mask = m_andnot(mask, opaque & vi_ge(vi_set(0), before));
+      low = vi_select(mask, vi_min(entry, front), low);
+      beyond = vi_select(mask, vi_max(entry, front) + vi_set(1), beyond);
+    }
+  }
   vfloat tau = sum_between(a, sums, 3, low, beyond, mask);
   mask = mask & v_lt(zero, tau);
-  if (!m_any(mask)) {
+  if (!m_any(mask | opaque)) {
     return;
   }
-  const vfloat depth_scale = weight * v_set(a->tau_scale), rise = value - k->front;
   vfloat entries = v_from_int(beyond - low);
   const vfloat pieces = segment_pieces(a, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
   const vmask several = mask & v_lt(one, pieces);
@@ -208,6 +232,19 @@ INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     }
     mask = mask & several & v_lt(piece, pieces);
   } while (m_any(mask));
+  if (m_any(opaque)) {
+    vfloat layer[4];
+    const vint next = opaque_entry + vi_set(1);
+    const vfloat per_tau = v_reciprocal(v_max(sum_between(a, sums, 3, opaque_entry, next, opaque), one));
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = sum_between(a, sums, c, opaque_entry, next, opaque) * per_tau;
+    }
+    layer[3] = v_select(opaque, one, zero);
+    if (look) {
+      light_layer(look, layer);
+    }
+    composite(a, k, opaque, layer, lo);
+  }
 }
 
 INLINE void integrate_segment(

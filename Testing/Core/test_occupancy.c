@@ -259,8 +259,8 @@ static int64_t check_between(stratus_context* context, const stratus_volume* v, 
     const bool occupied = stratus_occupancy_get(o, at[0], at[1], at[2]);
     if (expected != occupied) {
       if (expected || !(is_fetched_as(v, r->bias, range[0], upper) || is_fetched_as(v, r->bias, range[1], lower))) {
-        fail_msg("type %d, block %d of values %.20Lg..%.20Lg, interval %.17g..%.17g: occupied is %d", (int)v->type, (int)b, range[0], range[1],
-          lower, upper, (int)occupied);
+        fail_msg("type %d, block %d of values %.20Lg..%.20Lg, interval %.17g..%.17g: occupied is %d", (int)v->type, (int)b, range[0],
+          range[1], lower, upper, (int)occupied);
       }
       rounded++;
     }
@@ -288,7 +288,11 @@ static void no_label_of_any_type_is_missed_or_taken_for_another(void** state)
         const float single = (float)label;
         void* to = (char*)v.values + (size_t)(i * v.view.value_stride) * bytes;
         const int64_t whole = label; /* little-endian, as all that this is tested on */
-        memcpy(to, type == STRATUS_FLOAT64 ? (const void*)&number : type == STRATUS_FLOAT32 ? (const void*)&single : (const void*)&whole, bytes);
+        memcpy(to,
+          type == STRATUS_FLOAT64     ? (const void*)&number
+            : type == STRATUS_FLOAT32 ? (const void*)&single
+                                      : (const void*)&whole,
+          bytes);
       }
       stratus_value_range* r = NULL;
       assert_int_equal(stratus_value_range_create(context, &v.view, size, &r), STRATUS_OK);
