@@ -32,11 +32,6 @@ typedef struct adjacency_build {
   int shift, buckets, chunks, workers;
 } adjacency_build;
 
-static bool names_a_point_twice(const int32_t v[4])
-{
-  return v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3];
-}
-
 static int64_t chunk_begin(const adjacency_build* build, int chunk)
 {
   return build->mesh->cell_count * chunk / build->chunks;
@@ -49,9 +44,10 @@ static void find_orientations(adjacency_build* build)
 #pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : flat, inverted)
   for (int64_t cell = 0; cell < mesh->cell_count; cell++) {
     const int32_t* v = mesh->vertices + 4 * cell;
-    const int sign = names_a_point_twice(v) ? 0
-                                            : stratus_orientation(mesh->points + 3 * (int64_t)v[0], mesh->points + 3 * (int64_t)v[1],
-                                                mesh->points + 3 * (int64_t)v[2], mesh->points + 3 * (int64_t)v[3]);
+    const double* const points = mesh->points;
+    const int sign = stratus_names_a_point_twice(v)
+      ? 0
+      : stratus_orientation(points + 3 * (int64_t)v[0], points + 3 * (int64_t)v[1], points + 3 * (int64_t)v[2], points + 3 * (int64_t)v[3]);
     build->adjacency->orientation[cell] = (int8_t)sign;
     flat += sign == 0;
     inverted += sign < 0;
@@ -66,7 +62,7 @@ static void count_faces(const adjacency_build* build, int chunk)
   memset(counts, 0, (size_t)build->buckets * sizeof *counts);
   for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
-    if (!names_a_point_twice(v)) { /* the lowest point is the lowest of the three faces that have it */
+    if (!stratus_names_a_point_twice(v)) { /* the lowest point is the lowest of the three faces that have it */
       const int32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
       const int32_t other_low = v[2] < v[3] ? v[2] : v[3], other_high = v[2] < v[3] ? v[3] : v[2];
       const int32_t second = low < other_low ? (high < other_low ? high : other_low) : (other_high < low ? other_high : low);
@@ -99,7 +95,7 @@ static void deal_faces(const adjacency_build* build, int chunk)
   size_t* places = build->places + (size_t)chunk * (size_t)build->buckets;
   for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
-    for (int f = 0; f < 4 && !names_a_point_twice(v); f++) {
+    for (int f = 0; f < 4 && !stratus_names_a_point_twice(v); f++) {
       int32_t point[3];
       const int side = stratus_face_points(v, f, point) * build->adjacency->orientation[cell];
       face_record* record = build->records + places[point[0] >> build->shift]++;

@@ -28,6 +28,12 @@ stratus_volume stratus_mesh_values(const stratus_mesh* mesh);
 stratus_status stratus_adjacency_create(stratus_context* context, const stratus_mesh* mesh, stratus_adjacency** adjacency);
 void stratus_adjacency_destroy(stratus_adjacency* adjacency); /* takes NULL */
 
+/* Such a cell has no volume, no faces to share, and nothing to draw. */
+static inline bool stratus_names_a_point_twice(const int32_t v[4])
+{
+  return v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3];
+}
+
 /* Face f's vertices in rising order of point number, so that both owners see the same, and where they stand in the cell: returns the sign that
  * turns the cell's orientation into the orientation of (a, b, c, vertex f), 1 or -1. */
 static inline int stratus_face_points(const int32_t cell[4], int f, int32_t point[3])

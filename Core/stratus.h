@@ -964,7 +964,10 @@ typedef struct stratus_tetra_report {
   uint64_t entries;  /* march: faces through which rays came in from outside */
   uint64_t segments; /* march: cells that rays passed, those before the near plane included; project: pieces of cells that were composited */
   uint64_t stuck;    /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
-  int64_t cells, shown_cells;      /* of the mesh; those neither hidden nor of values that are not finite */
+  int64_t cells, shown_cells; /* of the mesh; those neither hidden nor blanked */
+  int64_t blanked,
+    repeated; /* left out though not hidden: of values that are not finite floats, or that name a point more than once, and so
+                                    * have no volume; the latter alone */
   int64_t border_faces;            /* of shown cells */
   int64_t flat, inverted, broken_faces, folded_faces; /* cells without volume, of negative orientation; faces shared by more than two; by two on
                                                        * the same side */
@@ -980,6 +983,13 @@ typedef struct stratus_tetra_report {
 } stratus_tetra_report;
 
 typedef struct stratus_tetra_caster stratus_tetra_caster;
+
+/* World lengths between the camera and what it draws are at most the first, 1.2e27, and a mesh is at least one over it long (or a point), so that
+ * lengths and optical depths over them are floats with all their digits. A parallel camera's window is at most the second, 1.1e12, times
+ * narrower than what it draws lies off its middle, so that products of two such coordinates, and a value, are floats. Others are
+ * STRATUS_INVALID_ARGUMENT, with the number in the message. */
+#define STRATUS_TETRA_REACH 1237940039285380274899124224.0 /* 2^90 */
+#define STRATUS_TETRA_WINDOWS 1099511627776.0              /* 2^40 */
 
 STRATUS_API stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** caster);
 STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);

@@ -254,6 +254,8 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
   const stratus_tetra_buffers* b = &caster->buffers;
   report->cells = mesh->cell_count;
   report->shown_cells = mesh->shown_cells;
+  report->blanked = mesh->blanked;
+  report->repeated = mesh->repeated;
   report->border_faces = (int64_t)mesh->face_count;
   report->flat = mesh->flat;
   report->inverted = mesh->inverted;

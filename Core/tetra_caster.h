@@ -21,7 +21,7 @@ typedef struct stratus_tetra_mesh {
   double lo[3], hi[3];   /* bounds of the points that shown cells use, local */
   float low, high;       /* fetched values of shown cells, low > high if there is none */
   double bias;
-  int64_t cell_count, shown_cells, flat, inverted, broken, folded;
+  int64_t cell_count, shown_cells, blanked, repeated, flat, inverted, broken, folded;
   size_t bytes;
 } stratus_tetra_mesh;
 

@@ -103,31 +103,61 @@ static stratus_status find_matrix(frame_build* build)
   return STRATUS_OK;
 }
 
+/* World lengths, along rays, and optical depths over them have to be floats; parallel: edges of faces, products of two coordinates in windows, times
+ * values, too. *largest in forwards. What is flat, seen from the front, may be as thin as it likes: it is not drawn, nor refused. */
+static stratus_status check_reach(const frame_build* build, double size, double across, double* largest)
+{
+  const stratus_tetra_frame* frame = build->frame;
+  const stratus_camera* c = &frame->camera;
+  const double unit = sqrt(dot(c->forward, c->forward)), lean = fmax(fabs(frame->lean[0]), fabs(frame->lean[1]));
+  const double reach = unit * fmax(fmax(*largest, fabs(frame->middle)), lean);
+  const double wide = sqrt(fmax(dot(c->right, c->right), dot(c->up, c->up))) / unit;
+  if (!(reach <= STRATUS_TETRA_REACH)) {
+    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT,
+      "mesh reaches %g from the camera, or as far in units of its right and up, must be at most %g", reach, STRATUS_TETRA_REACH);
+  }
+  if (!(size == 0.0 || size >= 1.0 / STRATUS_TETRA_REACH)) {
+    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "mesh is %g long in the world, must be at least %g, or else a point",
+      size, 1.0 / STRATUS_TETRA_REACH);
+  }
+  if (c->parallel && !(across <= STRATUS_TETRA_WINDOWS)) {
+    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT,
+      "mesh reaches %g half widths of the parallel camera's window from its middle, must be at most %g", across, STRATUS_TETRA_WINDOWS);
+  }
+  if (!c->parallel && !(wide <= STRATUS_TETRA_WINDOWS)) {
+    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right or up is %g times as long as forward, must be at most %g",
+      wide, STRATUS_TETRA_WINDOWS);
+  }
+  *largest = fmax(*largest, 1.0 / (STRATUS_TETRA_REACH * unit));
+  return STRATUS_OK;
+}
+
 /* The middle depth, and a power of two that brings the largest coordinate into 1/2..1. */
 static stratus_status find_scale(frame_build* build)
 {
   const double *lo = build->tetra->lo, *hi = build->tetra->hi;
-  double nearest = INFINITY, farthest = -INFINITY, largest = 0.0;
+  double nearest = INFINITY, farthest = -INFINITY, largest = 0.0, across = 0.0, size = 0.0;
   const bool parallel = build->frame->camera.parallel != 0;
   for (int corner = 0; corner < 8; ++corner) {
     const double local[3] = { corner & 1 ? hi[0] : lo[0], corner & 2 ? hi[1] : lo[1], corner & 4 ? hi[2] : lo[2] };
-    double p[3];
+    const double diagonal[3] = { corner & 1 ? hi[0] - lo[0] : 0.0, corner & 2 ? hi[1] - lo[1] : 0.0, corner & 4 ? hi[2] - lo[2] : 0.0 };
+    double p[3], q[3];
+    stratus_matrix_vector(build->mesh->matrix, diagonal, q);
+    size = fmax(size, fmax(fmax(fabs(q[0]), fabs(q[1])), fabs(q[2])));
     stratus_matrix_point(build->matrix, local, p);
     nearest = fmin(nearest, p[2]);
     farthest = fmax(farthest, p[2]);
-    largest = fmax(largest, parallel ? 0.0 : fmax(fmax(fabs(p[0]), fabs(p[1])), fabs(p[2])));
+    across = fmax(across, fmax(fabs(p[0]), fabs(p[1])));
+    largest = fmax(largest, parallel ? 0.0 : fmax(across, fabs(p[2])));
   }
   const double middle = 0.5 * (nearest + farthest);
   largest = parallel ? farthest - middle : largest;
+  build->frame->middle = middle;
+  TRY(check_reach(build, size, across, &largest));
   int exponent = 0;
   (void)frexp(largest, &exponent);
   build->scale = ldexp(1.0, -exponent);
-  build->frame->middle = middle;
   build->frame->per_z = 1.0 / build->scale;
-  if (!isfinite(middle) || !isfinite(largest) || !(build->scale > 0.0) || !isfinite(build->scale)) {
-    return stratus_fail(
-      build->context, STRATUS_INVALID_ARGUMENT, "mesh lies at depths %g..%g before the camera: out of range", nearest, farthest);
-  }
   build->frame->arguments.middle = parallel ? 1.0f : (float)(middle * build->scale);
   build->frame->arguments.shear = parallel ? 0.0f : 1.0f;
   return STRATUS_OK;
@@ -189,8 +219,8 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   const stratus_image* image = &frame->image;
   const double *f = c->forward, *r = c->right, *u = c->up, square = dot(f, f);
   const double products[6] = { square, 2.0 * dot(f, r), 2.0 * dot(f, u), dot(r, r), 2.0 * dot(r, u), dot(u, u) };
-  for (int i = 0; i < 6; ++i) {
-    a->square[i] = (float)(products[i] / square);
+  for (int i = 0; i < 6; ++i) { /* parallel rays are all as long, however wide their window */
+    a->square[i] = c->parallel && i > 0 ? 0.0f : (float)(products[i] / square);
   }
   for (int side = 0; side < 2; ++side) {
     a->lean[side] = (float)(frame->lean[side] / frame->per_z);

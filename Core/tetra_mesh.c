@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What rays read of a mesh of tetrahedra: a few ints a cell, packed from its neighbours, and the faces by which rays come in. Cells that
- * show nothing (hidden, or with a value that is not finite) are left out, as if there were a hollow. */
+ * show nothing (hidden, with a value that is not finite, or a point named twice) are left out, as if there were a hollow. */
 #include "mesh.h"
 #include "tetra_caster.h"
 
@@ -12,13 +12,14 @@
 static void find_shown(
   stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
 {
-  int64_t shown = 0;
+  int64_t shown = 0, blanked = 0, repeated = 0;
   float low = INFINITY, high = -INFINITY;
-#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown) reduction(min : low) reduction(max : high)
+#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown, blanked, repeated) reduction(min : low) reduction(max : high)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const int32_t* v = mesh->vertices + 4 * cell;
     float least = INFINITY, most = -INFINITY;
-    bool finite = !(mesh->hidden && mesh->hidden[cell]);
+    const bool hidden = mesh->hidden && mesh->hidden[cell], twice = stratus_names_a_point_twice(v);
+    bool finite = !hidden && !twice;
     for (int i = 0; i < 4; ++i) {
       const float value = mesh->cell_values ? stratus_volume_fetch(volume, tetra->bias, (size_t)cell) : tetra->values[v[i]];
       finite = finite && isfinite(value);
@@ -27,12 +28,16 @@ static void find_shown(
     }
     tetra->shown[cell] = finite;
     shown += finite;
+    blanked += !finite && !hidden;
+    repeated += twice && !hidden;
     if (finite && adjacency->orientation[cell] != 0) {
       low = fminf(low, least);
       high = fmaxf(high, most);
     }
   }
   tetra->shown_cells = shown;
+  tetra->blanked = blanked;
+  tetra->repeated = repeated;
   tetra->low = low;
   tetra->high = high;
 }

@@ -48,7 +48,7 @@ static void find_shown(stratus_tetra_projector* projector, const stratus_mesh* m
 #pragma omp parallel for num_threads(projector->context->threads)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const int32_t* v = mesh->vertices + 4 * cell;
-    bool finite = !(mesh->hidden && mesh->hidden[cell]);
+    bool finite = !(mesh->hidden && mesh->hidden[cell]) && !stratus_names_a_point_twice(v);
     if (values) {
       finite = finite && isfinite(values[v[0]]) && isfinite(values[v[1]]) && isfinite(values[v[2]]) && isfinite(values[v[3]]);
     } else {

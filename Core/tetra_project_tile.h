@@ -247,7 +247,8 @@ static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel
 {
   const stratus_tetra_frame* frame = t->projection->frame;
   const stratus_image* image = &frame->image;
-  float rgba[4] = { p->light[0], p->light[1], p->light[2], 1.0f - p->light[3] }, depth = p->depth;
+  /* sums may have been rounded up */
+  float rgba[4] = { fminf(p->light[0], 1.0f), fminf(p->light[1], 1.0f), fminf(p->light[2], 1.0f), 1.0f - p->light[3] }, depth = p->depth;
   if (frame->arguments.maximum) {
     const bool any = p->samples > 0;
     const float* entry = frame->table->rgba + 4 * (size_t)stratus_table_entry(frame->table, p->light[1]);

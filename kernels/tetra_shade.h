@@ -8,6 +8,10 @@
 #include "tetra_gather.h"
 #include "transfer_table.h"
 
+/* Of a stretch: the least that a table's entry sums to makes it opaque then, over all of its entries and pieces. Without it long stretches would
+ * overflow. */
+#define OPAQUE_WEIGHT 0x1p40f
+
 /* What a ray has gathered. */
 typedef struct stratus_tetra_light {
   vfloat red, green, blue, transparency, depth;
@@ -98,7 +102,7 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
 INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
-  const vfloat one = v_set(1.0f), weight = length * v_set(a->table.tau_scale);
+  const vfloat one = v_set(1.0f), weight = v_min(length * v_set(a->table.tau_scale), v_set(OPAQUE_WEIGHT));
   const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* of as many entries as the stretch spans */
   const vmask several = mask & v_lt(one, depth * v_set(a->table.color_slope));
   if (!m_any(several)) {

@@ -133,10 +133,11 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
 {
   float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], most[STRATUS_WIDTH];
   int pixel[STRATUS_WIDTH], segments[STRATUS_WIDTH], entry[STRATUS_WIDTH];
-  v_store(channel[0], k->light.red);
-  v_store(channel[1], k->light.green);
-  v_store(channel[2], k->light.blue);
-  v_store(channel[3], v_set(1.0f) - k->light.transparency);
+  const vfloat one = v_set(1.0f); /* sums may have been rounded up */
+  v_store(channel[0], v_min(k->light.red, one));
+  v_store(channel[1], v_min(k->light.green, one));
+  v_store(channel[2], v_min(k->light.blue, one));
+  v_store(channel[3], one - k->light.transparency);
   v_store(depth, k->light.depth);
   v_store(most, k->light.most);
   vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));

@@ -2,6 +2,8 @@
  * Pictures of tetrahedra against the double-precision reference, from outside and inside, through hollows, cut by planes and opaque things. */
 #include "tetra_case.h"
 
+#include <float.h>
+
 /* Colours are averaged over pieces of a cell. Half of the bar of record for functions with peaks, for these are smoother. */
 #define RMSE_MOST 0.025
 #define LARGEST_MOST 0.5
@@ -173,6 +175,127 @@ static void a_camera_far_away(void** state)
   tetra_destroy(&c);
 }
 
+static void assert_all_in_range(void)
+{
+  for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
+    assert_true(picture.rgba[i] >= 0.0f && picture.rgba[i] <= 1.0f);
+  }
+  for (int i = 0; i < TETRA_PIXELS; ++i) {
+    assert_true(picture.depth[i] <= INFINITY);
+  }
+}
+
+/* Beside others that are drawn: cells that name a point twice, thrice, four times, of points in one place or one plane under numbers of their own,
+ * of values that are no floats. */
+static void cells_without_volume_show_nothing_and_are_told(void** state)
+{
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    tetra_case c;
+    int64_t repeated = 0;
+    tetra_create(&c, 3, 0.2, 0.0, seed);
+    for (int64_t i = 0; i < c.mesh.cell_count; i += 3) {
+      int32_t* v = c.vertices + 4 * i;
+      for (int k = 0; k < (int)(i / 3 + seed) % 4; ++k) {
+        v[k + 1] = v[0];
+      }
+      repeated += v[0] == v[1];
+    }
+    for (int64_t i = seed % 5; i < c.mesh.point_count && seed % 3 == 0; i += 7) {
+      memcpy(c.points + 3 * i, c.points, 3 * sizeof(double)); /* their cells fold over others: no judge, but for the pixels' range */
+    }
+    for (int64_t i = 0; i < c.mesh.point_count && seed % 3 == 1; ++i) {
+      c.points[3 * i + 2] = 1.5 + 1e-9 * (c.points[3 * i + 2] - 1.5); /* hardly thicker than a plane */
+    }
+    tetra_look(*state, &c, 3, (int)seed % 8, seed & 1);
+    if (seed % 3 == 2) {
+      check(*state, &c, "cells that name a point twice");
+    } else {
+      tetra_draw(*state, &c, &picture);
+    }
+    assert_all_in_range();
+    assert_int_equal(picture.report.repeated, repeated);
+    assert_int_equal(picture.report.blanked, repeated);
+    assert_int_equal(picture.report.shown_cells, c.mesh.cell_count - repeated);
+    c.values[c.vertices[20]] = -FLT_MAX;
+    c.values[c.vertices[32]] = FLT_MAX;
+    c.values[c.vertices[4]] = NAN;
+    c.values[c.vertices[8]] = INFINITY;
+    tetra_draw(*state, &c, &picture);
+    assert_all_in_range();
+    assert_int_equal(picture.report.repeated, repeated);
+    assert_true(picture.report.blanked > repeated);
+    assert_int_equal(picture.report.shown_cells + picture.report.blanked, c.mesh.cell_count);
+    tetra_destroy(&c);
+  }
+}
+
+/* Optical depths in the thousands of millions are opaque; what has the unit distance's size looks as it does at size 1. Lengths beyond what floats
+ * hold are refused, and the caster goes on. */
+static void lengths_of_any_size_are_drawn_or_refused(void** state)
+{
+  static const double scales[] = { 1e-310, 1e-200, 1e-30, 1e-25, 1e-10, 1e10, 1e20, 1e25, 1e30, 1e31, 1e100, 1e200, 1e290 };
+  for (size_t i = 0; i < sizeof scales / sizeof *scales; ++i) {
+    for (int kind = 0; kind < 4; ++kind) {
+      const double scale = scales[i];
+      const int parallel = kind & 1;
+      stratus_tetra_caster* caster = NULL;
+      tetra_case c;
+      tetra_create(&c, 3, 0.2, 0.2, 10);
+      tetra_look(*state, &c, 3, 6, parallel);
+      for (int64_t p = 0; p < 3 * c.mesh.point_count; ++p) {
+        c.points[p] *= scale;
+      }
+      for (int a = 0; a < 3; ++a) {
+        c.camera.eye[a] *= scale;
+        c.camera.right[a] *= parallel ? scale : 1.0;
+        c.camera.up[a] *= parallel ? scale : 1.0;
+      }
+      c.transfer.unit_distance = kind & 2 ? scale : 1.0;
+      const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba, .depth = picture.depth };
+      assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+      const stratus_status status = stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL);
+      assert_int_equal(status, scale < 1e-27 || scale > 1e27 ? STRATUS_INVALID_ARGUMENT : STRATUS_OK);
+      if (status == STRATUS_OK) {
+        assert_all_in_range();
+        if (kind & 2) {
+          check(*state, &c, "as large as its unit distance");
+        }
+      } else if (scale > 1e-300) { /* below, a parallel camera's window has no inverse */
+        assert_non_null(
+          strstr(stratus_context_message(*state), scale < 1.0 ? "must be at least 8.07794e-28" : "must be at most 1.23794e+27"));
+      }
+      stratus_tetra_caster_destroy(caster);
+      tetra_destroy(&c);
+    }
+  }
+}
+
+/* A parallel camera's window so narrow that products of what lies beside it are no floats. */
+static void windows_narrower_than_floats_are_refused(void** state)
+{
+  tetra_case c;
+  stratus_tetra_caster* caster = NULL;
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba, .depth = picture.depth };
+  tetra_create(&c, 3, 0.2, 0.2, 10);
+  assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+  for (int zoom = 0; zoom < 40; zoom += 3) {
+    tetra_look(*state, &c, 3, 6, 1);
+    for (int a = 0; a < 3; ++a) {
+      c.camera.right[a] *= pow(10.0, -zoom);
+      c.camera.up[a] *= pow(10.0, -zoom);
+    }
+    const stratus_status status = stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL);
+    assert_int_equal(status, zoom < 12 ? STRATUS_OK : STRATUS_INVALID_ARGUMENT);
+    if (status == STRATUS_OK) {
+      assert_all_in_range();
+    } else {
+      assert_non_null(strstr(stratus_context_message(*state), "at most 1.09951e+12"));
+    }
+  }
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -185,6 +308,9 @@ int main(void)
     cmocka_unit_test(the_maximum),
     cmocka_unit_test(matrices_and_far_away_places),
     cmocka_unit_test(a_camera_far_away),
+    cmocka_unit_test(cells_without_volume_show_nothing_and_are_told),
+    cmocka_unit_test(lengths_of_any_size_are_drawn_or_refused),
+    cmocka_unit_test(windows_narrower_than_floats_are_refused),
   };
   int failed = 0;
   for (tetra_method = STRATUS_TETRA_METHOD_MARCH; tetra_method <= STRATUS_TETRA_METHOD_PROJECT; ++tetra_method) {
