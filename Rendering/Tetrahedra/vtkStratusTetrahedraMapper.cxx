@@ -141,6 +141,11 @@ vtkIdType vtkStratusTetrahedraMapper::GetNumberOfTetrahedra()
   return static_cast<vtkIdType>(this->Internal->Report.cells);
 }
 
+vtkIdType vtkStratusTetrahedraMapper::GetNumberOfBlankedTetrahedra()
+{
+  return static_cast<vtkIdType>(this->Internal->Report.blanked);
+}
+
 vtkIdType vtkStratusTetrahedraMapper::GetNumberOfIgnoredCells()
 {
   return this->Internal->GetNumberOfIgnoredCells();
@@ -169,6 +174,7 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Build Milliseconds: " << report.build_ms << "\n";
   os << indent << "Tetrahedra: " << report.cells << "\n";
   os << indent << "Ignored Cells: " << this->Internal->GetNumberOfIgnoredCells() << "\n";
+  os << indent << "Blanked Tetrahedra: " << report.blanked << "\n";
   os << indent << "Segments: " << report.segments << "\n";
   os << indent << "Entries: " << report.entries << "\n";
 }
