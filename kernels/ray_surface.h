@@ -90,8 +90,9 @@ INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uc
     }
     const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* none in the volume's rim, where values are clamped */
     w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
-    k->skipped = vi_select(leap, k->skipped + v_to_int(leave) - v_to_int(w->s), k->skipped);
-    w->s = v_select(leap, leave, w->s);
+    leave = v_select(leap, leave, w->s); /* other lanes' planes may be farther than an int can tell */
+    k->skipped = k->skipped + (v_to_int(leave) - v_to_int(w->s));
+    w->s = leave;
     k->live = m_andnot(k->live, leap & v_le(w->end, w->s));
     need = leap & k->live;
     if (m_any(need)) {

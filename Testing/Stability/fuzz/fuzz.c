@@ -45,9 +45,9 @@ static void tell_death(const run* r, const char* kind, fuzz_tally* tally, int st
   ++tally->findings;
   if (!tally->told) {
     const bool slow = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM);
-    fprintf(stderr, "FINDING in %s, case %" PRIu64 ": %s %d\n  in %s\n  %s\n  again: %s %s 0 %" PRIu64 " device=%s case=%" PRIu64 "\n", kind,
+    fprintf(stderr, "FINDING in %s, case %" PRIu64 ": %s %d\n  in %s\n  %s; odd:%s\n  again: %s %s 0 %" PRIu64 " device=%s case=%" PRIu64 "\n", kind,
       tally->number, slow ? "a call that does not end, signal" : WIFSIGNALED(status) ? "signal" : "exit status",
-      WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), tally->call ? tally->call : "nothing", tally->about, r->program, kind, r->seed, r->device,
+      WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), tally->call ? tally->call : "nothing", tally->about, tally->odd, r->program, kind, r->seed, r->device,
       tally->number);
   }
   tally->told = false;

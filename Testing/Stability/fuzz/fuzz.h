@@ -21,7 +21,8 @@ typedef struct fuzz_tally {
   uint64_t number;  /* of the case under way */
   const char* call; /* the call under way, or the last one */
   bool told;        /* what is wrong has been printed */
-  char about[512];  /* of the case: what a reader of a finding asks first */
+  char about[512];  /* of the case: what a reader of a finding asks first, .. */
+  char odd[256];    /* .. and its odd numbers so far */
   /* Sums; from here on nothing but uint64_t. */
   uint64_t cases, calls, pictures;
   uint64_t objects;      /* ranges, maps, voxels, fields, trees, octrees, partitions, orders, casters */
@@ -120,7 +121,8 @@ void fuzz_finding(fuzz* f, const char* format, ...) __attribute__((format(printf
       fuzz_finding(f, __VA_ARGS__);                                                                                                        \
     }                                                                                                                                      \
   } while (0)
-/* What findings of this case tell of it. */
+/* What findings of this case tell of it; an odd number more of it. */
+void fuzz_note(fuzz* f, double number);
 void fuzz_about(fuzz* f, const char* format, ...) __attribute__((format(printf, 2, 3)));
 /* A call that makes an object at `place`, at times NULL: failed, it leaves the place as it was. */
 #define CREATE(place, call) fuzz_created(f, (place), (fuzz_create_begins(f, (place)), STATUS(call)))
@@ -163,8 +165,9 @@ stratus_image fuzz_image_like(fuzz* f, const stratus_image* image); /* the same 
 typedef struct fuzz_limits {
   bool lit;      /* colours may be brighter than white */
   bool surfaces; /* depth is told wherever anything shows */
+  bool behind;   /* parallel rays may begin behind the eye's plane */
 } fuzz_limits;
-void fuzz_check_image(fuzz* f, const stratus_image* image, const stratus_camera* camera, fuzz_limits limits);
+void fuzz_check_image(fuzz* f, const stratus_image* image, fuzz_limits limits);
 void fuzz_check_same(fuzz* f, const stratus_image* a, const stratus_image* b, bool samples, const char* what);
 double fuzz_value_of(const stratus_volume* volume, size_t index); /* component 0 */
 

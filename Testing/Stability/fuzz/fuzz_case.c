@@ -90,6 +90,12 @@ void fuzz_about(fuzz* f, const char* format, ...)
   va_end(arguments);
 }
 
+void fuzz_note(fuzz* f, double number)
+{
+  const size_t length = strlen(f->tally->odd);
+  snprintf(f->tally->odd + length, sizeof f->tally->odd - length, " %g", number);
+}
+
 void fuzz_finding(fuzz* f, const char* format, ...)
 {
   va_list arguments;
@@ -97,7 +103,7 @@ void fuzz_finding(fuzz* f, const char* format, ...)
   va_start(arguments, format);
   vfprintf(stderr, format, arguments);
   va_end(arguments);
-  fprintf(stderr, "\n  after %s\n  %s\n", f->tally->call ? f->tally->call : "nothing", f->tally->about);
+  fprintf(stderr, "\n  after %s\n  %s; odd:%s\n", f->tally->call ? f->tally->call : "nothing", f->tally->about, f->tally->odd);
   again(f);
   fflush(stderr);
   f->tally->told = true;
@@ -134,7 +140,7 @@ void fuzz_run_case(fuzz* f, uint64_t number)
   f->random = f->seed * 0xd1342543de82ef95ull + number;
   fuzz_next(f);
   f->random ^= fuzz_next(f);
-  f->tally->about[0] = '\0';
+  f->tally->about[0] = f->tally->odd[0] = '\0';
   f->fields = 0;
   f->odd_at = -1;
   f->oddness = 0;

@@ -94,7 +94,10 @@ static void spoil(fuzz* f, draft* d)
     }
   }
   for (int64_t i = 0; i < 4 * d->cell_count && i < 60; ++i) {
-    d->vertices[i] = fuzz_odd(f) ? (int32_t)(uint32_t)(uint64_t)fuzz_odd_integer(f) : d->vertices[i];
+    if (fuzz_odd(f)) {
+      const int32_t odd = (int32_t)(uint32_t)(uint64_t)fuzz_odd_integer(f);
+      d->vertices[i] = FUZZ_KNOWN && odd >= 0 && odd < d->point_count ? -1 : odd;
+    }
   }
 }
 

@@ -56,12 +56,11 @@ double fuzz_odd_real(fuzz* f)
     1e30, 1e20, 1e15, -1e15, 9007199254740993.0, 2147483647.0, 2147483648.0, -2147483649.0, 9.3e18, -9.3e18, 4096.0, 65536.0, 1e-6, 1e6,
     DBL_EPSILON, 1.0 + DBL_EPSILON, 1.0 - DBL_EPSILON };
   const uint64_t which = fuzz_below(f, sizeof odd / sizeof *odd + 4);
-  if (which < sizeof odd / sizeof *odd) {
-    return odd[which];
-  }
-  uint64_t bits = fuzz_next(f);
+  const uint64_t bits = fuzz_next(f);
   double any;
   memcpy(&any, &bits, sizeof any);
+  any = which < sizeof odd / sizeof *odd ? odd[which] : any;
+  fuzz_note(f, any);
   return any;
 }
 
@@ -71,7 +70,9 @@ int64_t fuzz_odd_integer(fuzz* f)
     65535, 65536, 65537, INT32_MAX, INT32_MIN, INT32_MAX - 1, (int64_t)INT32_MAX + 1, UINT32_MAX, (int64_t)UINT32_MAX + 1, (int64_t)1 << 40,
     (int64_t)1 << 62, INT64_MAX, INT64_MIN, INT64_MAX - 1 };
   const uint64_t which = fuzz_below(f, sizeof odd / sizeof *odd + 2);
-  return which < sizeof odd / sizeof *odd ? odd[which] : (int64_t)fuzz_next(f);
+  const int64_t any = (int64_t)fuzz_next(f), value = which < sizeof odd / sizeof *odd ? odd[which] : any;
+  fuzz_note(f, (double)value);
+  return value;
 }
 
 double fuzz_real(fuzz* f, double low, double high)

@@ -56,6 +56,11 @@ static void check_report(fuzz* f, const tetra_case* c, const stratus_image* imag
   EXPECT(memchr(r->why, '\0', sizeof r->why), "why does not end");
 }
 
+static fuzz_limits limits_of(const tetra_case* c)
+{
+  return (fuzz_limits){ .surfaces = true, .behind = FUZZ_KNOWN || c->camera.parallel };
+}
+
 /* The other method: near, where no cells overlap. */
 static void compare_methods(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image)
 {
@@ -64,7 +69,7 @@ static void compare_methods(fuzz* f, stratus_context* context, stratus_tetra_cas
   const stratus_image other = fuzz_image_like(f, image);
   const stratus_status status = draw(f, context, caster, &otherwise, &other, NULL);
   EXPECT(status == STRATUS_OK, "the other method: %s", stratus_context_message(context));
-  fuzz_check_image(f, &other, &c->camera, (fuzz_limits){ .surfaces = true });
+  fuzz_check_image(f, &other, limits_of(c));
   const int numbers = 4 * image->width * image->height;
   double square = 0.0, largest = 0.0;
   for (int i = 0; i < numbers; ++i) {
@@ -121,7 +126,7 @@ static void step(fuzz* f, stratus_tetra_caster* caster, const tetra_case* c)
   if (status != STRATUS_OK) {
     return;
   }
-  fuzz_check_image(f, &image, &c->camera, (fuzz_limits){ .surfaces = true });
+  fuzz_check_image(f, &image, limits_of(c));
   check_report(f, c, &image, report);
   if (fuzz_is_tame(f)) {
     compare(f, c, &image, report->method);

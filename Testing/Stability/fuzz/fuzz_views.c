@@ -106,7 +106,7 @@ static void check_bytes(fuzz* f, const float pixel[4], const uint8_t bytes[4], i
   }
 }
 
-void fuzz_check_image(fuzz* f, const stratus_image* image, const stratus_camera* camera, fuzz_limits limits)
+void fuzz_check_image(fuzz* f, const stratus_image* image, fuzz_limits limits)
 {
   for (int i = 0; i < image->width * image->height; ++i) {
     const float* p = image->rgba + 4 * (size_t)i;
@@ -118,7 +118,7 @@ void fuzz_check_image(fuzz* f, const stratus_image* image, const stratus_camera*
     }
     if (image->depth) {
       const float depth = image->depth[i];
-      EXPECT(!isnan(depth) && (camera->parallel || depth >= 0.0f), "pixel %d, %d has depth %g", x, y, (double)depth);
+      EXPECT(!isnan(depth) && (limits.behind || depth >= 0.0f), "pixel %d, %d has depth %g", x, y, (double)depth);
       EXPECT(!limits.surfaces || p[3] == 0.0f || depth < INFINITY, "pixel %d, %d shows %g at depth %g", x, y, (double)p[3], (double)depth);
     }
     if (image->rgba8) {
