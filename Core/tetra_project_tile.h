@@ -257,6 +257,7 @@ static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel
       rgba[c] = any ? entry[c] : 0.0f;
     }
   }
+  depth = frame->arguments.shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: what begins at the eye, rounded to behind it */
   memcpy(image->rgba + 4 * pixel, rgba, sizeof rgba);
   if (image->depth) {
     image->depth[pixel] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;

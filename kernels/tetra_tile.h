@@ -113,6 +113,7 @@ INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba
   const stratus_tetra_view* v = t->view;
   const int x = t->x0 + pixel % TETRA_TILE, y = t->y0 + pixel / TETRA_TILE;
   const size_t at = (size_t)y * (size_t)t->arguments->table.width + (size_t)x;
+  depth = t->arguments->shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: what begins at the eye, rounded to behind it */
   for (int c = 0; c < 4; ++c) {
     v->rgba[4 * at + (size_t)c] = rgba[c];
   }
