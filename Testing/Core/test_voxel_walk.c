@@ -283,7 +283,7 @@ static void extreme_rays_end(void** state)
   static const int32_t positions[] = { 0, 0, 0, (1 << 18) - 1, 2, 0 };
   static const stratus_ray rays[] = {
     { { -1e300, .5, .5 }, { 1e300, 0, 0 }, 0, INFINITY }, /* crosses all planes at once, as far as doubles tell */
-    { { -1, .5, .5 }, { 5e-324, 0, 0 }, 0, INFINITY },
+    { { -1, .5, .5 }, { 1e-290, 0, 0 }, 0, INFINITY }, /* the shortest */
     { { -1, .5, .5 }, { 1, 5e-324, 0 }, 0, INFINITY },
     { { 1e18, 1e18, 1e18 }, { -1, -1, -1 }, 0, INFINITY },
     { { -1, .5, .5 }, { 1, 0, 0 }, 1e308, INFINITY },
@@ -314,7 +314,7 @@ static void rays_that_are_none_are_refused_by_their_index(void** state)
   stratus_voxels* voxels = NULL;
   stratus_hit hits[3];
   assert_int_equal(stratus_voxels_create_list(context, n, position, 1, &voxels), STRATUS_OK);
-  for (int bad = 0; bad < 9; bad++) {
+  for (int bad = 0; bad < 10; bad++) {
     const stratus_ray good = { { -1, 1.5, 1.5 }, { 1, 0, 0 }, 0, INFINITY };
     stratus_ray rays[3] = { good, good, good };
     switch (bad) {
@@ -323,6 +323,9 @@ static void rays_that_are_none_are_refused_by_their_index(void** state)
         break;
       case 1:
         rays[1].direction[1] = NAN;
+        break;
+      case 9:
+        rays[1].direction[0] = 9e-291;
         break;
       case 2:
         rays[1].direction[2] = INFINITY;
