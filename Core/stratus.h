@@ -900,12 +900,12 @@ typedef struct stratus_visibility_result {
   int layers;               /* peeling layers: of the leaf that has most; else 0 */
   int64_t cycles;           /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
                              * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
-  int64_t forced;     /* cells that came before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
+  int64_t forced;           /* cells that came before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
                              * after those that hide them through faces only, as gaps were given up, see `overlaps` and `gate_tests` */
-  int64_t overlaps;   /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
+  int64_t overlaps;         /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
                              * A leaf of n cells gives up gaps after 64 + sqrt(n) */
-  int64_t gate_tests; /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make. A
-                             * leaf of which n border faces lie at gaps gives them up after 64 n sqrt(n) */
+  int64_t gate_tests;       /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make.
+                             * A leaf of which n border faces lie at gaps gives them up after 64 n sqrt(n) */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
   int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
@@ -964,10 +964,9 @@ typedef struct stratus_tetra_report {
   uint64_t entries;  /* march: faces through which rays came in from outside */
   uint64_t segments; /* march: cells that rays passed, those before the near plane included; project: pieces of cells that were composited */
   uint64_t stuck;    /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
-  int64_t cells, shown_cells; /* of the mesh; those neither hidden nor blanked */
-  int64_t blanked,
-    repeated; /* left out though not hidden: of values that are not finite floats, or that name a point more than once, and so
-                                    * have no volume; the latter alone */
+  int64_t cells, shown_cells;      /* of the mesh; those neither hidden nor blanked */
+  int64_t blanked;                 /* left out though not hidden: of values that are not finite floats, or that name a point more than once */
+  int64_t repeated;                /* of those: that name a point more than once, and so have no volume */
   int64_t border_faces;            /* of shown cells */
   int64_t flat, inverted, broken_faces, folded_faces; /* cells without volume, of negative orientation; faces shared by more than two; by two on
                                                        * the same side */
