@@ -11,10 +11,6 @@
 #include <string.h>
 
 #define FUZZ_STATUSES 8
-/* 1: leaves out what is known to be wrong and being mended. */
-#ifndef FUZZ_KNOWN
-#define FUZZ_KNOWN 1
-#endif
 
 /* Of one kind, in memory that the supervising process shares: it outlives a case that crashes. */
 typedef struct fuzz_tally {

@@ -54,14 +54,8 @@ static draft make_soup(fuzz* f, int largest)
   for (int64_t c = 0; c < d.cell_count; ++c) {
     for (int v = 0; v < 4; ++v) {
       d.vertices[4 * c + v] = (int32_t)fuzz_below(f, (uint64_t)d.point_count);
-      for (int w = 0; FUZZ_KNOWN && w < v; ++w) {
-        if (d.vertices[4 * c + v] == d.vertices[4 * c + w]) {
-          d.vertices[4 * c + v] = (d.vertices[4 * c + v] + 1) % (int32_t)d.point_count;
-          w = -1;
-        }
-      }
     }
-    if (!FUZZ_KNOWN && fuzz_chance(f, 0.3 * flat)) {
+    if (fuzz_chance(f, 0.3 * flat)) {
       d.vertices[4 * c + 3] = d.vertices[4 * c];
     }
   }
@@ -90,14 +84,10 @@ static void spoil(fuzz* f, draft* d)
   for (int64_t i = 0; i < 3 * d->point_count && i < 60; ++i) {
     if (fuzz_odd(f)) {
       d->points[i] = fuzz_odd_real(f);
-      d->points[i] = FUZZ_KNOWN && fabs(d->points[i]) > 1e15 && isfinite(d->points[i]) ? 1e15 : d->points[i];
     }
   }
   for (int64_t i = 0; i < 4 * d->cell_count && i < 60; ++i) {
-    if (fuzz_odd(f)) {
-      const int32_t odd = (int32_t)(uint32_t)(uint64_t)fuzz_odd_integer(f);
-      d->vertices[i] = FUZZ_KNOWN && odd >= 0 && odd < d->point_count ? -1 : odd;
-    }
+    d->vertices[i] = fuzz_odd(f) ? (int32_t)(uint32_t)(uint64_t)fuzz_odd_integer(f) : d->vertices[i];
   }
 }
 

@@ -309,7 +309,7 @@ static void live(fuzz* f, pair* p)
       move(f, p);
     } else if (what == 4) {
       take_away(f, p);
-    } else if (what < 8 && !(FUZZ_KNOWN && p->count == 0)) {
+    } else if (what < 8) {
       cull(f, p);
     } else if (what < 11) {
       query(f, p);

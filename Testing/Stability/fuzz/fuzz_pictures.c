@@ -26,7 +26,6 @@ static void choose_shading(fuzz* f, stratus_shading* shading, const fuzz_field* 
   shading->specular = fuzz_real(f, 0.0, 1.0);
   shading->specular_power = fuzz_chance(f, 0.5) ? fuzz_real(f, 0.0, 2.0) : fuzz_real(f, 1.0, 128.0);
   shading->light_count = fuzz_integer(f, -1, STRATUS_LIGHTS_MAX);
-  shading->light_count = FUZZ_KNOWN && (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) ? 1 : shading->light_count;
   for (int i = 0; i < STRATUS_LIGHTS_MAX; ++i) {
     stratus_light* light = shading->lights + i;
     fuzz_vector(f, field->bounds[0] - 5.0 * field->edge, field->bounds[1] + 5.0 * field->edge, light->vector);

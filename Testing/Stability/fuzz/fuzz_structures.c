@@ -72,6 +72,23 @@ static stratus_value_range* make_ranges(fuzz* f, const fuzz_field* field, grid* 
   return ranges;
 }
 
+/* What a block is that is none: outside, empty, nothing. */
+static void ask_beyond(fuzz* f, const stratus_value_range* ranges, const stratus_occupancy* occupancy, const grid* g)
+{
+  int64_t at[3];
+  double low = 0.0, high = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    at[axis] = (int64_t)fuzz_below(f, (uint64_t)g->n[axis]);
+  }
+  const int axis = (int)fuzz_below(f, 3);
+  const int64_t far = fuzz_odd_integer(f);
+  at[axis] = far >= 0 && far < g->n[axis] ? g->n[axis] : far;
+  CALL(stratus_value_range_block(ranges, at[0], at[1], at[2], &low, &high, fuzz_chance(f, 0.5) ? NULL : &(int){ 0 }));
+  EXPECT(low > high, "block %lld of %lld is %g..%g", (long long)at[axis], (long long)g->n[axis], low, high);
+  EXPECT(CALL(stratus_occupancy_get(occupancy, at[0], at[1], at[2])) == 0, "block %lld of %lld is occupied", (long long)at[axis],
+    (long long)g->n[axis]);
+}
+
 /* Occupied blocks, a byte each, that the caller frees. */
 static uint8_t* check_occupancy(fuzz* f, const stratus_occupancy* occupancy, const grid* g)
 {
@@ -131,6 +148,8 @@ static void check_map(fuzz* f, const stratus_occupancy* occupancy, const uint8_t
   if (status != STRATUS_OK) {
     return;
   }
+  EXPECT(CALL(stratus_distance_map_get(map, (int)fuzz_below(f, 8), g->n[0], 0, 0)) == 0, "a distance beyond the blocks");
+  EXPECT(CALL(stratus_distance_map_get(map, (int)fuzz_below(f, 8), 0, INT64_MIN, 0)) == 0, "a distance beyond the blocks");
   EXPECT(CALL(stratus_distance_map_bytes(map)) > 0, "a map of no bytes");
   for (int64_t b = 0; b < 8 * blocks_of(g); ++b) {
     const int64_t q = b / 8, at[3] = { q % g->n[0], q / g->n[0] % g->n[1], q / (g->n[0] * g->n[1]) };
@@ -142,6 +161,38 @@ static void check_map(fuzz* f, const stratus_occupancy* occupancy, const uint8_t
   CALL(stratus_distance_map_destroy(map));
 }
 
+/* By values: of types that are taken as they are, exactly the blocks whose values span some of lower..upper. */
+static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const stratus_value_range* ranges, const grid* g)
+{
+  stratus_occupancy* occupancy = NULL;
+  const double lower = fuzz_chance(f, 0.2) ? -INFINITY : fuzz_real(f, field->low, field->high);
+  const double upper = fuzz_chance(f, 0.2) ? INFINITY : fuzz_chance(f, 0.3) ? lower : fuzz_real(f, fmax(field->low, lower), field->high);
+  const stratus_status status = CREATE(&occupancy, stratus_occupancy_create_between(f->context, ranges, lower, upper, &occupancy));
+  EXPECT(status == (lower <= upper ? STRATUS_OK : STRATUS_INVALID_ARGUMENT), "%g..%g: %s", lower, upper, stratus_context_message(f->context));
+  const stratus_type type = field->view.type;
+  const bool exact = type <= STRATUS_UINT16 || type == STRATUS_FLOAT32;
+  for (int64_t b = 0; status == STRATUS_OK && b < blocks_of(g); ++b) {
+    const int64_t at[3] = { b % g->n[0], b / g->n[0] % g->n[1], b / (g->n[0] * g->n[1]) };
+    double low, high;
+    stratus_value_range_block(ranges, at[0], at[1], at[2], &low, &high, NULL);
+    const int wanted = low <= high && low <= upper && high >= lower;
+    EXPECT(!exact || stratus_occupancy_get(occupancy, at[0], at[1], at[2]) == wanted, "block %lld of %.17g..%.17g is told %d for %.17g..%.17g",
+      (long long)b, low, high, !wanted, lower, upper);
+  }
+  return occupancy;
+}
+
+static stratus_occupancy* make_shown(fuzz* f, const fuzz_field* field, const stratus_value_range* ranges)
+{
+  stratus_occupancy* occupancy = NULL;
+  const stratus_transfer* transfer = fuzz_transfers(f, 1, false, field->low, field->high, field->edge);
+  const stratus_sampling sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_PREINTEGRATED + 1);
+  (void)STATUS(stratus_transfer_check(f->context, transfer));
+  const stratus_status status = CREATE(&occupancy, stratus_occupancy_create(f->context, ranges, transfer, sampling, &occupancy));
+  EXPECT(status == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
+  return occupancy;
+}
+
 void fuzz_structures(fuzz* f)
 {
   const fuzz_field field = fuzz_volume(f, 12, fuzz_chance(f, 0.8) ? 1 : 2);
@@ -149,13 +200,9 @@ void fuzz_structures(fuzz* f)
   (void)STATUS(stratus_volume_check(f->context, fuzz_pointer(f, FUZZ_INPUT(f, field.view))));
   stratus_value_range* ranges = make_ranges(f, &field, &g);
   for (int times = 0; ranges && times < 2; ++times) {
-    const stratus_transfer* transfer = fuzz_transfers(f, 1, false, field.low, field.high, field.edge);
-    const stratus_sampling sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_PREINTEGRATED + 1);
-    stratus_occupancy* occupancy = NULL;
-    (void)STATUS(stratus_transfer_check(f->context, transfer));
-    const stratus_status status = CREATE(&occupancy, stratus_occupancy_create(f->context, ranges, transfer, sampling, &occupancy));
-    EXPECT(status == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
-    if (status == STRATUS_OK) {
+    stratus_occupancy* occupancy = fuzz_chance(f, 0.6) ? make_shown(f, &field, ranges) : make_between(f, &field, ranges, &g);
+    if (occupancy) {
+      ask_beyond(f, ranges, occupancy, &g);
       uint8_t* occupied = check_occupancy(f, occupancy, &g);
       check_map(f, occupancy, occupied, &g, (stratus_distance_kind)fuzz_choice(f, STRATUS_DISTANCE_OCTANT + 1));
       free(occupied);

@@ -339,7 +339,7 @@ static const double* points(fuzz* f, size_t count, size_t components, double low
 static size_t count_of(fuzz* f, size_t count)
 {
   static const size_t wrong[] = { 0, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 8, (size_t)1 << 62 };
-  return fuzz_odd(f) ? wrong[FUZZ_KNOWN ? 0 : fuzz_below(f, sizeof wrong / sizeof *wrong)] : count;
+  return fuzz_odd(f) ? wrong[fuzz_below(f, sizeof wrong / sizeof *wrong)] : count;
 }
 
 stratus_transfer fuzz_transfer(fuzz* f, double low, double high, double edge)

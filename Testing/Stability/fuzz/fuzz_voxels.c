@@ -183,6 +183,8 @@ static void ask_field(fuzz* f, const voxel_set* s)
   const size_t voxels = (size_t)size_of(s);
   float *distances = fuzz_output(f, voxels * sizeof *distances), *rgba = fuzz_output(f, 4 * voxels * sizeof *rgba);
   CALL(stratus_field_distances(field, distances));
+  EXPECT(CALL(stratus_field_get(field, 0, s->n[1], 0)) == INFINITY && CALL(stratus_field_get(field, INT64_MIN, 0, 0)) == INFINITY,
+    "a distance beyond the dimensions");
   const stratus_status named = STATUS(stratus_field_rgba(field, s->voxels, rgba));
   EXPECT(named == STRATUS_OK, "%s", stratus_context_message(f->context));
   for (int64_t q = 0; q < size_of(s); ++q) {
