@@ -168,7 +168,7 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
   core.check(stratus_visibility_order_create(core, &mesh, leaves, &made), "visibility order");
   const std::unique_ptr<stratus_visibility_order, decltype(&stratus_visibility_order_destroy)> order(made, &stratus_visibility_order_destroy);
   double bounds[6], size = 0.0, milliseconds = 0.0;
-  int64_t pairs = 0, wrong = 0, cycles = 0, layers = 0;
+  int64_t pairs = 0, wrong = 0, cycles = 0, overlaps = 0, forced = 0, layers = 0;
   stratus_visibility_result result = {};
   bounds_of(mesh, bounds);
   const std::vector<std::array<double, 4>> balls = balls_of(mesh);
@@ -183,12 +183,14 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
     milliseconds += (result.signs_ms + result.peel_ms) / (2 * views);
     cycles += result.cycles;
     layers += result.layers;
+    overlaps += result.overlaps;
+    forced += result.forced;
     ask_rays(mesh, balls, camera, result.cells, size, pairs, wrong);
   }
   cli::row(name,
     cli::format("%.1f ms, neighbours %.1f ms once; ", milliseconds, result.build_ms) +
-      (peeling == STRATUS_PEELING_LAYERS ? count(layers / (2 * views)) + " layers; " : "") + count(cycles) + " cycles; " + count(wrong) + " of " +
-      count(pairs) + " pairs wrong");
+      (peeling == STRATUS_PEELING_LAYERS ? count(layers / (2 * views)) + " layers; " : "") + count(cycles) + " cycles, " + count(overlaps) +
+      " overlaps, " + count(forced) + " cells before what hides them; " + count(wrong) + " of " + count(pairs) + " pairs wrong");
   if (peeling == STRATUS_PEELING_LAYERS && !leaves) {
     cli::row("as given",
       count(result.flat) + " cells without volume, " + count(result.inverted) + " of negative orientation, " + count(result.folded) +

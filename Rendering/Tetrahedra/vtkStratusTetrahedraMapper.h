@@ -92,8 +92,7 @@ public:
   //@{
   /**
    * Of the last picture: tetrahedra that the cells were divided into; cells ignored: vertices, lines and polygons; tetrahedra left out though no
-   * ghost or blanking array hides them, of values that are not finite or that name a point more than once (the latter are told by a warning, once
-   * for each grid that is made ready).
+   * ghost or blanking array hides them, of values that are not finite or that name a point more than once.
    */
   vtkIdType GetNumberOfTetrahedra();
   vtkIdType GetNumberOfIgnoredCells();

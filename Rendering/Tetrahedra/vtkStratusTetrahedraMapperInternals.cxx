@@ -17,7 +17,6 @@ vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* map
   this->Context.OnRelease = [this] {
     stratus_tetra_caster_destroy(this->Caster);
     this->Caster = nullptr;
-    this->MeshBuildsTold = 0;
   };
 }
 
@@ -132,13 +131,6 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
     }
   }
   this->Renderer = nullptr;
-  if (status == STRATUS_OK && this->Report.mesh_builds != this->MeshBuildsTold) {
-    this->MeshBuildsTold = this->Report.mesh_builds;
-    if (this->Report.repeated > 0) {
-      vtkWarningWithObjectMacro(this->Mapper, << this->Report.repeated << " of " << this->Report.cells
-                                              << " tetrahedra name a point more than once and are left out: they have no volume");
-    }
-  }
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }

@@ -33,7 +33,6 @@ public:
   stratus_tetra_caster* Caster = nullptr;
   vtkStratusContext Context;
   stratus_tetra_report Report = stratus_tetra_report();
-  uint64_t MeshBuildsTold = 0; // of the caster: those whose blanked cells were told
   vtkStratusDisplay Display;
   std::string LastError; // told already
   bool DrawsAgain = false; // the last Render() showed the frame's picture once more, between other peels

@@ -211,6 +211,20 @@ void PointsTwiceAndForNothing()
 }
 
 // Two halves that meet in a plane, triangulated otherwise on both sides.
+// Cells that name a point more than once have no volume, and no more than a number in the mapper.
+void CellsThatNameAPointTwice()
+{
+  Case scene;
+  scene.AddCubes(2, AsItIs);
+  scene.AddCell(4, 4, 13, 22);
+  scene.AddCell(4, 1, 1, 1);
+  scene.AddCell(7, 7, 7, 7);
+  scene.Agrees("points named twice");
+  CHECK(scene.Tetrahedra->GetNumberOfBlankedTetrahedra() == 3, "%lld cells left out",
+    static_cast<long long>(scene.Tetrahedra->GetNumberOfBlankedTetrahedra()));
+  CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+}
+
 void ASeam()
 {
   Case scene;
@@ -357,6 +371,7 @@ int main()
   InvertedCells();
   Slivers();
   PointsTwiceAndForNothing();
+  CellsThatNameAPointTwice();
   ASeam();
   AlongFaces(vtkStratusTetrahedraMapper::MARCH_METHOD);
   AlongFaces(vtkStratusTetrahedraMapper::PROJECT_METHOD);

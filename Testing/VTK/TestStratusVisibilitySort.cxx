@@ -108,6 +108,39 @@ void Orders()
   }
 }
 
+// Cells one within the other in all directions: no order is right, each comes once, and what was given up is told.
+void Overlaps()
+{
+  Grid grid = Grid::New();
+  vtkNew<vtkPoints> points;
+  unsigned state = 7;
+  for (vtkIdType cell = 0; cell < 2000; ++cell) {
+    vtkIdType ids[4];
+    for (vtkIdType& id : ids) {
+      double p[3];
+      for (double& x : p) {
+        state = state * 1664525u + 1013904223u;
+        x = (state >> 8) / 4194304.0;
+      }
+      id = points->InsertNextPoint(p);
+    }
+    grid->InsertNextCell(VTK_TETRA, 4, ids);
+  }
+  grid->SetPoints(points);
+  vtkNew<vtkStratusVisibilitySort> sort;
+  vtkNew<vtkCamera> camera;
+  camera->SetPosition(12, 9, 7);
+  camera->SetFocalPoint(2, 2, 2);
+  sort->SetInput(grid);
+  sort->SetCamera(camera);
+  std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
+  std::sort(cells.begin(), cells.end());
+  CHECK(
+    cells.size() == 2000 && std::adjacent_find(cells.begin(), cells.end()) == cells.end(), "%zu cells, not 2000 each once", cells.size());
+  CHECK(sort->GetNumberOfOverlaps() > 0 && sort->GetNumberOfForcedCells() > 0, "%lld overlaps, %lld cells forced",
+    static_cast<long long>(sort->GetNumberOfOverlaps()), static_cast<long long>(sort->GetNumberOfForcedCells()));
+}
+
 // A partition that something spoils after it was used: its tree is taken no more, the order is right without.
 void Spoiled(const char* what, void (*spoil)(vtkUnstructuredGrid*))
 {
@@ -176,6 +209,7 @@ void Refusals()
 int main()
 {
   Orders();
+  Overlaps();
   Spoiled("moved points", MovePoints);
   Spoiled("too few leaves", ShortenLeaves);
   Refusals();
