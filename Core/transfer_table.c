@@ -14,6 +14,8 @@
  * have no room for it, count what is so per unit distance and are told apart by fill_opaque(). */
 #define OPAQUE_DEPTH 1e30f
 #define OPAQUE_TAU 16.0
+/* Optical depths per length, whose unit may be next to nothing, up to a bound: their sums stay doubles. */
+#define TAU_MOST 1e290
 /* Segments are cut into pieces where averaging their colours could be wrong by more than about 1/12 of one over this: half of 1/255. */
 #define COLOR_ERROR_INVERSE 48.0
 /* Largest running sum: differences of sums stay positive ints. */
@@ -103,7 +105,7 @@ void stratus_transfer_at(const stratus_transfer* transfer, double value, double 
 /* Optical depth per world unit. */
 static double tau_of(const stratus_transfer* transfer, double opacity)
 {
-  return (opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance;
+  return fmin((opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance, TAU_MOST);
 }
 
 /* Smallest distance between points of different value, where the function does anything. */
@@ -159,7 +161,7 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
     }
     entry[3] = (float)alpha;
     float* depth = table->rgba + 4 * ((size_t)table->size + (size_t)e);
-    depth[0] = opacity >= 1.0 ? OPAQUE_DEPTH : (float)(tau_of(transfer, opacity) * sample_distance);
+    depth[0] = opacity >= 1.0 ? OPAQUE_DEPTH : (float)fmin(tau_of(transfer, opacity) * sample_distance, (double)OPAQUE_DEPTH);
     depth[1] = depth[2] = depth[3] = 0.0f;
   }
 }
@@ -235,7 +237,7 @@ static stratus_status fill_preintegrated(
     }
     table->sums[3 * row + e] = (int32_t)tau;
   }
-  table->sum_scale = any ? (float)(sample_distance / scale) : 0.0f;
+  table->sum_scale = any ? (float)fmin(sample_distance / scale, (double)OPAQUE_DEPTH) : 0.0f;
   fill_opaque(table, transfer, lo, width);
   stratus_release(table->context, sums);
   return STRATUS_OK;
