@@ -158,7 +158,7 @@ size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value);
 /* ray_choice.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
   stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
-double stratus_ray_voxel_length(const stratus_volume* volume); /* shortest edge of a voxel, world */
+double stratus_ray_voxel_length(const stratus_volume* volume); /* shortest edge of a voxel along which the volume extends, world */
 
 /* ray_frame.c: fills what camera, volume and options decide. *empty: no ray can meet anything. */
 stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,

@@ -24,17 +24,19 @@
  * longest that keeps both above 36. */
 #define PREINTEGRATED_STEP 0.6
 
+/* Axes of no extent count where they are this many times shorter than the others: a sample may not be long along any of them. */
+#define FLAT_SHORTER 1000.0
+
 double stratus_ray_voxel_length(const stratus_volume* volume)
 {
-  double m[16], shortest = INFINITY;
+  double m[16], shortest = INFINITY, flat = INFINITY;
   stratus_volume_index_to_world(volume, m);
   for (int axis = 0; axis < 3; ++axis) {
-    if (volume->dimensions[axis] > 1 || volume->cell_centered) {
-      const double length = sqrt(m[axis] * m[axis] + m[4 + axis] * m[4 + axis] + m[8 + axis] * m[8 + axis]);
-      shortest = length < shortest ? length : shortest;
-    }
+    const double length = sqrt(m[axis] * m[axis] + m[4 + axis] * m[4 + axis] + m[8 + axis] * m[8 + axis]);
+    double* least = volume->dimensions[axis] > 1 || volume->cell_centered ? &shortest : &flat;
+    *least = length < *least ? length : *least;
   }
-  return shortest < INFINITY ? shortest : 1.0;
+  return fmin(shortest, FLAT_SHORTER * flat);
 }
 
 static double opacity_at(const stratus_transfer* transfer, double x)

@@ -207,7 +207,8 @@ static stratus_status check_samples(
     for (int row = 0; row < 3; ++row) {
       edge += m[4 * row + axis] * m[4 * row + axis];
     }
-    diagonal += sqrt(edge) * (double)volume->dimensions[axis];
+    const bool flat = volume->dimensions[axis] == 1 && !volume->cell_centered;
+    diagonal += flat ? 0.0 : sqrt(edge) * (double)volume->dimensions[axis];
   }
   if (diagonal / sample_distance > SAMPLES_MOST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
