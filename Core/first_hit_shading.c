@@ -31,10 +31,10 @@ static bool normalize(double v[3])
 static stratus_status check_light(stratus_context* context, const stratus_light* light, int number)
 {
   for (int i = 0; i < 3; ++i) {
-    if (!isfinite(light->vector[i]) || !isfinite(light->color[i]) || light->color[i] < 0.0) {
+    if (!isfinite(light->vector[i]) || !(light->color[i] >= 0.0 && light->color[i] <= STRATUS_LIGHT_MAX)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-        "light %d has vector (%g, %g, %g) and colour (%g, %g, %g), must be finite and colours at least 0", number, light->vector[0],
-        light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2]);
+        "light %d has vector (%g, %g, %g) and colour (%g, %g, %g), must be finite and colours 0..%g", number, light->vector[0],
+        light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2], STRATUS_LIGHT_MAX);
     }
   }
   if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
@@ -48,8 +48,9 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
   const double factors[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
   static const char* const names[4] = { "ambient", "diffuse", "specular", "specular power" };
   for (int i = 0; i < 4; ++i) {
-    if (!(factors[i] >= 0.0) || !isfinite(factors[i])) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be finite and at least 0", names[i], factors[i]);
+    if (!(factors[i] >= 0.0 && factors[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
     }
   }
   if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {

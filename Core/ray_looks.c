@@ -17,6 +17,9 @@ bool stratus_ray_looks_wanted(const stratus_volume* volume, const stratus_transf
   return options->mode == STRATUS_MODE_COMPOSITE && more;
 }
 
+/* In voxels: from here on light comes from one direction, whatever place it falls on. */
+#define LIGHT_FAR 1e15
+
 static double length_of(const double v[3])
 {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -28,18 +31,19 @@ static void set_light(
 {
   double vector[3];
   for (int axis = 0; axis < 3; ++axis) {
-    vector[axis] = light->vector[axis];
+    vector[axis] = light->vector[axis] - (light->positional ? index_to_world[4 * axis + 3] : 0.0);
   }
   const double largest = fmax(fmax(fabs(vector[0]), fabs(vector[1])), fabs(vector[2]));
+  const bool near = light->positional && largest < LIGHT_FAR * edge;
   for (int axis = 0; axis < 3; ++axis) {
-    vector[axis] = light->positional ? (vector[axis] - index_to_world[4 * axis + 3]) / edge : vector[axis] / largest;
+    vector[axis] /= near ? edge : largest;
   }
-  const double length = light->positional ? 1.0 : length_of(vector);
+  const double length = near ? 1.0 : length_of(vector);
   for (int axis = 0; axis < 3; ++axis) {
     a->light[number][axis] = (float)(vector[axis] / length);
     a->light_color[number][axis] = (float)light->color[axis];
   }
-  a->light_positional[number] = light->positional != 0;
+  a->light_positional[number] = near;
 }
 
 static void set_lights(const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge,

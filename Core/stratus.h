@@ -498,10 +498,11 @@ typedef enum stratus_normals {
 } stratus_normals;
 
 #define STRATUS_LIGHTS_MAX 8
+#define STRATUS_LIGHT_MAX 1e15 /* of a light's colour and a shading's numbers: their products and sums are floats */
 
 typedef struct stratus_light {
   double vector[3]; /* world; positional: where it stands, else the direction from the scene to it, of any length > 0 */
-  double color[3];  /* red, green, blue, each finite and >= 0 */
+  double color[3];  /* red, green, blue, each 0..STRATUS_LIGHT_MAX */
   int positional;
 } stratus_light;
 
@@ -511,7 +512,7 @@ typedef struct stratus_light {
  * isosurface: shade is 0; other modes), no other number of it is read or refused. */
 typedef struct stratus_shading {
   int on;                /* first hit; 0: c = C. Default 1. Composite: see stratus_ray_cast_options.shade */
-  double ambient;        /* finite and >= 0, as the next three; default .1 */
+  double ambient;        /* 0..STRATUS_LIGHT_MAX, as the next three; default .1 */
   double diffuse;        /* default .9 */
   double specular;       /* default 0 */
   double specular_power; /* default 10 */

@@ -233,6 +233,28 @@ static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** 
   stratus_context_destroy(context);
 }
 
+/* Places beyond what floats and doubles multiply without overflow light as the direction to them does. */
+static void lights_however_far_light(void** state)
+{
+  (void)state;
+  static const double distances[] = { 1e12, 1e18, 1e25, 1e40, 1e100, 1e300 };
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  case_create(context, &c, STRATUS_UINT8, 16, 16, 16, 1);
+  c.options.shade = 1;
+  c.options.shading.light_count = 1;
+  c.options.shading.lights[0] = (stratus_light){ .vector = { 0.3, -0.5, 0.7 }, .color = { 1.0, 1.0, 1.0 } };
+  const double by_direction = light_of(context, &c);
+  c.options.shading.lights[0].positional = 1;
+  for (size_t d = 0; d < sizeof distances / sizeof *distances; ++d) {
+    const double vector[3] = { 0.3 * distances[d], -0.5 * distances[d], 0.7 * distances[d] };
+    memcpy(c.options.shading.lights[0].vector, vector, sizeof vector);
+    assert_true(fabs(light_of(context, &c) - by_direction) < 1e-5 * by_direction);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 static void bad_shading_is_refused_where_it_would_be_used(void** state)
 {
   (void)state;
@@ -261,6 +283,7 @@ int main(void)
     cmocka_unit_test(no_structure_thread_or_instruction_set_changes_a_bit),
     cmocka_unit_test(each_number_of_the_shading_has_its_effect),
     cmocka_unit_test(one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity),
+    cmocka_unit_test(lights_however_far_light),
     cmocka_unit_test(bad_shading_is_refused_where_it_would_be_used),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
