@@ -391,8 +391,11 @@ void stratus_value_range_blocks(const stratus_value_range* ranges, int64_t block
 
 stratus_status stratus_value_range_whole(const stratus_value_range* ranges, double* low, double* high)
 {
-  if (!ranges || !(ranges->whole_lo <= ranges->whole_hi)) {
+  if (!ranges) {
     return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!(ranges->whole_lo <= ranges->whole_hi)) {
+    return stratus_fail(ranges->context, STRATUS_INVALID_ARGUMENT, "the volume has no finite value, so that its values have no range");
   }
   if (low) {
     *low = (double)ranges->whole_lo + ranges->bias;
