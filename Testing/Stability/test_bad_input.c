@@ -213,6 +213,9 @@ static void spoilt_options_are_refused(void** state)
   REFUSED(f, "1.75", in.options.termination = 1.75);
   REFUSED(f, "-0.25", in.options.termination = -0.25);
   REFUSED(f, "nan", in.options.termination = NAN);
+  REFUSED(f, "1e+16", (in.options.shade = 1, in.options.shading.ambient = 1e16));
+  REFUSED(f, "1e+153", (in.options.shade = 1, in.options.shading.specular_power = 1e153));
+  REFUSED(f, "1e+308", (in.options.shade = in.options.shading.light_count = 1, in.options.shading.lights[0].color[2] = 1e308));
   REFUSED(f, "5", in.options.block_size = 5);
   REFUSED(f, "64", in.options.block_size = 64);
   REFUSED(f, "-4", in.options.block_size = -4);
@@ -302,6 +305,7 @@ static void spoilt_camera_parameters_are_refused(void** state)
   CAMERA_REFUSED("-1", stratus_camera_perspective(c, eye, focal, up, 30, -1, &camera));
   CAMERA_REFUSED("inf", stratus_camera_parallel(c, eye, focal, up, 1, INFINITY, &camera));
   CAMERA_REFUSED("-3", stratus_camera_parallel(c, eye, focal, up, -3, 1, &camera));
+  CAMERA_REFUSED("1e+300", stratus_camera_parallel(c, eye, focal, up, 1e10, 1e300, &camera));
   CAMERA_REFUSED("differ", stratus_camera_perspective(c, eye, eye, up, 30, 1, &camera));
   CAMERA_REFUSED("parallel", stratus_camera_perspective(c, eye, focal, along, 30, 1, &camera));
   CAMERA_REFUSED("nan", stratus_camera_perspective(c, eye, unknown, up, 30, 1, &camera));
@@ -329,9 +333,70 @@ static void a_volume_without_a_finite_value_gives_an_empty_picture(void** state)
   double low, high;
   assert_int_equal(stratus_value_range_create(f->context, &in.volume, 0, &ranges), STRATUS_OK);
   assert_int_equal(stratus_value_range_whole(ranges, &low, &high), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(f->context), "no finite value"));
   stratus_value_range_destroy(ranges);
   assert_int_equal(draw(f, &f->good), STRATUS_OK);
   assert_memory_equal(&f->picture, &f->right, sizeof f->right);
+}
+
+/* Optical depths beyond all floats are opaque, and in no way no numbers: by both sampling rules, lit, of several components, summed up. */
+static void lengths_of_the_unit_out_of_all_proportion_draw_numbers(void** state)
+{
+  fixture* f = *state;
+  static const double units[] = { 4.9406564584124654e-324, 1e-310, 1e-300, 1e-100, 1e-45, 1e-30, 1e45, 1e300, 1e308 };
+  stratus_transfer pair[2] = { f->good.transfer, f->good.transfer };
+  for (size_t u = 0; u < sizeof units / sizeof *units; ++u) {
+    for (int what = 0; what < 8; ++what) {
+      inputs in = f->good;
+      pair[0].unit_distance = pair[1].unit_distance = units[u];
+      in.options.sampling = what % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+      in.options.shade = what / 2 == 1;
+      in.options.mode = what / 2 == 2 ? STRATUS_MODE_ADDITIVE : STRATUS_MODE_COMPOSITE;
+      if (what / 2 == 3) { /* as many values as both components have */
+        in.volume.components = 2;
+        in.volume.value_stride = 2;
+        in.volume.dimensions[0] /= 2;
+        in.volume.cell_ghosts = NULL;
+      }
+      const stratus_status status = stratus_ray_caster_render(f->caster, &in.volume, pair, &in.camera, &in.options, &in.image, NULL);
+      if (status != STRATUS_OK) {
+        fail_msg("unit %g, picture %d: %s", units[u], what, stratus_context_message(f->context));
+      }
+      float most = 0.0f;
+      for (int p = 0; p < SMALL_PIXELS; ++p) {
+        const float* rgba = f->picture.rgba + 4 * p;
+        for (int c = 0; c < 4; ++c) {
+          if (!(rgba[c] >= 0.0f && rgba[c] <= 1.0f)) {
+            fail_msg("unit %g, picture %d: pixel %d has %g", units[u], what, p, (double)rgba[c]);
+          }
+        }
+        most = rgba[3] > most ? rgba[3] : most;
+      }
+      assert_true(units[u] > 1.0 || most > 0.999f);
+    }
+  }
+}
+
+/* Flat images, lines and points have no thickness to be seen, whatever the length that comes with the missing axis. */
+static void flat_volumes_are_drawn_whatever_their_spacing(void** state)
+{
+  fixture* f = *state;
+  static const double spacings[] = { 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9 };
+  for (int flat = 1; flat < 8; ++flat) {
+    for (size_t s = 0; s < sizeof spacings / sizeof *spacings; ++s) {
+      inputs in = f->good;
+      in.volume.cell_ghosts = NULL;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (flat >> axis & 1) {
+          in.volume.dimensions[axis] = 1;
+          in.volume.spacing[axis] = spacings[s];
+        }
+      }
+      if (draw(f, &in) != STRATUS_OK) {
+        fail_msg("flat %d, spacing %g: %s", flat, spacings[s], stratus_context_message(f->context));
+      }
+    }
+  }
 }
 
 #define ON(fixture, test) cmocka_unit_test_prestate(test, fixture)
@@ -340,7 +405,8 @@ static void a_volume_without_a_finite_value_gives_an_empty_picture(void** state)
     ON(f, spoilt_transfer_functions_are_refused),                                                                                          \
     ON(f, spoilt_cameras_are_refused), ON(f, spoilt_options_are_refused), ON(f, spoilt_images_are_refused),                                \
     ON(f, null_pointers_are_refused), ON(f, spoilt_camera_parameters_are_refused),                                                         \
-    ON(f, a_volume_without_a_finite_value_gives_an_empty_picture)
+    ON(f, a_volume_without_a_finite_value_gives_an_empty_picture), \
+    ON(f, lengths_of_the_unit_out_of_all_proportion_draw_numbers), ON(f, flat_volumes_are_drawn_whatever_their_spacing)
 
 static fixture host, device;
 
