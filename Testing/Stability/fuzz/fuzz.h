@@ -143,7 +143,7 @@ typedef struct fuzz_field {
   size_t values;    /* places in the grid */
   size_t bytes;     /* of view.values */
   double low, high; /* about the range of the values */
-  double edge;      /* about a voxel's, in the world */
+  double edge, shortest; /* a voxel's longest and shortest, in the world */
   double bounds[6]; /* of the world, 0..1 along each axis where the view is refused */
 } fuzz_field;
 

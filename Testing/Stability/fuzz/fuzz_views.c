@@ -4,8 +4,8 @@
 
 #include <stdlib.h>
 
-/* What the product of a colour and its alpha, each rounded to a float, and sums of them may be above alpha. */
-#define PREMULTIPLIED_SLACK 1e-5f
+/* What sums of rounded colours and of rounded alphas may be apart: a fortieth of a step of 8 bits. */
+#define PREMULTIPLIED_SLACK 1e-4f
 
 /* ---- cameras */
 

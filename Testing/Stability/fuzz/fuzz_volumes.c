@@ -89,7 +89,7 @@ static void* make_values(fuzz* f, fuzz_field* field)
     double value = low + t * (high - low);
     if (kind == EXTREME && t < 0.1) {
       value = fuzz_odd_real(f);
-      value = real && fabs(value) < 1e30 ? value : low;
+      value = real && fabs(value) < 1e30 && (fabs(value) > 1e-25 || value == 0.0) ? value : low;
     }
     if (fuzz_chance(f, broken)) {
       value = fuzz_chance(f, 0.5) ? (double)NAN : fuzz_chance(f, 0.5) ? INFINITY : -INFINITY;
@@ -212,7 +212,7 @@ static void add_ghosts(fuzz* f, stratus_volume* v)
   }
 }
 
-/* Where the world has it, or a cube where it is refused; and the longest edge of a voxel. */
+/* Where the world has it, or a cube where it is refused; and the edges of a voxel. */
 static void look_at(fuzz* f, fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
@@ -228,6 +228,7 @@ static void look_at(fuzz* f, fuzz_field* field)
       square += along * along;
     }
     field->edge = known ? fmax(field->edge, sqrt(square)) : 1.0;
+    field->shortest = known && (axis == 0 || sqrt(square) < field->shortest) ? sqrt(square) : field->shortest;
     field->bounds[2 * axis] = known ? bounds[2 * axis] : 0.0;
     field->bounds[2 * axis + 1] = known ? bounds[2 * axis + 1] : 1.0;
   }
