@@ -60,7 +60,7 @@ static stratus_status aim(stratus_context* context, const double eye[3], const d
   double upwards[3] = { view_up[0], view_up[1], view_up[2] };
   double right[3], up[3];
   if (!isfinite(half_height * aspect)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera aspect %g of a window %g high makes it infinitely wide", aspect, half_height);
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera aspect %g times half the window's height, %g, must be finite", aspect, half_height);
   }
   if (!normalize(forward)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye and focal point (%g, %g, %g) must differ, by a finite distance",

@@ -11,11 +11,6 @@
 #define STRATUS_PLANE_SLACK 2e-15
 #define STRATUS_COORDINATE_MAX 1e30 /* beyond it a box has no bounds */
 
-static inline double stratus_vector_dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static inline void stratus_vector_cross(const double a[3], const double b[3], double result[3])
 {
   result[0] = a[1] * b[2] - a[2] * b[1];

@@ -81,6 +81,10 @@ void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[1
 bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16]);
 void stratus_matrix_point(const double matrix[16], const double point[3], double result[3]);
 void stratus_matrix_vector(const double matrix[16], const double vector[3], double result[3]);
+static inline double stratus_vector_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 /* One byte a cell, 1 where HIDDEN points or cells make it transparent; *hidden stays NULL if none is. cell_centered: a byte a value. */
 stratus_status stratus_volume_hidden_cells(stratus_context* context, const stratus_volume* volume, uint8_t** hidden);
 /* The cells that this piece owns (not DUPLICATE): the box [lo, hi) in cells (cell_centered: in values); everything without ghosts. */
@@ -111,8 +115,9 @@ typedef struct stratus_table {
   float scale, offset; /* entry = (int) clamp(fma(s, scale, offset), 0, size-1) */
   int* next_shown;     /* size+1: smallest entry >= i with any opacity, `size` if none */
   float* rgba;   /* NULL if pre-integrated; behind the size*4 floats, 4 more an entry: optical depth of a whole sample distance, 0, 0, 0 */
-  int32_t* sums; /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of .. */
-  float sum_scale;   /* .. optical depth per entry and per sample distance; then 2 rows of `size` entries, see fill_opaque() */
+  int32_t* sums; /* NULL if midpoint: 4 rows of size+1 running sums, of r tau, g tau, b tau, tau, in units of sum_scale; then 2 rows of
+                  * `size` numbers of entries, see fill_opaque() */
+  float sum_scale;   /* optical depth per entry and per sample distance */
   int has_opaque;    /* pre-integrated: 1 if any entry is of opacity 1 */
   float color_slope; /* pre-integrated: most that a colour changes between neighbouring entries with opacity, over the error allowed */
   int shown;         /* entries with opacity */

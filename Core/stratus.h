@@ -153,15 +153,16 @@ STRATUS_API stratus_status stratus_volume_check(stratus_context* context, const 
 
 /* A transfer function: piecewise linear between points of non-decreasing value (equal values make a step). */
 typedef struct stratus_transfer {
-  const double* opacity; /* opacity_count pairs: value, opacity in 0..1 per unit_distance; 1 is opaque, however short the way through it */
+  const double* opacity; /* opacity_count pairs: value, opacity in 0..1 per unit_distance; 1 is opaque, however short the way
+                          * through it. A single value at which the function is 1 is passed on the way to others. */
   size_t opacity_count;  /* >= 1 */
   const double* color;   /* color_count quadruples: value, red, green, blue in 0..1 */
   size_t color_count;    /* >= 1 */
   double unit_distance;  /* world length that `opacity` is per, > 0. Default 1. */
   int clamp;             /* 1: the end points' opacity holds beyond them. 0: transparent there. Default 1. Colours always hold. */
-  /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1; the ends hold
-   * beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever the volume's matrix. Default NULL,
-   * 0: none. */
+  /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1 (above 0,
+   * opacity 1 stays opaque); the ends hold beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever
+   * the volume's matrix. Default NULL, 0: none. */
   const double* gradient;
   size_t gradient_count;
   double weight; /* independent components: what their optical depth is multiplied by, 0..1. Default 1. */
@@ -901,12 +902,12 @@ typedef struct stratus_visibility_result {
   int layers;               /* peeling layers: of the leaf that has most; else 0 */
   int64_t cycles;           /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
                              * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
-  int64_t forced;           /* cells that came before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
-                             * after those that hide them through faces only, as gaps were given up, see `overlaps` and `gate_tests` */
+  int64_t forced;           /* cells that may have come before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
+                             * that came without a look across the gaps at them, as those were given up, see `overlaps` and `gate_tests` */
   int64_t overlaps;         /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
-                             * A leaf of n cells gives up gaps after 64 + sqrt(n) */
+                             * A leaf of n cells gives up gaps after 64 + sqrt(n), */
   int64_t gate_tests;       /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make.
-                             * A leaf of which n border faces lie at gaps gives them up after 64 n sqrt(n) */
+                             * or after 64 g sqrt(g) of these, for its g border faces at gaps, or after parts of both that add up to one */
   int64_t exact_signs;      /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
   int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
@@ -986,8 +987,9 @@ typedef struct stratus_tetra_caster stratus_tetra_caster;
 
 /* World lengths between the camera and what it draws are at most the first, 1.2e27, and a mesh is at least one over it long (or a point), so that
  * lengths and optical depths over them are floats with all their digits. A parallel camera's window is at most the second, 1.1e12, times
- * narrower than what it draws lies off its middle, so that products of two such coordinates, and a value, are floats. Others are
- * STRATUS_INVALID_ARGUMENT, with the number in the message. */
+ * narrower than what it draws lies off its middle, so that products of two such coordinates, and a value, are floats. The first holds for
+ * coordinates in units of a perspective camera's right and up, too, times forward's length, and for how far a parallel one's lean along forward; the
+ * second for how much longer than forward a perspective one's are. Others are STRATUS_INVALID_ARGUMENT, with the number in the message. */
 #define STRATUS_TETRA_REACH 1237940039285380274899124224.0 /* 2^90 */
 #define STRATUS_TETRA_WINDOWS 1099511627776.0              /* 2^40 */
 

@@ -50,16 +50,11 @@ void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffe
   }
 }
 
-static double dot(const double p[3], const double q[3])
-{
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
 /* The part of a parallel camera's right or up that is along its forward, in forwards; what rounding leaves of a right angle is none. */
 static double lean_of(const double side[3], const double forward[3])
 {
-  const double along = dot(side, forward), square = dot(forward, forward);
-  return fabs(along) > RIGHT_ANGLE * sqrt(dot(side, side) * square) ? along / square : 0.0;
+  const double along = stratus_vector_dot(side, forward), square = stratus_vector_dot(forward, forward);
+  return fabs(along) > RIGHT_ANGLE * sqrt(stratus_vector_dot(side, side) * square) ? along / square : 0.0;
 }
 
 /* Parallel rays are the same from wherever along them k is counted: from a plane at right angles to them, so that a mesh is as deep as it is, and
@@ -109,9 +104,9 @@ static stratus_status check_reach(const frame_build* build, double size, double 
 {
   const stratus_tetra_frame* frame = build->frame;
   const stratus_camera* c = &frame->camera;
-  const double unit = sqrt(dot(c->forward, c->forward)), lean = fmax(fabs(frame->lean[0]), fabs(frame->lean[1]));
+  const double unit = sqrt(stratus_vector_dot(c->forward, c->forward)), lean = fmax(fabs(frame->lean[0]), fabs(frame->lean[1]));
   const double reach = unit * fmax(fmax(*largest, fabs(frame->middle)), lean);
-  const double wide = sqrt(fmax(dot(c->right, c->right), dot(c->up, c->up))) / unit;
+  const double wide = sqrt(fmax(stratus_vector_dot(c->right, c->right), stratus_vector_dot(c->up, c->up))) / unit;
   if (!(reach <= STRATUS_TETRA_REACH)) {
     return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT,
       "mesh reaches %g from the camera, or as far in units of its right and up, must be at most %g", reach, STRATUS_TETRA_REACH);
@@ -128,7 +123,7 @@ static stratus_status check_reach(const frame_build* build, double size, double 
     return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right or up is %g times as long as forward, must be at most %g",
       wide, STRATUS_TETRA_WINDOWS);
   }
-  *largest = fmax(*largest, 1.0 / (STRATUS_TETRA_REACH * unit));
+  *largest = fmax(*largest, fmax(1.0 / unit, lean) / STRATUS_TETRA_REACH); /* so that a lean is a float in units of it */
   return STRATUS_OK;
 }
 
@@ -136,7 +131,7 @@ static stratus_status check_reach(const frame_build* build, double size, double 
 static stratus_status find_scale(frame_build* build)
 {
   const double *lo = build->tetra->lo, *hi = build->tetra->hi;
-  double nearest = INFINITY, farthest = -INFINITY, largest = 0.0, across = 0.0, size = 0.0;
+  double nearest = INFINITY, farthest = -INFINITY, largest = 0.0, across = 0.0, size = 0.0, unknown = 0.0;
   const bool parallel = build->frame->camera.parallel != 0;
   for (int corner = 0; corner < 8; ++corner) {
     const double local[3] = { corner & 1 ? hi[0] : lo[0], corner & 2 ? hi[1] : lo[1], corner & 4 ? hi[2] : lo[2] };
@@ -145,13 +140,14 @@ static stratus_status find_scale(frame_build* build)
     stratus_matrix_vector(build->mesh->matrix, diagonal, q);
     size = fmax(size, fmax(fmax(fabs(q[0]), fabs(q[1])), fabs(q[2])));
     stratus_matrix_point(build->matrix, local, p);
+    unknown += 0.0 * (p[0] + p[1] + p[2]); /* what is not finite stays, which minima and maxima forget */
     nearest = fmin(nearest, p[2]);
     farthest = fmax(farthest, p[2]);
     across = fmax(across, fmax(fabs(p[0]), fabs(p[1])));
     largest = fmax(largest, parallel ? 0.0 : fmax(across, fabs(p[2])));
   }
   const double middle = 0.5 * (nearest + farthest);
-  largest = parallel ? farthest - middle : largest;
+  largest = !isfinite(unknown) ? INFINITY : parallel ? farthest - middle : largest;
   build->frame->middle = middle;
   TRY(check_reach(build, size, across, &largest));
   int exponent = 0;
@@ -217,8 +213,8 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_camera* c = &frame->camera;
   const stratus_image* image = &frame->image;
-  const double *f = c->forward, *r = c->right, *u = c->up, square = dot(f, f);
-  const double products[6] = { square, 2.0 * dot(f, r), 2.0 * dot(f, u), dot(r, r), 2.0 * dot(r, u), dot(u, u) };
+  const double *f = c->forward, *r = c->right, *u = c->up, square = stratus_vector_dot(f, f);
+  const double products[6] = { square, 2.0 * stratus_vector_dot(f, r), 2.0 * stratus_vector_dot(f, u), stratus_vector_dot(r, r), 2.0 * stratus_vector_dot(r, u), stratus_vector_dot(u, u) };
   for (int i = 0; i < 6; ++i) { /* parallel rays are all as long, however wide their window */
     a->square[i] = c->parallel && i > 0 ? 0.0f : (float)(products[i] / square);
   }

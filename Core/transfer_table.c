@@ -10,9 +10,10 @@
 #define PREINTEGRATED_ENTRIES 16384
 #define MOST_ENTRIES 65536
 #define ENTRIES_A_FEATURE 32
-/* Opacity 1 is an infinite optical depth. Midpoint samples have one that stays so in any part of a sample that floats tell from none; sums, which
- * have no room for it, count what is so per unit distance and are told apart by fill_opaque(). */
+/* Opacity 1 is an infinite optical depth. A midpoint sample's stands for it in any part of a sample that floats tell from none. */
 #define OPAQUE_DEPTH 1e30f
+/* Sums have no room for an infinite depth: entries of opacity 1 have this one per unit distance, and fill_opaque() tells them apart. Opacities just
+ * below 1 may have more. */
 #define OPAQUE_TAU 16.0
 /* Optical depths per length, whose unit may be next to nothing, up to a bound: their sums stay doubles. */
 #define TAU_MOST 1e290
@@ -108,13 +109,13 @@ static double tau_of(const stratus_transfer* transfer, double opacity)
   return fmin((opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance, TAU_MOST);
 }
 
-/* Smallest distance between points of different value, where the function does anything. */
+/* Smallest distance between points of different value, where the function does anything, or is 1. */
 static double narrowest_feature(const stratus_transfer* transfer, double range)
 {
   double narrowest = range;
   for (size_t i = 0; i + 1 < transfer->opacity_count; ++i) {
     const double* p = transfer->opacity + 2 * i;
-    if (p[2] > p[0] && p[3] != p[1] && p[2] - p[0] < narrowest) {
+    if (p[2] > p[0] && (p[3] != p[1] || p[1] >= 1.0) && p[2] - p[0] < narrowest) {
       narrowest = p[2] - p[0];
     }
   }
@@ -189,28 +190,40 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   return steepest;
 }
 
+/* Whether a value where the function is 1 is one of several in a row. *at: a point below it, of one call after the other with rising values. */
+static bool stays_opaque(const stratus_transfer* transfer, double value, size_t* at)
+{
+  const double* p = transfer->opacity;
+  const size_t last = transfer->opacity_count - 1;
+  while (*at < last && p[2 * *at + 2] < value) {
+    ++*at;
+  }
+  bool stays = transfer->clamp && (value < p[0] || value > p[2 * last]);
+  for (size_t i = *at; i < last && p[2 * i] <= value; ++i) {
+    stays |= p[2 * i + 1] >= 1.0 && p[2 * i + 3] >= 1.0 && p[2 * i] < p[2 * i + 2];
+  }
+  return stays;
+}
+
 /* Behind the sums, where rays meet opacity 1: for each entry the next one upwards, `size` if there is none, then the next one downwards, or -1.
- * A ray stops at once at an entry of opacity 1, on its way to others at the first of two neighbours. One alone is a value at which the
- * function no more than touches 1: its infinite depth there, a logarithm's, adds up to little on the way through, and to all for those who stay. */
+ * A ray stops at once at an entry of opacity 1, on its way to others at the first where the function stays 1. A value at which it no more than
+ * touches 1 has an infinite depth, too, but a logarithm's: it adds up to little on the way through, and to all for those who stay. */
 static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
 {
   const int size = table->size;
   int32_t *up = table->sums + 4 * ((size_t)size + 1), *down = up + size;
   ptrdiff_t at = -1;
-  for (int e = 0; e < size; ++e) {
+  size_t below = 0;
+  for (int e = 0, last = -1; e < size; ++e) {
     const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    const bool opaque = opacity >= 1.0 && !outside(transfer, x);
-    up[e] = opaque ? e : size;
+    const bool opaque = opacity >= 1.0 && !outside(transfer, x), stays = opaque && stays_opaque(transfer, x, &below);
+    last = stays ? e : last;
+    down[e] = opaque ? e : last;
+    up[e] = stays ? e : size;
     table->has_opaque |= opaque;
   }
-  for (int e = 0, last = -1; e < size; ++e) {
-    const bool beside = (e > 0 && up[e - 1] == e - 1) || (e + 1 < size && up[e + 1] == e + 1);
-    last = up[e] == e && beside ? e : last;
-    down[e] = up[e] == e ? e : last;
-  }
   for (int e = size - 1, next = size; e >= 0; --e) {
-    const bool beside = (e > 0 && down[e - 1] == e - 1) || (e + 1 < size && down[e + 1] == e + 1);
-    next = down[e] == e && beside ? e : next;
+    next = up[e] == e ? e : next;
     up[e] = down[e] == e ? e : next;
   }
 }

@@ -98,11 +98,6 @@ static bool outer_plane(const gap_search* search, uint32_t face, double normal[3
   return true;
 }
 
-static double dot(const double p[3], const double q[3])
-{
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
 /* Whether any point of the leaf's border lies beyond the face's plane. */
 static bool looks_at_others(const gap_search* search, uint32_t face)
 {
@@ -121,7 +116,7 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
     const int level = stack[--pending].level;
     const int64_t number = stack[pending].box;
     const double* box = search->boxes + 6 * (search->level_begin[level] + number);
-    if (!(dot(normal, (const double[]){ box[normal[0] > 0.0], box[2 + (normal[1] > 0.0)], box[4 + (normal[2] > 0.0)] }) > least)) {
+    if (!(stratus_vector_dot(normal, (const double[]){ box[normal[0] > 0.0], box[2 + (normal[1] > 0.0)], box[4 + (normal[2] > 0.0)] }) > least)) {
       continue;
     }
     const int64_t below = level > 0 ? search->level_begin[level] - search->level_begin[level - 1] : search->count;
@@ -132,7 +127,7 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
         continue;
       }
       for (int v = 0; v < 3; v++) {
-        if (dot(normal, face_point(search->order, search->faces[i], v)) > least) {
+        if (stratus_vector_dot(normal, face_point(search->order, search->faces[i], v)) > least) {
           return true;
         }
       }

@@ -8,8 +8,8 @@
 #include "tetra_gather.h"
 #include "transfer_table.h"
 
-/* Of a stretch: the least that a table's entry sums to makes it opaque then, over all of its entries and pieces. Without it long stretches would
- * overflow. */
+/* Most that a stretch's length weighs, so that long ones do not overflow: 1, the least sum of a stretch that shows, over 2^16 entries and 16 pieces
+ * is an optical depth of 2^20 then. */
 #define OPAQUE_WEIGHT 0x1p40f
 
 /* What a ray has gathered. */

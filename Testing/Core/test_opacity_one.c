@@ -112,6 +112,25 @@ static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
   }
 }
 
+/* Between values far apart the function is 1 over less than a few entries of a table: rays that pass through it end there all the same. */
+static void a_narrow_band_of_opacity_1_is_met_on_the_way(void** state)
+{
+  static const double bands[] = { 100, 0, 100, 1, 101, 1, 101, 0, 60000, 0, 60000, 1, 60001, 1, 60001, 0 };
+  const stratus_transfer transfer = function_of(bands, 8);
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  options.termination = 1.0;
+  fill_slab(200.0f, 0.0f);
+  values[0] = 60001.0f;
+  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+    options.structure = (stratus_structure)structure;
+    draw(*state, 1e-3, &transfer, &options, drawn);
+    if (drawn[4 * CENTRE + 3] != 1.0f) {
+      fail_msg("structure %d: alpha %.9g", structure, (double)drawn[4 * CENTRE + 3]);
+    }
+  }
+}
+
 /* Alpha of a way through a medium of one opacity, as doubles have it. */
 static double absorbed(double opacity, double length)
 {
@@ -250,6 +269,7 @@ int main(void)
     stratus_context* context = open_context(device ? "0" : "host");
     const struct CMUnitTest tests[] = {
       cmocka_unit_test_prestate(a_slab_of_opacity_1_is_opaque_at_any_spacing, context),
+      cmocka_unit_test_prestate(a_narrow_band_of_opacity_1_is_met_on_the_way, context),
       cmocka_unit_test_prestate(what_is_nearly_opaque_is_as_translucent_as_it_should_be, context),
       cmocka_unit_test_prestate(a_peak_that_touches_1_is_no_wall, context),
       cmocka_unit_test_prestate(several_media_are_opaque_where_one_is, context),

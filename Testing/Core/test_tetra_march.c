@@ -299,6 +299,29 @@ static void windows_narrower_than_floats_are_refused(void** state)
   tetra_destroy(&c);
 }
 
+/* Finite points whose distances in forwards of .1 are not. */
+static void depths_beyond_doubles_are_refused(void** state)
+{
+  static const double points[] = { 0, 0, -5e307, 1, 0, 5e307, 0, 1, 5e307, 1, 1, -5e307 };
+  tetra_case c;
+  stratus_tetra_caster* caster = NULL;
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
+  const stratus_camera camera = {
+    .forward = { 0, 0, -0.1 }, .right = { 1, 0, 0 }, .up = { 0, 1, 0 }, .near_k = -INFINITY, .far_k = INFINITY, .parallel = 1
+  };
+  tetra_create(&c, 1, 0.0, 0.0, 10);
+  c.mesh.points = points;
+  c.mesh.point_count = 4;
+  c.mesh.vertices = (const int32_t[]){ 0, 1, 2, 3 };
+  c.mesh.cell_count = 1;
+  assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+  assert_int_equal(
+    stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(*state), "mesh reaches inf"));
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -314,6 +337,7 @@ int main(void)
     cmocka_unit_test(cells_without_volume_show_nothing_and_are_told),
     cmocka_unit_test(lengths_of_any_size_are_drawn_or_refused),
     cmocka_unit_test(windows_narrower_than_floats_are_refused),
+    cmocka_unit_test(depths_beyond_doubles_are_refused),
   };
   int failed = 0;
   for (tetra_method = STRATUS_TETRA_METHOD_MARCH; tetra_method <= STRATUS_TETRA_METHOD_PROJECT; ++tetra_method) {
