@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * stratus-fuzz: random values over the public structs of the core, with every buffer at a guard page. A child process works through cases; this
- * one sees what it dies of, tells the case, and goes on behind it. */
+ * stratus-fuzz: random values over the public structs of the core, with every buffer at a guard page. A child process works
+ * through cases; this one sees what it dies of, tells the case, and goes on behind it. */
 #define _XOPEN_SOURCE 700
 #define _DEFAULT_SOURCE
 #include "fuzz.h"
@@ -45,10 +45,14 @@ static void tell_death(const run* r, const char* kind, fuzz_tally* tally, int st
   ++tally->findings;
   if (!tally->told) {
     const bool slow = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM);
-    fprintf(stderr, "FINDING in %s, case %" PRIu64 ": %s %d\n  in %s\n  %s; odd:%s\n  again: %s %s 0 %" PRIu64 " device=%s case=%" PRIu64 "\n", kind,
-      tally->number, slow ? "a call that does not end, signal" : WIFSIGNALED(status) ? "signal" : "exit status",
-      WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), tally->call ? tally->call : "nothing", tally->about, tally->odd, r->program, kind, r->seed, r->device,
-      tally->number);
+    fprintf(stderr,
+      "FINDING in %s, case %" PRIu64 ": %s %d\n  in %s\n  %s; odd:%s\n  again: %s %s 0 %" PRIu64 " device=%s case=%" PRIu64 "\n", kind,
+      tally->number,
+      slow                    ? "a call that does not end, signal"
+        : WIFSIGNALED(status) ? "signal"
+                              : "exit status",
+      WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), tally->call ? tally->call : "nothing", tally->about, tally->odd,
+      r->program, kind, r->seed, r->device, tally->number);
   }
   tally->told = false;
 }
@@ -83,8 +87,8 @@ static void supervise(const run* r, const char* kind, fuzz_tally* tally, double 
 
 static void print_tallies(const fuzz_tally* tallies, const char* only)
 {
-  printf("%-11s %9s %10s %9s %9s %8s %9s %9s %9s %9s %9s %8s %9s %9s\n", "kind", "cases", "calls", "pictures", "objects", "bytes", "compared",
-    "buffers", "ok", "refused", "overflow", "memory", "cancelled", "findings");
+  printf("%-11s %9s %10s %9s %9s %8s %9s %9s %9s %9s %9s %8s %9s %9s\n", "kind", "cases", "calls", "pictures", "objects", "bytes",
+    "compared", "buffers", "ok", "refused", "overflow", "memory", "cancelled", "findings");
   fuzz_tally all = { 0 };
   for (int k = 0; k <= fuzz_kind_count; ++k) {
     const fuzz_tally* t = k < fuzz_kind_count ? tallies + k : &all;
@@ -93,9 +97,9 @@ static void print_tallies(const fuzz_tally* tallies, const char* only)
     }
     printf("%-11s %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64 " %9" PRIu64 " %9" PRIu64 " %9" PRIu64 " %9" PRIu64
            " %9" PRIu64 " %8" PRIu64 " %9" PRIu64 " %9" PRIu64 "\n",
-      k < fuzz_kind_count ? fuzz_kinds[k].name : "all", t->cases, t->calls, t->pictures, t->objects, t->byte_strings, t->compared, t->buffers,
-      t->statuses[STRATUS_OK], t->statuses[STRATUS_INVALID_ARGUMENT] + t->statuses[STRATUS_UNSUPPORTED], t->statuses[STRATUS_OVERFLOW],
-      t->statuses[STRATUS_OUT_OF_MEMORY], t->statuses[STRATUS_CANCELLED], t->findings);
+      k < fuzz_kind_count ? fuzz_kinds[k].name : "all", t->cases, t->calls, t->pictures, t->objects, t->byte_strings, t->compared,
+      t->buffers, t->statuses[STRATUS_OK], t->statuses[STRATUS_INVALID_ARGUMENT] + t->statuses[STRATUS_UNSUPPORTED],
+      t->statuses[STRATUS_OVERFLOW], t->statuses[STRATUS_OUT_OF_MEMORY], t->statuses[STRATUS_CANCELLED], t->findings);
     uint64_t* sums = (uint64_t*)&all.cases;
     const uint64_t* terms = &t->cases;
     for (size_t i = 0; k < fuzz_kind_count && i <= (size_t)(&t->findings - &t->cases); ++i) {
@@ -141,7 +145,8 @@ static bool read_word(run* r, const char* word)
 
 int main(int argc, char** argv)
 {
-  if (!getenv("OMP_WAIT_POLICY")) { /* read before main() is: threads that wait are to sleep, for there are thousands of small parallel regions */
+  if (!getenv(
+        "OMP_WAIT_POLICY")) { /* read before main() is: threads that wait are to sleep, for there are thousands of small parallel regions */
     setenv("OMP_WAIT_POLICY", "passive", 1);
     execv("/proc/self/exe", argv);
   }

@@ -21,10 +21,10 @@ typedef struct fuzz_tally {
   char odd[256];    /* .. and its odd numbers so far */
   /* Sums; from here on nothing but uint64_t. */
   uint64_t cases, calls, pictures;
-  uint64_t objects;      /* ranges, maps, voxels, fields, trees, octrees, partitions, orders, casters */
-  uint64_t byte_strings; /* saved trees that were changed and offered */
-  uint64_t compared;     /* answers held against those of another way, or of a second time */
-  uint64_t buffers;      /* at a guard page */
+  uint64_t objects;                   /* ranges, maps, voxels, fields, trees, octrees, partitions, orders, casters */
+  uint64_t byte_strings;              /* saved trees that were changed and offered */
+  uint64_t compared;                  /* answers held against those of another way, or of a second time */
+  uint64_t buffers;                   /* at a guard page */
   uint64_t refused_memory, cancelled; /* on purpose */
   uint64_t statuses[FUZZ_STATUSES];
   uint64_t findings;
@@ -42,7 +42,7 @@ typedef struct fuzz_memory {
 
 typedef struct fuzz_progress {
   int64_t calls, cancel_at; /* as in fuzz_memory */
-  bool wrong;               /* no stage, or a fraction outside 0..1 */
+  bool wrong;               /* no stage, or a fraction outside 0..1; no line to log */
   uint64_t cancelled;
 } fuzz_progress;
 
@@ -58,7 +58,7 @@ typedef struct fuzz {
   const char* device; /* of the contexts */
   uint64_t seed, number, random;
   fuzz_tally* tally;
-  bool here;          /* no supervisor: a finding aborts */
+  bool here; /* no supervisor: a finding aborts */
   /* Of 10000 fields so many get an odd value (NULL, zero, negative, huge, no number, out of range), and the field odd_at does. */
   int oddness, odd_at, fields;
   fuzz_block* blocks;
@@ -140,16 +140,17 @@ extern const int fuzz_kind_count;
 /* ---- fuzz_volumes.c */
 typedef struct fuzz_field {
   stratus_volume view;
-  size_t values;    /* places in the grid */
-  size_t bytes;     /* of view.values */
-  double low, high; /* about the range of the values */
+  size_t values;         /* places in the grid */
+  size_t bytes;          /* of view.values */
+  double low, high;      /* about the range of the values */
   double edge, shortest; /* a voxel's longest and shortest, in the world */
-  double bounds[6]; /* of the world, 0..1 along each axis where the view is refused */
+  double bounds[6];      /* of the world, 0..1 along each axis where the view is refused */
 } fuzz_field;
 
 fuzz_field fuzz_volume(fuzz* f, int largest, int components);
-fuzz_field fuzz_row(fuzz* f, int64_t count); /* values alone */
+fuzz_field fuzz_row(fuzz* f, int64_t count);          /* values alone */
 void fuzz_volume_changes(fuzz* f, fuzz_field* field); /* other values at the same place, the revision raised */
+void fuzz_row_changes(fuzz* f, fuzz_field* row);
 stratus_transfer fuzz_transfer(fuzz* f, double low, double high, double edge);
 /* `count` of them, an array at a guard page. */
 const stratus_transfer* fuzz_transfers(fuzz* f, int count, bool labels, double low, double high, double edge);
@@ -170,11 +171,13 @@ double fuzz_value_of(const stratus_volume* volume, size_t index); /* component 0
 /* ---- fuzz_meshes.c */
 typedef struct fuzz_tetrahedra {
   stratus_mesh view;
+  fuzz_field row; /* its values */
   double low, high, edge, bounds[6];
   bool sound; /* a lattice whose cells do not overlap */
 } fuzz_tetrahedra;
 
 fuzz_tetrahedra fuzz_mesh(fuzz* f, int largest);
+void fuzz_mesh_changes(fuzz* f, fuzz_tetrahedra* mesh); /* as fuzz_volume_changes() */
 
 /* ---- fuzz_orders.c */
 /* A partition of the mesh: what it says is checked, and is valid until it is destroyed. NULL: refused. */

@@ -20,12 +20,15 @@ static void ask_names(fuzz* f)
 
 static void ask_devices(fuzz* f)
 {
-  const int count = CALL(stratus_device_count()), index = fuzz_chance(f, 0.5) ? (int)fuzz_below(f, 3) : (int)(uint32_t)(uint64_t)fuzz_odd_integer(f);
+  const int count = CALL(stratus_device_count()),
+            index = fuzz_chance(f, 0.5) ? (int)fuzz_below(f, 3) : (int)(uint32_t)(uint64_t)fuzz_odd_integer(f);
   const size_t capacity = fuzz_below(f, 40);
   char* name = fuzz_output(f, capacity);
   char* given = fuzz_odd(f) ? NULL : name;
   const stratus_status status = CALL(stratus_device_name(index, given, capacity));
-  const stratus_status wanted = !given || capacity == 0 ? STRATUS_INVALID_ARGUMENT : index >= 0 && index < count ? STRATUS_OK : STRATUS_NO_DEVICE;
+  const stratus_status wanted = !given || capacity == 0 ? STRATUS_INVALID_ARGUMENT
+    : index >= 0 && index < count                       ? STRATUS_OK
+                                                        : STRATUS_NO_DEVICE;
   EXPECT(status == wanted, "device %d: %s", index, stratus_status_name(status));
 }
 
@@ -68,20 +71,24 @@ static void ask_nothing(fuzz* f)
   CALL(stratus_partition_get(NULL, NULL));
   CALL(stratus_ray_caster_release(NULL));
   CALL(stratus_tetra_caster_release(NULL));
-  EXPECT(CALL(stratus_octree_check(NULL)) == bad && CALL(stratus_octree_query_box(NULL, NULL, NULL, 0, NULL)) == bad, "an octree of nothing");
+  EXPECT(
+    CALL(stratus_octree_check(NULL)) == bad && CALL(stratus_octree_query_box(NULL, NULL, NULL, 0, NULL)) == bad, "an octree of nothing");
   EXPECT(CALL(stratus_octree_insert(NULL, NULL, 1, NULL)) == bad && CALL(stratus_octree_cull(NULL, NULL, NULL, NULL)) == bad, "no octree");
   EXPECT(CALL(stratus_visibility_order_sort(NULL, NULL, NULL, STRATUS_PEELING_NEAREST, NULL)) == bad, "an order of nothing");
   EXPECT(CALL(stratus_ray_caster_render(NULL, NULL, NULL, NULL, NULL, NULL, NULL)) == bad, "a picture of nothing");
   EXPECT(CALL(stratus_tetra_caster_render(NULL, NULL, NULL, NULL, NULL, NULL, NULL)) == bad, "a picture of nothing");
-  EXPECT(STATUS(stratus_tree_check(f->context, NULL, NULL)) == bad && STATUS(stratus_tree_load(f->context, NULL, 8, NULL)) == bad, "no tree");
+  EXPECT(
+    STATUS(stratus_tree_check(f->context, NULL, NULL)) == bad && STATUS(stratus_tree_load(f->context, NULL, 8, NULL)) == bad, "no tree");
   EXPECT(CALL(stratus_frustum_side(NULL, NULL, 1)) <= STRATUS_SIDE_INSIDE, "a side of nothing");
   (void)CALL(stratus_context_on_device(NULL));
-  EXPECT(CALL(stratus_context_threads(NULL)) == 0 && CALL(stratus_context_message(NULL)) && CALL(stratus_context_device(NULL)), "no context");
+  EXPECT(
+    CALL(stratus_context_threads(NULL)) == 0 && CALL(stratus_context_message(NULL)) && CALL(stratus_context_device(NULL)), "no context");
 }
 
 static void make_context(fuzz* f)
 {
-  static const char* const devices[] = { "host", "host", "host", "", "no such device", "-1", "99999999999999999999", "2147483648", "h", "%s%n" };
+  static const char* const devices[] = { "host", "host", "host", "", "no such device", "-1", "99999999999999999999", "2147483648", "h",
+    "%s%n" };
   fuzz_memory memory;
   stratus_context_options o = fuzz_context_options(f, &memory);
   const char* device = devices[fuzz_below(f, sizeof devices / sizeof *devices)];
@@ -143,7 +150,8 @@ static void check_camera(fuzz* f)
   fuzz_vector(f, -10.0, 10.0, focal);
   fuzz_vector(f, -1.0, 1.0, up);
   const double angle = fuzz_real(f, 0.1, 179.0), aspect = fuzz_real(f, 0.1, 10.0), scale = fuzz_real(f, 0.1, 10.0);
-  const double *from = fuzz_pointer(f, FUZZ_INPUT(f, eye)), *to = fuzz_pointer(f, FUZZ_INPUT(f, focal)), *above = fuzz_pointer(f, FUZZ_INPUT(f, up));
+  const double *from = fuzz_pointer(f, FUZZ_INPUT(f, eye)), *to = fuzz_pointer(f, FUZZ_INPUT(f, focal)),
+               *above = fuzz_pointer(f, FUZZ_INPUT(f, up));
   stratus_camera* out = fuzz_odd(f) ? NULL : fuzz_output(f, sizeof *out);
   const bool parallel = fuzz_chance(f, 0.5);
   memset(&camera, 0x7b, sizeof camera);
@@ -182,12 +190,34 @@ static void ask_records(fuzz* f)
   fuzz_vector(f, -2.0, 2.0, point);
   EXPECT(CREATE(&scene, stratus_scene_create(f->context, given, &scene)) == STRATUS_INVALID_ARGUMENT, "a scene of no name");
   EXPECT(CREATE(&mesh, stratus_mesh_scene_create(f->context, given, &mesh)) == STRATUS_INVALID_ARGUMENT, "a mesh of no name");
-  EXPECT(CREATE(&positions, stratus_voxel_scene_create(f->context, given, n, &positions, &count)) == STRATUS_INVALID_ARGUMENT, "voxels of no name");
+  EXPECT(CREATE(&positions, stratus_voxel_scene_create(f->context, given, n, &positions, &count)) == STRATUS_INVALID_ARGUMENT,
+    "voxels of no name");
   EXPECT(isnan(CALL(stratus_mesh_scene_value(given, point))), "a value of no scene");
   EXPECT(isfinite(CALL(stratus_mesh_scene_value("wavelet", FUZZ_INPUT(f, point)))) || !fuzz_is_tame(f), "no value of a scene");
   CALL(stratus_scene_destroy(f->context, NULL));
   CALL(stratus_mesh_scene_destroy(f->context, NULL));
   CALL(stratus_voxel_scene_release(f->context, NULL));
+}
+
+/* Once in a while those that are: they take seconds. */
+static void make_records(fuzz* f)
+{
+  stratus_voxels* voxels = NULL;
+  stratus_mesh_scene* mesh = NULL;
+  int64_t n[3];
+  int32_t* positions = NULL;
+  size_t count = 0;
+  EXPECT(CREATE(&positions, stratus_voxel_scene_create(f->context, "17K", n, &positions, &count)) == STRATUS_OK, "no voxels of record");
+  const stratus_status listed = CREATE(&voxels, stratus_voxels_create_list(f->context, n, positions, count, &voxels));
+  EXPECT(listed == STRATUS_OK && CALL(stratus_voxels_count(voxels)) <= (int64_t)count, "voxels of record are no list");
+  stratus_ray* rays = fuzz_output(f, (size_t)512 * 512 * sizeof *rays);
+  EXPECT(STATUS(stratus_voxel_scene_rays(f->context, voxels, (int)fuzz_below(f, 2), rays)) == STRATUS_OK, "no rays of record");
+  EXPECT(
+    STATUS(stratus_voxel_scene_rays(f->context, voxels, 2 + (int)fuzz_below(f, 9), rays)) == STRATUS_INVALID_ARGUMENT, "rays of no kind");
+  EXPECT(CREATE(&mesh, stratus_mesh_scene_create(f->context, "holes", &mesh)) == STRATUS_OK, "no mesh of record");
+  CALL(stratus_mesh_scene_destroy(f->context, mesh));
+  CALL(stratus_voxel_scene_release(f->context, positions));
+  CALL(stratus_voxels_destroy(voxels));
 }
 
 static void check_views(fuzz* f)
@@ -221,4 +251,7 @@ void fuzz_contexts(fuzz* f)
   check_camera(f);
   ask_records(f);
   check_views(f);
+  if (f->number % 20000 == 0) {
+    make_records(f);
+  }
 }

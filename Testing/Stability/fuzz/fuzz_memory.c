@@ -174,6 +174,12 @@ static int progress(void* user, const char* stage, double fraction)
   return cancel;
 }
 
+static void log_line(void* user, stratus_log_level level, const char* line)
+{
+  fuzz_progress* p = user;
+  p->wrong = p->wrong || !line || strlen(line) >= 1024 || (unsigned)level > STRATUS_LOG_WARNING;
+}
+
 stratus_context_options fuzz_context_options(fuzz* f, fuzz_memory* memory)
 {
   static const int fills[] = { 0x00, 0xff, 0x7b, 0xbe, 0x01 };
@@ -186,6 +192,8 @@ stratus_context_options fuzz_context_options(fuzz* f, fuzz_memory* memory)
   options.allocator_user = memory;
   options.progress = progress;
   options.progress_user = &f->progress;
+  options.log = fuzz_chance(f, 0.5) ? log_line : NULL;
+  options.log_user = &f->progress;
   return options;
 }
 
@@ -204,5 +212,5 @@ void fuzz_context_close(fuzz* f, stratus_context* context, fuzz_memory* memory)
   CALL(stratus_context_destroy(context));
   EXPECT(memory->live == 0, "%lld allocations are left", (long long)memory->live);
   EXPECT(!memory->damaged, "the bytes behind an allocation were written");
-  EXPECT(!f->progress.wrong, "progress without a stage, or beyond 0..1");
+  EXPECT(!f->progress.wrong, "progress without a stage, or beyond 0..1, or a line of no log");
 }

@@ -43,7 +43,8 @@ static draft make_lattice(fuzz* f, int largest)
 
 static draft make_soup(fuzz* f, int largest)
 {
-  draft d = { .point_count = 4 + (int64_t)fuzz_below(f, (uint64_t)(8 * largest)), .cell_count = (int64_t)fuzz_below(f, (uint64_t)(12 * largest)) };
+  draft d = { .point_count = 4 + (int64_t)fuzz_below(f, (uint64_t)(8 * largest)),
+    .cell_count = (int64_t)fuzz_below(f, (uint64_t)(12 * largest)) };
   const double flat = fuzz_chance(f, 0.5) ? 0.0 : 0.5, steps = fuzz_chance(f, 0.5) ? 0.0 : 3.0;
   d.points = malloc((size_t)d.point_count * 3 * sizeof *d.points);
   d.vertices = malloc((size_t)d.cell_count * 4 * sizeof *d.vertices + 1);
@@ -98,12 +99,20 @@ static void add_values(fuzz* f, fuzz_tetrahedra* t)
   m->cell_values = fuzz_chance(f, 0.3);
   const int64_t count = m->cell_values ? m->cell_count : m->point_count;
   if (count > 0) {
-    const fuzz_field field = fuzz_row(f, count);
-    m->values = field.view.values;
-    m->type = field.view.type;
-    m->value_stride = field.view.value_stride;
-    t->low = field.low;
-    t->high = field.high;
+    t->row = fuzz_row(f, count);
+    m->values = t->row.view.values;
+    m->type = t->row.view.type;
+    m->value_stride = t->row.view.value_stride;
+    t->low = t->row.low;
+    t->high = t->row.high;
+  }
+}
+
+void fuzz_mesh_changes(fuzz* f, fuzz_tetrahedra* mesh)
+{
+  if (mesh->view.values && fuzz_is_tame(f)) {
+    fuzz_row_changes(f, &mesh->row);
+    ++mesh->view.revision;
   }
 }
 

@@ -83,7 +83,8 @@ static void insert(fuzz* f, pair* p)
   if (status != STRATUS_OK) {
     return;
   }
-  status = STATUS(turned ? stratus_octree_insert_oriented(p->list, given, count, list_ids) : stratus_octree_insert(p->list, given, count, list_ids));
+  status = STATUS(
+    turned ? stratus_octree_insert_oriented(p->list, given, count, list_ids) : stratus_octree_insert(p->list, given, count, list_ids));
   EXPECT(status == STRATUS_OK, "the list refuses what the tree took: %s", stratus_context_message(f->context));
   for (size_t i = 0; i < count; ++i) {
     p->ids[p->count] = ids[i];
@@ -182,7 +183,8 @@ static void mark(fuzz* f, const uint32_t* of, size_t objects, const uint32_t* id
   }
 }
 
-static void check_equal(fuzz* f, const pair* p, const uint32_t* ids, size_t count, const uint32_t* list_ids, size_t list_count, const char* what)
+static void check_equal(
+  fuzz* f, const pair* p, const uint32_t* ids, size_t count, const uint32_t* list_ids, size_t list_count, const char* what)
 {
   uint8_t marks[OBJECTS_MOST], list_marks[OBJECTS_MOST];
   mark(f, p->ids, p->count, ids, count, marks);
@@ -290,7 +292,17 @@ static void look_inside(fuzz* f, const pair* p)
   CALL(stratus_octree_get_statistics(p->tree, s));
   EXPECT(s->objects == p->count && CALL(stratus_octree_count(p->tree)) == p->count, "%zu objects, told %zu", p->count, s->objects);
   stratus_octree_node* nodes = fuzz_output(f, s->nodes * sizeof *nodes);
-  EXPECT(STATUS(stratus_octree_nodes(p->tree, NULL, nodes)) == STRATUS_OK, "%s", stratus_context_message(f->context));
+  stratus_frustum frustum = { .planes = { { 1, 0, 0, 0.5 * p->width }, { -1, 0.3, 0, p->width } }, .eye = { 0, 0, p->width } };
+  const stratus_frustum* seen = fuzz_chance(f, 0.5) ? NULL : FUZZ_INPUT(f, frustum);
+  EXPECT(STATUS(stratus_octree_nodes(p->tree, seen, nodes)) == STRATUS_OK, "%s", stratus_context_message(f->context));
+  for (size_t n = 0; n < s->nodes; ++n) {
+    EXPECT(nodes[n].level >= 0 && nodes[n].level <= s->depth && (unsigned)nodes[n].side <= STRATUS_SIDE_INSIDE, "node %zu at level %d", n,
+      nodes[n].level);
+  }
+  double none[6];
+  EXPECT(STATUS(stratus_octree_bounds(p->tree, (uint32_t)stratus_octree_id_limit(p->tree) + (uint32_t)fuzz_below(f, 9), none)) ==
+      STRATUS_INVALID_ARGUMENT,
+    "bounds of an id not in use");
   for (size_t i = 0; i < p->count; ++i) {
     double bounds[6];
     EXPECT(STATUS(stratus_octree_bounds(p->tree, p->ids[i], bounds)) == STRATUS_OK, "object %zu has no bounds", i);
@@ -330,8 +342,8 @@ void fuzz_octrees(fuzz* f)
   p->options = choose_options(f);
   p->width = fuzz_chance(f, 0.8) ? 100.0 : fuzz_scale(f, 1e-6, 1e9);
   const stratus_octree_options* options = FUZZ_INPUT(f, p->options);
-  fuzz_about(f, "placement %d, stop %d, levels %d, leaves of %d, looseness %g", (int)p->options.placement, (int)p->options.stop, p->options.levels,
-    p->options.leaf_objects, p->options.looseness);
+  fuzz_about(f, "placement %d, stop %d, levels %d, leaves of %d, looseness %g", (int)p->options.placement, (int)p->options.stop,
+    p->options.levels, p->options.leaf_objects, p->options.looseness);
   const stratus_status status = CREATE(&p->tree, stratus_octree_create(f->context, options, &p->tree));
   EXPECT(status == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
   if (status == STRATUS_OK) {

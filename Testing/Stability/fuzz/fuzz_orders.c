@@ -30,8 +30,8 @@ static void check_nodes(fuzz* f, const stratus_leaves* leaves)
     if (node->axis < 0) {
       EXPECT(node->below >= 0 && node->below < leaves->leaf_count, "node %d is leaf %d", n, node->below);
     } else {
-      EXPECT(node->below > n && node->below < leaves->node_count && node->above > n && node->above < leaves->node_count, "node %d over %d, %d",
-        n, node->below, node->above);
+      EXPECT(node->below > n && node->below < leaves->node_count && node->above > n && node->above < leaves->node_count,
+        "node %d over %d, %d", n, node->below, node->above);
       EXPECT(isfinite(node->value), "node %d cuts at %g", n, node->value);
     }
   }
@@ -48,7 +48,8 @@ static void check_partition(fuzz* f, const stratus_mesh* mesh, const stratus_par
     const double weight = r->weights[p - r->old_points];
     EXPECT(ends[0] >= 0 && ends[0] < p && ends[1] >= 0 && ends[1] < p && weight > 0.0 && weight < 1.0, "point %lld between %d and %d at %g",
       (long long)p, ends[0], ends[1], weight);
-    EXPECT(isfinite(r->points[3 * p]) && isfinite(r->points[3 * p + 1]) && isfinite(r->points[3 * p + 2]), "point %lld is no point", (long long)p);
+    EXPECT(isfinite(r->points[3 * p]) && isfinite(r->points[3 * p + 1]) && isfinite(r->points[3 * p + 2]), "point %lld is no point",
+      (long long)p);
   }
   for (int64_t c = 0; c < r->cell_count; ++c) {
     EXPECT(r->cells[c] >= 0 && r->cells[c] < mesh->cell_count && r->leaves.leaf[c] >= 0 && r->leaves.leaf[c] < r->leaves.leaf_count,
@@ -183,7 +184,8 @@ void fuzz_orders(fuzz* f)
     cut.cell_count = r.cell_count;
     cut.values = NULL;
     cut.hidden = NULL;
-    fuzz_about(f, "%lld cells of %lld, %d leaves, sound %d", (long long)cut.cell_count, (long long)t.view.cell_count, r.leaves.leaf_count, t.sound);
+    fuzz_about(
+      f, "%lld cells of %lld, %d leaves, sound %d", (long long)cut.cell_count, (long long)t.view.cell_count, r.leaves.leaf_count, t.sound);
     order_of(f, FUZZ_INPUT(f, cut), FUZZ_INPUT(f, r.leaves), t.bounds, fuzz_is_tame(f));
   }
   if (mesh && fuzz_chance(f, 0.3)) {

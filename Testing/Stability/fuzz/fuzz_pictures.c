@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ray casts of volumes: every mode, structure, sampling and interpolation, drawn in sequences on one caster whose every picture must be that of
- * a caster that has drawn nothing before. */
+ * Ray casts of volumes: every mode, structure, sampling and interpolation, drawn in sequences on one caster whose every picture
+ * must be that of a caster that has drawn nothing before. */
 #include "fuzz.h"
 
 #include "Core/internal.h"
@@ -119,12 +119,15 @@ static stratus_status draw(fuzz* f, stratus_context* context, stratus_ray_caster
   const stratus_image* into = fuzz_pointer(f, FUZZ_INPUT(f, *image));
   const stratus_transfer* transfers = fuzz_pointer(f, c->transfers);
   const stratus_volume* v = &c->field.view;
-  fuzz_about(f, "%s %s %s, interpolation %d, shade %d, labels %d, mask %d, crop %d, clips %d, audit %d, opaque %d, %s camera; %lld x %lld x %lld of type "
-    "%d, %d components, stride %lld, cells %d, ghosts %d %d", stratus_mode_name(options->mode), stratus_structure_name(options->structure),
-    stratus_sampling_name(options->sampling), (int)options->interpolation, options->shade, options->label_count, options->mask != NULL, options->crop,
-    options->clip_plane_count, options->audit, image->opaque_depth != NULL, c->camera.parallel ? "parallel" : "perspective",
-    (long long)v->dimensions[0], (long long)v->dimensions[1], (long long)v->dimensions[2], (int)v->type, v->components, (long long)v->value_stride,
-    v->cell_centered, v->point_ghosts != NULL, v->cell_ghosts != NULL);
+  fuzz_about(f,
+    "%s %s %s, interpolation %d, shade %d, labels %d, mask %d, crop %d, clips %d, audit %d, opaque %d, %s camera; %lld x %lld x %lld of "
+    "type "
+    "%d, %d components, stride %lld, cells %d, ghosts %d %d",
+    stratus_mode_name(options->mode), stratus_structure_name(options->structure), stratus_sampling_name(options->sampling),
+    (int)options->interpolation, options->shade, options->label_count, options->mask != NULL, options->crop, options->clip_plane_count,
+    options->audit, image->opaque_depth != NULL, c->camera.parallel ? "parallel" : "perspective", (long long)v->dimensions[0],
+    (long long)v->dimensions[1], (long long)v->dimensions[2], (int)v->type, v->components, (long long)v->value_stride, v->cell_centered,
+    v->point_ghosts != NULL, v->cell_ghosts != NULL);
   ++f->tally->pictures;
   return STATUS_OF(context, stratus_ray_caster_render(caster, volume, transfers, camera, given, into, report));
 }
@@ -135,8 +138,8 @@ static void check_report(fuzz* f, const picture_case* c, const stratus_image* im
   EXPECT(r->differing_pixels == 0, "audit: %llu pixels differ from the plain march", (unsigned long long)r->differing_pixels);
   EXPECT(r->rays <= (uint64_t)image->width * (uint64_t)image->height, "%llu rays", (unsigned long long)r->rays);
   EXPECT(r->occupied_blocks <= r->blocks, "%llu of %llu blocks", (unsigned long long)r->occupied_blocks, (unsigned long long)r->blocks);
-  EXPECT(w[0] >= 0 && w[0] <= w[1] && w[1] <= image->width && w[2] >= 0 && w[2] <= w[3] && w[3] <= image->height, "window %d %d %d %d", w[0],
-    w[1], w[2], w[3]);
+  EXPECT(w[0] >= 0 && w[0] <= w[1] && w[1] <= image->width && w[2] >= 0 && w[2] <= w[3] && w[3] <= image->height, "window %d %d %d %d",
+    w[0], w[1], w[2], w[3]);
   EXPECT(memchr(r->why, '\0', sizeof r->why), "why does not end");
   EXPECT((unsigned)r->structure <= STRATUS_STRUCTURE_HYBRID && (unsigned)r->sampling <= STRATUS_SAMPLING_PREINTEGRATED, "structure %d",
     (int)r->structure);
@@ -171,8 +174,8 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   const stratus_image picture = fuzz_image_like(f, image);
   const stratus_status status = draw(f, context, caster, c, &options, &picture, &other);
   EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s: %s", stratus_status_name(status), stratus_context_message(context));
-  /* Packets may ask of a structure for all of their rays at once: how many samples that spares goes by their width. */
-  const bool counted = !structures && context->isa == f->context->isa;
+  /* Packets may ask a structure for all of their rays at once: how many samples that spares goes by their width. */
+  const bool counted = !structures && !report->offered_tree && context->isa == f->context->isa;
   fuzz_check_same(f, image, &picture, counted, structures ? "with another structure" : "on a new caster");
   CALL(stratus_ray_caster_destroy(caster));
   fuzz_context_close(f, context, &memory);
@@ -183,7 +186,8 @@ static fuzz_limits limits_of(const picture_case* c)
   const stratus_ray_cast_options* o = &c->options;
   const bool can_be_lit = o->mode == STRATUS_MODE_COMPOSITE || o->mode == STRATUS_MODE_ISOSURFACE;
   return (fuzz_limits){ .behind = c->camera.parallel,
-    .lit = (can_be_lit && o->shade) || o->mode == STRATUS_MODE_FIRST_HIT, .surfaces = o->mode != STRATUS_MODE_ADDITIVE && o->mode != STRATUS_MODE_AVERAGE };
+    .lit = (can_be_lit && o->shade) || o->mode == STRATUS_MODE_FIRST_HIT,
+    .surfaces = o->mode != STRATUS_MODE_ADDITIVE && o->mode != STRATUS_MODE_AVERAGE };
 }
 
 static void step(fuzz* f, stratus_ray_caster* caster, const picture_case* c)
@@ -231,10 +235,23 @@ static const stratus_transfer* choose_transfers(fuzz* f, const picture_case* c)
   return transfers;
 }
 
+static void change_mask(fuzz* f, picture_case* c)
+{
+  if (c->options.mask) {
+    uint8_t* mask = malloc(c->field.values + 1);
+    for (size_t i = 0; mask && i < c->field.values; ++i) {
+      mask[i] = (uint8_t)fuzz_below(f, 3);
+    }
+    fuzz_change(f, c->options.mask, mask);
+    ++c->options.mask_revision;
+    free(mask);
+  }
+}
+
 /* Another thing that a caller may change between two pictures. */
 static void change(fuzz* f, stratus_ray_caster* caster, picture_case* c)
 {
-  switch (fuzz_below(f, 6)) {
+  switch (fuzz_below(f, 7)) {
     case 0:
       c->camera = fuzz_camera(f, c->field.bounds);
       break;
@@ -251,6 +268,10 @@ static void change(fuzz* f, stratus_ray_caster* caster, picture_case* c)
       break;
     case 4:
       CALL(stratus_ray_caster_release(caster));
+      (void)STATUS(stratus_ray_caster_offer_tree(caster, NULL, 0));
+      break;
+    case 5:
+      change_mask(f, c);
       break;
     default:
       break;

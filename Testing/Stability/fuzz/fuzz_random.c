@@ -66,9 +66,9 @@ double fuzz_odd_real(fuzz* f)
 
 int64_t fuzz_odd_integer(fuzz* f)
 {
-  static const int64_t odd[] = { 0, 1, -1, 2, -2, 3, 5, 7, 8, 9, 16, 17, 33, 64, 65, 127, 128, 255, 256, 257, 1023, 1024, 1025, 32767, 32768,
-    65535, 65536, 65537, INT32_MAX, INT32_MIN, INT32_MAX - 1, (int64_t)INT32_MAX + 1, UINT32_MAX, (int64_t)UINT32_MAX + 1, (int64_t)1 << 40,
-    (int64_t)1 << 62, INT64_MAX, INT64_MIN, INT64_MAX - 1 };
+  static const int64_t odd[] = { 0, 1, -1, 2, -2, 3, 5, 7, 8, 9, 16, 17, 33, 64, 65, 127, 128, 255, 256, 257, 1023, 1024, 1025, 32767,
+    32768, 65535, 65536, 65537, INT32_MAX, INT32_MIN, INT32_MAX - 1, (int64_t)INT32_MAX + 1, UINT32_MAX, (int64_t)UINT32_MAX + 1,
+    (int64_t)1 << 40, (int64_t)1 << 62, INT64_MAX, INT64_MIN, INT64_MAX - 1 };
   const uint64_t which = fuzz_below(f, sizeof odd / sizeof *odd + 2);
   const int64_t any = (int64_t)fuzz_next(f), value = which < sizeof odd / sizeof *odd ? odd[which] : any;
   fuzz_note(f, (double)value);

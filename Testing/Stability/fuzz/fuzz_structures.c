@@ -44,8 +44,8 @@ static void check_block(fuzz* f, const fuzz_field* field, const stratus_value_ra
     EXPECT(gaps == 1, "block %lld has a value that is not finite, and no gap", (long long)block);
   } else {
     const double allowed = slack(least, most);
-    EXPECT(fabs(low - least) <= allowed && fabs(high - most) <= allowed,
-      "block %lld is %.17g..%.17g, told %.17g..%.17g", (long long)block, least, most, low, high);
+    EXPECT(fabs(low - least) <= allowed && fabs(high - most) <= allowed, "block %lld is %.17g..%.17g, told %.17g..%.17g", (long long)block,
+      least, most, low, high);
   }
 }
 
@@ -64,7 +64,8 @@ static stratus_value_range* make_ranges(fuzz* f, const fuzz_field* field, grid* 
   EXPECT(g->size == (wanted ? wanted : 4), "blocks of %d instead of %d", g->size, wanted);
   double low = NAN, high = NAN;
   const stratus_status whole = STATUS(stratus_value_range_whole(ranges, &low, &high));
-  EXPECT(whole == STRATUS_OK ? low <= high && isfinite(low) && isfinite(high) : isnan(low) && isnan(high), "the whole is %g..%g", low, high);
+  EXPECT(
+    whole == STRATUS_OK ? low <= high && isfinite(low) && isfinite(high) : isnan(low) && isnan(high), "the whole is %g..%g", low, high);
   for (int64_t block = 0; block < blocks_of(g); ++block) {
     check_block(f, field, ranges, g, block);
   }
@@ -168,7 +169,8 @@ static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const s
   const double lower = fuzz_chance(f, 0.2) ? -INFINITY : fuzz_real(f, field->low, field->high);
   const double upper = fuzz_chance(f, 0.2) ? INFINITY : fuzz_chance(f, 0.3) ? lower : fuzz_real(f, fmax(field->low, lower), field->high);
   const stratus_status status = CREATE(&occupancy, stratus_occupancy_create_between(f->context, ranges, lower, upper, &occupancy));
-  EXPECT(status == (lower <= upper ? STRATUS_OK : STRATUS_INVALID_ARGUMENT), "%g..%g: %s", lower, upper, stratus_context_message(f->context));
+  EXPECT(
+    status == (lower <= upper ? STRATUS_OK : STRATUS_INVALID_ARGUMENT), "%g..%g: %s", lower, upper, stratus_context_message(f->context));
   const stratus_type type = field->view.type;
   const bool exact = type <= STRATUS_UINT16 || type == STRATUS_FLOAT32;
   for (int64_t b = 0; status == STRATUS_OK && b < blocks_of(g); ++b) {
@@ -176,8 +178,8 @@ static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const s
     double low, high;
     stratus_value_range_block(ranges, at[0], at[1], at[2], &low, &high, NULL);
     const int wanted = low <= high && low <= upper && high >= lower;
-    EXPECT(!exact || stratus_occupancy_get(occupancy, at[0], at[1], at[2]) == wanted, "block %lld of %.17g..%.17g is told %d for %.17g..%.17g",
-      (long long)b, low, high, !wanted, lower, upper);
+    EXPECT(!exact || stratus_occupancy_get(occupancy, at[0], at[1], at[2]) == wanted,
+      "block %lld of %.17g..%.17g is told %d for %.17g..%.17g", (long long)b, low, high, !wanted, lower, upper);
   }
   return occupancy;
 }

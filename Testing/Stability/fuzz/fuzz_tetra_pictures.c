@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Root mean square over a picture's numbers that both methods stay below where no cells overlap: a hundredth of a step of 8 bits, by the contract. */
+/* Root mean square over a picture's numbers, by the contract, where no cells overlap: a hundredth of a step of 8 bits. */
 #define METHODS_DIFFER_MOST (0.01 / 255.0)
 #define STEEPEST 20.0
 
@@ -31,8 +31,8 @@ static void choose_view(fuzz* f, tetra_case* c)
   c->transfer = fuzz_transfers(f, 1, false, c->mesh.low, c->mesh.high, c->mesh.edge);
 }
 
-static stratus_status draw(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c,
-  const stratus_image* image, stratus_tetra_report* report)
+static stratus_status draw(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image,
+  stratus_tetra_report* report)
 {
   const stratus_tetra_options* options = &c->options;
   const stratus_mesh* m = &c->mesh.view;
@@ -41,19 +41,19 @@ static stratus_status draw(fuzz* f, stratus_context* context, stratus_tetra_cast
   const stratus_tetra_options* given = c->no_options ? NULL : FUZZ_INPUT(f, *options);
   ++f->tally->pictures;
   fuzz_about(f, "%s, mode %d, leaves %d, opaque %d, %s camera; %lld points, %lld cells, sound %d, type %d, of cells %d, hidden %d",
-    stratus_tetra_method_name(options->method), (int)options->mode, options->leaves ? options->leaves->leaf_count : 0, image->opaque_depth != NULL,
-    c->camera.parallel ? "parallel" : "perspective", (long long)m->point_count, (long long)m->cell_count, c->mesh.sound, (int)m->type,
-    m->cell_values, m->hidden != NULL);
-  return STATUS_OF(
-    context, stratus_tetra_caster_render(caster, mesh, fuzz_pointer(f, c->transfer), camera, given, fuzz_pointer(f, FUZZ_INPUT(f, *image)), report));
+    stratus_tetra_method_name(options->method), (int)options->mode, options->leaves ? options->leaves->leaf_count : 0,
+    image->opaque_depth != NULL, c->camera.parallel ? "parallel" : "perspective", (long long)m->point_count, (long long)m->cell_count,
+    c->mesh.sound, (int)m->type, m->cell_values, m->hidden != NULL);
+  return STATUS_OF(context,
+    stratus_tetra_caster_render(caster, mesh, fuzz_pointer(f, c->transfer), camera, given, fuzz_pointer(f, FUZZ_INPUT(f, *image)), report));
 }
 
 static void check_report(fuzz* f, const tetra_case* c, const stratus_image* image, const stratus_tetra_report* r)
 {
   EXPECT(r->method == STRATUS_TETRA_METHOD_MARCH || r->method == STRATUS_TETRA_METHOD_PROJECT, "method %d", (int)r->method);
   EXPECT(r->rays <= (uint64_t)image->width * (uint64_t)image->height, "%llu rays", (unsigned long long)r->rays);
-  EXPECT(r->cells == c->mesh.view.cell_count && r->shown_cells >= 0 && r->shown_cells <= r->cells, "%lld of %lld cells", (long long)r->shown_cells,
-    (long long)r->cells);
+  EXPECT(r->cells == c->mesh.view.cell_count && r->shown_cells >= 0 && r->shown_cells <= r->cells, "%lld of %lld cells",
+    (long long)r->shown_cells, (long long)r->cells);
   EXPECT(memchr(r->why, '\0', sizeof r->why), "why does not end");
 }
 
@@ -91,7 +91,8 @@ static bool is_gentle(const tetra_case* c)
 }
 
 /* The other method: near, where no cells overlap. */
-static void compare_methods(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image)
+static void compare_methods(
+  fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image)
 {
   tetra_case otherwise = *c;
   otherwise.options.method = c->options.method == STRATUS_TETRA_METHOD_MARCH ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
@@ -106,8 +107,8 @@ static void compare_methods(fuzz* f, stratus_context* context, stratus_tetra_cas
     square += d * d;
     largest = fmax(largest, fabs(d));
   }
-  EXPECT(!c->mesh.sound || !is_gentle(c) || sqrt(square / numbers) < METHODS_DIFFER_MOST, "march and projection differ by %g, and %g at most",
-    sqrt(square / numbers), largest);
+  EXPECT(!c->mesh.sound || !is_gentle(c) || sqrt(square / numbers) < METHODS_DIFFER_MOST,
+    "march and projection differ by %g, and %g at most", sqrt(square / numbers), largest);
   f->tally->compared += c->mesh.sound && is_gentle(c);
 }
 
@@ -172,10 +173,15 @@ void fuzz_tetra_pictures(fuzz* f)
     stratus_mesh shape = *m;
     c.partition = fuzz_partition(f, FUZZ_INPUT(f, shape), &r);
     if (c.partition && r.cell_count > 0) { /* values of the cut mesh: any will do */
-      const fuzz_field field = fuzz_row(f, r.point_count);
+      const fuzz_field field = c.mesh.row = fuzz_row(f, r.point_count);
       c.leaves = r.leaves;
-      *m = (stratus_mesh){ .points = r.points, .point_count = r.point_count, .vertices = r.vertices, .cell_count = r.cell_count,
-        .values = field.view.values, .type = field.view.type, .value_stride = field.view.value_stride };
+      *m = (stratus_mesh){ .points = r.points,
+        .point_count = r.point_count,
+        .vertices = r.vertices,
+        .cell_count = r.cell_count,
+        .values = field.view.values,
+        .type = field.view.type,
+        .value_stride = field.view.value_stride };
       memcpy(m->matrix, shape.matrix, sizeof m->matrix);
       c.mesh.low = field.low;
       c.mesh.high = field.high;
@@ -192,6 +198,8 @@ void fuzz_tetra_pictures(fuzz* f)
       choose_view(f, &c);
       if (fuzz_chance(f, 0.1)) {
         CALL(stratus_tetra_caster_release(caster));
+      } else if (fuzz_chance(f, 0.2)) {
+        fuzz_mesh_changes(f, &c.mesh);
       }
     }
   }

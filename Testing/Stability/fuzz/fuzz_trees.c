@@ -39,7 +39,8 @@ static stratus_status make_list(fuzz* f, tree_case* c)
     }
   }
   return CREATE(&c->voxels,
-    stratus_voxels_create_list(f->context, FUZZ_INPUT(f, c->n), fuzz_input(f, positions, 3 * count * sizeof *positions), count, &c->voxels));
+    stratus_voxels_create_list(
+      f->context, FUZZ_INPUT(f, c->n), fuzz_input(f, positions, 3 * count * sizeof *positions), count, &c->voxels));
 }
 
 static stratus_status make_of_volume(fuzz* f, tree_case* c)
@@ -125,10 +126,11 @@ static void check_hits(fuzz* f, const tree_case* c, const stratus_tree* tree, bo
     const double *o = rays[r].origin, *d = rays[r].direction;
     EXPECT(h->t == p->t && memcmp(h->voxel, p->voxel, sizeof h->voxel) == 0 && h->face == p->face &&
         memcmp(h->normal, p->normal, sizeof h->normal) == 0,
-      "ray %zu from (%.17g, %.17g, %.17g) along (%.17g, %.17g, %.17g), %.17g to %.17g, hits (%d, %d, %d) at %.17g, face %d; by the walk (%d, %d, %d) "
+      "ray %zu from (%.17g, %.17g, %.17g) along (%.17g, %.17g, %.17g), %.17g to %.17g, hits (%d, %d, %d) at %.17g, face %d; by the walk "
+      "(%d, %d, %d) "
       "at %.17g, face %d",
-      r, o[0], o[1], o[2], d[0], d[1], d[2], rays[r].t_min, rays[r].t_max, h->voxel[0], h->voxel[1], h->voxel[2], h->t,
-      h->face, p->voxel[0], p->voxel[1], p->voxel[2], p->t, p->face);
+      r, o[0], o[1], o[2], d[0], d[1], d[2], rays[r].t_min, rays[r].t_max, h->voxel[0], h->voxel[1], h->voxel[2], h->t, h->face,
+      p->voxel[0], p->voxel[1], p->voxel[2], p->t, p->face);
     EXPECT(!isnan(h->t), "ray %zu hits at no number", r);
   }
   ++f->tally->compared;
@@ -270,9 +272,9 @@ void fuzz_trees(fuzz* f)
   }
   const stratus_tree_options o = choose_options(f);
   const stratus_tree_options* options = fuzz_chance(f, 0.05) ? NULL : FUZZ_INPUT(f, o);
-  fuzz_about(f, "%s, depth %d, leaves %d %d, field %lld %g; %lld x %lld x %lld, %lld voxels", stratus_tree_method_name(o.method), o.max_depth,
-    o.leaf_bricks, o.leaf_voxels, (long long)o.field_bricks, o.field_emptiness, (long long)c.n[0], (long long)c.n[1], (long long)c.n[2],
-    (long long)stratus_voxels_count(c.voxels));
+  fuzz_about(f, "%s, depth %d, leaves %d %d, field %lld %g; %lld x %lld x %lld, %lld voxels", stratus_tree_method_name(o.method),
+    o.max_depth, o.leaf_bricks, o.leaf_voxels, (long long)o.field_bricks, o.field_emptiness, (long long)c.n[0], (long long)c.n[1],
+    (long long)c.n[2], (long long)stratus_voxels_count(c.voxels));
   if (fuzz_chance(f, 0.15)) {
     fuzz_trouble(f);
   }

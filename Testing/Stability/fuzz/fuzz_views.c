@@ -38,8 +38,10 @@ stratus_camera fuzz_camera(fuzz* f, const double bounds[6])
     radius = fmax(radius, 0.5 * (bounds[2 * axis + 1] - bounds[2 * axis]));
   }
   radius = radius > 0.0 && isfinite(radius) ? radius : 1.0;
-  const double distance = radius * (fuzz_chance(f, 0.2) ? fuzz_between(f, 0.0, 1.5) : fuzz_chance(f, 0.85) ? fuzz_between(f, 1.5, 8.0)
-                                                                                                        : fuzz_scale(f, 8.0, 1e5));
+  const double distance = radius *
+    (fuzz_chance(f, 0.2)       ? fuzz_between(f, 0.0, 1.5)
+        : fuzz_chance(f, 0.85) ? fuzz_between(f, 1.5, 8.0)
+                               : fuzz_scale(f, 8.0, 1e5));
   for (int axis = 0; axis < 3; ++axis) {
     focal[axis] = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) + 0.3 * radius * fuzz_between(f, -1.0, 1.0);
     const double along = fuzz_chance(f, 0.15) ? 0.0 : fuzz_between(f, -1.0, 1.0); /* 0: along the grid's axes */
@@ -134,15 +136,16 @@ void fuzz_check_same(fuzz* f, const stratus_image* a, const stratus_image* b, bo
   int first = -1;
   for (size_t i = 0; i < pixels; ++i) {
     const bool same = memcmp(a->rgba + 4 * i, b->rgba + 4 * i, 4 * sizeof(float)) == 0 &&
-      (!a->depth || memcmp(a->depth + i, b->depth + i, sizeof(float)) == 0) && (!a->rgba8 || memcmp(a->rgba8 + 4 * i, b->rgba8 + 4 * i, 4) == 0) &&
-      (!samples || !a->samples || a->samples[i] == b->samples[i]);
+      (!a->depth || memcmp(a->depth + i, b->depth + i, sizeof(float)) == 0) &&
+      (!a->rgba8 || memcmp(a->rgba8 + 4 * i, b->rgba8 + 4 * i, 4) == 0) && (!samples || !a->samples || a->samples[i] == b->samples[i]);
     first = !same && first < 0 ? (int)i : first;
     differing += !same;
   }
   if (differing > 0) {
     const float *p = a->rgba + 4 * first, *q = b->rgba + 4 * first;
-    fuzz_finding(f, "%s: %zu of %zu pixels differ, first %d, %d: (%g, %g, %g, %g) depth %g samples %u, (%g, %g, %g, %g) depth %g samples %u",
-      what, differing, pixels, first % a->width, first / a->width, (double)p[0], (double)p[1], (double)p[2], (double)p[3],
+    fuzz_finding(f,
+      "%s: %zu of %zu pixels differ, first %d, %d: (%g, %g, %g, %g) depth %g samples %u, (%g, %g, %g, %g) depth %g samples %u", what,
+      differing, pixels, first % a->width, first / a->width, (double)p[0], (double)p[1], (double)p[2], (double)p[3],
       a->depth ? (double)a->depth[first] : 0.0, a->samples ? a->samples[first] : 0u, (double)q[0], (double)q[1], (double)q[2], (double)q[3],
       b->depth ? (double)b->depth[first] : 0.0, b->samples ? b->samples[first] : 0u);
   }

@@ -301,12 +301,17 @@ fuzz_field fuzz_row(fuzz* f, int64_t count)
   return field;
 }
 
+void fuzz_row_changes(fuzz* f, fuzz_field* row)
+{
+  void* values = make_values(f, row);
+  fuzz_change(f, row->view.values, values);
+  free(values);
+}
+
 void fuzz_volume_changes(fuzz* f, fuzz_field* field)
 {
   if (field->view.values && fuzz_is_tame(f)) {
-    void* values = make_values(f, field);
-    fuzz_change(f, field->view.values, values);
-    free(values);
+    fuzz_row_changes(f, field);
     ++field->view.revision;
   }
 }

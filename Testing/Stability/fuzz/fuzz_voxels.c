@@ -157,7 +157,8 @@ static void check_distance(fuzz* f, const voxel_set* s, const stratus_field_opti
   const double positive = inside ? -told : told;
   const bool exact = o->method <= STRATUS_FIELD_ENVELOPE;
   EXPECT(exact ? fabs(positive - truth) <= 1e-6 * truth || positive == truth : positive >= truth * (1.0 - 1e-6),
-    "method %d, signed %d, voxel %lld: distance %.9g, told %.9g", (int)o->method, o->is_signed, (long long)q, inside ? -truth : truth, told);
+    "method %d, signed %d, voxel %lld: distance %.9g, told %.9g", (int)o->method, o->is_signed, (long long)q, inside ? -truth : truth,
+    told);
 }
 
 static void ask_field(fuzz* f, const voxel_set* s)
@@ -192,7 +193,8 @@ static void ask_field(fuzz* f, const voxel_set* s)
     const float *p = rgba + 4 * q, nowhere[4] = { -1.0f, -1.0f, -1.0f, INFINITY };
     EXPECT((float)told == distances[q], "voxel %lld: %g and %g", (long long)q, told, (double)distances[q]);
     EXPECT(isinf(told) ? p[0] == -1.0f : p[3] == (float)told, "voxel %lld: %g and %g", (long long)q, told, (double)p[3]);
-    EXPECT(p[0] == nowhere[0] || (p[0] >= 0.0f && p[0] < (float)s->n[0] && p[2] >= 0.0f && p[2] < (float)s->n[2]), "nearest at %g", (double)p[0]);
+    EXPECT(p[0] == nowhere[0] || (p[0] >= 0.0f && p[0] < (float)s->n[0] && p[2] >= 0.0f && p[2] < (float)s->n[2]), "nearest at %g",
+      (double)p[0]);
     if (q % 7 == 0 || voxels < 200) {
       check_distance(f, s, &o, q, told);
     }
