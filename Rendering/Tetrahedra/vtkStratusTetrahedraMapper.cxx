@@ -36,8 +36,7 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  this->TimeToDraw = seconds + (this->Internal->DrawsAgain ? this->TimeToDraw : 0.0);
+  this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)

@@ -140,9 +140,8 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
 bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
   const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
-  const vtkStratusPeels::Draw peel = this->Display.Begin(prop, this->Mapper);
-  this->DrawsAgain = peel == vtkStratusPeels::LATER;
-  if (this->DrawsAgain) {
+  const vtkStratusPeels::Draw peel = this->Display.Begin(renderer, prop, this->Mapper);
+  if (peel == vtkStratusPeels::LATER) {
     const bool drawn = this->Display.DrawAgain();
     error = drawn ? this->LastError : unshown;
     return drawn && error.empty();

@@ -35,7 +35,6 @@ public:
   stratus_tetra_report Report = stratus_tetra_report();
   vtkStratusDisplay Display;
   std::string LastError; // told already
-  bool DrawsAgain = false; // the last Render() showed the frame's picture once more, between other peels
 
 private:
   bool OnProgress(double fraction);

@@ -137,7 +137,7 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  const bool writesDepth = pixels.Depth && this->Stage == vtkStratusPeels::NONE; // an edge has one depth
+  const bool writesDepth = pixels.Depth && this->Stage != vtkStratusPeels::FIRST; // an edge has one depth
   const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);
@@ -231,11 +231,19 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   }
 }
 
-vtkStratusPeels::Draw vtkStratusDisplay::Begin(vtkProp* prop, vtkAbstractMapper* mapper)
+vtkStratusPeels::Draw vtkStratusDisplay::Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper)
 {
+  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  const bool outside = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
   this->Stage = this->Peels.Begin(prop, mapper);
+  if (this->Stage == vtkStratusPeels::FIRST && outside) {
+    this->Stage = vtkStratusPeels::OUTSIDE;
+  } else if (this->Stage == vtkStratusPeels::LATER && !outside && prop != this->PeeledProp) {
+    this->Stage = vtkStratusPeels::FIRST;
+  }
   if (this->Stage != vtkStratusPeels::LATER) {
     this->Peeled = vtkStratusPeels::Picture();
+    this->PeeledProp = prop;
   }
   return this->Stage;
 }
@@ -247,8 +255,7 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
     return false;
   }
   const Part part = ChoosePart(picture, pixels);
-  const bool outside = this->Stage != vtkStratusPeels::NONE && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
-  const bool peeled = this->Stage != vtkStratusPeels::NONE && !outside;
+  const bool peeled = this->Stage == vtkStratusPeels::FIRST;
   if (part.Size[0] <= 0 || part.Size[1] <= 0 || (!peeled && this->WriteInPlace(renderer, window, picture, pixels, part))) {
     return true;
   }
@@ -269,7 +276,8 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
     this->Peeled.Bias = pixels.Bias;
     drawn = this->DrawAgain();
   } else if (drawn && this->PrepareQuad(window, pixels.Depth != nullptr)) {
-    const std::unique_ptr<vtkStratusPeels::Outside> frame(outside ? new vtkStratusPeels::Outside(window) : nullptr);
+    const std::unique_ptr<vtkStratusPeels::Outside> frame(
+      this->Stage == vtkStratusPeels::OUTSIDE ? new vtkStratusPeels::Outside(window) : nullptr);
     this->Blend(renderer, window, pixels, part);
   } else {
     drawn = false;

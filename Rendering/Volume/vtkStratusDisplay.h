@@ -28,7 +28,7 @@ public:
     int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
     float Scale = 1.0f;
     float Bias = 0.0f;
-    const float* Depth = nullptr; // of the window, to be written where alpha is; or nullptr: none is. Peels need it.
+    const float* Depth = nullptr; // of the window, to be written where alpha is, or, FIRST, to be laid between peels by; or nullptr: none is
     bool Alone = false;           // nothing has been drawn before: the bytes are what the window has to hold
   };
 
@@ -37,8 +37,8 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // To be asked before each draw. LATER: DrawAgain() is all that is left to do.
-  vtkStratusPeels::Draw Begin(vtkProp* prop, vtkAbstractMapper* mapper);
+  // To be asked before each draw. LATER: DrawAgain() is all that is left to do. FIRST: Draw() needs depths.
+  vtkStratusPeels::Draw Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);
   // False if the window is not an OpenGL one.
   bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
   // What Draw() showed in this frame, between the peels of now; nothing if it was not called.
@@ -72,7 +72,8 @@ private:
   vtkOpenGLRenderWindow* Window = nullptr;              // that the textures belong to
   vtkStratusPeels Peels;
   vtkStratusPeels::Draw Stage = vtkStratusPeels::NONE;
-  vtkStratusPeels::Picture Peeled; // what is drawn between peels in this frame; without textures: nothing
+  vtkStratusPeels::Picture Peeled;    // what is drawn between peels in this frame; without textures: nothing
+  const vtkProp* PeeledProp = nullptr; // whose it is: props may share a mapper; only compared
 };
 
 #endif

@@ -59,8 +59,9 @@ public:
   vtkStratusPeels(const vtkStratusPeels&) = delete;
   void operator=(const vtkStratusPeels&) = delete;
 
-  // Whether a pass draws the prop between peels at the moment, and which of its draws in this frame: all show the picture of the first.
-  enum Draw { NONE, FIRST, LATER };
+  // Whether a pass draws the prop between peels at the moment, and which of its draws in this frame: all show the picture of the first. OUTSIDE: the
+  // first, where the pass would lose it; see Outside.
+  enum Draw { NONE, FIRST, LATER, OUTSIDE };
   Draw Begin(vtkProp* prop, vtkAbstractMapper* mapper);
   // After Begin(). False where the shader does not compile.
   bool Render(vtkOpenGLRenderWindow* window, const Picture& picture);

@@ -37,8 +37,7 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< this->Internal->LastError << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  this->TimeToDraw = seconds + (this->Internal->DrawsAgain ? this->TimeToDraw : 0.0);
+  this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)

@@ -44,7 +44,6 @@ public:
   std::vector<stratus_transfer> Functions;       // .. as the core takes them
   vtkStratusDisplay Display;
   std::string LastError; // of the last picture, empty: none; told already
-  bool DrawsAgain = false; // the last Render() showed the frame's picture once more, between other peels
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
 

@@ -141,9 +141,8 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
   const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
-  const vtkStratusPeels::Draw peel = this->Display.Begin(prop, this->Mapper);
-  this->DrawsAgain = peel == vtkStratusPeels::LATER;
-  if (this->DrawsAgain) {
+  const vtkStratusPeels::Draw peel = this->Display.Begin(renderer, prop, this->Mapper);
+  if (peel == vtkStratusPeels::LATER) {
     const bool drawn = this->Display.DrawAgain();
     error = drawn ? this->LastError : unshown;
     return drawn;
@@ -184,9 +183,6 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
   vtkStratusDisplay::Pixels pixels = this->ChoosePixels(renderer, others);
-  if (peel == vtkStratusPeels::FIRST) {
-    pixels.Bytes = nullptr;
-  }
   if (!this->Cast(renderer, options, opaqueDepth, pixels.Bytes != nullptr, error)) {
     return false;
   }

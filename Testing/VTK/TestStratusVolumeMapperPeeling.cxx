@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling: the window against the same layers laid
-// one over the other here. A volume is one layer, at the depth where it begins to show; without peels of volumes it lies over all surfaces.
+// one over the other here. A volume is one layer, at the depth where it begins to show; without peels of volumes it lies over all surfaces, and
+// volumes over one another as they come.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -192,6 +193,7 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
   const stratus_camera camera = ReferenceCamera(scene.Renderer);
   const int* size = scene.Renderer->GetSize();
   const Sheets none;
+  const bool peeled = flags.Peeling && flags.ForVolumes && !backdrop.Lost;
   size_t judged = 0, lit = 0;
   double worst = 0.0;
   for (size_t p = 0; p < scene.Pixels(); ++p) {
@@ -200,7 +202,7 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
       color[c] = backdrop.Bytes[4 * p + c] / 255.0;
     }
     if (std::isnan(backdrop.K[p]) ||
-      !Expect(camera, size, p, backdrop.Lost ? none : sheets, drawn, flags.Peeling && flags.ForVolumes, backdrop.K[p], color)) {
+      !Expect(camera, size, p, backdrop.Lost ? none : sheets, drawn, peeled, backdrop.K[p], color)) {
       continue;
     }
     ++judged;
@@ -263,28 +265,43 @@ void ManySheets(bool parallel)
   }
 }
 
-// Two volumes, one before the other, sheets between them and around.
-void TwoVolumes()
+// Two volumes, one before the other, in either order, a sheet between them and others around: neither ends the other's rays, whatever the samples.
+void TwoVolumes(bool shared)
 {
   for (int samples : { 0, 4 }) {
-    Scene scene;
-    vtkNew<vtkStratusVolumeMapper> mapper;
-    mapper->SetInputData(scene.Image);
-    mapper->SetDevice("host");
-    vtkNew<vtkVolume> other;
-    other->SetMapper(mapper);
-    other->SetProperty(scene.Volume->GetProperty());
-    other->SetPosition(4, 3, 30);
-    scene.Renderer->AddVolume(other);
-    Sheets sheets;
-    int n = 0;
-    for (double z : { 62.0, 28.0, -3.0 }) {
-      sheets.emplace_back(new Sheet(scene, z, 10 + 5 * n, n == 0, n == 1, n == 2, 0.3));
-      ++n;
+    for (double z : { 30.0, -30.0 }) {
+      Scene scene;
+      vtkNew<vtkStratusVolumeMapper> mapper;
+      mapper->SetInputData(scene.Image);
+      mapper->SetDevice("host");
+      vtkNew<vtkVolume> other;
+      other->SetMapper(shared ? scene.Mapper.Get() : mapper.Get());
+      other->SetProperty(scene.Volume->GetProperty());
+      other->SetPosition(4, 3, z);
+      scene.Renderer->AddVolume(other);
+      Sheets sheets;
+      int n = 0;
+      for (double at : { 62.0, z > 0 ? 28.0 : -1.0, -33.0 }) {
+        sheets.emplace_back(new Sheet(scene, at, n == 1 ? 100 : 10 + 5 * n, n == 0, n == 1, n == 2, 0.3));
+        ++n;
+      }
+      // A mapper that is shared has the last one's picture: the other is drawn apart, by a mapper of its own.
+      const auto pictures = [&] {
+        std::vector<Drawn> drawn{ Copy(scene.Mapper->GetLastImage()), Copy(mapper->GetLastImage()) };
+        if (shared) {
+          drawn[1] = drawn[0];
+          scene.Volume->SetMapper(mapper);
+          scene.Render();
+          drawn[0] = Copy(mapper->GetLastImage());
+        }
+        return drawn;
+      };
+      Judge(scene, shared ? "two volumes of one mapper" : "two volumes", { true, true, samples }, sheets, { scene.Volume, other }, pictures);
+      float depth = 0.0f;
+      const int* size = scene.Renderer->GetSize();
+      scene.Window->GetZbufferData(size[0] / 2, size[1] / 2, size[0] / 2, size[1] / 2, &depth);
+      CHECK(depth == 1.0f, "volumes have written a depth of %g", static_cast<double>(depth));
     }
-    Judge(scene, "two volumes", { true, true, samples }, sheets, { scene.Volume, other }, [&] {
-      return std::vector<Drawn>{ Copy(scene.Mapper->GetLastImage()), Copy(mapper->GetLastImage()) };
-    });
   }
 }
 
@@ -350,7 +367,8 @@ int main()
   OneSheet();
   ManySheets(false);
   ManySheets(true);
-  TwoVolumes();
+  TwoVolumes(false);
+  TwoVolumes(true);
   OtherPictures();
   Tetrahedra();
   Errors();
