@@ -20,6 +20,14 @@
 #ifdef __linux__
 #include <sys/syscall.h>
 #endif
+#ifdef __has_feature // clang's way
+#define FEATURE(name) __has_feature(name)
+#else
+#define FEATURE(name) 0
+#endif
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !FEATURE(address_sanitizer) && !FEATURE(thread_sanitizer)
+#define CATCH_CRASHES
+#endif
 
 namespace {
 
@@ -161,7 +169,7 @@ reading::reading(const std::string& path, const std::string& by) : Path(path)
 // On a stack of its own, since a crash may be for want of stack. Handlers of an OpenCL compiler in this process give way, a sanitizer's stay.
 void reading::catch_crashes()
 {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifdef CATCH_CRASHES
   own_stack.resize(stack_bytes);
   stack_t stack = {};
   stack.ss_sp = own_stack.data();
@@ -179,7 +187,7 @@ void reading::catch_crashes()
 
 reading::~reading()
 {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifdef CATCH_CRASHES
   for (size_t i = 0; i < crash_count; ++i) {
     sigaction(crashes[i].number, &before[i], nullptr);
   }

@@ -219,7 +219,12 @@ static void bad_arguments_are_refused_with_their_value(void** state)
 
 /* ---- stacks */
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifdef __has_feature /* clang's way */
+#define FEATURE(name) __has_feature(name)
+#else
+#define FEATURE(name) 0
+#endif
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !FEATURE(address_sanitizer) && !FEATURE(thread_sanitizer)
 #define SMALL_STACK (40 << 10)
 
 static void* work(void* result)
