@@ -71,7 +71,8 @@ How
   --normals N             of first hits: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
   --threads N             threads of the host (default: all)
-  --read-timeout S        give INPUT up after S seconds in which its reader neither got a byte nor told of progress; 0: never (default 60)
+  --read-timeout S        give INPUT, or a mask, up after S seconds in which its reader neither got a byte nor told of progress; 0: never
+                          (default 60)
   --show samples          a heat map of the samples that each pixel took, with a scale, in place of the picture; --color has its colours
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
