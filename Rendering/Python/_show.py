@@ -123,8 +123,9 @@ def _scaled(image):
         values = numpy.ldexp(values.astype(numpy.float64), -power)
     result, scalars = vtkImageData(), numpy_to_vtk(values)
     result.ShallowCopy(image)
-    scalars.SetName("values")
-    (result.GetPointData() if image.GetPointData().GetScalars() else result.GetCellData()).SetScalars(scalars)
+    data = result.GetPointData() if image.GetPointData().GetScalars() else result.GetCellData()
+    scalars.SetName(data.GetScalars().GetName())  # by which a mapper may select it
+    data.SetScalars(scalars)  # in place of those of the image
     return result, power, values[shown]
 
 
@@ -239,8 +240,8 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
          axes="zyx", unit_distance=None, mapper=None):
     """Draws a volume and returns the picture, as an array (height, width, 4) of bytes that notebooks show.
 
-    array          see as_image, also for spacing, origin and axes; its memory is drawn from, not copied, unless no value is in
-                   1e-30..1e37: then it is a copy times a power of 2
+    array          see as_image, also for spacing, origin and axes; its memory is drawn from, not copied, unless the largest
+                   magnitude is outside 1e-30..1e37: then it is a copy times a power of 2
                    What is masked (numpy.ma), NaN or infinite is transparent; where nothing else is there, that is a ValueError
     opacity        pairs of a value and its opacity in 0..1 per unit_distance; a number: the top of a ramp away from the most frequent value,
                    or, where all values are one, of all of it: a uniform box. Two pairs at one value are a step
