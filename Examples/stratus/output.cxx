@@ -9,14 +9,14 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace {
 
-// What a handler removes: there is one file at a time. The name stands before the file is made, and until it is gone.
+// What a handler removes: there is one file at a time. It is told only of a file that this program made, and until that is gone.
 char temporary[PATH_MAX];
 std::atomic<bool> has_temporary = { false };
 
@@ -50,6 +50,44 @@ void catch_signals()
   }
   std::signal(SIGXFSZ, SIG_IGN);
 }
+
+// A signal waits while a file and what the handler is told of it change together: it could leave ours, or remove another's of that name.
+class signals_wait
+{
+public:
+  signals_wait()
+  {
+    sigset_t all;
+    sigemptyset(&all);
+    for (int number : endings) {
+      sigaddset(&all, number);
+    }
+    pthread_sigmask(SIG_BLOCK, &all, &this->Before);
+  }
+  ~signals_wait() { pthread_sigmask(SIG_SETMASK, &this->Before, nullptr); }
+  signals_wait(const signals_wait&) = delete;
+  signals_wait& operator=(const signals_wait&) = delete;
+
+private:
+  sigset_t Before;
+};
+
+bool same_file(const struct stat& one, const struct stat& other)
+{
+  return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+// The standard stream that writes to this file already, as /dev/stdout does, or -1.
+int standard_stream(const struct stat& status)
+{
+  for (int number : { STDOUT_FILENO, STDERR_FILENO, STDIN_FILENO }) {
+    struct stat open;
+    if (fstat(number, &open) == 0 && same_file(open, status) && (fcntl(number, F_GETFL) & O_ACCMODE) != O_RDONLY) {
+      return number;
+    }
+  }
+  return -1;
+}
 } // namespace
 
 namespace cli {
@@ -64,15 +102,15 @@ output_file::output_file(const std::string& path) : Path(path), Target(path)
   if (exists && S_ISDIR(status.st_mode)) {
     throw failure("cannot write '" + path + "': it is a folder");
   }
-  if (exists && access(path.c_str(), W_OK) != 0) { // a rename would not ask
+  this->Stream = exists ? standard_stream(status) : -1;
+  if (exists && this->Stream < 0 && access(path.c_str(), W_OK) != 0) { // a rename would not ask
     this->fail(errno);
   }
-  this->InPlace = exists && !S_ISREG(status.st_mode);
-  if (exists && !this->InPlace) { // the file gets its new bytes, not a link to it; one without a name has no place beside it
-    char* real = realpath(path.c_str(), nullptr);
-    this->InPlace = real == nullptr;
-    this->Target = real ? real : path;
-    std::free(real);
+  this->InPlace = exists && (this->Stream >= 0 || !S_ISREG(status.st_mode));
+  if (!this->InPlace) { // the file gets its new bytes, not a link to it; one without a name has no place beside it
+    struct stat found;
+    this->Target = vtkStratusFollowLinks(path);
+    this->InPlace = exists && !(stat(this->Target.c_str(), &found) == 0 && same_file(found, status));
   }
   const std::string folder = this->Target.substr(0, this->Target.find_last_of('/') + 1);
   if (!this->InPlace && access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) {
@@ -86,6 +124,7 @@ output_file::~output_file()
     std::fclose(this->File);
   }
   if (this->HasTemporary) {
+    const signals_wait waiting;
     std::remove(temporary);
     has_temporary = false;
   }
@@ -99,7 +138,11 @@ void output_file::fail(int reason)
 void output_file::open()
 {
   catch_signals();
-  if (this->InPlace) {
+  if (this->Stream >= 0) { // behind what is in it already, and before what is yet to come
+    std::fflush(stdout);
+    const int stream = dup(this->Stream);
+    this->File = stream >= 0 ? fdopen(stream, "wb") : nullptr;
+  } else if (this->InPlace) {
     this->File = std::fopen(this->Path.c_str(), "wb");
   }
   for (int number = 0; !this->InPlace && !this->File && (number == 0 || errno == EEXIST); ++number) {
@@ -108,8 +151,8 @@ void output_file::open()
       this->fail(ENAMETOOLONG);
     }
     std::strcpy(temporary, name.c_str());
-    has_temporary = true;
-    this->File = std::fopen(temporary, "wbx");
+    const signals_wait waiting;
+    this->File = vtkStratusCreateTemporary(name, this->Target);
     has_temporary = this->HasTemporary = this->File != nullptr;
   }
   if (!this->File) {
@@ -127,6 +170,7 @@ void output_file::write(const std::vector<uint8_t>& bytes)
   }
   std::FILE* file = this->File;
   this->File = nullptr;
+  const signals_wait waiting;
   if (std::fclose(file) != 0 || (!this->InPlace && std::rename(temporary, this->Target.c_str()) != 0)) {
     this->fail(errno);
   }

@@ -10,7 +10,7 @@
 namespace cli {
 
 // Bytes become a file under another name beside it, which then gets the name. What is left of it goes when the program fails, and when a signal
-// ends it. What exists and is no regular file (a pipe, a device) is written in place.
+// ends it. What exists and is no regular file (a pipe, a device) is written in place, and so is what a standard stream writes to (/dev/stdout).
 class output_file
 {
 public:
@@ -28,6 +28,7 @@ private:
   std::string Path;   // as it was given
   std::string Target; // where it leads to
   bool InPlace = false;
+  int Stream = -1; // of the standard ones, the one to write to
   bool HasTemporary = false;
   std::FILE* File = nullptr;
 };

@@ -114,7 +114,8 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
 void Store(const std::vector<unsigned char>& bytes, const std::string& path)
 {
   std::string part;
-  std::FILE* file = vtkStratusOpenTemporary(path, part);
+  const std::string target = vtkStratusFollowLinks(path);
+  std::FILE* file = vtkStratusOpenTemporary(target, part);
   if (!file) {
     Fail("can't open " + part + " for writing " + path + ": " + std::strerror(errno), vtkErrorCode::CannotOpenFileError);
   }
@@ -126,7 +127,7 @@ void Store(const std::vector<unsigned char>& bytes, const std::string& path)
   }
   std::error_code error;
   if (done) {
-    std::filesystem::rename(part, path, error);
+    std::filesystem::rename(part, target, error);
     reason = error.value();
   }
   if (!done || error) {

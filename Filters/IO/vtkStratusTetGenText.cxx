@@ -244,10 +244,10 @@ void vtkStratusTetGenInput::EndFile(const char* things, vtkIdType all)
 }
 
 vtkStratusTetGenOutput::vtkStratusTetGenOutput(const std::string& path, const vtkStratusTetGenProgress& progress)
-    : Path(path), Progress(progress)
+    : Path(path), Target(vtkStratusFollowLinks(path)), Progress(progress)
 {
   this->Buffer.reserve(ChunkBytes + 64);
-  this->File = vtkStratusOpenTemporary(path, this->Part);
+  this->File = vtkStratusOpenTemporary(this->Target, this->Part);
   if (!this->File) {
     throw vtkStratusTetGenError{ "can't open " + this->Part + " for writing " + path + ": " + std::strerror(errno),
       vtkErrorCode::CannotOpenFileError };
@@ -320,7 +320,7 @@ void vtkStratusTetGenOutput::Close()
 void vtkStratusTetGenOutput::Commit()
 {
   std::error_code error;
-  std::filesystem::rename(this->Part, this->Path, error);
+  std::filesystem::rename(this->Part, this->Target, error);
   if (error) {
     errno = error.value();
     this->Fail("rename the file just written to");

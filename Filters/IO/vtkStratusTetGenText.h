@@ -99,6 +99,7 @@ private:
   [[noreturn]] void Fail(const char* doing) const;
 
   std::string Path;
+  std::string Target;
   std::string Part;
   vtkStratusTetGenProgress Progress;
   std::FILE* File = nullptr;

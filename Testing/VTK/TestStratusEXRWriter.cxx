@@ -295,6 +295,29 @@ void RefusesPaths()
   CheckRefused(writer, "folder.exr: Is a directory");
 }
 
+// The file that a link leads to is written, there or not, and stays for those for whom it was.
+void KeepsLinksAndPermissions()
+{
+  namespace files = std::filesystem;
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  AddFloats(image, "RGBA", 4);
+  const files::path target = Folder + "/target.exr", link = Folder + "/link.exr";
+  files::create_symlink("target.exr", link);
+  const files::perms few = files::perms::owner_read | files::perms::owner_write;
+  for (const bool exists : { false, true }) {
+    if (exists) {
+      std::error_code error;
+      files::permissions(target, few, error);
+    }
+    vtkNew<vtkStratusEXRWriter> writer;
+    writer->SetInputData(image);
+    writer->SetFileName(link.c_str());
+    writer->Write();
+    CHECK(writer->GetErrorCode() == 0 && files::is_symlink(link) && files::is_regular_file(target), "exists %d: the link was replaced", exists);
+  }
+  CHECK(files::status(target).permissions() == few, "the permissions are others");
+}
+
 // As a full disk would: the file may have 100 bytes.
 void RefusesFullDisks()
 {
@@ -330,6 +353,7 @@ void StopsWhenAborted()
 int main(int argc, char** argv)
 {
   Folder = std::string(argc > 1 ? argv[1] : ".") + "/exr";
+  std::filesystem::remove_all(Folder);
   std::filesystem::create_directories(Folder);
   for (const auto& size : { std::pair<int, int>(1, 1), { 1, 40 }, { 53, 1 }, { 37, 15 }, { 37, 16 }, { 37, 17 }, { 128, 100 } }) {
     CheckRoundTrip(size.first, size.second);
@@ -340,6 +364,7 @@ int main(int argc, char** argv)
   RefusesImages();
   RefusesArrays();
   RefusesPaths();
+  KeepsLinksAndPermissions();
   RefusesFullDisks();
   StopsWhenAborted();
   std::filesystem::remove_all(Folder);

@@ -284,6 +284,10 @@ void StoppingAndWriting()
     writer->SetInputData(mesh->GetSurface());
     writer->SetFileName((Folder + "/" + std::string(249, 'n') + ".smesh").c_str()); // 255 bytes, which is as long as file systems take
     CHECK(writer->Write() == 1, "a long name is not written");
+    std::filesystem::create_symlink("target.smesh", Folder + "/link.smesh");
+    writer->SetFileName((Folder + "/link.smesh").c_str());
+    CHECK(writer->Write() == 1 && std::filesystem::is_symlink(Folder + "/link.smesh") && !ReadText(Folder + "/target.smesh").empty(),
+      "a link was replaced, not the file that it leads to");
   }
   refuses("no points", [&](W*, G* g, P*) { g->Initialize(); });
   refuses("type 5", [&](W*, G* g, P*) {
