@@ -181,7 +181,7 @@ typedef struct stratus_camera {
   double forward[3];
   double right[3];
   double up[3];
-  double near_k; /* >= 0 (parallel: any). Default 0. */
+  double near_k; /* >= 0 (parallel: any), finite. Default 0. */
   double far_k;  /* > near_k, may be INFINITY. Default INFINITY. */
   int parallel;  /* default 0 */
 } stratus_camera;

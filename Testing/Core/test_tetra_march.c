@@ -307,7 +307,7 @@ static void depths_beyond_doubles_are_refused(void** state)
   stratus_tetra_caster* caster = NULL;
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   const stratus_camera camera = {
-    .forward = { 0, 0, -0.1 }, .right = { 1, 0, 0 }, .up = { 0, 1, 0 }, .near_k = -INFINITY, .far_k = INFINITY, .parallel = 1
+    .forward = { 0, 0, -0.1 }, .right = { 1, 0, 0 }, .up = { 0, 1, 0 }, .near_k = -1e308, .far_k = INFINITY, .parallel = 1
   };
   tetra_create(&c, 1, 0.0, 0.0, 10);
   c.mesh.points = points;
