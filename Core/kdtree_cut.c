@@ -217,8 +217,9 @@ static stratus_status divide_beside(cut_task* task, stratus_kdtree_node* node)
       }
     }
   }
-  /* What was left out, if anything was: the pieces behind move up. */
-  memmove(node->cells + kept, node->cells + count, (size_t)(node->count - count) * sizeof *node->cells);
+  if (node->count > count) { /* what was left out, if anything was: the pieces behind move up */
+    memmove(node->cells + kept, node->cells + count, (size_t)(node->count - count) * sizeof *node->cells);
+  }
   node->count -= count - kept;
   return STRATUS_OK;
 }

@@ -165,6 +165,44 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   stratus_context_destroy(context);
 }
 
+/* Cells that overlap, cut however unevenly: some leaves get no cell at all, and lie beside others that are cut. */
+static void leaves_without_cells_take_part(void** state)
+{
+  stratus_partition_options options = stratus_partition_options_default();
+  uint32_t random = 5;
+  int empty = 0;
+  (void)state;
+  stratus_context* context = mesh_context(1);
+  options.imbalance = INFINITY;
+  options.depth = 7;
+  options.leaf_cells = 1;
+  for (int round = 0; round < 600; round++) {
+    mesh_case mesh = mesh_case_allocate(13, 13);
+    stratus_partition_result cut;
+    options.rule = round % 2 ? STRATUS_PARTITION_PAPER : STRATUS_PARTITION_MEDIAN;
+    for (int i = 0; i < 39; i++) {
+      mesh.points[i] = (double)(mesh_random(&random) % 4);
+    }
+    for (int i = 0; i < 52; i++) {
+      mesh.vertices[i] = (int32_t)(mesh_random(&random) % 13);
+    }
+    stratus_partition* partition = make_partition(context, &mesh, &options);
+    stratus_partition_get(partition, &cut);
+    for (int32_t leaf = 0; leaf < cut.leaves.leaf_count; leaf++) {
+      int64_t cells = 0;
+      for (int64_t c = 0; c < cut.cell_count; c++) {
+        cells += cut.leaves.leaf[c] == leaf;
+      }
+      empty += cells == 0;
+    }
+    stratus_partition_destroy(partition);
+    mesh_case_free(&mesh);
+  }
+  print_message("             %d leaves without a cell\n", empty);
+  assert_true(empty > 0);
+  stratus_context_destroy(context);
+}
+
 static void options_out_of_range_are_refused_with_their_values(void** state)
 {
   static const char* says[] = { "rule 2", "depth 17", "depth -1", "planes 0", "planes 4097", "growth 0", "growth nan", "imbalance -1",
@@ -198,6 +236,7 @@ int main(void)
     cmocka_unit_test(pieces_meet_and_fill_at_every_depth_and_rule),
     cmocka_unit_test(what_is_within_rounding_of_a_plane_lies_on_it),
     cmocka_unit_test(nothing_is_cut_where_nothing_is_to_cut),
+    cmocka_unit_test(leaves_without_cells_take_part),
     cmocka_unit_test(options_out_of_range_are_refused_with_their_values),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
