@@ -138,14 +138,14 @@ void fuzz_matrix(fuzz* f, double matrix[16])
 {
   const uint64_t how = fuzz_below(f, 8);
   const double scale = fuzz_chance(f, 0.8) ? 1.0 : fuzz_scale(f, 1e-3, 1e3);
+  const double shear = how == 7 ? fuzz_between(f, -1.5, 1.5) : 0.0; /* the other axes lean towards the first */
   double turn[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   if (how >= 4) {
     rotation(f, turn);
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      const double shear = how == 7 && column > row ? fuzz_between(f, -1.5, 1.5) : 0.0;
-      matrix[4 * row + column] = scale * (turn[3 * row + column] + shear);
+      matrix[4 * row + column] = scale * (turn[3 * row + column] + (column > 0 ? shear * turn[3 * row] : 0.0));
     }
     matrix[4 * row + 3] = how == 0 ? 0.0 : fuzz_between(f, -5.0, 5.0);
   }
