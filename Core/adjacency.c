@@ -42,7 +42,7 @@ static void find_orientations(adjacency_build* build)
   const stratus_mesh* mesh = build->mesh;
   int64_t flat = 0, inverted = 0;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : flat, inverted)
-  for (int64_t cell = 0; cell < mesh->cell_count; cell++) {
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const int32_t* v = mesh->vertices + 4 * cell;
     const double* const points = mesh->points;
     const int sign = stratus_names_a_point_twice(v)
@@ -60,14 +60,14 @@ static void count_faces(const adjacency_build* build, int chunk)
 {
   size_t* counts = build->places + (size_t)chunk * (size_t)build->buckets;
   memset(counts, 0, (size_t)build->buckets * sizeof *counts);
-  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
+  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); ++cell) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
     if (!stratus_names_a_point_twice(v)) { /* the lowest point is the lowest of the three faces that have it */
       const int32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
       const int32_t other_low = v[2] < v[3] ? v[2] : v[3], other_high = v[2] < v[3] ? v[3] : v[2];
       const int32_t second = low < other_low ? (high < other_low ? high : other_low) : (other_high < low ? other_high : low);
       counts[(low < other_low ? low : other_low) >> build->shift] += 3;
-      counts[second >> build->shift]++;
+      ++counts[second >> build->shift];
     }
   }
 }
@@ -77,9 +77,9 @@ static void place_buckets(adjacency_build* build)
   size_t* ends = build->places + (size_t)build->chunks * (size_t)build->buckets;
   size_t place = 0;
   build->largest = 0;
-  for (int bucket = 0; bucket < build->buckets; bucket++) {
+  for (int bucket = 0; bucket < build->buckets; ++bucket) {
     const size_t begin = place;
-    for (int chunk = 0; chunk < build->chunks; chunk++) {
+    for (int chunk = 0; chunk < build->chunks; ++chunk) {
       size_t* count = build->places + (size_t)chunk * (size_t)build->buckets + bucket;
       const size_t here = *count;
       *count = place;
@@ -93,9 +93,9 @@ static void place_buckets(adjacency_build* build)
 static void deal_faces(const adjacency_build* build, int chunk)
 {
   size_t* places = build->places + (size_t)chunk * (size_t)build->buckets;
-  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); cell++) {
+  for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); ++cell) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
-    for (int f = 0; f < 4 && !stratus_names_a_point_twice(v); f++) {
+    for (int f = 0; f < 4 && !stratus_names_a_point_twice(v); ++f) {
       int32_t point[3];
       const int side = stratus_face_points(v, f, point) * build->adjacency->orientation[cell];
       face_record* record = build->records + places[point[0] >> build->shift]++;
@@ -133,7 +133,7 @@ static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, in
   const face_record* records = build->records + begin;
   int32_t* neighbours = build->adjacency->neighbours;
   memset(table, 0xff, slots * sizeof *table);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const face_record* q = records + i;
     size_t s = slot_of(q, slots);
     while (table[s].first != NO_FACE && !same_face(records + table[s].first, q)) {
@@ -171,18 +171,18 @@ static void pair_faces(adjacency_build* build)
   stratus_adjacency* adjacency = build->adjacency;
   int64_t broken = 0, folded = 0, border = 0;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (int64_t i = 0; i < 4 * build->mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * build->mesh->cell_count; ++i) {
     adjacency->neighbours[i] = -1;
   }
   const size_t slots = build->largest + build->largest / 2 + 1;
 #pragma omp parallel for schedule(static, 1) num_threads(build->workers) reduction(+ : broken, folded)
-  for (int worker = 0; worker < build->workers; worker++) {
+  for (int worker = 0; worker < build->workers; ++worker) {
     for (int bucket = worker; bucket < build->buckets; bucket += build->workers) {
       pair_bucket(build, bucket, build->tables + (size_t)worker * slots, &broken, &folded);
     }
   }
 #pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : border)
-  for (int64_t i = 0; i < 4 * build->mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * build->mesh->cell_count; ++i) {
     border += adjacency->neighbours[i] < 0;
   }
   adjacency->broken_faces = broken;
@@ -198,7 +198,7 @@ static stratus_status build_adjacency(adjacency_build* build)
   build->chunks = faces < 4 * FACES_PER_BUCKET ? 1 : context->threads;
   const int64_t wanted = faces / FACES_PER_BUCKET < 1 ? 1 : faces / FACES_PER_BUCKET > BUCKETS_MAX ? BUCKETS_MAX : faces / FACES_PER_BUCKET;
   while (build->mesh->point_count >> build->shift > wanted) {
-    build->shift++;
+    ++build->shift;
   }
   build->buckets = (int)(build->mesh->point_count >> build->shift) + 1;
   TRY(stratus_allocate(context, (size_t)(build->chunks + 1) * (size_t)build->buckets, sizeof(size_t), &memory));
@@ -208,19 +208,18 @@ static stratus_status build_adjacency(adjacency_build* build)
   find_orientations(build);
   TRY(stratus_progress(context, "adjacency", 0.3));
 #pragma omp parallel for schedule(static, 1) num_threads(build->chunks)
-  for (int chunk = 0; chunk < build->chunks; chunk++) {
+  for (int chunk = 0; chunk < build->chunks; ++chunk) {
     count_faces(build, chunk);
   }
   place_buckets(build);
 #pragma omp parallel for schedule(static, 1) num_threads(build->chunks)
-  for (int chunk = 0; chunk < build->chunks; chunk++) {
+  for (int chunk = 0; chunk < build->chunks; ++chunk) {
     deal_faces(build, chunk);
   }
   TRY(stratus_progress(context, "adjacency", 0.6));
   /* A table for each thread, unless all cells hang on few points: then one table, lest memory grow with the threads. */
   build->workers = build->largest > 16 * FACES_PER_BUCKET && build->largest > (size_t)faces / 64 ? 1 : build->chunks;
-  TRY(stratus_allocate(
-    context, (size_t)build->workers, (build->largest + build->largest / 2 + 1) * sizeof(face_slot), &memory));
+  TRY(stratus_allocate(context, (size_t)build->workers, (build->largest + build->largest / 2 + 1) * sizeof(face_slot), &memory));
   build->tables = memory;
   pair_faces(build);
   return STRATUS_OK;

@@ -4,7 +4,7 @@
 
 static bool box_is_sound(const stratus_box* box)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (box->lo[a] >= box->hi[a] || box->lo[a] < -STRATUS_BVH_COORDINATE_MAX || box->hi[a] > STRATUS_BVH_COORDINATE_MAX) {
       return false;
     }
@@ -33,7 +33,7 @@ static stratus_status check_input(
   }
   uint32_t unsound = count;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : unsound)
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     unsound = box_is_sound(boxes + i) || unsound < i ? unsound : i;
   }
   if (unsound < count) {
@@ -121,7 +121,7 @@ static stratus_status check_inner(const checker* c, uint32_t i)
   if (first <= i || first >= c->bvh->node_count - 1) {
     return WRONG(c, "node %u of %u has children %u and %u", i, c->bvh->node_count, first, first + 1);
   }
-  for (uint32_t child = first; child < first + 2; child++) {
+  for (uint32_t child = first; child < first + 2; ++child) {
     if (c->node_seen[child]++) {
       return WRONG(c, "node %u has two parents", child);
     }
@@ -136,7 +136,7 @@ static stratus_status check_leaf(const checker* c, uint32_t i)
   if (stratus_tree_node_kind(node) != STRATUS_NODE_BRICKS || count < 1 || node->first >= c->count || count > c->count - node->first) {
     return WRONG(c, "node %u: kind %d with %u boxes from %u on of %u", i, (int)stratus_tree_node_kind(node), count, node->first, c->count);
   }
-  for (uint32_t place = node->first; place < node->first + count; place++) {
+  for (uint32_t place = node->first; place < node->first + count; ++place) {
     const uint32_t box = c->bvh->order[place];
     if (box >= c->count || c->box_seen[box]++) {
       return WRONG(c, "place %u has box %u of %u, no such box or one twice", place, box, c->count);
@@ -150,7 +150,7 @@ static stratus_status check_box(const checker* c, uint32_t i)
 {
   const stratus_tree_node* node = c->bvh->nodes + i;
   const stratus_box* t = c->tight + i;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (node->lo[a] != t->lo[a] || node->hi[a] != t->hi[a]) {
       return WRONG(c, "node %u is [%d,%d) along axis %d, its boxes are [%d,%d)", i, node->lo[a], node->hi[a], a, t->lo[a], t->hi[a]);
     }
@@ -160,7 +160,7 @@ static stratus_status check_box(const checker* c, uint32_t i)
 
 static stratus_status check_nodes(const checker* c)
 {
-  for (uint32_t i = 0; i < c->bvh->node_count; i++) {
+  for (uint32_t i = 0; i < c->bvh->node_count; ++i) {
     c->tight[i] = stratus_box_none();
     if (i > 0 && !c->node_seen[i]) {
       return WRONG(c, "node %u has no parent before it", i);
@@ -175,7 +175,7 @@ static stratus_status check_nodes(const checker* c)
     }
     TRY(check_box(c, i));
   }
-  for (uint32_t box = 0; box < c->count; box++) {
+  for (uint32_t box = 0; box < c->count; ++box) {
     if (!c->box_seen[box]) {
       return WRONG(c, "box %u is in no leaf", box);
     }
@@ -206,7 +206,7 @@ cleanup:
 double stratus_bvh_sah(const stratus_tree_node* nodes, uint32_t node_count)
 {
   double cost = 0.0, root = 1.0;
-  for (uint32_t i = 0; i < node_count; i++) {
+  for (uint32_t i = 0; i < node_count; ++i) {
     const stratus_tree_node* n = nodes + i;
     const stratus_box box = { { n->lo[0], n->lo[1], n->lo[2] }, { n->hi[0], n->hi[1], n->hi[2] } };
     const double area = stratus_box_area(&box);

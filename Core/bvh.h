@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the builders of bounding volume hierarchies share. Each makes a binary tree down to single boxes, in whatever way is its own; bvh_layout.c
- * then gathers boxes into leaves where that is cheaper, bounds the depth and lays the nodes out. So builders differ in shape only. */
+ * What the builders of bounding volume hierarchies share. Each makes a binary tree down to single boxes, in whatever way is its own;
+ * bvh_layout.c then gathers boxes into leaves where that is cheaper, bounds the depth and lays the nodes out. So builders differ in shape
+ * only. */
 #ifndef STRATUS_BVH_H
 #define STRATUS_BVH_H
 
@@ -60,20 +61,21 @@ typedef struct stratus_bvh_item {
 } stratus_bvh_item;
 
 stratus_status stratus_bvh_items_create(const stratus_bvh_build* build, stratus_bvh_item** items);
-/* Binned SAH over items [begin, end), which it reorders. The pair that splits a range before item m is pair m - 1: every place splits once, so
- * pairs need no counter and no order of threads. *child: the range's root, as in a pair. To be called within a parallel region, by one thread. */
+/* Binned SAH over items [begin, end), which it reorders. The pair that splits a range before item m is pair m - 1: every place splits once,
+ * so pairs need no counter and no order of threads. *child: the range's root, as in a pair. To be called within a parallel region, by one
+ * thread. */
 void stratus_bvh_split_items(
   stratus_bvh_item* items, uint32_t begin, uint32_t end, int depth, int max_depth, stratus_bvh_pair* pairs, uint32_t* child);
 
 /* Of a union of two clusters: how far they are from each other. */
 typedef enum stratus_bvh_measure { STRATUS_BVH_SURFACE, STRATUS_BVH_EDGES } stratus_bvh_measure;
 
-/* Locally optimal merging of 2 <= count boxes; pairs: count - 1, leaves are places in `boxes`. Near places win ties, so boxes come in an order
- * that keeps neighbours together. */
+/* Locally optimal merging of 2 <= count boxes; pairs: count - 1, leaves are places in `boxes`. Near places win ties, so boxes come in an
+ * order that keeps neighbours together. */
 stratus_status stratus_bvh_agglomerate(
   stratus_context* context, stratus_bvh_measure measure, const stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs, uint32_t* root);
-/* ---- bvh_join.c: joins consecutive ranges of items by a tree over the ranges: puts the ranges in the tree's order, fills the pairs of the places
- * between them, and tells where the root of each range is to be stored. */
+/* ---- bvh_join.c: joins consecutive ranges of items by a tree over the ranges: puts the ranges in the tree's order, fills the pairs of the
+ * places between them, and tells where the root of each range is to be stored. */
 typedef struct stratus_bvh_join {
   uint32_t ranges;            /* >= 2 */
   const stratus_bvh_pair* of; /* ranges - 1, over the ranges as they lie at first */
@@ -93,7 +95,7 @@ stratus_status stratus_bvh_layout(const stratus_bvh_build* build, int leaf_boxes
 
 static inline void stratus_box_add(stratus_box* box, const stratus_box* other)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     box->lo[a] = other->lo[a] < box->lo[a] ? other->lo[a] : box->lo[a];
     box->hi[a] = other->hi[a] > box->hi[a] ? other->hi[a] : box->hi[a];
   }

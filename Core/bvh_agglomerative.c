@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is least merge, again and again. By surface, as the paper has it,
- * single voxels far apart along one axis are near, and merge into slivers that overlap all that comes later: on the sets of record trees are
- * 1.19 to 1.24 times as costly as the sweep's. By the sum of the edges it is 1.10 to 1.14, so that is the builder's measure.
+ * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is least merge, again and again. By surface, as the paper has
+ * it, single voxels far apart along one axis are near, and merge into slivers that overlap all that comes later: on the sets of record
+ * trees are 1.19 to 1.24 times as costly as the sweep's. By the sum of the edges it is 1.10 to 1.14, so that is the builder's measure.
  *
- * By either measure the distance of two clusters never shrinks by merging, so any two that are each other's nearest may merge at once, in any order,
- * and the tree is the greedy one's; rounds of that find the nearest in parallel.
+ * By either measure the distance of two clusters never shrinks by merging, so any two that are each other's nearest may merge at once, in
+ * any order, and the tree is the greedy one's; rounds of that find the nearest in parallel.
  *
- * A merged cluster keeps the lower of its two places. Of equal distances the one between places that differ in the lowest bits is the lesser: a
- * total order that merging respects too, so equal distances (in a lattice nearly all are) leave no choice.
+ * A merged cluster keeps the lower of its two places. Of equal distances the one between places that differ in the lowest bits is the
+ * lesser: a total order that merging respects too, so equal distances (in a lattice nearly all are) leave no choice.
  *
- * Nearest clusters are searched in a binary tree over places. A node keeps, an axis, the greatest lo and the least hi of its clusters: no union
- * with any of them is smaller than the one with that. Nodes are met in the order of how their places differ, so an equal distance
+ * Nearest clusters are searched in a binary tree over places. A node keeps, an axis, the greatest lo and the least hi of its clusters: no
+ * union with any of them is smaller than the one with that. Nodes are met in the order of how their places differ, so an equal distance
  * found later never wins. */
 #include "bvh.h"
 
@@ -46,7 +46,7 @@ static reach reach_none(void)
 
 static void reach_add(reach* r, const reach* other)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     r->lo[a] = other->lo[a] > r->lo[a] ? other->lo[a] : r->lo[a];
     r->hi[a] = other->hi[a] < r->hi[a] ? other->hi[a] : r->hi[a];
   }
@@ -70,7 +70,7 @@ typedef struct nearest_search {
 static double least_union(const agglomeration* g, const stratus_box* box, const reach* r)
 {
   double edge[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int32_t lo = r->lo[a] < box->lo[a] ? r->lo[a] : box->lo[a], hi = r->hi[a] > box->hi[a] ? r->hi[a] : box->hi[a];
     edge[a] = (double)hi - (double)lo;
   }
@@ -93,7 +93,7 @@ static void search_node(nearest_search* s, int level, uint32_t node)
     return;
   }
   const uint32_t near = 2 * node + (s->place >> (level - 1) & 1); /* agrees with the place in one bit more */
-  for (int c = 0; c < 2; c++) {
+  for (int c = 0; c < 2; ++c) {
     const uint32_t child = near ^ (uint32_t)c;
     if (child < level_size(s->g->count, level - 1)) {
       search_node(s, level - 1, child);
@@ -104,7 +104,7 @@ static void search_node(nearest_search* s, int level, uint32_t node)
 static uint32_t find_nearest(const agglomeration* g, uint32_t place)
 {
   nearest_search s = { g, g->box[place], place, place, INFINITY };
-  for (int level = 0; level < g->levels; level++) {
+  for (int level = 0; level < g->levels; ++level) {
     const uint32_t sibling = (place >> level) ^ 1u;
     if (sibling < level_size(g->count, level)) {
       search_node(&s, level, sibling);
@@ -123,7 +123,7 @@ static void update_reach(const agglomeration* g, uint32_t place, bool holds)
     const stratus_box* box = g->box + place;
     *leaf = (reach){ { box->lo[0], box->lo[1], box->lo[2] }, { box->hi[0], box->hi[1], box->hi[2] } };
   }
-  for (int level = 1; level < g->levels; level++) {
+  for (int level = 1; level < g->levels; ++level) {
     const uint32_t node = place >> level, first = 2 * node;
     reach r = g->level[level - 1][first];
     if (first + 1 < level_size(g->count, level - 1)) {
@@ -149,7 +149,7 @@ static void run_round(agglomeration* g)
 {
   uint32_t live = 0;
   g->search_count = 0;
-  for (uint32_t i = 0; i < g->live_count; i++) {
+  for (uint32_t i = 0; i < g->live_count; ++i) {
     const uint32_t place = g->live[i];
     if (g->round > 1 && g->nearest[place] == place) {
       continue;
@@ -161,36 +161,36 @@ static void run_round(agglomeration* g)
   }
   g->live_count = live;
 #pragma omp parallel for schedule(dynamic, 16) num_threads(g->context->threads) if (g->search_count >= SEARCHES_SHARED)
-  for (uint32_t i = 0; i < g->search_count; i++) {
+  for (uint32_t i = 0; i < g->search_count; ++i) {
     g->nearest[g->search[i]] = find_nearest(g, g->search[i]);
   }
   /* Two who are each other's nearest had one of them searched now, else they would have merged before. */
-  for (uint32_t i = 0; i < g->search_count; i++) {
+  for (uint32_t i = 0; i < g->search_count; ++i) {
     const uint32_t place = g->search[i], other = g->nearest[place];
     if (g->changed[place] != g->round && other != place && g->nearest[other] == place) {
       merge(g, place < other ? place : other, place < other ? other : place);
     }
   }
-  g->round++;
+  ++g->round;
 }
 
 static stratus_status make_reaches(agglomeration* g, const stratus_box* boxes, void** memory)
 {
   size_t total = 0, at = 0;
-  for (g->levels = 1; level_size(g->count, g->levels - 1) > 1; g->levels++) {
+  for (g->levels = 1; level_size(g->count, g->levels - 1) > 1; ++g->levels) {
     total += level_size(g->count, g->levels - 1);
   }
   TRY(stratus_allocate(g->context, total + 1, sizeof(reach), memory));
-  for (int level = 0; level < g->levels; level++) {
+  for (int level = 0; level < g->levels; ++level) {
     g->level[level] = (reach*)*memory + at;
     at += level_size(g->count, level);
   }
-  for (uint32_t i = 0; i < g->count; i++) {
+  for (uint32_t i = 0; i < g->count; ++i) {
     const stratus_box* box = boxes + i;
     g->level[0][i] = (reach){ { box->lo[0], box->lo[1], box->lo[2] }, { box->hi[0], box->hi[1], box->hi[2] } };
   }
-  for (int level = 1; level < g->levels; level++) {
-    for (uint32_t node = 0; node < level_size(g->count, level); node++) {
+  for (int level = 1; level < g->levels; ++level) {
+    for (uint32_t node = 0; node < level_size(g->count, level); ++node) {
       reach r = g->level[level - 1][2 * (size_t)node];
       if (2 * node + 1 < level_size(g->count, level - 1)) {
         reach_add(&r, g->level[level - 1] + 2 * (size_t)node + 1);
@@ -217,7 +217,7 @@ stratus_status stratus_bvh_agglomerate(
   g.changed = g.nearest + count;
   g.live = g.changed + count;
   g.search = g.live + count;
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     g.box[i] = boxes[i];
     g.child[i] = STRATUS_BVH_LEAF | i;
     g.nearest[i] = g.live[i] = i;

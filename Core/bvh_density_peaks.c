@@ -3,8 +3,8 @@
  * nearest one of higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its
  * nearest denser neighbour.
  *
- * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so none
- * looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
+ * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so
+ * none looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
 #include "bvh.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ static uint64_t distance_between(const stratus_box* a, const stratus_box* b) /* 
 static uint64_t least_distance(const stratus_box* point, const stratus_box* bounds)
 {
   int64_t d[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t below = (int64_t)bounds->lo[a] - point->lo[a], above = (int64_t)point->lo[a] - bounds->hi[a];
     d[a] = below > 0 ? below : above > 0 ? above : 0;
   }
@@ -67,7 +67,7 @@ static uint64_t least_distance(const stratus_box* point, const stratus_box* boun
 static uint64_t greatest_distance(const stratus_box* point, const stratus_box* bounds)
 {
   int64_t d[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t low = (int64_t)point->lo[a] - bounds->lo[a], high = (int64_t)bounds->hi[a] - point->lo[a];
     d[a] = low > high ? low : high;
   }
@@ -79,7 +79,7 @@ static uint64_t greatest_distance(const stratus_box* point, const stratus_box* b
 static void find_sites(density_peaks* p)
 {
   p->sites = 0;
-  for (uint32_t i = 0; i < p->build->count; i++) {
+  for (uint32_t i = 0; i < p->build->count; ++i) {
     if (i == 0 || p->build->codes[i] != p->build->codes[i - 1]) {
       p->first[p->sites++] = i;
     }
@@ -98,10 +98,10 @@ static block merge_blocks(const block* a, const block* b)
 
 static void merge_levels(const density_peaks* p)
 {
-  for (int level = 1; level < p->levels; level++) {
+  for (int level = 1; level < p->levels; ++level) {
     const uint32_t below = level_size(p->sites, level - 1);
 #pragma omp parallel for schedule(static) num_threads(p->build->context->threads) if (below > 4096)
-    for (uint32_t b = 0; b < level_size(p->sites, level); b++) {
+    for (uint32_t b = 0; b < level_size(p->sites, level); ++b) {
       const block* first = p->level[level - 1] + 2 * (size_t)b;
       p->level[level][b] = 2 * b + 1 < below ? merge_blocks(first, first + 1) : *first;
     }
@@ -112,15 +112,15 @@ static stratus_status make_levels(density_peaks* p)
 {
   size_t total = 1, at = 0;
   void* memory;
-  for (p->levels = 1; level_size(p->sites, p->levels - 1) > 1; p->levels++) {
+  for (p->levels = 1; level_size(p->sites, p->levels - 1) > 1; ++p->levels) {
     total += level_size(p->sites, p->levels - 1);
   }
   TRY(stratus_allocate(p->build->context, total, sizeof(block), &memory));
-  for (int level = 0; level < p->levels; level++) {
+  for (int level = 0; level < p->levels; ++level) {
     p->level[level] = (block*)memory + at;
     at += level_size(p->sites, level);
   }
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     const stratus_box* box = p->build->boxes + p->first[s];
     const int32_t x = stratus_box_middle(box, 0), y = stratus_box_middle(box, 1), z = stratus_box_middle(box, 2);
     p->level[0][s] = (block){ { { x, y, z }, { x, y, z } }, p->first[s + 1] - p->first[s], 0 };
@@ -141,9 +141,9 @@ static stratus_status find_cutoff(density_peaks* p)
   TRY_CLEANUP(stratus_allocate(context, (size_t)from * to, sizeof(uint64_t), &keys));
   TRY_CLEANUP(stratus_allocate_zero(context, (size_t)from * to, sizeof(uint32_t), &values));
   uint64_t* distances = keys;
-  for (uint32_t i = 0; i < from; i++) {
+  for (uint32_t i = 0; i < from; ++i) {
     const uint32_t site = (uint32_t)((uint64_t)p->sites * i / from);
-    for (uint32_t j = 0; j < to; j++) {
+    for (uint32_t j = 0; j < to; ++j) {
       const uint32_t other = (uint32_t)((uint64_t)p->sites * j / to);
       if (other != site) {
         distances[count++] = distance_between(&p->level[0][site].bounds, &p->level[0][other].bounds);
@@ -179,10 +179,10 @@ static uint64_t count_near(const density_peaks* p, const stratus_box* point, int
 static void find_densities(const density_peaks* p)
 {
 #pragma omp parallel for schedule(dynamic, 64) num_threads(p->build->context->threads)
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     p->keys[s] = count_near(p, &p->level[0][s].bounds, p->levels - 1, 0);
   }
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     p->level[0][s].densest = p->keys[s] << 32 | ~s;
   }
   merge_levels(p);
@@ -211,7 +211,7 @@ static void search_block(denser_search* s, int level, uint32_t b)
     return;
   }
   const uint32_t near = 2 * b + (s->number >> (level - 1) & 1);
-  for (uint32_t c = 0; c < 2; c++) {
+  for (uint32_t c = 0; c < 2; ++c) {
     if ((near ^ c) < level_size(s->p->sites, level - 1)) {
       search_block(s, level - 1, near ^ c);
     }
@@ -222,9 +222,9 @@ static void search_block(denser_search* s, int level, uint32_t b)
 static void find_denser(const density_peaks* p)
 {
 #pragma omp parallel for schedule(dynamic, 64) num_threads(p->build->context->threads)
-  for (uint32_t number = 0; number < p->sites; number++) {
+  for (uint32_t number = 0; number < p->sites; ++number) {
     denser_search s = { p, p->level[0] + number, number, number, UINT64_MAX };
-    for (int level = 0; level < p->levels; level++) {
+    for (int level = 0; level < p->levels; ++level) {
       const uint32_t sibling = (number >> level) ^ 1u;
       if (sibling < level_size(p->sites, level)) {
         search_block(&s, level, sibling);
@@ -240,7 +240,7 @@ static void find_denser(const density_peaks* p)
 
 static stratus_status sort_sites(const density_peaks* p)
 {
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     p->order[s] = s;
   }
   return stratus_radix_sort(p->build->context, p->keys, p->order, p->sites, 64);
@@ -250,16 +250,16 @@ static stratus_status sort_sites(const density_peaks* p)
 static stratus_status find_clusters(const density_peaks* p, uint32_t* number, uint32_t* clusters)
 {
   const uint32_t wanted = p->build->count / BOXES_A_CENTRE, most = wanted < 2 ? 2 : wanted < CENTRES_MAX ? wanted : CENTRES_MAX;
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     const double gamma = (double)(p->level[0][s].densest >> 32) * sqrt((double)p->delta[s]);
     memcpy(p->keys + s, &gamma, sizeof gamma); /* positive doubles sort as integers do */
     p->cluster[s] = UINT32_MAX;
   }
   TRY(sort_sites(p));
-  for (uint32_t c = 0; c < most && c < p->sites; c++) {
+  for (uint32_t c = 0; c < most && c < p->sites; ++c) {
     p->cluster[p->order[p->sites - 1 - c]] = p->order[p->sites - 1 - c];
   }
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     p->keys[s] = p->level[0][s].densest;
     number[s] = UINT32_MAX;
   }
@@ -271,7 +271,7 @@ static stratus_status find_clusters(const density_peaks* p, uint32_t* number, ui
     }
   }
   *clusters = 0;
-  for (uint32_t s = 0; s < p->sites; s++) {
+  for (uint32_t s = 0; s < p->sites; ++s) {
     uint32_t* n = number + p->cluster[s];
     *n = *n == UINT32_MAX ? (*clusters)++ : *n;
     p->cluster[s] = *n;
@@ -315,8 +315,8 @@ stratus_status stratus_bvh_density_clusters(const stratus_bvh_build* build, uint
   if (p.sites > 1) {
     TRY_CLEANUP(cluster_sites(&p, clusters));
   }
-  for (uint32_t s = 0; s < p.sites; s++) {
-    for (uint32_t i = p.first[s]; i < p.first[s + 1]; i++) {
+  for (uint32_t s = 0; s < p.sites; ++s) {
+    for (uint32_t i = p.first[s]; i < p.first[s + 1]; ++i) {
       cluster[i] = p.cluster[s];
     }
   }

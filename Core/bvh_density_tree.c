@@ -16,15 +16,15 @@ typedef struct cluster_lists {
 static void sort_items(const stratus_bvh_build* build, const cluster_lists* c, const stratus_bvh_item* from, stratus_bvh_item* to)
 {
   memset(c->start, 0, (c->count + 1) * sizeof *c->start);
-  for (uint32_t i = 0; i < build->count; i++) {
-    c->start[c->of[i] + 1]++;
+  for (uint32_t i = 0; i < build->count; ++i) {
+    ++c->start[c->of[i] + 1];
   }
-  for (uint32_t i = 0; i < c->count; i++) {
+  for (uint32_t i = 0; i < c->count; ++i) {
     c->start[i + 1] += c->start[i];
     c->room[i] = c->start[i];
     c->boxes[i] = stratus_box_none();
   }
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     stratus_box_add(c->boxes + c->of[i], &from[i].box);
     to[c->room[c->of[i]]++] = from[i];
   }
@@ -41,7 +41,7 @@ static stratus_status join_clusters(stratus_bvh_build* build, const cluster_list
   const stratus_bvh_join join = { c->count, c->pairs, top, c->start, c->child, c->room };
   stratus_bvh_join_ranges(&join, sorted, items, build->pairs, &build->root);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < c->count; i++) {
+  for (uint32_t i = 0; i < c->count; ++i) {
     stratus_bvh_split_items(sorted, c->start[i], c->start[i + 1], 0, build->max_depth, build->pairs, c->child[i]);
   }
 

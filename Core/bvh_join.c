@@ -43,7 +43,7 @@ void stratus_bvh_join_ranges(
   uint32_t at = join->start[0];
   const uint32_t begin = at, end = join->start[join->ranges];
   (void)list_ranges(&j, join->root, 0);
-  for (uint32_t r = 0; r < join->ranges; r++) {
+  for (uint32_t r = 0; r < join->ranges; ++r) {
     const uint32_t from = join->start[j.order[r]], count = join->start[j.order[r] + 1] - from;
     memcpy(spare + at, items + from, count * sizeof *items);
     start[r] = at;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * k-means clustering (Meister & Bittner 2016), top-down: each node's boxes fall into at most 8 clusters by the distance of their corners to the
- * clusters' mean corners; the clusters are joined by agglomerative clustering, and each is a node again. Sums are of integers, so means do
- * not depend on the order of threads. */
+ * k-means clustering (Meister & Bittner 2016), top-down: each node's boxes fall into at most 8 clusters by the distance of their corners to
+ * the clusters' mean corners; the clusters are joined by agglomerative clustering, and each is a node again. Sums are of integers, so means
+ * do not depend on the order of threads. */
 #include "bvh.h"
 
 #include <string.h>
@@ -31,7 +31,7 @@ typedef struct sums {
 static double distance_to(const mean* m, const stratus_box* box)
 {
   double sum = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double lo = (double)box->lo[a] - m->corner[a], hi = (double)box->hi[a] - m->corner[3 + a];
     sum += lo * lo + hi * hi;
   }
@@ -49,13 +49,13 @@ static void choose_means(const k_means* k, uint32_t begin, uint32_t end, mean me
   double least[CANDIDATES];
   const uint32_t candidates = end - begin < CANDIDATES ? end - begin : CANDIDATES;
   uint32_t chosen = 0;
-  for (uint32_t c = 0; c < candidates; c++) {
+  for (uint32_t c = 0; c < candidates; ++c) {
     least[c] = INFINITY;
   }
-  for (int m = 0; m < CLUSTERS; m++) {
+  for (int m = 0; m < CLUSTERS; ++m) {
     means[m] = mean_of_one(&k->items[begin + (uint32_t)((uint64_t)(end - begin) * chosen / candidates)].box);
     uint32_t farthest = 0;
-    for (uint32_t c = 0; c < candidates; c++) {
+    for (uint32_t c = 0; c < candidates; ++c) {
       const stratus_box* box = &k->items[begin + (uint32_t)((uint64_t)(end - begin) * c / candidates)].box;
       const double distance = distance_to(means + m, box);
       least[c] = distance < least[c] ? distance : least[c];
@@ -68,18 +68,18 @@ static void choose_means(const k_means* k, uint32_t begin, uint32_t end, mean me
 static void assign_items(const k_means* k, uint32_t begin, uint32_t end, const mean means[CLUSTERS], sums* s)
 {
   *s = (sums){ .count = { 0 } };
-  for (uint32_t i = begin; i < end; i++) {
+  for (uint32_t i = begin; i < end; ++i) {
     const stratus_box* box = &k->items[i].box;
     int nearest = 0;
     double least = INFINITY;
-    for (int m = 0; m < CLUSTERS; m++) {
+    for (int m = 0; m < CLUSTERS; ++m) {
       const double distance = distance_to(means + m, box);
       nearest = distance < least ? m : nearest;
       least = distance < least ? distance : least;
     }
     k->cluster[i] = (uint8_t)nearest;
-    s->count[nearest]++;
-    for (int a = 0; a < 3; a++) {
+    ++s->count[nearest];
+    for (int a = 0; a < 3; ++a) {
       s->corner[nearest][a] += box->lo[a];
       s->corner[nearest][3 + a] += box->hi[a];
     }
@@ -91,9 +91,9 @@ static void assign_chunk(const k_means* k, uint32_t begin, uint32_t end, const m
   sums own;
   assign_items(k, begin, end, means, &own);
 #pragma omp critical(stratus_k_means)
-  for (int m = 0; m < CLUSTERS; m++) {
+  for (int m = 0; m < CLUSTERS; ++m) {
     s->count[m] += own.count[m];
-    for (int c = 0; c < 6; c++) {
+    for (int c = 0; c < 6; ++c) {
       s->corner[m][c] += own.corner[m][c];
     }
   }
@@ -113,7 +113,7 @@ static void assign_by_chunks(const k_means* k, uint32_t begin, uint32_t end, con
 static uint32_t sort_items(const k_means* k, uint32_t begin, uint32_t end, const int64_t counts[CLUSTERS], uint32_t start[CLUSTERS + 1])
 {
   uint32_t to[CLUSTERS], at = begin, clusters = 0;
-  for (int m = 0; m < CLUSTERS; m++) {
+  for (int m = 0; m < CLUSTERS; ++m) {
     to[m] = at;
     if (counts[m]) {
       start[clusters++] = at;
@@ -121,7 +121,7 @@ static uint32_t sort_items(const k_means* k, uint32_t begin, uint32_t end, const
     at += (uint32_t)counts[m];
   }
   start[clusters] = end;
-  for (uint32_t i = begin; i < end; i++) {
+  for (uint32_t i = begin; i < end; ++i) {
     k->spare[to[k->cluster[i]]++] = k->items[i];
   }
   memcpy(k->items + begin, k->spare + begin, (end - begin) * sizeof *k->items);
@@ -133,7 +133,7 @@ static uint32_t find_clusters(const k_means* k, uint32_t begin, uint32_t end, ui
   mean means[CLUSTERS];
   sums s;
   choose_means(k, begin, end, means);
-  for (int iteration = 0;; iteration++) {
+  for (int iteration = 0;; ++iteration) {
     if (end - begin > 2 * CHUNK_ITEMS) {
       assign_by_chunks(k, begin, end, means, &s);
     } else {
@@ -142,8 +142,8 @@ static uint32_t find_clusters(const k_means* k, uint32_t begin, uint32_t end, ui
     if (iteration == ITERATIONS) {
       return sort_items(k, begin, end, s.count, start);
     }
-    for (int m = 0; m < CLUSTERS; m++) {
-      for (int c = 0; c < 6 && s.count[m]; c++) {
+    for (int m = 0; m < CLUSTERS; ++m) {
+      for (int c = 0; c < 6 && s.count[m]; ++c) {
         means[m].corner[c] = (double)s.corner[m][c] / (double)s.count[m];
       }
     }
@@ -154,14 +154,14 @@ static uint32_t find_clusters(const k_means* k, uint32_t begin, uint32_t end, ui
 static void merge_few(stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs)
 {
   uint32_t child[CLUSTERS];
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     child[i] = STRATUS_BVH_LEAF | i;
   }
-  for (uint32_t left = count; left > 1; left--) {
+  for (uint32_t left = count; left > 1; --left) {
     uint32_t low = 0, high = 1;
     double least = INFINITY;
-    for (uint32_t i = 0; i < left; i++) {
-      for (uint32_t j = i + 1; j < left; j++) {
+    for (uint32_t i = 0; i < left; ++i) {
+      for (uint32_t j = i + 1; j < left; ++j) {
         stratus_box both = boxes[i];
         stratus_box_add(&both, boxes + j);
         const double area = stratus_box_area(&both);
@@ -185,7 +185,7 @@ static uint32_t find_ranges(const k_means* k, uint32_t begin, uint32_t end, int 
 {
   uint32_t ranges = 0;
   if (end - begin <= CLUSTERS) {
-    for (ranges = 0; ranges <= end - begin; ranges++) {
+    for (ranges = 0; ranges <= end - begin; ++ranges) {
       start[ranges] = begin + ranges;
     }
     return end - begin;
@@ -210,16 +210,16 @@ static void split_node(const k_means* k, uint32_t begin, uint32_t end, int depth
   stratus_box boxes[CLUSTERS];
   stratus_bvh_pair of[CLUSTERS - 1];
   const uint32_t ranges = find_ranges(k, begin, end, depth, start);
-  for (uint32_t r = 0; r < ranges; r++) {
+  for (uint32_t r = 0; r < ranges; ++r) {
     boxes[r] = stratus_box_none();
-    for (uint32_t i = start[r]; i < start[r + 1]; i++) {
+    for (uint32_t i = start[r]; i < start[r + 1]; ++i) {
       stratus_box_add(boxes + r, &k->items[i].box);
     }
   }
   merge_few(boxes, ranges, of);
   const stratus_bvh_join join = { ranges, of, ranges - 2, start, result, room };
   stratus_bvh_join_ranges(&join, k->items, k->spare, k->pairs, child);
-  for (uint32_t r = 0; r < ranges; r++) {
+  for (uint32_t r = 0; r < ranges; ++r) {
     const uint32_t first = start[r], last = start[r + 1];
     uint32_t* range_child = result[r];
 #pragma omp task if (last - first >= TASK_ITEMS)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From a builder's binary tree over single boxes to nodes. Bottom-up: tight boxes, and subtrees whose boxes cost less as one leaf become one.
- * Where the tree is too deep, what lies below is parted at the median. Top-down: each subtree has its own stretch of nodes and of the order, in
- * depth-first order but for siblings, which are neighbours. Threads share the work by subtree; every place follows from the tree alone. */
+ * From a builder's binary tree over single boxes to nodes. Bottom-up: tight boxes, and subtrees whose boxes cost less as one leaf become
+ * one. Where the tree is too deep, what lies below is parted at the median. Top-down: each subtree has its own stretch of nodes and of the
+ * order, in depth-first order but for siblings, which are neighbours. Threads share the work by subtree; every place follows from the tree
+ * alone. */
 #include "bvh.h"
 
 #include <stdatomic.h>
@@ -34,8 +35,8 @@ static void find_parents(const layout* l)
 {
   const stratus_bvh_build* build = l->build;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t p = 0; p < build->count - 1; p++) {
-    for (int c = 0; c < 2; c++) {
+  for (uint32_t p = 0; p < build->count - 1; ++p) {
+    for (int c = 0; c < 2; ++c) {
       const uint32_t child = build->pairs[p].child[c];
       *(child & STRATUS_BVH_LEAF ? l->box_parent + (child & ~STRATUS_BVH_LEAF) : l->pair_parent + child) = p;
     }
@@ -77,7 +78,7 @@ static void merge_all(const layout* l)
 {
   find_parents(l);
 #pragma omp parallel for schedule(static) num_threads(l->build->context->threads)
-  for (uint32_t box = 0; box < l->build->count; box++) {
+  for (uint32_t box = 0; box < l->build->count; ++box) {
     uint32_t pair = l->box_parent[box];
     while (pair != NO_PARENT && atomic_fetch_add_explicit(l->children_done + pair, 1, memory_order_acq_rel) == 1) {
       merge_children(l, pair);
@@ -113,8 +114,8 @@ static stratus_status part_again(const layout* l, uint32_t root, uint32_t* pairs
   stratus_context* context = l->build->context;
   uint32_t pair_count = 0, rank_count = 0;
   pairs[pair_count++] = root;
-  for (uint32_t i = 0; i < pair_count; i++) {
-    for (int c = 0; c < 2; c++) {
+  for (uint32_t i = 0; i < pair_count; ++i) {
+    for (int c = 0; c < 2; ++c) {
       const uint32_t child = l->build->pairs[pairs[i]].child[c];
       if (child & STRATUS_BVH_LEAF) {
         keys[rank_count] = child & ~STRATUS_BVH_LEAF;
@@ -145,7 +146,7 @@ static stratus_status bound_subtree(const deep_search* d, uint32_t pair, uint32_
   if (depth == l->max_depth) {
     return part_again(l, pair, d->pairs, d->ranks, d->keys);
   }
-  for (int c = 0; c < 2; c++) {
+  for (int c = 0; c < 2; ++c) {
     const uint32_t child = l->build->pairs[pair].child[c];
     if (!(child & STRATUS_BVH_LEAF)) {
       TRY(bound_subtree(d, child, depth + 1));
@@ -193,7 +194,7 @@ static void write_nodes(const layout* l, uint32_t child, uint32_t node, uint32_t
   for (;;) {
     const subtree s = subtree_of(l, child);
     stratus_tree_node* n = l->nodes + node;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       n->lo[a] = s.box.lo[a];
       n->hi[a] = s.box.hi[a];
     }

@@ -13,7 +13,7 @@ stratus_status stratus_bvh_build_lbvh(stratus_bvh_build* build)
     return stratus_device_morton_hierarchy(build->context, build->codes, build->count, build->pairs);
   }
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count - 1; i++) {
+  for (uint32_t i = 0; i < build->count - 1; ++i) {
     uint32_t* child = build->pairs[i].child;
     morton_children(build->codes, build->count, i, child, child + 1);
   }

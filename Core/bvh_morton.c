@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Boxes in Morton order, which every builder begins with: neighbours in space become neighbours in memory. Codes come from the device or the
- * host, the same to the bit; the sort is the host's, a radix sort that is stable, so the order is the same at any number of threads. */
+ * Boxes in Morton order, which every builder begins with: neighbours in space become neighbours in memory. Codes come from the device or
+ * the host, the same to the bit; the sort is the host's, a radix sort that is stable, so the order is the same at any number of threads. */
 #include "bvh.h"
 
 #include "kernels/morton.h"
@@ -30,7 +30,7 @@ static void count_digits(const digit_pass* p, uint32_t chunk)
 {
   uint32_t* counts = p->places[chunk];
   memset(counts, 0, sizeof *p->places);
-  for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); i++) {
+  for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); ++i) {
     counts[p->keys[i] >> p->shift & (DIGITS - 1)]++;
   }
 }
@@ -39,9 +39,9 @@ static void count_digits(const digit_pass* p, uint32_t chunk)
 static bool place_digits(const digit_pass* p)
 {
   uint32_t place = 0;
-  for (uint32_t digit = 0; digit < DIGITS; digit++) {
+  for (uint32_t digit = 0; digit < DIGITS; ++digit) {
     const uint32_t before = place;
-    for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+    for (uint32_t chunk = 0; chunk < p->chunks; ++chunk) {
       const uint32_t here = p->places[chunk][digit];
       p->places[chunk][digit] = place;
       place += here;
@@ -56,7 +56,7 @@ static bool place_digits(const digit_pass* p)
 static void scatter_digits(const digit_pass* p, uint32_t chunk)
 {
   uint32_t* places = p->places[chunk];
-  for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); i++) {
+  for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); ++i) {
     const uint32_t to = places[p->keys[i] >> p->shift & (DIGITS - 1)]++;
     p->keys_out[to] = p->keys[i];
     p->values_out[to] = p->values[i];
@@ -66,14 +66,14 @@ static void scatter_digits(const digit_pass* p, uint32_t chunk)
 static bool run_pass(const digit_pass* p, int threads)
 {
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+  for (uint32_t chunk = 0; chunk < p->chunks; ++chunk) {
     count_digits(p, chunk);
   }
   if (!place_digits(p)) {
     return false;
   }
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+  for (uint32_t chunk = 0; chunk < p->chunks; ++chunk) {
     scatter_digits(p, chunk);
   }
   return true;
@@ -116,7 +116,7 @@ static void middle_bounds(stratus_context* context, const stratus_box* boxes, ui
 {
   int32_t lx = INT32_MAX, ly = INT32_MAX, lz = INT32_MAX, mx = INT32_MIN, my = INT32_MIN, mz = INT32_MIN;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : lx, ly, lz) reduction(max : mx, my, mz)
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     const int32_t x = stratus_box_middle(boxes + i, 0), y = stratus_box_middle(boxes + i, 1), z = stratus_box_middle(boxes + i, 2);
     lx = x < lx ? x : lx;
     ly = y < ly ? y : ly;
@@ -136,21 +136,21 @@ static stratus_status make_codes(stratus_bvh_build* build, const stratus_box* bo
   uint32_t extent = 0;
   int shift = 0, axis_bits = 0;
   middle_bounds(build->context, boxes, build->count, least, most);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     extent |= (uint32_t)most[a] - (uint32_t)least[a];
   }
   while (extent >> shift >= 1u << 21) {
-    shift++;
+    ++shift;
   }
   while (extent >> shift >> axis_bits) {
-    axis_bits++;
+    ++axis_bits;
   }
   *bits = 3 * axis_bits;
   if (stratus_device_takes_boxes(build->context, build->count)) {
     return stratus_device_morton_codes(build->context, boxes, build->count, least, shift, build->codes);
   }
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     const stratus_box* box = boxes + i;
     build->codes[i] = morton_code((uint32_t)(stratus_box_middle(box, 0) - least[0]), (uint32_t)(stratus_box_middle(box, 1) - least[1]),
       (uint32_t)(stratus_box_middle(box, 2) - least[2]), shift);
@@ -167,14 +167,14 @@ stratus_status stratus_bvh_sort_boxes(stratus_bvh_build* build, const stratus_bo
   TRY(stratus_allocate(build->context, build->count, sizeof *build->number, &memory));
   build->number = memory;
   TRY(make_codes(build, boxes, &bits));
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     build->number[i] = i;
   }
   TRY(stratus_radix_sort(build->context, build->codes, build->number, build->count, bits));
   TRY(stratus_allocate(build->context, build->count, sizeof *build->boxes, &memory));
   build->boxes = memory;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     build->boxes[i] = boxes[build->number[i]];
   }
   return STRATUS_OK;

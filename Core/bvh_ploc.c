@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Parallel locally-ordered clustering (Meister & Bittner 2018): clusters in Morton order; each finds the neighbour, at most RADIUS places away, that
- * makes the least box with it; those who chose each other merge; again, until one is left. Of neighbours equally good the one whose place
- * differs in the lowest bits wins: then the pair chosen is the same from both sides, so every round merges something, and in a lattice or among
- * boxes in one place half of the clusters at once. */
+ * Parallel locally-ordered clustering (Meister & Bittner 2018): clusters in Morton order; each finds the neighbour, at most RADIUS places
+ * away, that makes the least box with it; those who chose each other merge; again, until one is left. Of neighbours equally good the one
+ * whose place differs in the lowest bits wins: then the pair chosen is the same from both sides, so every round merges something, and in a
+ * lattice or among boxes in one place half of the clusters at once. */
 #include "bvh.h"
 
 #include <string.h>
@@ -31,7 +31,7 @@ static void union_areas(const clusters* c, uint32_t i, uint32_t first, uint32_t 
   const float lx = c->side[0][i], ly = c->side[1][i], lz = c->side[2][i], hx = c->side[3][i], hy = c->side[4][i], hz = c->side[5][i];
   const float *alx = c->side[0] + first, *aly = c->side[1] + first, *alz = c->side[2] + first;
   const float *ahx = c->side[3] + first, *ahy = c->side[4] + first, *ahz = c->side[5] + first;
-  for (uint32_t j = 0; j < count; j++) {
+  for (uint32_t j = 0; j < count; ++j) {
     const float x = (ahx[j] > hx ? ahx[j] : hx) - (alx[j] < lx ? alx[j] : lx);
     const float y = (ahy[j] > hy ? ahy[j] : hy) - (aly[j] < ly ? aly[j] : ly);
     const float z = (ahz[j] > hz ? ahz[j] : hz) - (alz[j] < lz ? alz[j] : lz);
@@ -46,7 +46,7 @@ static uint32_t find_nearest(const ploc* p, uint32_t i)
   uint32_t best = i;
   float best_area = INFINITY;
   union_areas(&p->now, i, first, end - first, areas);
-  for (uint32_t j = first; j < end; j++) {
+  for (uint32_t j = first; j < end; ++j) {
     const float area = areas[j - first];
     if (j != i && (area < best_area || (area == best_area && (i ^ j) < (i ^ best)))) {
       best = j;
@@ -69,7 +69,7 @@ static bool merges(const ploc* p, uint32_t i)
 static void count_chunk(const ploc* p, uint32_t chunk)
 {
   uint32_t kept = 0, merged = 0;
-  for (uint32_t i = chunk * CHUNK; i < chunk_end(p, chunk); i++) {
+  for (uint32_t i = chunk * CHUNK; i < chunk_end(p, chunk); ++i) {
     const bool pair = merges(p, i);
     kept += !pair || i < p->nearest[i];
     merged += pair && i < p->nearest[i];
@@ -81,14 +81,14 @@ static void count_chunk(const ploc* p, uint32_t chunk)
 static void move_chunk(const ploc* p, uint32_t chunk)
 {
   uint32_t to = p->kept[chunk], pair = p->pairs + p->merged[chunk];
-  for (uint32_t i = chunk * CHUNK; i < chunk_end(p, chunk); i++) {
+  for (uint32_t i = chunk * CHUNK; i < chunk_end(p, chunk); ++i) {
     const uint32_t j = p->nearest[i];
     const bool merging = merges(p, i);
     if (merging && j < i) {
       continue;
     }
     const uint32_t other = merging ? j : i;
-    for (int s = 0; s < 6; s++) {
+    for (int s = 0; s < 6; ++s) {
       const float a = p->now.side[s][i], b = p->now.side[s][other];
       p->next.side[s][to] = (s < 3) == (a < b) ? a : b;
     }
@@ -97,7 +97,7 @@ static void move_chunk(const ploc* p, uint32_t chunk)
       p->build->pairs[pair] = (stratus_bvh_pair){ { p->now.child[i], p->now.child[j] } };
       p->next.child[to] = pair++;
     }
-    to++;
+    ++to;
   }
 }
 
@@ -109,15 +109,15 @@ static void run_round(ploc* p)
 #pragma omp parallel num_threads(threads) if (chunks > 1)
   {
 #pragma omp for schedule(static)
-    for (uint32_t i = 0; i < p->count; i++) {
+    for (uint32_t i = 0; i < p->count; ++i) {
       p->nearest[i] = find_nearest(p, i);
     }
 #pragma omp for schedule(static)
-    for (uint32_t chunk = 0; chunk < chunks; chunk++) {
+    for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
       count_chunk(p, chunk);
     }
 #pragma omp single
-    for (uint32_t chunk = 0; chunk < chunks; chunk++) {
+    for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
       const uint32_t here_kept = p->kept[chunk], here_merged = p->merged[chunk];
       p->kept[chunk] = kept;
       p->merged[chunk] = merged;
@@ -125,7 +125,7 @@ static void run_round(ploc* p)
       merged += here_merged;
     }
 #pragma omp for schedule(static)
-    for (uint32_t chunk = 0; chunk < chunks; chunk++) {
+    for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
       move_chunk(p, chunk);
     }
   }
@@ -140,7 +140,7 @@ static stratus_status make_clusters(const stratus_bvh_build* build, clusters* c)
 {
   void* memory;
   TRY(stratus_allocate(build->context, build->count, 6 * sizeof(float), &memory));
-  for (int s = 0; s < 6; s++) {
+  for (int s = 0; s < 6; ++s) {
     c->side[s] = (float*)memory + (size_t)s * build->count;
   }
   TRY(stratus_allocate(build->context, build->count, sizeof(uint32_t), &memory));
@@ -151,8 +151,8 @@ static stratus_status make_clusters(const stratus_bvh_build* build, clusters* c)
 static void start_clusters(const stratus_bvh_build* build, const clusters* c)
 {
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count; i++) {
-    for (int a = 0; a < 3; a++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
+    for (int a = 0; a < 3; ++a) {
       c->side[a][i] = (float)build->boxes[i].lo[a];
       c->side[3 + a][i] = (float)build->boxes[i].hi[a];
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Binned surface area heuristic (Wald 2007), top-down: at each node the boxes fall into bins by their middles, along every axis, and the cheapest
- * border between bins parts them. Where the middles span fewer places than there are bins, a bin is a place, and the split exact.
+ * Binned surface area heuristic (Wald 2007), top-down: at each node the boxes fall into bins by their middles, along every axis, and the
+ * cheapest border between bins parts them. Where the middles span fewer places than there are bins, a bin is a place, and the split exact.
  * Bins hold integers, so the tree is the same however threads share the work. */
 #include "bvh.h"
 
@@ -36,8 +36,8 @@ static int bin_of(const binning* b, const stratus_box* box, int axis)
 static stratus_box bound_middles(const stratus_bvh_item* items, uint32_t begin, uint32_t end)
 {
   stratus_box bounds = stratus_box_none();
-  for (uint32_t i = begin; i < end; i++) {
-    for (int a = 0; a < 3; a++) {
+  for (uint32_t i = begin; i < end; ++i) {
+    for (int a = 0; a < 3; ++a) {
       const int32_t middle = stratus_box_middle(&items[i].box, a);
       bounds.lo[a] = middle < bounds.lo[a] ? middle : bounds.lo[a];
       bounds.hi[a] = middle > bounds.hi[a] ? middle : bounds.hi[a];
@@ -74,12 +74,12 @@ static stratus_box bound_middles_by_chunks(const stratus_bvh_item* items, uint32
 
 static void empty_bins(binning* b, const stratus_box* middles)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t places = (int64_t)middles->hi[a] - middles->lo[a] + 1;
     b->least[a] = middles->lo[a];
     b->bins[a] = places < BINS ? (int)places : BINS;
     b->scale[a] = (double)b->bins[a] / (double)places;
-    for (int i = 0; i < b->bins[a]; i++) {
+    for (int i = 0; i < b->bins[a]; ++i) {
       b->bin[a][i] = (bin){ stratus_box_none(), 0 };
     }
   }
@@ -87,11 +87,11 @@ static void empty_bins(binning* b, const stratus_box* middles)
 
 static void fill_bins(binning* b, const stratus_bvh_item* items, uint32_t begin, uint32_t end)
 {
-  for (int a = 0; a < 3; a++) {
-    for (uint32_t i = begin; b->bins[a] > 1 && i < end; i++) {
+  for (int a = 0; a < 3; ++a) {
+    for (uint32_t i = begin; b->bins[a] > 1 && i < end; ++i) {
       bin* to = b->bin[a] + bin_of(b, &items[i].box, a);
       stratus_box_add(&to->box, &items[i].box);
-      to->count++;
+      ++to->count;
     }
   }
 }
@@ -102,8 +102,8 @@ static void fill_chunk(binning* b, const stratus_box* middles, const stratus_bvh
   empty_bins(&own, middles);
   fill_bins(&own, items, begin, end);
 #pragma omp critical(stratus_bvh_bins)
-  for (int a = 0; a < 3; a++) {
-    for (int i = 0; i < own.bins[a]; i++) {
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < own.bins[a]; ++i) {
       stratus_box_add(&b->bin[a][i].box, &own.bin[a][i].box);
       b->bin[a][i].count += own.bin[a][i].count;
     }
@@ -123,12 +123,12 @@ static void find_split_along(const binning* b, int axis, split* best)
 {
   double right_cost[BINS];
   bin right = { stratus_box_none(), 0 }, left = right;
-  for (int i = b->bins[axis] - 1; i > 0; i--) {
+  for (int i = b->bins[axis] - 1; i > 0; --i) {
     stratus_box_add(&right.box, &b->bin[axis][i].box);
     right.count += b->bin[axis][i].count;
     right_cost[i] = right.count ? stratus_box_area(&right.box) * (double)right.count : 0.0;
   }
-  for (int i = 1; i < b->bins[axis]; i++) {
+  for (int i = 1; i < b->bins[axis]; ++i) {
     stratus_box_add(&left.box, &b->bin[axis][i - 1].box);
     left.count += b->bin[axis][i - 1].count;
     const double cost =
@@ -144,10 +144,10 @@ static uint32_t part_items(const binning* b, const split* s, stratus_bvh_item* i
 {
   for (;;) {
     while (begin < end && bin_of(b, &items[begin].box, s->axis) < s->bin) {
-      begin++;
+      ++begin;
     }
     while (begin < end && bin_of(b, &items[end - 1].box, s->axis) >= s->bin) {
-      end--;
+      --end;
     }
     if (begin == end) {
       return begin;
@@ -170,7 +170,7 @@ static uint32_t split_range(stratus_bvh_item* items, uint32_t begin, uint32_t en
   } else {
     fill_bins(&b, items, begin, end);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     find_split_along(&b, a, &best);
   }
   return best.axis < 0 ? begin + (end - begin) / 2 : part_items(&b, &best, items, begin, end);
@@ -179,7 +179,7 @@ static uint32_t split_range(stratus_bvh_item* items, uint32_t begin, uint32_t en
 void stratus_bvh_split_items(
   stratus_bvh_item* items, uint32_t begin, uint32_t end, int depth, int max_depth, stratus_bvh_pair* pairs, uint32_t* child)
 {
-  for (; end - begin > 1; depth++) {
+  for (; end - begin > 1; ++depth) {
     const uint32_t middle = end - begin == 2 || depth >= max_depth ? begin + (end - begin) / 2 : split_range(items, begin, end);
     stratus_bvh_pair* pair = pairs + (middle - 1);
     *child = middle - 1;
@@ -197,7 +197,7 @@ stratus_status stratus_bvh_items_create(const stratus_bvh_build* build, stratus_
   TRY(stratus_allocate(build->context, build->count, sizeof **items, &memory));
   *items = memory;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     (*items)[i] = (stratus_bvh_item){ build->boxes[i], i };
   }
   return STRATUS_OK;

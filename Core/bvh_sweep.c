@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Surface area heuristic with every split tried, top-down: boxes are sorted once by their middles along each axis, and each split keeps all three
- * orders sorted. The measure of the other builders' trees. */
+ * Surface area heuristic with every split tried, top-down: boxes are sorted once by their middles along each axis, and each split keeps all
+ * three orders sorted. The measure of the other builders' trees. */
 #include "bvh.h"
 
 #include <string.h>
@@ -28,11 +28,11 @@ static void sweep_axis(const sweep* s, uint32_t begin, uint32_t end, int axis, b
 {
   const uint32_t* order = s->order[axis];
   stratus_box right = stratus_box_none(), left = right;
-  for (uint32_t i = end - 1; i > begin; i--) {
+  for (uint32_t i = end - 1; i > begin; --i) {
     stratus_box_add(&right, s->boxes + order[i]);
     s->right_cost[i] = stratus_box_area(&right) * (double)(end - i);
   }
-  for (uint32_t i = begin + 1; i < end; i++) {
+  for (uint32_t i = begin + 1; i < end; ++i) {
     stratus_box_add(&left, s->boxes + order[i - 1]);
     const double cost = stratus_box_area(&left) * (double)(i - begin) + s->right_cost[i];
     const uint32_t uneven = i - begin > end - i ? (i - begin) - (end - i) : (end - i) - (i - begin);
@@ -45,13 +45,13 @@ static void sweep_axis(const sweep* s, uint32_t begin, uint32_t end, int axis, b
 /* Brings the other orders' left boxes to the front, both sides in their order. */
 static void part_orders(const sweep* s, uint32_t begin, uint32_t end, int axis, uint32_t middle)
 {
-  for (uint32_t i = begin; i < end; i++) {
+  for (uint32_t i = begin; i < end; ++i) {
     s->on_right[s->order[axis][i]] = i >= middle;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     uint32_t* order = s->order[a];
     uint32_t left = begin, right = middle;
-    for (uint32_t i = begin; a != axis && i < end; i++) {
+    for (uint32_t i = begin; a != axis && i < end; ++i) {
       s->spare[s->on_right[order[i]] ? right++ : left++] = order[i];
     }
     if (a != axis) {
@@ -62,9 +62,9 @@ static void part_orders(const sweep* s, uint32_t begin, uint32_t end, int axis, 
 
 static void split_ranks(const sweep* s, uint32_t begin, uint32_t end, int depth, uint32_t* child)
 {
-  for (; end - begin > 1; depth++) {
+  for (; end - begin > 1; ++depth) {
     best_split best = { INFINITY, 0, begin + (end - begin) / 2, 0 };
-    for (int a = 0; a < 3 && depth < s->max_depth && end - begin > 2; a++) {
+    for (int a = 0; a < 3 && depth < s->max_depth && end - begin > 2; ++a) {
       sweep_axis(s, begin, end, a, &best);
     }
     const uint32_t middle = best.middle;
@@ -82,7 +82,7 @@ static void split_ranks(const sweep* s, uint32_t begin, uint32_t end, int depth,
 static stratus_status sort_axis(const stratus_bvh_build* build, int axis, uint64_t* keys, uint32_t* order)
 {
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-  for (uint32_t i = 0; i < build->count; i++) {
+  for (uint32_t i = 0; i < build->count; ++i) {
     keys[i] = (uint64_t)((int64_t)stratus_box_middle(build->boxes + i, axis) + 2 * STRATUS_BVH_COORDINATE_MAX);
     order[i] = i;
   }
@@ -102,7 +102,7 @@ stratus_status stratus_bvh_build_sweep(stratus_bvh_build* build)
   uint32_t* order = orders;
   sweep s = { build->boxes, build->pairs, { order, order + n, order + 2 * (size_t)n }, order + 3 * (size_t)n, NULL, on_right,
     build->max_depth };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     TRY_CLEANUP(sort_axis(build, a, keys, s.order[a]));
   }
   stratus_release(context, keys);

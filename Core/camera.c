@@ -13,11 +13,11 @@ static bool normalize(double v[3])
   if (!(largest > 0.0) || !isfinite(largest)) {
     return false;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v[a] /= largest;
   }
   const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v[a] /= length;
   }
   return true;
@@ -35,7 +35,7 @@ static stratus_status check_vector(stratus_context* context, const char* what, c
   if (!v) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera %s is NULL", what);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!isfinite(v[a])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera %s[%d] is %g, must be finite", what, a, v[a]);
     }
@@ -60,7 +60,8 @@ static stratus_status aim(stratus_context* context, const double eye[3], const d
   double upwards[3] = { view_up[0], view_up[1], view_up[2] };
   double right[3], up[3];
   if (!isfinite(half_height * aspect)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera aspect %g times half the window's height, %g, must be finite", aspect, half_height);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "camera aspect %g times half the window's height, %g, must be finite", aspect, half_height);
   }
   if (!normalize(forward)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye and focal point (%g, %g, %g) must differ, by a finite distance",
@@ -78,7 +79,7 @@ static stratus_status aim(stratus_context* context, const double eye[3], const d
   cross(right, forward, up);
 
   stratus_camera result = { .near_k = 0.0, .far_k = INFINITY, .parallel = parallel };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     result.eye[a] = eye[a];
     result.forward[a] = forward[a];
     result.right[a] = right[a] * half_height * aspect;

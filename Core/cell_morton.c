@@ -19,7 +19,7 @@ stratus_status stratus_morton_order(stratus_context* context, const stratus_mort
   uint64_t* keys = memory;
   const int bits = cells->axis_bits;
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t cell = 0; cell < cells->count; cell++) {
+  for (int64_t cell = 0; cell < cells->count; ++cell) {
     double at[3];
     const uint64_t group = cells->place(cells->data, cell, at);
     const uint64_t code = morton_code(place_on_axis(at[0], bits), place_on_axis(at[1], bits), place_on_axis(at[2], bits), 0);

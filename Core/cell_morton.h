@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cells along a Morton curve through space. Mesh generators write cells in any order; what then goes from neighbour to neighbour, or along a
- * ray, spends its time on memory, unless cells near one another in space are so in memory, too. */
+ * Cells along a Morton curve through space. Mesh generators write cells in any order; what then goes from neighbour to neighbour, or along
+ * a ray, spends its time on memory, unless cells near one another in space are so in memory, too. */
 #ifndef STRATUS_CELL_MORTON_H
 #define STRATUS_CELL_MORTON_H
 

@@ -99,7 +99,8 @@ stratus_status stratus_product(stratus_context* context, const char* what, size_
 stratus_status stratus_array_check(stratus_context* context, const char* what, size_t count, size_t size)
 {
   const size_t most = PTRDIFF_MAX / size;
-  return count <= most ? STRATUS_OK : stratus_fail(context, STRATUS_OVERFLOW, "%zu %s exceed the %zu that an array holds", count, what, most);
+  return count <= most ? STRATUS_OK
+                       : stratus_fail(context, STRATUS_OVERFLOW, "%zu %s exceed the %zu that an array holds", count, what, most);
 }
 
 stratus_status stratus_allocate(stratus_context* context, size_t count, size_t size, void** memory)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What a criterion shows, as intervals of values, and when one set of them may stand in for another.
  *
- * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers; of doubles, every one of them is closed. For
- * ray casting the question is what a table shows that samples the function at its entries: an entry stands for all values that round to it. */
+ * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers; of doubles, every one of them is closed.
+ * For ray casting the question is what a table shows that samples the function at its entries: an entry stands for all values that round to
+ * it. */
 #include "voxels_build.h"
 
 #include <string.h>
@@ -46,7 +47,7 @@ static void append(stratus_intervals* list, double lo, double hi)
   }
   list->of[list->count][0] = lo;
   list->of[list->count][1] = hi;
-  list->count++;
+  ++list->count;
 }
 
 /* At points of equal value the last one counts there, the first one towards smaller values. */
@@ -57,7 +58,7 @@ static void append_opacity(stratus_intervals* list, const stratus_transfer* tran
   if (transfer->clamp && point[0][1] > 0.0) {
     append(list, -INFINITY, nextafter(point[0][0], -INFINITY));
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const bool last = i + 1 == count, step = !last && point[i + 1][0] == point[i][0];
     if (!step && point[i][1] > 0.0) {
       append(list, point[i][0], point[i][0]);
@@ -93,7 +94,7 @@ static void merge_narrowest(stratus_intervals* list)
   while (list->count > STRATUS_INTERVALS_MAX) {
     int64_t narrowest = 0;
     double gap = INFINITY;
-    for (int64_t i = 0; i + 1 < list->count; i++) {
+    for (int64_t i = 0; i + 1 < list->count; ++i) {
       const double here = list->of[i + 1][0] - list->of[i][1];
       if (here < gap) {
         gap = here;
@@ -102,7 +103,7 @@ static void merge_narrowest(stratus_intervals* list)
     }
     list->of[narrowest][1] = list->of[narrowest + 1][1];
     memmove(list->of + narrowest + 1, list->of + narrowest + 2, (size_t)(list->count - narrowest - 2) * sizeof *list->of);
-    list->count--;
+    --list->count;
   }
 }
 
@@ -136,7 +137,7 @@ static void append_runs(stratus_intervals* list, const stratus_table* table, dou
   for (int e = table->next_shown[0]; e < table->size;) {
     int end = e + 1;
     while (end < table->size && table->next_shown[end] == end) {
-      end++;
+      ++end;
     }
     const bool all = table->scale == 0.0f;
     append(list, e == 0 || all ? -INFINITY : entry_bound(table, bias, e, -outward),
@@ -159,7 +160,7 @@ static stratus_status append_tables(stratus_context* context, const stratus_valu
   stratus_intervals lists[2], void* memory[2])
 {
   const bool any = ranges->whole_lo <= ranges->whole_hi;
-  for (int s = 0; s < 2; s++) {
+  for (int s = 0; s < 2; ++s) {
     stratus_table* table = NULL;
     TRY(stratus_table_create(context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
       s ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT, LONG_SAMPLE * transfer->unit_distance, &table));
@@ -234,9 +235,9 @@ stratus_status stratus_criterion_intervals(
 /* Each wanted interval within one of the tree's. */
 static bool is_within(const stratus_origin* wanted, const stratus_origin* tree)
 {
-  for (int32_t i = 0, j = 0; i < wanted->intervals; i++) {
+  for (int32_t i = 0, j = 0; i < wanted->intervals; ++i) {
     while (j < tree->intervals && tree->interval[j][1] < wanted->interval[i][1]) {
-      j++;
+      ++j;
     }
     if (j == tree->intervals || tree->interval[j][0] > wanted->interval[i][0]) {
       return false;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * DBSCAN (Ester et al. 1996) of points on a line at whole coordinates, given as counts: one scan with a sliding window. Noise between clusters that
- * two of them reach belongs to the lower one, as in a scan of the points in ascending order. */
+ * DBSCAN (Ester et al. 1996) of points on a line at whole coordinates, given as counts: one scan with a sliding window. Noise between
+ * clusters that two of them reach belongs to the lower one, as in a scan of the points in ascending order. */
 #include "tree.h"
 
 typedef struct cluster {
   int32_t first, last; /* core coordinates */
   int32_t cores;
-  int32_t floor;       /* what is below belongs to the cluster before */
+  int32_t floor; /* what is below belongs to the cluster before */
 } cluster;
 
 /* The cluster's [*lo, *hi), with what it reaches beyond its cores; 1 if that holds `peak`. */
@@ -17,10 +17,10 @@ static int closes_on(const int64_t* counts, int32_t n, int32_t eps, int32_t peak
     return 0;
   }
   while (counts[first] == 0) {
-    first++;
+    ++first;
   }
   while (counts[last] == 0) {
-    last--;
+    --last;
   }
   *lo = first;
   *hi = last + 1;
@@ -39,10 +39,10 @@ int32_t stratus_dbscan_counts(
     peak = -1; /* no cluster holds it, but they are still counted */
   }
   eps = eps < n ? eps : n;
-  for (int32_t i = 0; i < n && i < eps; i++) {
+  for (int32_t i = 0; i < n && i < eps; ++i) {
     window += counts[i];
   }
-  for (int32_t i = 0; i < n; i++) {
+  for (int32_t i = 0; i < n; ++i) {
     window += i + eps < n ? counts[i + eps] : 0;
     window -= i - eps > 0 ? counts[i - eps - 1] : 0;
     if (counts[i] == 0 || window < min_points) {
@@ -54,7 +54,7 @@ int32_t stratus_dbscan_counts(
       ++*clusters;
     }
     c.last = i;
-    c.cores++;
+    ++c.cores;
   }
   return cores + closes_on(counts, n, eps, peak, &c, lo, hi) * c.cores;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The density of a set of bricks as a tree splits by it (Guo et al. 2025, eq. 5): a number a voxel, or a number a brick; and its peak.
  *
- * Over bricks, a brick's voxels count as if they were spread evenly over its 64 places, seen from its middle. That is exact for full bricks.
- * Else the density at the middle errs by at most the sum over the bricks in reach of count * min(1, 4.72 / bandwidth), in units of what a voxel
- * adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 a bandwidth, and 3.065 voxels is the mean distance from a brick's
- * corner voxel, the worst, to its 64 places. For bandwidths beyond 30 voxels see density_cells.c. */
+ * Over bricks, a brick's voxels count as if they were spread evenly over its 64 places, seen from its middle. That is exact for full
+ * bricks. Else the density at the middle errs by at most the sum over the bricks in reach of count * min(1, 4.72 / bandwidth), in units of
+ * what a voxel adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 a bandwidth, and 3.065 voxels is the mean distance
+ * from a brick's corner voxel, the worst, to its 64 places. For bandwidths beyond 30 voxels see density_cells.c. */
 #include "density.h"
 #include "structures_device.h"
 #include "tree.h"
@@ -17,15 +17,15 @@ static stratus_status number_voxels(stratus_context* context, const stratus_bric
   TRY(stratus_allocate(context, (size_t)count + 1, sizeof *density->start, &memory));
   density->start = memory;
   density->start[0] = 0;
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     density->start[b + 1] = density->start[b] + bricks[b].count;
   }
   return STRATUS_OK;
 }
 
 /* By the device where the context builds on one and the set fits, by rows where few bricks are in reach, else by cells. */
-static stratus_status sum_weights(stratus_context* context, const stratus_brick* bricks, int64_t count, const stratus_density* density,
-  int64_t voxels, uint64_t* sums)
+static stratus_status sum_weights(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, const stratus_density* density, int64_t voxels, uint64_t* sums)
 {
   stratus_status status = STRATUS_OK;
   density_plan plan = { .context = NULL };
@@ -49,7 +49,7 @@ static stratus_status fill_density(stratus_context* context, const stratus_brick
   stratus_status status = STRATUS_OK;
   void *memory, *sums = NULL;
   int64_t voxels = 0;
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     voxels += bricks[b].count;
   }
   if (density->exact) {
@@ -62,7 +62,7 @@ static stratus_status fill_density(stratus_context* context, const stratus_brick
   density->of = memory;
   TRY_CLEANUP(stratus_allocate_zero(context, (size_t)values, sizeof(uint64_t), &sums));
   TRY_CLEANUP(sum_weights(context, bricks, count, density, voxels, sums));
-  for (int64_t i = 0; i < values; i++) {
+  for (int64_t i = 0; i < values; ++i) {
     density->of[i] = (float)fmin((double)((const uint64_t*)sums)[i] * unit, FLT_MAX);
   }
 
@@ -71,8 +71,8 @@ cleanup:
   return status;
 }
 
-stratus_status stratus_density_create(stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact,
-  stratus_density** out)
+stratus_status stratus_density_create(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact, stratus_density** out)
 {
   void* memory;
   TRY(stratus_progress(context, "density", 0.0));
@@ -136,10 +136,11 @@ static int middle_bit(uint64_t mask)
   return best;
 }
 
-void stratus_density_peak(const stratus_density* density, const stratus_brick* bricks, const uint32_t* which, int64_t count, int32_t peak[3])
+void stratus_density_peak(
+  const stratus_density* density, const stratus_brick* bricks, const uint32_t* which, int64_t count, int32_t peak[3])
 {
   peak_search best = { -1.0f, 0, { 0, 0, 0 } };
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     const int64_t b = which ? (int64_t)which[i] : i;
     if (!density->exact) {
       if (density->of[b] >= best.density) {
@@ -152,10 +153,10 @@ void stratus_density_peak(const stratus_density* density, const stratus_brick* b
       if (*of >= best.density) {
         offer(&best, *of, bricks + b, __builtin_ctzll(bits));
       }
-      of++;
+      ++of;
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     peak[a] = best.at[a];
   }
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What the ways to sum a density over bricks share: weights in fixed point, and how neighbouring bricks are found.
  *
- * A weight of the kernel is rounded once, to 28 bits behind the point, and sums of weights are integers: any order, any number of threads and
- * any device give the same bits. Rounding moves a density by at most 2^-29 of what one voxel adds at its own place, for each voxel in reach. */
+ * A weight of the kernel is rounded once, to 28 bits behind the point, and sums of weights are integers: any order, any number of threads
+ * and any device give the same bits. Rounding moves a density by at most 2^-29 of what one voxel adds at its own place, for each voxel in
+ * reach. */
 #ifndef STRATUS_DENSITY_H
 #define STRATUS_DENSITY_H
 
@@ -49,8 +50,8 @@ stratus_status stratus_density_cells(stratus_context* context, const stratus_bri
   const int64_t* start, uint64_t* sums); /* density_cells.c */
 /* density_device.c: the same by the context's OpenCL device. */
 bool stratus_device_takes_density(const stratus_context* context, const density_plan* plan, int64_t count, int64_t voxels);
-stratus_status stratus_device_density(stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count,
-  const int64_t* start, uint64_t* sums);
+stratus_status stratus_device_density(
+  stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums);
 
 /* (1 - t^2)^2 of a squared distance in fixed point, 0 from the bandwidth on. */
 static inline uint64_t density_weight(double squared, double bandwidth)

@@ -24,33 +24,33 @@
 static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean[3])
 {
   int64_t voxels = 0, sum[3] = { 0, 0, 0 };
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     for (uint64_t bits = bricks[b].mask; bits; bits &= bits - 1) {
       const int bit = __builtin_ctzll(bits);
-      voxels++;
+      ++voxels;
       sum[0] += STRATUS_BRICK * bricks[b].at[0] + (bit & 3);
       sum[1] += STRATUS_BRICK * bricks[b].at[1] + (bit >> 2 & 3);
       sum[2] += STRATUS_BRICK * bricks[b].at[2] + (bit >> 4);
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     mean[a] = voxels ? (double)sum[a] / (double)voxels : 0.0;
   }
   return voxels;
 }
 
-/* Standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances count from the first one's: a shell's differ
- * by little, and squares of the whole would lose that. */
+/* Standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances count from the first one's: a shell's
+ * differ by little, and squares of the whole would lose that. */
 static double find_deviation(
   stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double* largest)
 {
   double sums[CHUNKS], squares[CHUNKS], most[CHUNKS], shift = 0.0;
-  FOR_EACH_VOXEL (bricks, mean, x, y, z, { shift = sqrt(x * x + y * y + z * z); })
+  FOR_EACH_VOXEL(bricks, mean, x, y, z, { shift = sqrt(x * x + y * y + z * z); })
 #pragma omp parallel for schedule(static) num_threads(context->threads) if (count >= DENSITY_PARALLEL)
-  for (int chunk = 0; chunk < CHUNKS; chunk++) {
+  for (int chunk = 0; chunk < CHUNKS; ++chunk) {
     double sum = 0.0, square = 0.0, top = 0.0;
-    for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; b++) {
-      FOR_EACH_VOXEL (bricks + b, mean, x, y, z, {
+    for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; ++b) {
+      FOR_EACH_VOXEL(bricks + b, mean, x, y, z, {
         const double squared = x * x + y * y + z * z;
         const double distance = sqrt(squared) - shift;
         sum += distance;
@@ -64,7 +64,7 @@ static double find_deviation(
   }
   double sum = 0.0, square = 0.0;
   *largest = 0.0;
-  for (int chunk = 0; chunk < CHUNKS; chunk++) {
+  for (int chunk = 0; chunk < CHUNKS; ++chunk) {
     sum += sums[chunk];
     square += squares[chunk];
     *largest = most[chunk] > *largest ? most[chunk] : *largest;
@@ -78,8 +78,8 @@ static int64_t count_below(stratus_context* context, const stratus_brick* bricks
 {
   int64_t below = 0;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : below) if (count >= DENSITY_PARALLEL)
-  for (int64_t b = 0; b < count; b++) {
-    FOR_EACH_VOXEL (bricks + b, mean, x, y, z, { below += x * x + y * y + z * z < limit; })
+  for (int64_t b = 0; b < count; ++b) {
+    FOR_EACH_VOXEL(bricks + b, mean, x, y, z, { below += x * x + y * y + z * z < limit; })
   }
   return below;
 }
@@ -97,7 +97,7 @@ static int64_t fill_bins(
   int64_t* const bins = histogram->bins;
   const double scale = BINS / (high - low);
   int64_t below = 0;
-  for (int i = 0; i < BINS; i++) {
+  for (int i = 0; i < BINS; ++i) {
     bins[i] = 0;
   }
 #pragma omp parallel num_threads(context->threads) if (count >= DENSITY_PARALLEL)
@@ -106,8 +106,8 @@ static int64_t fill_bins(
     int64_t own_below = 0;
     memset(own, 0, sizeof histogram->own[0]);
 #pragma omp for schedule(static)
-    for (int64_t b = 0; b < count; b++) {
-      FOR_EACH_VOXEL (bricks + b, mean, x, y, z, {
+    for (int64_t b = 0; b < count; ++b) {
+      FOR_EACH_VOXEL(bricks + b, mean, x, y, z, {
         const double place = (x * x + y * y + z * z - low) * scale;
         own_below += place < 0.0;
         if (place >= 0.0 && place < BINS) {
@@ -118,7 +118,7 @@ static int64_t fill_bins(
 #pragma omp critical(stratus_density_bins)
     {
       below += own_below;
-      for (int i = 0; i < BINS; i++) {
+      for (int i = 0; i < BINS; ++i) {
         bins[i] += own[i];
       }
     }
@@ -134,7 +134,7 @@ static stratus_status find_median(stratus_context* context, const stratus_brick*
   TRY(stratus_allocate(context, 1, sizeof(histogram) + (size_t)context->threads * sizeof(uint32_t[BINS]), &memory));
   histogram* const histogram = memory;
   double low = 0.0, high = largest * (1.0 + 1e-9);
-  for (int refinement = 0; refinement < 3 && low < high; refinement++) {
+  for (int refinement = 0; refinement < 3 && low < high; ++refinement) {
     int64_t before = fill_bins(context, bricks, count, mean, low, high, histogram);
     const double width = (high - low) / BINS;
     int bin = 0;

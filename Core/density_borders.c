@@ -2,8 +2,8 @@
  * Density and its derivatives at a point, and the borders of a peak: where density falls most steeply along an axis.
  *
  * With u = (distance / h)^2 a voxel within h adds, c being 105 / (32 pi) and n the number of voxels,
- *   c / (n h^3) (1 - u)^2,   its derivative along x   -4 c / (n h^5) (x - xi) (1 - u),   the second   -4 c / (n h^5) (1 - u - 2 (x - xi)^2 / h^2).
- * Guo et al. 2025 print the same (eq. 9 to 11) with 15/16, and 15/4 for 4 c: the constant of one dimension. */
+ *   c / (n h^3) (1 - u)^2,   its derivative along x   -4 c / (n h^5) (x - xi) (1 - u),   the second   -4 c / (n h^5) (1 - u - 2 (x - xi)^2
+ * / h^2). Guo et al. 2025 print the same (eq. 9 to 11) with 15/16, and 15/4 for 4 c: the constant of one dimension. */
 #include "density.h"
 #include "tree.h"
 
@@ -27,7 +27,7 @@ static void add_brick(const stratus_brick* brick, const double point[3], double 
     const double rest = 1.0 - (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / squared;
     if (rest > 0.0) {
       sums->density += rest * rest;
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         sums->first[a] += d[a] * rest;
         sums->second[a] += rest - 2.0 * d[a] * d[a] / squared;
       }
@@ -39,7 +39,7 @@ static void add_brick(const stratus_brick* brick, const double point[3], double 
 static void sum_at(const stratus_voxels* voxels, double bandwidth, const double point[3], point_sums* sums)
 {
   int64_t lo[3], hi[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double last = (double)voxels->bricks_along[a] - 1.0;
     lo[a] = (int64_t)fmin(fmax(floor((point[a] - bandwidth) / STRATUS_BRICK), 0.0), last + 1.0);
     hi[a] = (int64_t)fmax(fmin(floor((point[a] + bandwidth) / STRATUS_BRICK), last), -1.0);
@@ -49,15 +49,15 @@ static void sum_at(const stratus_voxels* voxels, double bandwidth, const double 
   }
   const int64_t count = voxels->brick_count;
   if ((hi[2] - lo[2] + 1) * (hi[1] - lo[1] + 1) > count / 4) {
-    for (int64_t b = 0; b < count; b++) {
+    for (int64_t b = 0; b < count; ++b) {
       add_brick(voxels->bricks + b, point, bandwidth * bandwidth, sums);
     }
     return;
   }
-  for (int64_t k = lo[2]; k <= hi[2]; k++) {
-    for (int64_t j = lo[1]; j <= hi[1]; j++) {
+  for (int64_t k = lo[2]; k <= hi[2]; ++k) {
+    for (int64_t j = lo[1]; j <= hi[1]; ++j) {
       for (int64_t b = density_first_brick(voxels->bricks, count, density_key(lo[0], j, k));
-           b < count && density_brick_key(voxels->bricks + b) <= density_key(hi[0], j, k); b++) {
+           b < count && density_brick_key(voxels->bricks + b) <= density_key(hi[0], j, k); ++b) {
         add_brick(voxels->bricks + b, point, bandwidth * bandwidth, sums);
       }
     }
@@ -77,7 +77,7 @@ stratus_status stratus_density_at(stratus_context* context, const stratus_voxels
   if (!(bandwidth >= 1e-6 && bandwidth <= 1e9)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "bandwidth %g outside 1e-6..1e9 voxels", bandwidth);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!isfinite(point[a])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coordinate %d of the point is %g, not a finite number", a, point[a]);
     }
@@ -86,7 +86,7 @@ stratus_status stratus_density_at(stratus_context* context, const stratus_voxels
   const double count = voxels->count ? (double)voxels->count : 1.0, h2 = bandwidth * bandwidth;
   const double unit = DENSITY_CONSTANT / (count * h2 * bandwidth);
   *density = unit * sums.density;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (first) {
       first[a] = -4.0 * unit / h2 * sums.first[a];
     }
@@ -99,7 +99,8 @@ stratus_status stratus_density_at(stratus_context* context, const stratus_voxels
 
 /* ---- borders
  * Along a line through the peak, at planes between voxels, distances are halves: with D twice the offset along the line and q the squared
- * distance across, 4 h^2 times the sums above are sums of whole numbers and of h^2 times their number, so that no order of bricks matters. */
+ * distance across, 4 h^2 times the sums above are sums of whole numbers and of h^2 times their number, so that no order of bricks matters.
+ */
 
 typedef struct line_sums {
   double count;       /* of voxels in reach */
@@ -110,9 +111,9 @@ typedef struct line_sums {
 
 typedef struct line {
   int axis;
-  double reach;       /* 4 h^2 */
+  double reach; /* 4 h^2 */
   int32_t peak[3];
-  int32_t lo, hi;     /* planes lo .. hi */
+  int32_t lo, hi; /* planes lo .. hi */
   line_sums* planes;
 } line;
 
@@ -127,7 +128,7 @@ static void add_mass(const line* line, const int32_t at[3], double mass)
   /* Plane p is at 2 p - 1 in doubled coordinates. */
   const double half = sqrt(line->reach - across), middle = 0.5 * (at[line->axis] + 1);
   const int32_t first = (int32_t)fmax(floor(middle - 0.5 * half), line->lo), last = (int32_t)fmin(ceil(middle + 0.5 * half), line->hi);
-  for (int32_t p = first; p <= last; p++) {
+  for (int32_t p = first; p <= last; ++p) {
     const double along = 2.0 * p - 1.0 - at[line->axis], squared = along * along;
     if (squared + across < line->reach) {
       line_sums* sums = line->planes + (p - line->lo);
@@ -142,7 +143,7 @@ static void add_mass(const line* line, const int32_t at[3], double mass)
 static void add_bricks(const line* line, const stratus_brick* bricks, const uint32_t* which, int64_t count, int whole)
 {
   const int u = (line->axis + 1) % 3, v = (line->axis + 2) % 3;
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     const stratus_brick* brick = bricks + (which ? (int64_t)which[i] : i);
     const int32_t at[3] = { 8 * brick->at[0], 8 * brick->at[1], 8 * brick->at[2] };
     if (whole) {
@@ -170,8 +171,8 @@ static double bend_at(const line* line, int32_t plane)
   return sums->curvature - line->reach * sums->count;
 }
 
-/* From the peak outward to the first plane where the second derivative is positive after it was negative, or where nothing is in reach any more
- * (it jumps at the kernel's end). Of that plane and the one before it, the steeper is the border. */
+/* From the peak outward to the first plane where the second derivative is positive after it was negative, or where nothing is in reach any
+ * more (it jumps at the kernel's end). Of that plane and the one before it, the steeper is the border. */
 static void scan_side(const line* line, int side, int32_t* position, double* fall)
 {
   const int32_t step = side ? 1 : -1, start = line->peak[line->axis] + (side ? 1 : 0);
@@ -196,20 +197,20 @@ stratus_status stratus_density_find_borders(stratus_context* context, const stra
   int32_t longest = 0;
   int64_t voxels = 0;
   void* memory;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     longest = hi[a] - lo[a] > longest ? hi[a] - lo[a] : longest;
   }
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     voxels += bricks[which ? (int64_t)which[i] : i].count;
   }
   memset(borders, 0, sizeof *borders);
   TRY(stratus_allocate(context, (size_t)longest + 1, sizeof(line_sums), &memory));
   const double h2 = bandwidth * bandwidth, unit = DENSITY_CONSTANT / ((double)(voxels ? voxels : 1) * h2 * bandwidth);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     line line = { .axis = a, .reach = 4.0 * h2, .peak = { peak[0], peak[1], peak[2] }, .lo = lo[a], .hi = hi[a], .planes = memory };
     memset(memory, 0, sizeof(line_sums) * (size_t)(hi[a] - lo[a] + 1));
     add_bricks(&line, bricks, which, count, !exact && bandwidth >= SMALL_BANDWIDTH);
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
       double fall;
       scan_side(&line, side, &borders->position[a][side], &fall);
       /* -4 c / (n h^5) sum (D / 2) (1 - (D^2 + 4 q) / (4 h^2)) */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sums of weights over few bricks in reach. A voxel's neighbours are read as rows of bits, and a row's sum of weights is looked up. Bricks are
- * in ascending order, and so are the bricks at a fixed distance from them: each row of neighbours has a cursor that only moves forward. */
+ * Sums of weights over few bricks in reach. A voxel's neighbours are read as rows of bits, and a row's sum of weights is looked up. Bricks
+ * are in ascending order, and so are the bricks at a fixed distance from them: each row of neighbours has a cursor that only moves forward.
+ */
 #include "density.h"
 
 #include <omp.h>
@@ -25,9 +26,9 @@ bool stratus_density_plan_fits(double bandwidth, int exact)
 /* Sums of weights of all bits of a window of the row whose squared distance is `across`. */
 static void fill_row_table(const density_plan* plan, int across, uint32_t* table)
 {
-  for (int chunk = 0; chunk < plan->chunks; chunk++, table += (size_t)1 << plan->width) {
+  for (int chunk = 0; chunk < plan->chunks; ++chunk, table += (size_t)1 << plan->width) {
     table[0] = 0;
-    for (uint32_t bits = 1; bits < 1u << plan->width; bits++) {
+    for (uint32_t bits = 1; bits < 1u << plan->width; ++bits) {
       const int along = chunk * plan->width + __builtin_ctz(bits) - plan->radius;
       const uint64_t weight = along <= plan->radius ? density_weight((double)(across + along * along), plan->bandwidth) : 0;
       table[bits] = table[bits & (bits - 1)] + (uint32_t)weight;
@@ -46,8 +47,8 @@ static stratus_status plan_exact(density_plan* plan)
   const size_t entries = (size_t)plan->chunks << plan->width;
   int slot_count = 0;
   memset(slots, 0xff, sizeof slots);
-  for (int z = -radius; z <= radius; z++) {
-    for (int y = -radius; y <= radius; y++) {
+  for (int z = -radius; z <= radius; ++z) {
+    for (int y = -radius; y <= radius; ++y) {
       const int across = z * z + y * y;
       plan->row_count += (double)across < limit;
       if ((double)across < limit && slots[across] < 0) {
@@ -61,13 +62,13 @@ static stratus_status plan_exact(density_plan* plan)
   TRY(stratus_allocate(plan->context, plan->table_size, sizeof *plan->table, &memory));
   plan->table = memory;
   int row = 0;
-  for (int across = 0; across <= 2 * RADIUS_MAX * RADIUS_MAX; across++) {
+  for (int across = 0; across <= 2 * RADIUS_MAX * RADIUS_MAX; ++across) {
     if (slots[across] >= 0) {
       fill_row_table(plan, across, plan->table + entries * (size_t)slots[across]);
     }
   }
-  for (int z = -radius; z <= radius; z++) {
-    for (int y = -radius; y <= radius; y++) {
+  for (int z = -radius; z <= radius; ++z) {
+    for (int y = -radius; y <= radius; ++y) {
       if ((double)(z * z + y * y) < limit) {
         plan->rows[row++] = (density_row){ z * side + y, (int32_t)entries * slots[z * z + y * y] };
       }
@@ -80,7 +81,7 @@ static stratus_status plan_exact(density_plan* plan)
 static uint32_t mean_weight(const int d[3], double bandwidth)
 {
   uint64_t sum = 0;
-  for (int place = 0; place < 64; place++) {
+  for (int place = 0; place < 64; ++place) {
     const double x = 4 * d[0] + (place & 3) - 1.5, y = 4 * d[1] + (place >> 2 & 3) - 1.5, z = 4 * d[2] + (place >> 4) - 1.5;
     sum += density_weight(x * x + y * y + z * z, bandwidth);
   }
@@ -94,7 +95,7 @@ static stratus_status plan_binned(density_plan* plan)
   plan->table_size = (size_t)(n * n * n);
   TRY(stratus_allocate(plan->context, plan->table_size, sizeof *plan->table, &memory));
   plan->table = memory;
-  for (int i = 0; i < n * n * n; i++) {
+  for (int i = 0; i < n * n * n; ++i) {
     plan->table[i] = mean_weight((const int[3]){ i % n, i / n % n, i / n / n }, plan->bandwidth);
   }
   return STRATUS_OK;
@@ -127,7 +128,7 @@ static inline int64_t first_in_row(
     i = density_first_brick(bricks, count, first);
   }
   while (i < count && density_brick_key(bricks + i) < first) {
-    i++;
+    ++i;
   }
   *cursor = i;
   *last = first + 2 * (uint64_t)reach;
@@ -139,14 +140,14 @@ static void gather_rows(const density_plan* plan, const stratus_brick* bricks, i
 {
   const int reach = plan->reach, side = STRATUS_BRICK * (2 * reach + 1);
   memset(rows, 0, sizeof *rows * (size_t)(side * side));
-  for (int dz = -reach; dz <= reach; dz++) {
-    for (int dy = -reach; dy <= reach; dy++) {
+  for (int dz = -reach; dz <= reach; ++dz) {
+    for (int dy = -reach; dy <= reach; ++dy) {
       uint64_t last;
       uint64_t* const brick_rows = rows + (dz + reach) * STRATUS_BRICK * side + (dy + reach) * STRATUS_BRICK;
       for (int64_t i = first_in_row(bricks, count, bricks + b, reach, dy, dz, cursors++, &last);
-           i < count && density_brick_key(bricks + i) <= last; i++) {
+           i < count && density_brick_key(bricks + i) <= last; ++i) {
         const int shift = STRATUS_BRICK * (bricks[i].at[0] - bricks[b].at[0] + reach);
-        for (int row = 0; row < 16; row++) {
+        for (int row = 0; row < 16; ++row) {
           brick_rows[(row >> 2) * side + (row & 3)] |= (bricks[i].mask >> (4 * row) & 15) << shift;
         }
       }
@@ -162,7 +163,7 @@ static void sum_brick(const density_plan* plan, uint64_t mask, const uint64_t* r
     const int bit = __builtin_ctzll(mask), shift = STRATUS_BRICK * reach + (bit & 3) - plan->radius;
     const uint64_t* const own = rows + (STRATUS_BRICK * reach + (bit >> 4)) * side + STRATUS_BRICK * reach + (bit >> 2 & 3);
     uint64_t sum = 0;
-    for (int r = 0; r < plan->row_count; r++) {
+    for (int r = 0; r < plan->row_count; ++r) {
       const uint32_t* table = plan->table + plan->rows[r].table;
       uint64_t bits = own[plan->rows[r].offset] >> shift & window;
       sum += table[bits & piece];
@@ -179,12 +180,12 @@ static uint64_t sum_neighbours(const density_plan* plan, const stratus_brick* br
 {
   const int reach = plan->reach, n = reach + 1;
   uint64_t sum = 0;
-  for (int dz = -reach; dz <= reach; dz++) {
-    for (int dy = -reach; dy <= reach; dy++) {
+  for (int dz = -reach; dz <= reach; ++dz) {
+    for (int dy = -reach; dy <= reach; ++dy) {
       uint64_t last;
       const uint32_t* const weights = plan->table + ((dz < 0 ? -dz : dz) * n + (dy < 0 ? -dy : dy)) * n;
       for (int64_t i = first_in_row(bricks, count, bricks + b, reach, dy, dz, cursors++, &last);
-           i < count && density_brick_key(bricks + i) <= last; i++) {
+           i < count && density_brick_key(bricks + i) <= last; ++i) {
         const int dx = bricks[i].at[0] - bricks[b].at[0];
         sum += (uint64_t)bricks[i].count * weights[dx < 0 ? -dx : dx];
       }
@@ -206,11 +207,11 @@ stratus_status stratus_density_rows(
   TRY(stratus_allocate(plan->context, (size_t)plan->context->threads, sizeof(room), &memory));
   room* const rooms = memory;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(plan->context->threads) if (count >= DENSITY_PARALLEL)
-  for (int chunk = 0; chunk < CHUNKS; chunk++) {
+  for (int chunk = 0; chunk < CHUNKS; ++chunk) {
     uint64_t* const rows = rooms[omp_get_thread_num()].rows;
     int64_t* const cursors = rooms[omp_get_thread_num()].cursors;
     memset(cursors, 0xff, sizeof rooms->cursors);
-    for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; b++) {
+    for (int64_t b = count * chunk / CHUNKS; b < count * (chunk + 1) / CHUNKS; ++b) {
       if (plan->exact) {
         gather_rows(plan, bricks, count, b, cursors, rows);
         sum_brick(plan, bricks[b].mask, rows, sums + start[b]);

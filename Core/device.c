@@ -91,9 +91,9 @@ void stratus_device_fail_after(stratus_device* device, int64_t calls, int error)
 
 /* ---------------------------------------------------------------- choice */
 
-/* The core's only state that is not a context's. Platforms may be asked by several threads at once, but PoCL (3.1) finds its devices when they are
- * first asked for, and a thread that asks while another one's question makes it do so sees none, or crashes. Whoever uses a device has asked for
- * the list before, so that nothing else needs the lock: programs of several contexts are built, and drawn with, at once. */
+/* The core's only state that is not a context's. Platforms may be asked by several threads at once, but PoCL (3.1) finds its devices when
+ * they are first asked for, and a thread that asks while another one's question makes it do so sees none, or crashes. Whoever uses a device
+ * has asked for the list before, so that nothing else needs the lock: programs of several contexts are built, and drawn with, at once. */
 static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
 
 static device_list find_devices(void)

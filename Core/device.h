@@ -19,16 +19,16 @@ bool stratus_device_is_cpu(const stratus_device* device);
 bool stratus_device_has_double(const stratus_device* device);
 size_t stratus_device_largest_allocation(const stratus_device* device);
 
-/* Kernel `kernel` of the embedded source `source` (its file's name without .cl) built with `defines` ("-DA=1 -DB=2"). Programs and kernels are
- * cached in the device by source and defines; the kernel belongs to the cache. A failed build leaves the build log in the message. */
+/* Kernel `kernel` of the embedded source `source` (its file's name without .cl) built with `defines` ("-DA=1 -DB=2"). Programs and kernels
+ * are cached in the device by source and defines; the kernel belongs to the cache. A failed build leaves the build log in the message. */
 stratus_status stratus_device_kernel(
   stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result);
 /* The same from a text of the caller's; `source` is the name that it is cached and reported by. */
 stratus_status stratus_device_kernel_from(
   stratus_context* context, const char* source, const char* text, const char* defines, const char* kernel, cl_kernel* result);
 
-/* A buffer of `bytes` (at least 1). `host` NULL: not initialised. Else copied from, or, where device and host share memory (`borrow`), used in
- * place: then `host` must outlive the buffer. */
+/* A buffer of `bytes` (at least 1). `host` NULL: not initialised. Else copied from, or, where device and host share memory (`borrow`), used
+ * in place: then `host` must outlive the buffer. */
 stratus_status stratus_device_buffer(
   stratus_context* context, cl_mem_flags access, size_t bytes, const void* host, bool borrow, cl_mem* buffer);
 void stratus_device_buffer_release(cl_mem buffer); /* takes NULL */

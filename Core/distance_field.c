@@ -42,8 +42,8 @@ static void set_brick(const stratus_brick* brick, const stratus_bits* set)
 {
   const int64_t i = (int64_t)brick->at[0] * STRATUS_BRICK, j = (int64_t)brick->at[1] * STRATUS_BRICK;
   const int64_t k = (int64_t)brick->at[2] * STRATUS_BRICK;
-  for (int64_t z = 0; z < STRATUS_BRICK && k + z < set->n[2]; z++) {
-    for (int64_t y = 0; y < STRATUS_BRICK && j + y < set->n[1]; y++) {
+  for (int64_t z = 0; z < STRATUS_BRICK && k + z < set->n[2]; ++z) {
+    for (int64_t y = 0; y < STRATUS_BRICK && j + y < set->n[1]; ++y) {
       const uint64_t four = brick->mask >> (z * STRATUS_BRICK + y) * STRATUS_BRICK & 0xf;
       set->bits[((k + z) * set->n[1] + j + y) * set->words + (i >> 6)] |= four << (i & 63);
     }
@@ -61,9 +61,9 @@ stratus_status stratus_bits_create(stratus_context* context, const stratus_voxel
   set->bits = memory;
   const int64_t planes = (set->n[2] + STRATUS_BRICK - 1) / STRATUS_BRICK;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(context->threads)
-  for (int64_t plane = 0; plane < planes; plane++) {
+  for (int64_t plane = 0; plane < planes; ++plane) {
     const int64_t end = first_brick(voxels, plane + 1);
-    for (int64_t b = first_brick(voxels, plane); b < end; b++) {
+    for (int64_t b = first_brick(voxels, plane); b < end; ++b) {
       set_brick(&voxels->bricks[b], set);
     }
   }
@@ -234,7 +234,7 @@ double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64
 /* Below 2^24 a float holds the square, and its root rounds as the double's does; 4-byte squares beyond take the double's. */
 static void roots_2(const int16_t* restrict squared, int64_t n, float* restrict distances)
 {
-  for (int64_t i = 0; i < n; i++) {
+  for (int64_t i = 0; i < n; ++i) {
     const float s = squared[i], root = sqrtf(fabsf(s));
     distances[i] = s < 0.0f ? -root : root;
   }
@@ -242,7 +242,7 @@ static void roots_2(const int16_t* restrict squared, int64_t n, float* restrict 
 
 static void roots_4(const int32_t* restrict squared, int64_t n, float* restrict distances)
 {
-  for (int64_t i = 0; i < n; i++) {
+  for (int64_t i = 0; i < n; ++i) {
     const double s = squared[i], root = sqrt(fabs(s));
     distances[i] = (float)(s < 0.0 ? -root : root);
   }
@@ -254,7 +254,7 @@ static void read_row(const stratus_field* field, int64_t j, int64_t k, float* di
   const int64_t nx = field->n[0], first = (k * field->n[1] + j) * nx;
   if (field->nearest) {
     const flood_layout layout = flood_shifts(field->n);
-    for (int64_t i = 0; i < nx; i++) {
+    for (int64_t i = 0; i < nx; ++i) {
       distances[i] = (float)flooded_distance(field, layout, i, j, k);
     }
   } else if (field->bytes == 2) {
@@ -262,7 +262,7 @@ static void read_row(const stratus_field* field, int64_t j, int64_t k, float* di
   } else if (field->bytes == 4) {
     roots_4((const int32_t*)field->values + first, nx, distances);
   } else {
-    for (int64_t i = 0; i < nx; i++) {
+    for (int64_t i = 0; i < nx; ++i) {
       distances[i] = (float)stratus_field_get(field, i, j, k);
     }
   }
@@ -275,7 +275,7 @@ void stratus_field_distances(const stratus_field* field, float* distances)
   }
   const int64_t nx = field->n[0], ny = field->n[1], rows = ny * field->n[2];
 #pragma omp parallel for schedule(static) num_threads(field->context->threads)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     read_row(field, row % ny, row / ny, distances + row * nx);
   }
 }
@@ -287,12 +287,12 @@ static void write_flooded(const stratus_field* field, float* rgba)
   const flood_layout layout = flood_shifts(field->n);
   const int64_t count = field->n[0] * field->n[1] * field->n[2];
 #pragma omp parallel for schedule(static) num_threads(field->context->threads)
-  for (int64_t v = 0; v < count; v++) {
+  for (int64_t v = 0; v < count; ++v) {
     int64_t at[3] = { -1, -1, -1 };
     if (field->nearest[v] != FLOOD_UNKNOWN) {
       flood_unpack(field->nearest[v], layout, at);
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       rgba[4 * v + a] = (float)at[a];
     }
   }
@@ -302,8 +302,8 @@ static void write_distances(const stratus_field* field, float* rgba)
 {
   const int64_t nx = field->n[0], rows = field->n[1] * field->n[2];
 #pragma omp parallel for schedule(static) num_threads(field->context->threads)
-  for (int64_t row = 0; row < rows; row++) {
-    for (int64_t i = 0; i < nx; i++) {
+  for (int64_t row = 0; row < rows; ++row) {
+    for (int64_t i = 0; i < nx; ++i) {
       rgba[4 * (row * nx + i) + 3] = (float)stratus_field_get(field, i, row % field->n[1], row / field->n[1]);
     }
   }

@@ -2,15 +2,15 @@
  * The exact transform for one width of a lane and one instruction set (distance_field_lanes.h), included by distance_field_exact.c.
  *
  * One array holds both halves of a signed field: squared distances outside, minus those inside. That works after every axis, for where one
- * half is not 0 the other one is. What a voxel looks for has distance 0 there: so `plus` rows hold what voxels outside look at, `minus` rows
- * what those inside do.
+ * half is not 0 the other one is. What a voxel looks for has distance 0 there: so `plus` rows hold what voxels outside look at, `minus`
+ * rows what those inside do.
  *
  * Along y distances are counted up and down the plane, with x in the lanes; along x and z lines are searched (distance_field_line.h). */
 #include "distance_field_lanes.h"
 
 /* A thread's memory. Lines have `pad` values FAR on either side, so that x looks beyond the ends without asking. */
 typedef struct NAME(room) {
-  VALUE *plus, *minus; /* a row, at x = 0 */
+  VALUE *plus, *minus;             /* a row, at x = 0 */
   VALUE *line, *up, *down, *spare; /* signed; padded to whole vectors */
   VALUE *tile_plus, *tile_minus;
   VALUE *column, *result;
@@ -37,8 +37,8 @@ static FIELD_TARGET size_t NAME(room_bytes)(const field_work* w)
 {
   const layout l = NAME(sizes)(w);
   const int64_t values = 2 * (l.row + 2 * l.pad) + 4 * l.row + (w->is_signed ? 2 : 1) * l.tile + 2 * l.longest + LANES;
-  const int64_t bytes = values * (int64_t)sizeof(VALUE) + 2 * w->words * (int64_t)sizeof(uint64_t) +
-    (l.longest + 2) * (int64_t)sizeof(field_hull) + 8 * 64;
+  const int64_t bytes =
+    values * (int64_t)sizeof(VALUE) + 2 * w->words * (int64_t)sizeof(uint64_t) + (l.longest + 2) * (int64_t)sizeof(field_hull) + 8 * 64;
   return (size_t)((bytes + 63) / 64 * 64);
 }
 
@@ -66,10 +66,10 @@ static FIELD_TARGET room NAME(make_room)(const field_work* w, unsigned char* mem
 static FIELD_TARGET void NAME(clear_lines)(const field_work* w, const room* r)
 {
   const layout l = NAME(sizes)(w);
-  for (VALUE* v = r->plus - l.pad; v < r->line; v++) {
+  for (VALUE* v = r->plus - l.pad; v < r->line; ++v) {
     *v = FAR;
   }
-  for (int64_t x = 0; x < l.row; x++) {
+  for (int64_t x = 0; x < l.row; ++x) {
     r->line[x] = 0;
   }
 }
@@ -106,17 +106,17 @@ static FIELD_TARGET int NAME(survey)(const field_work* w, const room* r, int64_t
   const uint64_t* row = w->bits + k * w->n[1] * w->words;
   memcpy(r->any, row, (size_t)w->words * sizeof *row);
   memcpy(r->all, row, (size_t)w->words * sizeof *row);
-  for (int64_t j = 1; j < w->n[1]; j++) {
+  for (int64_t j = 1; j < w->n[1]; ++j) {
     row += w->words;
-    for (int64_t i = 0; i < w->words; i++) {
+    for (int64_t i = 0; i < w->words; ++i) {
       r->any[i] |= row[i];
       r->all[i] &= row[i];
     }
   }
   int kinds = 0;
-  for (int64_t x = 0; x < nx; x++) {
+  for (int64_t x = 0; x < nx; ++x) {
     const int holds[2] = { r->any[x >> 6] >> (x & 63) & 1, !(r->all[x >> 6] >> (x & 63) & 1) };
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < 2; ++kind) {
       if (holds[kind]) {
         range[kind].first = kinds >> kind & 1 ? range[kind].first : x;
         range[kind].last = x;
@@ -133,7 +133,7 @@ static FIELD_TARGET void NAME(row)(const field_work* w, const room* r, const fie
   int envelope = w->method == STRATUS_FIELD_ENVELOPE;
   if (FIELD_BITS != 16 && w->method == STRATUS_FIELD_EXACT && vectors >= 2 * FIELD_SAMPLES) {
     int64_t steps = 0;
-    for (int64_t i = 0; i < FIELD_SAMPLES; i++) {
+    for (int64_t i = 0; i < FIELD_SAMPLES; ++i) {
       steps += NAME(search_row)(r, range, (2 * i + 1) * vectors / (2 * FIELD_SAMPLES) * LANES, r->spare);
     }
     envelope = steps > FIELD_SAMPLES * LANES * FIELD_STEPS_A_LANE;
@@ -176,7 +176,7 @@ static FIELD_TARGET void NAME(square_row)(const field_work* w, const room* r, in
     NAME(store)(r->plus + x, squared & ~sign);
     NAME(store)(r->minus + x, squared & sign);
   }
-  for (int64_t x = nx; x < row; x++) {
+  for (int64_t x = nx; x < row; ++x) {
     r->line[x] = 0;
     r->plus[x] = r->minus[x] = FAR;
   }
@@ -192,13 +192,13 @@ static FIELD_TARGET void NAME(plane)(const field_work* w, unsigned char* memory,
   w->planes[k] = (uint8_t)kinds;
   if (kinds != 3) {
     const VALUE fill = kinds == 2 ? FAR : w->is_signed ? (VALUE)-FAR : 0;
-    for (int64_t i = 0; i < nx * ny; i++) {
+    for (int64_t i = 0; i < nx * ny; ++i) {
       field[i] = fill;
     }
     return;
   }
   NAME(clear_lines)(w, &r);
-  for (int64_t j = 0; j < ny; j++) {
+  for (int64_t j = 0; j < ny; ++j) {
     const uint64_t* bits = w->bits + (k * ny + j) * w->words;
     for (int64_t x = 0; x < nx; x += LANES) {
       const vector inside = NAME(spread_bits)(bits, x);
@@ -210,7 +210,7 @@ static FIELD_TARGET void NAME(plane)(const field_work* w, unsigned char* memory,
     }
     memcpy(field + j * nx, r.up, (size_t)nx * sizeof *field);
   }
-  for (int64_t j = ny - 1; j >= 0; j--) {
+  for (int64_t j = ny - 1; j >= 0; --j) {
     memcpy(r.line, field + j * nx, (size_t)nx * sizeof *field);
     NAME(square_row)(w, &r, j == ny - 1);
     NAME(row)(w, &r, range, field + j * nx);
@@ -223,12 +223,12 @@ static FIELD_TARGET void NAME(envelope_tile)(
   const field_work* w, const room* r, const VALUE* plus, const VALUE* minus, VALUE* field, int64_t lanes, int* far)
 {
   const int64_t nz = w->n[2], plane = w->n[0] * w->n[1];
-  for (int64_t lane = 0; lane < lanes; lane++) {
-    for (int64_t k = 0; k < nz; k++) {
+  for (int64_t lane = 0; lane < lanes; ++lane) {
+    for (int64_t k = 0; k < nz; ++k) {
       r->column[k] = plus == minus ? plus[k * LANES + lane] : (VALUE)(plus[k * LANES + lane] - minus[k * LANES + lane]);
     }
     NAME(envelope_line)(r->column, nz, r->hull, r->result);
-    for (int64_t k = 0; k < nz; k++) {
+    for (int64_t k = 0; k < nz; ++k) {
       field[k * plane + lane] = r->result[k];
       *far |= r->result[k] >= FAR || r->result[k] <= -FAR;
     }
@@ -244,7 +244,7 @@ static FIELD_TARGET void NAME(tile)(
   vector out, farthest = { 0 };
   if (FIELD_BITS != 16 && w->method == STRATUS_FIELD_EXACT && nz >= 2 * FIELD_SAMPLES) {
     int64_t steps = 0;
-    for (int64_t i = 0; i < FIELD_SAMPLES; i++) {
+    for (int64_t i = 0; i < FIELD_SAMPLES; ++i) {
       steps += NAME(search_tile)(plus, minus, w->range, (2 * i + 1) * nz / (2 * FIELD_SAMPLES), &out);
     }
     envelope = steps > FIELD_SAMPLES * LANES * FIELD_STEPS_A_LANE;
@@ -253,7 +253,7 @@ static FIELD_TARGET void NAME(tile)(
     NAME(envelope_tile)(w, r, plus, minus, field, lanes, far);
     return;
   }
-  for (int64_t k = 0; k < nz; k++) {
+  for (int64_t k = 0; k < nz; ++k) {
     NAME(search_tile)(plus, minus, w->range, k, &out);
     if (lanes == LANES) {
       NAME(store)(field + k * plane, out);
@@ -273,8 +273,8 @@ static FIELD_TARGET void NAME(columns)(field_work* w, unsigned char* memory, int
   VALUE* field = (VALUE*)w->values + first;
   const int64_t left = plane - first, most = FIELD_TILE_VECTORS * LANES, count = left < most ? left : most;
   const int64_t apart = nz * LANES;
-  for (int64_t k = 0; k < nz; k++) {
-    for (int64_t v = 0; v * LANES < count; v++) {
+  for (int64_t k = 0; k < nz; ++k) {
+    for (int64_t v = 0; v * LANES < count; ++v) {
       const int64_t lanes = count - v * LANES, at = v * apart + k * LANES;
       vector s = { 0 };
       if (lanes >= LANES) {
@@ -291,7 +291,7 @@ static FIELD_TARGET void NAME(columns)(field_work* w, unsigned char* memory, int
     }
   }
   int far = 0;
-  for (int64_t v = 0; v * LANES < count; v++) {
+  for (int64_t v = 0; v * LANES < count; ++v) {
     const int64_t lanes = count - v * LANES;
     NAME(tile)(w, &r, r.tile_plus + v * apart, r.tile_minus + v * apart, field + v * LANES, lanes < LANES ? lanes : LANES, &far);
   }
@@ -300,7 +300,8 @@ static FIELD_TARGET void NAME(columns)(field_work* w, unsigned char* memory, int
   }
 }
 
-static const field_passes NAME(passes) = { FIELD_BITS / 8, (int64_t)FIELD_TILE_VECTORS * LANES, NAME(room_bytes), NAME(plane), NAME(columns) };
+static const field_passes NAME(
+  passes) = { FIELD_BITS / 8, (int64_t)FIELD_TILE_VECTORS* LANES, NAME(room_bytes), NAME(plane), NAME(columns) };
 
 #undef room
 #undef layout

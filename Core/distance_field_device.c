@@ -108,7 +108,7 @@ stratus_status stratus_flood_device_pass(stratus_context* context, flood_device*
   TRY(stratus_device_launch(context, "jump_flooding", defines, "flood", arguments, COUNT_OF(arguments), device->n));
   TRY(stratus_device_read(context, device->sums, 0, device->groups * 2 * sizeof(cl_uint), device->host_sums));
   *count = (flood_count){ 0, 0 };
-  for (size_t group = 0; group < device->groups; group++) {
+  for (size_t group = 0; group < device->groups; ++group) {
     count->updated += device->host_sums[2 * group];
     count->ratios += device->host_sums[2 * group + 1];
   }

@@ -5,8 +5,8 @@
  * 16 bits hold distances below 176. Larger grids try them all the same, for few sets leave such gaps: a result that is too far
  * is noticed, and the whole done anew in 32 bits. Those hold diagonals below 46339; beyond, 64.
  *
- * The rule by which EXACT chooses: in 16 bits zigzag, which takes at most 176 steps a vector and was always the cheaper. Wider, each line (or
- * tile of columns) searches 8 samples; where they take more than FIELD_STEPS_A_LANE steps a lane on the mean, envelopes are cheaper. */
+ * The rule by which EXACT chooses: in 16 bits zigzag, which takes at most 176 steps a vector and was always the cheaper. Wider, each line
+ * (or tile of columns) searches 8 samples; where they take more than FIELD_STEPS_A_LANE steps a lane on the mean, envelopes are cheaper. */
 #include "clones.h"
 #include "distance_field.h"
 
@@ -40,9 +40,9 @@ typedef struct field_work {
   stratus_field_method method;
   int is_signed;
   void* values;
-  uint8_t* planes;     /* of each plane bit 0: some effective voxel, bit 1: some other */
+  uint8_t* planes;      /* of each plane bit 0: some effective voxel, bit 1: some other */
   field_range range[2]; /* planes with an effective voxel, with another */
-  int far;             /* a distance does not fit */
+  int far;              /* a distance does not fit */
 } field_work;
 
 typedef struct field_passes {
@@ -109,7 +109,7 @@ static const field_passes* choose_passes(const stratus_context* context, int bit
 static int64_t diagonal(const int64_t n[3])
 {
   int64_t sum = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     sum += (n[a] - 1) * (n[a] - 1);
   }
   return sum;
@@ -124,7 +124,7 @@ int stratus_field_is_wide(const int64_t n[3])
 static int64_t farthest_corner(const stratus_voxels* voxels)
 {
   int64_t sum = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t below = voxels->lo[a], above = voxels->dimensions[a] - voxels->hi[a], gap = below > above ? below : above;
     sum += gap * gap;
   }
@@ -133,13 +133,13 @@ static int64_t farthest_corner(const stratus_voxels* voxels)
 
 static void find_range(field_work* w)
 {
-  for (int kind = 0; kind < 2; kind++) {
+  for (int kind = 0; kind < 2; ++kind) {
     int64_t first = 0, last = w->n[2] - 1;
     while (first < last && !(w->planes[first] >> kind & 1)) {
-      first++;
+      ++first;
     }
     while (last > first && !(w->planes[last] >> kind & 1)) {
-      last--;
+      --last;
     }
     w->range[kind] = (field_range){ first, last };
   }
@@ -152,13 +152,13 @@ static void run_passes(const stratus_context* context, const field_passes* passe
   {
     unsigned char* mine = rooms + (size_t)omp_get_thread_num() * room;
 #pragma omp for schedule(dynamic, 1)
-    for (int64_t k = 0; k < w->n[2]; k++) {
+    for (int64_t k = 0; k < w->n[2]; ++k) {
       passes->plane(w, mine, k);
     }
 #pragma omp single
     find_range(w);
 #pragma omp for schedule(dynamic, 4)
-    for (int64_t chunk = 0; chunk < chunks; chunk++) {
+    for (int64_t chunk = 0; chunk < chunks; ++chunk) {
       if (!is_far(w)) {
         passes->columns(w, mine, chunk * at_once);
       }

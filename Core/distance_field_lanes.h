@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lanes of squared distances for distance_field_body.h: FIELD_BITS (16, 32 or 64) a lane, as many as a register of FIELD_ISA holds (2 AVX-512,
- * 1 AVX2, 0 any). Included once for each pair; every function carries both numbers in its name and the instruction set it may use, so that no
- * file needs flags of its own. Only the minimum and the question whether any lane is positive are spelled as instructions: the compiler finds
- * the rest. */
+ * Lanes of squared distances for distance_field_body.h: FIELD_BITS (16, 32 or 64) a lane, as many as a register of FIELD_ISA holds (2
+ * AVX-512, 1 AVX2, 0 any). Included once for each pair; every function carries both numbers in its name and the instruction set it may use,
+ * so that no file needs flags of its own. Only the minimum and the question whether any lane is positive are spelled as instructions: the
+ * compiler finds the rest. */
 #define FIELD_JOIN3(name, bits, isa) name##_##bits##_##isa
 #define FIELD_JOIN(name, bits, isa) FIELD_JOIN3(name, bits, isa)
 #define NAME(name) FIELD_JOIN(name, FIELD_BITS, FIELD_ISA)
@@ -107,7 +107,7 @@ FIELD_INLINE vector NAME(spread_bits)(const uint64_t* bits, int64_t first)
   return -((vector){ (int64_t)(word & 1), (int64_t)(word >> 1 & 1) });
 #else
   vector mine = { 0 };
-  for (int i = 0; i < LANES; i++) {
+  for (int i = 0; i < LANES; ++i) {
     mine[i] = (VALUE)(1u << i); /* folded into a constant */
   }
   return (vector)((NAME(all)((VALUE)(word & ((1u << LANES) - 1))) & mine) != 0);

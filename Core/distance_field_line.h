@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lines of distance_field_body.h, which includes this once its words and rooms are known: the lower envelope of one line, and the zigzag, which
- * searches as many lines as a vector has lanes, or as many voxels of a row.
+ * Lines of distance_field_body.h, which includes this once its words and rooms are known: the lower envelope of one line, and the zigzag,
+ * which searches as many lines as a vector has lanes, or as many voxels of a row.
  *
- * A vector looks outward from itself, n = 1, 2 .., and keeps c = best - n^2, which needs one subtraction a step and no sum that could overflow,
- * and tells when to stop: c <= 0 everywhere. */
+ * A vector looks outward from itself, n = 1, 2 .., and keeps c = best - n^2, which needs one subtraction a step and no sum that could
+ * overflow, and tells when to stop: c <= 0 everywhere. */
 
 /* ---- lower envelope */
 
@@ -16,7 +16,7 @@ FIELD_INLINE int64_t NAME(push)(field_hull* hull, int64_t top, int64_t u, int64_
     if (old * old + h.height <= now * now + g) {
       break;
     }
-    top--;
+    --top;
   }
   int64_t start = first;
   if (top >= 0) {
@@ -41,15 +41,15 @@ static FIELD_TARGET void NAME(envelope_line)(const VALUE* s, int64_t n, field_hu
     }
     const int inside = s[first] < 0;
     while (end < n && s[end] != 0 && (s[end] < 0) == inside) {
-      end++;
+      ++end;
     }
     int64_t top = first > 0 ? NAME(push)(hull, -1, first - 1, 0, first, end) : -1;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t i = first; i < end; ++i) {
       const int64_t height = inside ? -(int64_t)s[i] : s[i];
       top = height < FAR ? NAME(push)(hull, top, i, height, first, end) : top;
     }
     top = end < n ? NAME(push)(hull, top, end, 0, first, end) : top;
-    for (int64_t i = end - 1; i >= first; i--) {
+    for (int64_t i = end - 1; i >= first; --i) {
       const int64_t away = top >= 0 ? i - hull[top].at : 0, sum = top >= 0 ? away * away + hull[top].height : FAR;
       const VALUE far = sum < FAR ? (VALUE)sum : FAR;
       out[i] = inside ? (VALUE)-far : far;
@@ -100,12 +100,12 @@ FIELD_INLINE void NAME(look)(aim* a, const VALUE* plus, const VALUE* minus, int6
   vector c = a->c;
   int64_t n = a->n;
   if (a->kinds != 3) {
-    for (; n <= last && NAME(positive)(c); n++) {
+    for (; n <= last && NAME(positive)(c); ++n) {
       c = NAME(least)(c, NAME(least)(NAME(load)(only + n * one), NAME(load)(only + n * other)));
       c -= NAME(all)((VALUE)(2 * n + 1));
     }
   } else {
-    for (; n <= last && NAME(positive)(c); n++) {
+    for (; n <= last && NAME(positive)(c); ++n) {
       const vector out = NAME(least)(NAME(load)(plus + n * one), NAME(load)(plus + n * other));
       const vector in = NAME(least)(NAME(load)(minus + n * one), NAME(load)(minus + n * other));
       c = NAME(least)(c, NAME(select)(a->inside, in, out));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The nearest voxel of each voxel of an exact field, for the paper's layout. A field keeps distances alone; who wants positions gets them by
- * the same three axes, y, x, z, with a position carried along in the layout's own floats: the nearest in the column, then in the plane, then
- * of all. Each voxel looks for the nearest of the other kind, and one of the other kind stands for itself. Of several equally near ones the
- * smallest index wins at each axis, and so at last: z first, then y, then x. */
+ * The nearest voxel of each voxel of an exact field, for the paper's layout. A field keeps distances alone; who wants positions gets them
+ * by the same three axes, y, x, z, with a position carried along in the layout's own floats: the nearest in the column, then in the plane,
+ * then of all. Each voxel looks for the nearest of the other kind, and one of the other kind stands for itself. Of several equally near
+ * ones the smallest index wins at each axis, and so at last: z first, then y, then x. */
 #include "distance_field.h"
 
 #include <omp.h>
@@ -33,13 +33,13 @@ static void find_in_column(const stratus_bits* set, int64_t i, int64_t k, float*
   const int64_t ny = set->n[1], step = set->n[0];
   int64_t last[2] = { NONE, NONE }; /* of either kind */
   const int64_t first = k * ny * step + i;
-  for (int64_t j = 0; j < ny; j++) {
+  for (int64_t j = 0; j < ny; ++j) {
     const int kind = stratus_bits_get(set, i, j, k);
     last[kind] = j;
     set_site(rgba, first + j * step, &(site){ { (int32_t)i, (int32_t)last[!kind], (int32_t)k } });
   }
   last[0] = last[1] = NONE;
-  for (int64_t j = ny - 1; j >= 0; j--) {
+  for (int64_t j = ny - 1; j >= 0; --j) {
     const int kind = stratus_bits_get(set, i, j, k);
     const int64_t above = last[!kind], below = get_site(rgba, first + j * step).at[1];
     last[kind] = j;
@@ -51,8 +51,8 @@ static void find_in_column(const stratus_bits* set, int64_t i, int64_t k, float*
 
 typedef struct line {
   int64_t n, axis;
-  int64_t at[3];      /* of its first voxel */
-  const site* sites;  /* of the axes before */
+  int64_t at[3];     /* of its first voxel */
+  const site* sites; /* of the axes before */
   const uint8_t* kinds;
   int64_t first[2], last[2]; /* places that voxels of either kind can learn from; first > last: none */
 } line;
@@ -65,7 +65,7 @@ static int64_t squared_to(const site* s, const int64_t at[3])
 
 static bool is_before(const site* a, const site* b)
 {
-  for (int axis = 2; axis > 0; axis--) {
+  for (int axis = 2; axis > 0; --axis) {
     if (a->at[axis] != b->at[axis]) {
       return a->at[axis] < b->at[axis];
     }
@@ -81,7 +81,7 @@ static void learn(const line* l, int64_t here, int64_t there, const int64_t at[3
   }
   site s = l->sites[there];
   if (l->kinds[here] != l->kinds[there]) {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       s.at[a] = (int32_t)(a == l->axis ? there : at[a]);
     }
   } else if (s.at[1] == NONE) {
@@ -102,7 +102,7 @@ static site find_in_line(const line* l, int64_t here)
   int64_t distance = best.at[1] == NONE ? INT64_MAX : squared_to(&best, at);
   const int64_t first = l->first[l->kinds[here]], last = l->last[l->kinds[here]];
   const int64_t below = first - here, above = here - last, nearest = below > above ? below : above;
-  for (int64_t n = nearest > 1 ? nearest : 1; first <= last && (n <= -below || n <= -above) && n * n <= distance; n++) {
+  for (int64_t n = nearest > 1 ? nearest : 1; first <= last && (n <= -below || n <= -above) && n * n <= distance; ++n) {
     learn(l, here, here - n, at, &best, &distance);
     learn(l, here, here + n, at, &best, &distance);
   }
@@ -113,15 +113,15 @@ static site find_in_line(const line* l, int64_t here)
 static void read_line(const stratus_bits* set, const float* rgba, int64_t from, int64_t step, line* l, site* sites, uint8_t* kinds)
 {
   int64_t at[3] = { l->at[0], l->at[1], l->at[2] };
-  for (int kind = 0; kind < 2; kind++) {
+  for (int kind = 0; kind < 2; ++kind) {
     l->first[kind] = l->n;
     l->last[kind] = -1;
   }
-  for (int64_t i = 0; i < l->n; i++) {
+  for (int64_t i = 0; i < l->n; ++i) {
     at[l->axis] = i;
     sites[i] = get_site(rgba, from + i * step);
     kinds[i] = (uint8_t)stratus_bits_get(set, at[0], at[1], at[2]);
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < 2; ++kind) {
       if (kinds[i] != kind || sites[i].at[1] != NONE) {
         l->first[kind] = i < l->first[kind] ? i : l->first[kind];
         l->last[kind] = i;
@@ -140,13 +140,13 @@ static void find_along(const stratus_context* context, const stratus_bits* set, 
     site* sites = (site*)(void*)(rooms + (size_t)omp_get_thread_num() * room);
     uint8_t* kinds = (uint8_t*)(sites + n);
 #pragma omp for schedule(dynamic, 16)
-    for (int64_t number = 0; number < lines; number++) {
+    for (int64_t number = 0; number < lines; ++number) {
       line l = { .n = n, .axis = axis, .sites = sites, .kinds = kinds };
       l.at[other] = number % set->n[other];
       l.at[1] = number / set->n[other];
       const int64_t first = (l.at[2] * set->n[1] + l.at[1]) * set->n[0] + l.at[0];
       read_line(set, rgba, first, step, &l, sites, kinds);
-      for (int64_t i = 0; i < n; i++) {
+      for (int64_t i = 0; i < n; ++i) {
         const site found = find_in_line(&l, i);
         set_site(rgba, first + i * step, &found);
       }
@@ -159,14 +159,14 @@ static void write_positions(const stratus_context* context, const stratus_bits* 
 {
   const int64_t nx = set->n[0], rows = set->n[1] * set->n[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     const int64_t j = row % set->n[1], k = row / set->n[1];
-    for (int64_t i = 0; i < nx; i++) {
+    for (int64_t i = 0; i < nx; ++i) {
       float* to = rgba + 4 * (row * nx + i);
       const site s = get_site(rgba, row * nx + i);
       const int own = !is_signed && stratus_bits_get(set, i, j, k), known = own || s.at[1] != NONE;
       const int64_t at[3] = { own ? i : s.at[0], own ? j : s.at[1], own ? k : s.at[2] };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         to[a] = known ? (float)at[a] : -1.0f;
       }
     }
@@ -180,8 +180,8 @@ stratus_status stratus_field_nearest(stratus_context* context, const stratus_bit
   void* rooms = NULL;
   TRY(stratus_allocate(context, (size_t)context->threads, room, &rooms));
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t k = 0; k < nz; k++) {
-    for (int64_t i = 0; i < nx; i++) {
+  for (int64_t k = 0; k < nz; ++k) {
+    for (int64_t i = 0; i < nx; ++i) {
       find_in_column(set, i, k, rgba);
     }
   }

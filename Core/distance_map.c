@@ -12,10 +12,10 @@ static void fill_block(const stratus_context* context, const stratus_occupancy* 
 {
   const int64_t n = map->blocks[0], rows = map->blocks[1] * map->blocks[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     const uint8_t* restrict occupied = occupancy->occupied + row * n;
     uint8_t* restrict bytes = map->bytes + (size_t)row * map->pitch;
-    for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < n; ++i) {
       bytes[i] = (uint8_t)(occupied[i] * DISTANCE_OCCUPIED + 1);
     }
   }
@@ -25,7 +25,7 @@ static void fill_block(const stratus_context* context, const stratus_occupancy* 
 static void fill_padding(stratus_distance_map* map, size_t maps)
 {
   const size_t n = (size_t)map->blocks[0], rows = maps * (size_t)(map->blocks[1] * map->blocks[2]);
-  for (size_t row = 0; n < map->pitch && row < rows; row++) {
+  for (size_t row = 0; n < map->pitch && row < rows; ++row) {
     memset(map->bytes + row * map->pitch + n, DISTANCE_MAX, map->pitch - n);
   }
   memset(map->bytes + rows * map->pitch, DISTANCE_MAX, map->bytes_size - rows * map->pitch);

@@ -6,10 +6,10 @@
 /* Distances along a line, from seeds of 0 and DISTANCE_MAX. */
 static void scan_line(uint8_t* line, int64_t n)
 {
-  for (int64_t x = 1; x < n; x++) {
+  for (int64_t x = 1; x < n; ++x) {
     line[x] = line[x - 1] + 1 < line[x] ? (uint8_t)(line[x - 1] + 1) : line[x];
   }
-  for (int64_t x = n - 2; x >= 0; x--) {
+  for (int64_t x = n - 2; x >= 0; --x) {
     line[x] = line[x + 1] + 1 < line[x] ? (uint8_t)(line[x + 1] + 1) : line[x];
   }
 }
@@ -18,7 +18,7 @@ static void scan_line(uint8_t* line, int64_t n)
 static uint8_t search_line(const uint8_t* line, int64_t x, int64_t n)
 {
   int nearest = line[x];
-  for (int k = 1; k < nearest; k++) {
+  for (int k = 1; k < nearest; ++k) {
     for (int side = -1; side <= 1; side += 2) {
       const int64_t at = x + side * k;
       if (at >= 0 && at < n) {
@@ -36,14 +36,14 @@ static void search_axis(const stratus_context* context, const int64_t n[3], int 
   const int64_t length = n[axis], stride = axis == 1 ? n[0] : n[0] * n[1], others = axis == 1 ? n[2] : n[1];
   const int64_t other_stride = axis == 1 ? n[0] * n[1] : n[0];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t other = 0; other < others; other++) {
+  for (int64_t other = 0; other < others; ++other) {
     uint8_t* line = lines + other * length;
-    for (int64_t x = 0; x < n[0]; x++) {
+    for (int64_t x = 0; x < n[0]; ++x) {
       const int64_t first = other * other_stride + x;
-      for (int64_t i = 0; i < length; i++) {
+      for (int64_t i = 0; i < length; ++i) {
         line[i] = from[first + i * stride];
       }
-      for (int64_t i = 0; i < length; i++) {
+      for (int64_t i = 0; i < length; ++i) {
         to[first + i * stride] = search_line(line, i, length);
       }
     }
@@ -56,10 +56,10 @@ static void transform(
 {
   const int64_t* n = occupancy->blocks;
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t row = 0; row < n[1] * n[2]; row++) {
+  for (int64_t row = 0; row < n[1] * n[2]; ++row) {
     const uint8_t* occupied = occupancy->occupied + row * n[0];
     uint8_t* line = distance + row * n[0];
-    for (int64_t x = 0; x < n[0]; x++) {
+    for (int64_t x = 0; x < n[0]; ++x) {
       line[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
     }
     scan_line(line, n[0]);
@@ -81,8 +81,8 @@ stratus_status stratus_distance_paper(stratus_context* context, const stratus_oc
   TRY_CLEANUP(stratus_allocate(context, lines, 1, &line));
   transform(context, occupancy, 1, outer, swap, line);
   transform(context, occupancy, 0, inner, swap, line);
-  for (int64_t row = 0; row < n[1] * n[2]; row++) {
-    for (int64_t x = 0; x < n[0]; x++) {
+  for (int64_t row = 0; row < n[1] * n[2]; ++row) {
+    for (int64_t x = 0; x < n[0]; ++x) {
       const uint8_t out = ((uint8_t*)outer)[row * n[0] + x], in = ((uint8_t*)inner)[row * n[0] + x];
       map->bytes[(size_t)row * map->pitch + (size_t)x] = (uint8_t)(out ? out : DISTANCE_OCCUPIED + in);
     }

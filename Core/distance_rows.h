@@ -19,7 +19,7 @@ static inline uint8_t least(uint8_t a, uint8_t b)
 static inline int64_t row_seed(const uint8_t* restrict occupied, uint8_t target, int64_t n, uint8_t* restrict seeds)
 {
   int64_t others = 0;
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     const uint8_t other = occupied[x] ^ target;
     seeds[x] = (uint8_t)(DISTANCE_MAX & -other);
     others += other;
@@ -33,11 +33,11 @@ static inline void row_spread_step(const uint8_t* restrict b, int64_t n, int64_t
   const uint8_t* restrict ahead = b + (side < 0 ? -step : step);
   const uint8_t* restrict behind = b - (side > 0 ? -step : step);
   if (side == 0) {
-    for (int64_t x = 0; x < n; x++) {
+    for (int64_t x = 0; x < n; ++x) {
       a[x] = least(b[x], (uint8_t)(least(ahead[x], behind[x]) + step));
     }
   } else {
-    for (int64_t x = 0; x < n; x++) {
+    for (int64_t x = 0; x < n; ++x) {
       a[x] = least(b[x], (uint8_t)(ahead[x] + step));
     }
   }
@@ -60,7 +60,7 @@ static inline uint8_t* row_spread(uint8_t* rows, size_t apart, int64_t n, int si
 /* row[x] = min(row[x], 1 + near[x]). */
 static inline void row_step(const uint8_t* restrict near, int64_t n, uint8_t* restrict row)
 {
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     row[x] = least(row[x], (uint8_t)(near[x] + 1));
   }
 }
@@ -68,7 +68,7 @@ static inline void row_step(const uint8_t* restrict near, int64_t n, uint8_t* re
 /* The same from the nearest of two and of three rows. */
 static inline void row_step2(const uint8_t* restrict a, const uint8_t* restrict b, int64_t n, uint8_t* restrict row)
 {
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     row[x] = least(row[x], (uint8_t)(least(a[x], b[x]) + 1));
   }
 }
@@ -76,7 +76,7 @@ static inline void row_step2(const uint8_t* restrict a, const uint8_t* restrict 
 static inline void row_step3(
   const uint8_t* restrict a, const uint8_t* restrict b, const uint8_t* restrict c, int64_t n, uint8_t* restrict row)
 {
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     row[x] = least(row[x], (uint8_t)(least(least(a[x], b[x]), c[x]) + 1));
   }
 }
@@ -87,18 +87,18 @@ static inline void row_near(const uint8_t* restrict row, int64_t n, int side, ui
   if (n == 1) {
     near[0] = row[0];
   } else if (side > 0) {
-    for (int64_t x = 0; x < n - 1; x++) {
+    for (int64_t x = 0; x < n - 1; ++x) {
       near[x] = least(row[x], row[x + 1]);
     }
     near[n - 1] = row[n - 1];
   } else if (side < 0) {
     near[0] = row[0];
-    for (int64_t x = 1; x < n; x++) {
+    for (int64_t x = 1; x < n; ++x) {
       near[x] = least(row[x], row[x - 1]);
     }
   } else {
     near[0] = least(row[0], row[1]);
-    for (int64_t x = 1; x < n - 1; x++) {
+    for (int64_t x = 1; x < n - 1; ++x) {
       near[x] = least(row[x], least(row[x - 1], row[x + 1]));
     }
     near[n - 1] = least(row[n - 1], row[n - 2]);
@@ -108,14 +108,14 @@ static inline void row_near(const uint8_t* restrict row, int64_t n, int side, ui
 /* row[x]: the empty block's distance, or the occupied block's inner one with its mark. */
 static inline void row_merge(const uint8_t* restrict inner, int64_t n, uint8_t* restrict row)
 {
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     row[x] = (uint8_t)(row[x] | inner[x] | (inner[x] ? DISTANCE_OCCUPIED : 0));
   }
 }
 
 static inline void row_least(const uint8_t* restrict other, int64_t n, uint8_t* restrict row)
 {
-  for (int64_t x = 0; x < n; x++) {
+  for (int64_t x = 0; x < n; ++x) {
     row[x] = least(row[x], other[x]);
   }
 }

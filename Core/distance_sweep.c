@@ -42,11 +42,11 @@ static room make_room(uint8_t* memory, const int64_t blocks[3], size_t pitch)
   memset(memory, DISTANCE_MAX, 2 * r.apart);
   r.spread = memory + ROW_MARGIN;
   memory += 2 * r.apart;
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2; ++i) {
     r.near[i] = memory + (size_t)i * pitch;
   }
   memory += 2 * pitch;
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2; ++i) {
     r.planes[i] = memory + (size_t)i * pitch * (size_t)blocks[1];
   }
   r.plane = memory + 2 * pitch * (size_t)blocks[1];
@@ -67,7 +67,7 @@ static void spread_row(const room* r, const uint8_t* occupied, uint8_t target, i
 /* Sweeps a plane's rows towards higher y (from lower ones) if `up`, each stepping from the row before. */
 static void sweep_rows(const room* r, uint8_t* plane, int64_t nx, int64_t ny, int side, int up)
 {
-  for (int64_t i = 0; i < ny; i++) {
+  for (int64_t i = 0; i < ny; ++i) {
     uint8_t* row = plane + (size_t)(up ? i : ny - 1 - i) * r->pitch;
     if (i > 0) {
       row_step(r->near[(i + 1) & 1], nx, row);
@@ -81,7 +81,7 @@ static void full_plane(const field* f, const room* r, int64_t k)
 {
   const size_t bytes = f->pitch * (size_t)f->n[1];
   uint8_t* plane = f->out + (size_t)k * bytes;
-  for (int64_t j = 0; j < f->n[1]; j++) {
+  for (int64_t j = 0; j < f->n[1]; ++j) {
     spread_row(r, f->occupied + k * f->plane + j * f->row, f->target, f->n[0], 0, plane + (size_t)j * f->pitch);
   }
   room rows = *r;
@@ -96,9 +96,9 @@ static void full_sweep(const field* f, const room* r, int up)
 {
   const int64_t nx = f->n[0], ny = f->n[1], nz = f->n[2];
   uint8_t* map = up ? f->out : f->back;
-  for (int64_t i = 0; i < nz; i++) {
+  for (int64_t i = 0; i < nz; ++i) {
     const uint8_t* before = r->planes[(i + 1) & 1];
-    for (int64_t j = 0; j < ny; j++) {
+    for (int64_t j = 0; j < ny; ++j) {
       uint8_t* row = map + ((size_t)(up ? i : nz - 1 - i) * (size_t)ny + (size_t)j) * f->pitch;
       if (i > 0) {
         const uint8_t* near = before + (size_t)j * f->pitch;
@@ -114,7 +114,7 @@ static void merge_inner(
   const stratus_distance_map* map, const distance_inner* inner, const uint8_t* occupied, int64_t j, int64_t k, uint8_t* row)
 {
   if (!inner->bytes) {
-    for (int64_t x = 0; x < map->blocks[0]; x++) {
+    for (int64_t x = 0; x < map->blocks[0]; ++x) {
       row[x] = occupied[x] ? DISTANCE_OCCUPIED + DISTANCE_MAX : row[x];
     }
     return;
@@ -132,12 +132,12 @@ static void octant_sweep(const stratus_occupancy* occupancy, const distance_inne
   const int64_t nx = map->blocks[0], ny = map->blocks[1], nz = map->blocks[2];
   const int side = octant & 1 ? 1 : -1, y_up = octant & 2, z_up = octant & 4;
   const size_t pitch = map->pitch, plane_bytes = pitch * (size_t)ny;
-  for (int64_t i = 0; i < nz; i++) {
+  for (int64_t i = 0; i < nz; ++i) {
     const int64_t k = z_up ? nz - 1 - i : i; /* a ray towards +z meets what lies above: distances come down from there */
     const uint8_t* before = r->planes[(i + 1) & 1];
     memcpy(r->plane, spread + (size_t)k * plane_bytes, plane_bytes);
     sweep_rows(r, r->plane, nx, ny, side, !y_up);
-    for (int64_t j = 0; j < ny; j++) {
+    for (int64_t j = 0; j < ny; ++j) {
       const size_t at = (size_t)j * pitch;
       uint8_t* row = r->plane + at;
       if (i > 0) {
@@ -172,9 +172,9 @@ static void outer_planes(const sweep* s, const room* r, int64_t k)
     full_plane(&s->outer, r, k);
     return;
   }
-  for (int64_t j = 0; j < ny; j++) {
+  for (int64_t j = 0; j < ny; ++j) {
     const int64_t row = k * ny + j;
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
       spread_row(r, s->occupancy->occupied + row * nx, 1, nx, 2 * side - 1, s->along[side] + (size_t)row * s->map->pitch);
     }
   }
@@ -191,7 +191,7 @@ static void merge_plane(const sweep* s, int64_t k)
 {
   const int64_t nx = s->map->blocks[0], ny = s->map->blocks[1];
   meet(&s->outer, k);
-  for (int64_t j = 0; j < ny; j++) {
+  for (int64_t j = 0; j < ny; ++j) {
     uint8_t* row = s->map->bytes + (size_t)(k * ny + j) * s->map->pitch;
     merge_inner(s->map, &s->inner, s->occupancy->occupied + (k * ny + j) * nx, j, k, row);
   }
@@ -205,29 +205,29 @@ static void run_sweeps(const stratus_context* context, const sweep* s)
   {
     const room r = make_room(s->rooms + (size_t)omp_get_thread_num() * s->room_size, s->map->blocks, s->map->pitch);
 #pragma omp for schedule(static) nowait
-    for (int64_t k = 0; k < inner_nz; k++) {
+    for (int64_t k = 0; k < inner_nz; ++k) {
       full_plane(&s->within, &r, k);
     }
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < nz; k++) {
+    for (int64_t k = 0; k < nz; ++k) {
       outer_planes(s, &r, k);
     }
 #pragma omp for schedule(dynamic, 1)
-    for (int task = full ? 0 : 2; task < 4; task++) {
+    for (int task = full ? 0 : 2; task < 4; ++task) {
       full_sweep(task < 2 ? &s->outer : &s->within, &r, task & 1);
     }
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < inner_nz; k++) {
+    for (int64_t k = 0; k < inner_nz; ++k) {
       meet(&s->within, k);
     }
     if (full) {
 #pragma omp for schedule(static)
-      for (int64_t k = 0; k < nz; k++) {
+      for (int64_t k = 0; k < nz; ++k) {
         merge_plane(s, k);
       }
     } else {
 #pragma omp for schedule(dynamic, 1)
-      for (int octant = 0; octant < 8; octant++) {
+      for (int octant = 0; octant < 8; ++octant) {
         octant_sweep(s->occupancy, &s->inner, s->along[octant & 1], octant, s->map, &r);
       }
     }
@@ -242,7 +242,7 @@ static void choose_inner_box(sweep* s, int64_t total)
   if (occupancy->count == total) {
     return;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t lo = occupancy->lo[a] > 0 ? occupancy->lo[a] - 1 : 0;
     const int64_t hi = occupancy->hi[a] < occupancy->blocks[a] ? occupancy->hi[a] + 1 : occupancy->blocks[a];
     s->inner.lo[a] = lo;
@@ -288,7 +288,7 @@ stratus_status stratus_distance_sweep(stratus_context* context, const stratus_oc
   run_sweeps(context, &s);
 
 cleanup:
-  for (int i = 0; i < 5; i++) {
+  for (int i = 0; i < 5; ++i) {
     stratus_release(context, memory[i]);
   }
   return status;

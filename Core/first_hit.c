@@ -49,8 +49,8 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
 }
 
 /* One chunk's answers; false if ray *bad of it can't be used. more: rays behind the chunk's. */
-static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count, size_t more,
-  stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
+static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count,
+  size_t more, stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
 {
   if (functions) {
     if (!functions->prepare(batch, rays, count, chunk, bad)) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on the context's device: the host makes rays ready and answers ready, chunk by chunk, the device walks. The tree is copied with
- * each batch (a device that shares memory with the host reads it in place). */
+ * First hits on the context's device: the host makes rays ready and answers ready, chunk by chunk, the device walks. The tree is copied
+ * with each batch (a device that shares memory with the host reads it in place). */
 #include "first_hit.h"
 
 #include "../kernels/first_hit_arguments.h"
@@ -104,16 +104,17 @@ static stratus_status begin(launch* l, size_t most)
     .entry_bytes = tree->entry_bytes,
     .cell_log2 = tree->cell_log2,
     .slack = l->batch->slack };
-  snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d",
-    l->packets ? 16 : 1, tree->octants, tree->entry_bytes, tree->cell_log2);
+  snprintf(defines, sizeof defines,
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d", l->packets ? 16 : 1,
+    tree->octants, tree->entry_bytes, tree->cell_log2);
   TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;
   TRY(stratus_allocate(l->context, most, 13 * 4, &memory));
   l->words = memory;
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
-  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4, tree->entries, true,
-    &l->buffers[ENTRIES]));
+  TRY(stratus_device_buffer(
+    l->context, CL_MEM_READ_ONLY, (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4, tree->entries, true, &l->buffers[ENTRIES]));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->row_count ? (size_t)tree->row_count * 4 : 16,
     tree->row_count ? tree->rows : NULL, tree->row_count > 0, &l->buffers[ROWS]));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->mask_count ? (size_t)tree->mask_count * 8 : 16,

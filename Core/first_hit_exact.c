@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits in double precision, one ray at a time, through any tree: the way through trees of many nodes, and the judge of rays that the
- * packets left in doubt. Boxes are met a hair wider than they are, and wherever the ray lands near an edge all voxels about it are tried, so that
- * rounding can hide none; of all voxels that the ray meets the first counts. */
+ * packets left in doubt. Boxes are met a hair wider than they are, and wherever the ray lands near an edge all voxels about it are tried,
+ * so that rounding can hide none; of all voxels that the ray meets the first counts. */
 #include "first_hit.h"
 
 #include <string.h>
@@ -9,8 +9,9 @@
 /* How far a position may be off, over its size: some ten roundings. */
 #define HAIR 4e-15
 
-/* A crossing of a plane between voxels: crossings come in the order of t, at equal t in that of the axes. axis 3: the ray's own beginning, after all
- * of the same t. The rule is voxel_walk.c's, and so are the bits of t: of all voxels a ray is in one at a time, in the same order for every tree. */
+/* A crossing of a plane between voxels: crossings come in the order of t, at equal t in that of the axes. axis 3: the ray's own beginning,
+ * after all of the same t. The rule is voxel_walk.c's, and so are the bits of t: of all voxels a ray is in one at a time, in the same order
+ * for every tree. */
 typedef struct crossing {
   double t;
   int axis;
@@ -229,8 +230,8 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
 
 /* ---------------------------------------------------------------- nodes */
 
-/* The ray in floats, from where it enters the root's box, in lengths of its longest component: boxes grown by the floats' slack are met wherever
- * the ray meets the boxes. */
+/* The ray in floats, from where it enters the root's box, in lengths of its longest component: boxes grown by the floats' slack are met
+ * wherever the ray meets the boxes. */
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_int __attribute__((vector_size(16)));
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on the host, compiled for one instruction set, STRATUS_ISA: rays into packets, packets through the field, lanes whose ray has ended
- * given the next, and the answers in double precision. */
+ * First hits on the host, compiled for one instruction set, STRATUS_ISA: rays into packets, packets through the field, lanes whose ray has
+ * ended given the next, and the answers in double precision. */
 #include "first_hit.h"
 
 #include "../kernels/first_hit.h"
@@ -19,8 +19,14 @@
 /* Loops over a chunk, written so that the compiler makes vectors of them. */
 #define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
 
-static inline double larger(double a, double b) { return a > b ? a : b; }
-static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+static inline double smaller(double a, double b)
+{
+  return a < b ? a : b;
+}
 
 /* The ray in voxel coordinates. */
 static void transform(
@@ -29,7 +35,7 @@ static void transform(
   const double* m = batch->to_voxels;
   const int n = chunk->count;
   for (int a = 0; a < 3; ++a) {
-    double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
+    double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
     const double x = m[4 * a], y = m[4 * a + 1], z = m[4 * a + 2], w = m[4 * a + 3];
     EACH_RAY
     {
@@ -51,7 +57,8 @@ static double measure(const stratus_hit_chunk* chunk, const double* restrict fir
 #pragma omp simd reduction(+ : wrong)
   for (int i = 0; i < n; ++i) {
     const double longest = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
-    const double sum = chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
+    const double sum =
+      chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
     most[i] = longest;
     wrong += 0.0 * (sum + first[i]) + (longest >= STRATUS_RAY_SHORTEST ? 0.0 : 1.0) + (last[i] == last[i] ? 0.0 : 1.0);
   }
@@ -67,8 +74,8 @@ static int find_bad(const stratus_hit_batch* batch, const stratus_ray* rays, int
   return i;
 }
 
-/* From here on t is in lengths of the ray's longest component. Where the ray enters the root's box is found in floats, a hair early: it only tells
- * where the walk begins, and a voxel that is met there by mistake is found out when its hit is made. */
+/* From here on t is in lengths of the ray's longest component. Where the ray enters the root's box is found in floats, a hair early: it
+ * only tells where the walk begins, and a voxel that is met there by mistake is found out when its hit is made. */
 static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
 {
   double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], most[STRATUS_HIT_CHUNK];
@@ -88,8 +95,8 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
   }
   for (int a = 0; a < 3; ++a) {
     const double lo = batch->lo[a], hi = batch->hi[a];
-    const double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
-    float *restrict const d = chunk->d[a], *restrict const inverse = chunk->inverse[a];
+    const double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
+    float* restrict const d = chunk->d[a], * restrict const inverse = chunk->inverse[a];
     EACH_RAY
     {
       const float unit = (float)(along[i] * most[i]);
@@ -110,7 +117,7 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
   }
   for (int a = 0; a < 3; ++a) {
     const double lo = batch->lo[a], inside = batch->hi[a] - 0.5; /* in the last voxel */
-    const double *restrict const from = chunk->from[a], *restrict const along = chunk->along[a];
+    const double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
     float* restrict const o = chunk->o[a];
     int* restrict const cell = chunk->cell[a];
     EACH_RAY

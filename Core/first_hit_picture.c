@@ -20,9 +20,9 @@ typedef struct first_hit_frame {
   const stratus_camera* camera;
   stratus_first_hit_scene scene;
   stratus_shader shader;
-  double eye[3], forward[3], right[3], up[3];        /* index coordinates */
-  double crop[6];                                    /* index coordinates */
-  double planes[STRATUS_CLIP_PLANES_MAX][4];         /* index coordinates */
+  double eye[3], forward[3], right[3], up[3]; /* index coordinates */
+  double crop[6];                             /* index coordinates */
+  double planes[STRATUS_CLIP_PLANES_MAX][4];  /* index coordinates */
   int window[4];
   stratus_ray* rays;
   stratus_first_hit_pixel* pixels;

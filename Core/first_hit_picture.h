@@ -45,19 +45,20 @@ typedef struct stratus_shader {
   const stratus_volume* volume;
   const stratus_transfer* transfer;
   const stratus_ray_cast_options* options;
-  double bias;               /* of fetched values */
+  double bias;                                   /* of fetched values */
   double index_to_world[16], world_to_index[16]; /* rays are in index coordinates */
-  double face[3][3];         /* world normal of the face towards + along each index axis */
-  double plane[STRATUS_CLIP_PLANES_MAX][3]; /* world normals, away from what is kept */
-  stratus_light lights[STRATUS_LIGHTS_MAX]; /* directions of length 1 */
+  double face[3][3];                             /* world normal of the face towards + along each index axis */
+  double plane[STRATUS_CLIP_PLANES_MAX][3];      /* world normals, away from what is kept */
+  stratus_light lights[STRATUS_LIGHTS_MAX];      /* directions of length 1 */
   int light_count;
 } stratus_shader;
 
 /* first_hit_shading.c */
 stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading);
-void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
-  const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16]);
-/* Colour (alpha 1) and world distance of a hit; depends on the ray and the voxel alone, so that every way to the voxel gives the same bits. */
+void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16]);
+/* Colour (alpha 1) and world distance of a hit; depends on the ray and the voxel alone, so that every way to the voxel gives the same bits.
+ */
 void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth);
 

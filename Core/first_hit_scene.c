@@ -193,9 +193,9 @@ static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted,
     report->occupied_blocks = (uint64_t)scene->voxels->brick_count;
   }
   snprintf(report->why, sizeof report->why, "first hits, %s %s%s%.150s", stratus_structure_name(scene->used),
-    offered                                ? "that comes with the data"
+    offered                              ? "that comes with the data"
       : wanted == STRATUS_STRUCTURE_AUTO ? "by default"
-                                           : "as asked",
+                                         : "as asked",
     statistics.why[0] ? ": " : "", statistics.why);
 }
 

@@ -49,13 +49,12 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
   static const char* const names[4] = { "ambient", "diffuse", "specular", "specular power" };
   for (int i = 0; i < 4; ++i) {
     if (!(factors[i] >= 0.0 && factors[i] <= STRATUS_LIGHT_MAX)) {
-      return stratus_fail(
-        context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
     }
   }
   if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count,
-      STRATUS_LIGHTS_MAX);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count, STRATUS_LIGHTS_MAX);
   }
   for (int i = 0; i < shading->light_count; ++i) {
     TRY(check_light(context, &shading->lights[i], i));
@@ -84,8 +83,8 @@ static void set_lights(stratus_shader* shader, const stratus_camera* camera, con
   }
 }
 
-void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
-  const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16])
+void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16])
 {
   memset(shader, 0, sizeof *shader);
   shader->volume = volume;
@@ -202,7 +201,8 @@ static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
 
 /* ---- light */
 
-static void illuminate(const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
+static void illuminate(
+  const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
 {
   const stratus_shading* shading = &shader->options->shading;
   double light[3] = { shading->ambient, shading->ambient, shading->ambient }, gloss[3] = { 0.0, 0.0, 0.0 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta: six half-spaces from a camera, and boxes against them by their nearest and farthest corner (Assarsson & Moller 2000), or (frustum_exact.c)
- * by every separating axis. Whatever rounds, rounds towards "seen". */
+ * Frusta: six half-spaces from a camera, and boxes against them by their nearest and farthest corner (Assarsson & Moller 2000), or
+ * (frustum_exact.c) by every separating axis. Whatever rounds, rounds towards "seen". */
 #include "frustum.h"
 
 #include <string.h>
@@ -20,20 +20,20 @@ static bool invert_axes(const stratus_camera* camera, double rows[3][3])
 {
   const double* given[3] = { camera->right, camera->up, camera->forward };
   double axes[3][3], lengths[3];
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     memcpy(axes[i], given[i], sizeof axes[i]);
     lengths[i] = stratus_vector_normalize(axes[i]);
     if (!(lengths[i] > 0.0)) {
       return false;
     }
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     stratus_vector_cross(axes[(i + 1) % 3], axes[(i + 2) % 3], rows[i]);
     const double volume = stratus_vector_dot(rows[i], axes[i]);
     if (!(fabs(volume) > STRATUS_DEPENDENT_BELOW)) {
       return false;
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       rows[i][a] /= volume * lengths[i];
     }
   }
@@ -57,9 +57,9 @@ stratus_status stratus_frustum_from_camera(stratus_context* context, const strat
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera right, up and forward must be finite and span the space");
   }
   stratus_frustum result = { .eye = { camera->eye[0], camera->eye[1], camera->eye[2] } };
-  for (int p = 0; p < 4; p++) {
+  for (int p = 0; p < 4; ++p) {
     double normal[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       normal[a] = (p % 2 ? -rows[p / 2][a] : rows[p / 2][a]) + (camera->parallel ? 0.0 : rows[2][a]);
     }
     set_plane(result.planes[p], normal, camera->eye, camera->parallel ? 1.0 : 0.0);
@@ -88,14 +88,14 @@ stratus_status stratus_frustum_check(stratus_context* context, const stratus_fru
   if (!frustum) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "frustum is NULL");
   }
-  for (int p = 0; p < STRATUS_PLANES; p++) {
-    for (int i = 0; i < 4; i++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
+    for (int i = 0; i < 4; ++i) {
       if (!isfinite(frustum->planes[p][i])) {
         return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "frustum planes[%d][%d] is %g, must be finite", p, i, frustum->planes[p][i]);
       }
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!isfinite(frustum->eye[a])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "frustum eye[%d] is %g, must be finite", a, frustum->eye[a]);
     }
@@ -109,7 +109,7 @@ void stratus_frustum_prepare(const stratus_frustum* frustum, bool exact, stratus
 {
   memset(plan, 0, sizeof *plan);
   memcpy(plan->eye, frustum->eye, sizeof plan->eye);
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
     const double* from = frustum->planes[p];
     const double largest = fmax(fmax(fabs(from[0]), fabs(from[1])), fabs(from[2]));
     int exponent = 0;
@@ -119,7 +119,7 @@ void stratus_frustum_prepare(const stratus_frustum* frustum, bool exact, stratus
       continue;
     }
     (void)frexp(largest, &exponent);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
       plan->planes[p][i] = ldexp(from[i], -exponent);
     }
     plan->lengths[p] = sqrt(stratus_vector_dot(plan->planes[p], plan->planes[p]));
@@ -132,7 +132,7 @@ void stratus_frustum_prepare(const stratus_frustum* frustum, bool exact, stratus
 
 bool stratus_bounds_finite(const double bounds[6])
 {
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     if (!(fabs(bounds[i]) <= STRATUS_COORDINATE_MAX)) {
       return false;
     }
@@ -143,7 +143,7 @@ bool stratus_bounds_finite(const double bounds[6])
 stratus_solid_box stratus_solid_box_of_bounds(const double bounds[6])
 {
   stratus_solid_box box = { .turned = false };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     box.center[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     box.half[a][a] = 0.5 * (bounds[2 * a + 1] - bounds[2 * a]);
   }
@@ -161,13 +161,13 @@ stratus_solid_box stratus_solid_box_of_turned(const double numbers[12])
 stratus_side stratus_plan_side(const stratus_frustum_plan* plan, unsigned mask, const double bounds[6])
 {
   stratus_side side = STRATUS_SIDE_INSIDE;
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
     if (!((mask & plan->used) >> p & 1)) {
       continue;
     }
     const double* n = plan->planes[p];
     double far_value = n[3], near_value = n[3], size = fabs(n[3]);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       const double lo = n[a] * bounds[2 * a], hi = n[a] * bounds[2 * a + 1];
       far_value += lo > hi ? lo : hi;
       near_value += lo > hi ? hi : lo;
@@ -188,7 +188,7 @@ stratus_side stratus_plan_side_turned(const stratus_frustum_plan* plan, unsigned
 {
   const double radius = stratus_solid_box_radius(box);
   stratus_side side = STRATUS_SIDE_INSIDE;
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
     if (!((mask & plan->used) >> p & 1)) {
       continue;
     }

@@ -25,11 +25,11 @@ static inline double stratus_vector_normalize(double v[3])
   if (!(largest > 0.0) || !isfinite(largest)) {
     return 0.0;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v[a] /= largest;
   }
   const double length = sqrt(stratus_vector_dot(v, v));
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v[a] /= length;
   }
   return largest * length;

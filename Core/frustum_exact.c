@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta as solids: their corners, and every axis that may separate one from a box. Six half-spaces alone keep boxes that lie beyond an edge. */
+ * Frusta as solids: their corners, and every axis that may separate one from a box. Six half-spaces alone keep boxes that lie beyond an
+ * edge. */
 #include "frustum.h"
 
 #include <string.h>
@@ -23,7 +24,7 @@ static bool meet(const double p[4], const double q[4], const double* r, double r
   if (!(fabs(volume) > STRATUS_DEPENDENT_BELOW)) {
     return false;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     result[a] = -(p[3] * qr[a] + q[3] * rp[a] + r[3] * pq[a]) / volume;
   }
   return isfinite(result[0]) && isfinite(result[1]) && isfinite(result[2]);
@@ -33,7 +34,7 @@ static bool meet(const double p[4], const double q[4], const double* r, double r
 static bool corner_is_inside(const stratus_frustum_plan* plan, int corner)
 {
   const double* point = plan->corners[corner];
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
     const double* n = plan->planes[p];
     const double w = plan->directions[corner] ? 0.0 : n[3];
     const double size = fabs(n[0] * point[0]) + fabs(n[1] * point[1]) + fabs(n[2] * point[2]) + fabs(w);
@@ -50,14 +51,14 @@ static void add_edge(stratus_frustum_plan* plan, int from, int to)
   if (plan->directions[from] && plan->directions[to]) {
     return; /* an edge of what lies at infinity */
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double* finite = plan->corners[from];
     edge[a] = plan->directions[to] ? plan->corners[to][a] : plan->directions[from] ? finite[a] : plan->corners[to][a] - finite[a];
   }
   if (stratus_vector_normalize(edge) == 0.0) {
     return; /* the tip of a pyramid */
   }
-  for (int e = 0; e < plan->edge_count; e++) {
+  for (int e = 0; e < plan->edge_count; ++e) {
     stratus_vector_cross(edge, plan->edges[e], along);
     if (stratus_vector_dot(along, along) < 1e-28) {
       return;
@@ -72,7 +73,7 @@ bool stratus_plan_find_corners(stratus_frustum_plan* plan)
   if ((plan->used & 15) != 15 || ends == 0) {
     return false;
   }
-  for (int c = 0; c < 8; c++) {
+  for (int c = 0; c < 8; ++c) {
     const bool missing = !(ends >> (c >> 2) & 1);
     plan->directions[c] = missing;
     double* corner = plan->corners[c];
@@ -81,7 +82,7 @@ bool stratus_plan_find_corners(stratus_frustum_plan* plan)
     }
     /* Two planes meet in a line: its end at infinity is the one inside the plane at the other end. */
     if (missing && stratus_vector_dot(corner, plan->planes[4 + !(c >> 2)]) < 0.0) {
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         corner[a] = -corner[a];
       }
     }
@@ -89,7 +90,7 @@ bool stratus_plan_find_corners(stratus_frustum_plan* plan)
       return false;
     }
   }
-  for (int c = 0; c < 8; c++) {
+  for (int c = 0; c < 8; ++c) {
     for (int bit = 1; bit < 8; bit *= 2) {
       if (!(c & bit)) {
         add_edge(plan, c, c | bit);
@@ -104,8 +105,8 @@ bool stratus_plan_find_corners(stratus_frustum_plan* plan)
 double stratus_solid_box_radius(const stratus_solid_box* box)
 {
   double sum = 0.0;
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
       sum += fabs(stratus_vector_dot(box->half[i], box->half[j]));
     }
   }
@@ -123,7 +124,7 @@ static bool axis_separates(
     return false; /* edges that are parallel */
   }
   double low = INFINITY, high = -INFINITY;
-  for (int c = 0; c < 8; c++) {
+  for (int c = 0; c < 8; ++c) {
     const double value = stratus_vector_dot(axis, corners[c]);
     if (!plan->directions[c]) {
       low = fmin(low, value);
@@ -144,26 +145,26 @@ bool stratus_plan_separated(const stratus_frustum_plan* plan, const stratus_soli
     return false;
   }
   double corners[8][3], axis[3], edges[3][3], size = stratus_solid_box_radius(box);
-  for (int c = 0; c < 8; c++) {
-    for (int a = 0; a < 3; a++) {
+  for (int c = 0; c < 8; ++c) {
+    for (int a = 0; a < 3; ++a) {
       corners[c][a] = plan->corners[c][a] - (plan->directions[c] ? 0.0 : box->center[a]);
       size = plan->directions[c] ? size : fmax(size, fabs(corners[c][a]));
     }
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     /* A flat box along the axes still has edges in all three. */
     const double unit[3] = { i == 0, i == 1, i == 2 };
     memcpy(edges[i], box->turned ? box->half[i] : unit, sizeof unit);
     (void)stratus_vector_normalize(edges[i]);
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     stratus_vector_cross(edges[(i + 1) % 3], edges[(i + 2) % 3], axis);
     if (axis_separates(plan, box, corners, axis, size)) {
       return true;
     }
   }
-  for (int e = 0; e < plan->edge_count; e++) {
-    for (int i = 0; i < 3; i++) {
+  for (int e = 0; e < plan->edge_count; ++e) {
+    for (int i = 0; i < 3; ++i) {
       stratus_vector_cross(plan->edges[e], edges[i], axis);
       if (axis_separates(plan, box, corners, axis, size)) {
         return true;

@@ -13,7 +13,7 @@ typedef struct ghosts {
 static ghosts ghosts_of(const stratus_volume* volume)
 {
   ghosts g = { .points = volume->cell_centered ? NULL : volume->point_ghosts, .cells = volume->cell_ghosts };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     g.p[a] = volume->dimensions[a];
     g.n[a] = volume->cell_centered || volume->dimensions[a] == 1 ? volume->dimensions[a] : volume->dimensions[a] - 1;
   }
@@ -24,9 +24,9 @@ static ghosts ghosts_of(const stratus_volume* volume)
 static void corner_flags(const ghosts* g, int64_t i, int64_t j, int64_t k, unsigned flag, bool* any, bool* all)
 {
   unsigned some = 0, every = flag;
-  for (int64_t z = k; z <= k + 1 && z < g->p[2]; z++) {
-    for (int64_t y = j; y <= j + 1 && y < g->p[1]; y++) {
-      for (int64_t x = i; x <= i + 1 && x < g->p[0]; x++) {
+  for (int64_t z = k; z <= k + 1 && z < g->p[2]; ++z) {
+    for (int64_t y = j; y <= j + 1 && y < g->p[1]; ++y) {
+      for (int64_t x = i; x <= i + 1 && x < g->p[0]; ++x) {
         const unsigned flags = g->points[(z * g->p[1] + y) * g->p[0] + x];
         some |= flags & flag;
         every &= flags;
@@ -40,7 +40,7 @@ static void corner_flags(const ghosts* g, int64_t i, int64_t j, int64_t k, unsig
 static bool has_flag(const uint8_t* flags, const int64_t n[3], unsigned flag)
 {
   const int64_t count = n[0] * n[1] * n[2];
-  for (int64_t i = 0; flags && i < count; i++) {
+  for (int64_t i = 0; flags && i < count; ++i) {
     if (flags[i] & flag) {
       return true;
     }
@@ -60,9 +60,9 @@ stratus_status stratus_volume_hidden_cells(stratus_context* context, const strat
   TRY(stratus_allocate(context, (size_t)(g.n[0] * g.n[1] * g.n[2]), 1, &memory));
   uint8_t* result = memory;
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t k = 0; k < g.n[2]; k++) {
-    for (int64_t j = 0; j < g.n[1]; j++) {
-      for (int64_t i = 0; i < g.n[0]; i++) {
+  for (int64_t k = 0; k < g.n[2]; ++k) {
+    for (int64_t j = 0; j < g.n[1]; ++j) {
+      for (int64_t i = 0; i < g.n[0]; ++i) {
         const int64_t cell = (k * g.n[1] + j) * g.n[0] + i;
         bool any = false, all = false;
         if (points) {
@@ -91,22 +91,22 @@ void stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t h
 {
   const ghosts g = ghosts_of(volume);
   if (!g.cells && !g.points) {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       lo[a] = 0;
       hi[a] = g.n[a];
     }
     return;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     lo[a] = g.n[a];
     hi[a] = 0;
   }
-  for (int64_t k = 0; k < g.n[2]; k++) {
-    for (int64_t j = 0; j < g.n[1]; j++) {
-      for (int64_t i = 0; i < g.n[0]; i++) {
+  for (int64_t k = 0; k < g.n[2]; ++k) {
+    for (int64_t j = 0; j < g.n[1]; ++j) {
+      for (int64_t i = 0; i < g.n[0]; ++i) {
         if (!is_duplicate(&g, i, j, k)) {
           const int64_t at[3] = { i, j, k };
-          for (int a = 0; a < 3; a++) {
+          for (int a = 0; a < 3; ++a) {
             lo[a] = at[a] < lo[a] ? at[a] : lo[a];
             hi[a] = at[a] >= hi[a] ? at[a] + 1 : hi[a];
           }

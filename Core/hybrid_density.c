@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Planes of the hybrid tree by density (Guo et al. 2025, 3.1): the peak, how evenly voxels lie about it, the axis along which density falls
- * most steeply, and on that axis the border of the peak's cluster, or, where that spans the node or there is none, the density's own border.
+ * most steeply, and on that axis the border of the peak's cluster, or, where that spans the node or there is none, the density's own
+ * border.
  *
- * A coordinate is a cluster's core if its window holds half of what an even spread would put there: on even data that gives one cluster, where the
- * mean itself gives a random number of them. */
+ * A coordinate is a cluster's core if its window holds half of what an even spread would put there: on even data that gives one cluster,
+ * where the mean itself gives a random number of them. */
 #include "hybrid_tree.h"
 
 #include <string.h>
@@ -19,7 +20,7 @@ static stratus_status make_own(hybrid_build* build, const hybrid_node* node)
   }
   stratus_density_destroy(build->density);
   build->density = NULL;
-  for (uint32_t i = 0; i < node->count; i++) {
+  for (uint32_t i = 0; i < node->count; ++i) {
     build->gathered[i] = build->voxels->bricks[build->shape->order[node->first + i]];
   }
   build->bandwidth = wanted;
@@ -38,8 +39,8 @@ static stratus_status make_common(hybrid_build* build)
   if (build->bandwidth <= 0.0) {
     TRY(stratus_density_bandwidth_of(build->context, voxels->bricks, voxels->brick_count, &build->bandwidth, NULL));
   }
-  return stratus_density_create(build->context, voxels->bricks, voxels->brick_count, build->bandwidth,
-    build->paper || build->options->exact_density, &build->density);
+  return stratus_density_create(
+    build->context, voxels->bricks, voxels->brick_count, build->bandwidth, build->paper || build->options->exact_density, &build->density);
 }
 
 static const stratus_brick* bricks_of(const hybrid_build* build, const hybrid_node* node, const uint32_t** which)
@@ -55,7 +56,7 @@ static void find_deviations(const hybrid_build* build, const hybrid_node* node, 
   const stratus_brick* bricks = bricks_of(build, node, &which);
   double sum[3] = { 0.0, 0.0, 0.0 };
   int64_t voxels = 0;
-  for (uint32_t i = 0; i < node->count; i++) {
+  for (uint32_t i = 0; i < node->count; ++i) {
     const stratus_brick* b = bricks + (which ? which[i] : i);
     voxels += b->count;
     for (uint64_t bits = b->mask; bits; bits &= bits - 1) {
@@ -67,7 +68,7 @@ static void find_deviations(const hybrid_build* build, const hybrid_node* node, 
       sum[2] += z * z;
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     view->deviation[a] = sqrt(sum[a] / (double)voxels);
   }
 }
@@ -92,7 +93,7 @@ stratus_status hybrid_look(hybrid_build* build, const hybrid_node* node, hybrid_
 double hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper)
 {
   double least = INFINITY, most = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double deviation = view->deviation[a] / (paper ? 1.0 : (double)STRATUS_BRICK * (node->hi[a] - node->lo[a]));
     least = fmin(least, deviation);
     most = fmax(most, deviation);
@@ -121,7 +122,7 @@ static stratus_status offer_cluster(hybrid_build* build, const hybrid_node* node
   int64_t voxels = 0;
   int32_t lo, hi, clusters;
   memset(build->counts, 0, sizeof *build->counts * (size_t)extent);
-  for (uint32_t i = 0; i < node->count; i++) {
+  for (uint32_t i = 0; i < node->count; ++i) {
     const stratus_brick* b = bricks + (which ? which[i] : i);
     voxels += b->count;
     for (uint64_t bits = b->mask; bits; bits &= bits - 1) {
@@ -150,7 +151,7 @@ stratus_status hybrid_plane_density(
   void* memory;
   if (!build->counts) {
     int64_t longest = 0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       longest = build->voxels->bricks_along[a] > longest ? build->voxels->bricks_along[a] : longest;
     }
     TRY(stratus_allocate(build->context, (size_t)(STRATUS_BRICK * longest), sizeof *build->counts, &memory));
@@ -160,7 +161,7 @@ stratus_status hybrid_plane_density(
   *clustered = 0;
   TRY(stratus_density_find_borders(build->context, bricks, which, node->count, build->bandwidth,
     build->paper || build->options->exact_density, view->peak, box->lo, box->hi, &borders));
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     if (borders.fall[i / 2][i % 2] > fall) {
       fall = borders.fall[i / 2][i % 2];
       axis = i / 2;

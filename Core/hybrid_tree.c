@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The shape of the hybrid tree (Guo et al. 2025): where one distance field stands for many voxels, and where nodes divide.
  *
- * HYBRID models no more than the scene needs. A node becomes one distance field as soon as that is affordable: neither too large nor too empty.
- * No density is computed for it, since a field is as good over uneven voxels as over even ones. Otherwise the node is split: one that is merely
- * too large by surface area, since any cut serves; one that is too empty where its emptiness can be cut off. If its
- * voxels lie unevenly about their peak (eq. 8 over the extents, above `uniform`), the border of the peak's cluster is where to; it is taken unless
+ * HYBRID models no more than the scene needs. A node becomes one distance field as soon as that is affordable: neither too large nor too
+ * empty. No density is computed for it, since a field is as good over uneven voxels as over even ones. Otherwise the node is split: one
+ * that is merely too large by surface area, since any cut serves; one that is too empty where its emptiness can be cut off. If its voxels
+ * lie unevenly about their peak (eq. 8 over the extents, above `uniform`), the border of the peak's cluster is where to; it is taken unless
  * the surface area heuristic knows a plane that is a quarter cheaper, which is what becomes of clusters that are not any. Even nodes and
  * small ones are split by surface area at once too, and the sparse end as leaves of a few bricks.
  *
@@ -28,7 +28,7 @@ static double volume_of(const hybrid_node* node)
 static bool field_fits(const hybrid_build* build, const hybrid_node* node)
 {
   bool fits = volume_of(node) <= (double)build->options->field_bricks;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     fits = fits && node->hi[a] - node->lo[a] <= FIELD_LONGEST / (build->paper ? STRATUS_BRICK : 1);
   }
   return fits;
@@ -130,7 +130,7 @@ static stratus_status split(hybrid_build* build, const hybrid_node* node, const 
   shape->nodes[node->number].first = first;
   shape->nodes[node->number].kind_count = stratus_tree_kind_count(STRATUS_NODE_INNER, 0);
   shape->node_count += 2;
-  for (uint32_t side = 0; side < 2; side++) {
+  for (uint32_t side = 0; side < 2; ++side) {
     sides[side].number = first + side;
     sides[side].depth = node->depth + 1;
     sides[side].sparse = node->sparse;
@@ -174,7 +174,7 @@ static stratus_status grow_tree(hybrid_build* build)
   hybrid_node stack[DEPTH_MAX + 2];
   int waiting = 1;
   stack[0] = (hybrid_node){ .count = (uint32_t)build->voxels->brick_count };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     stack[0].lo[a] = (int32_t)(build->voxels->lo[a] / STRATUS_BRICK);
     stack[0].hi[a] = (int32_t)((build->voxels->hi[a] + STRATUS_BRICK - 1) / STRATUS_BRICK);
     build->shape->nodes[0].lo[a] = (int32_t)build->voxels->lo[a];
@@ -186,7 +186,7 @@ static stratus_status grow_tree(hybrid_build* build)
     hybrid_node sides[2];
     int count;
     TRY(decide(build, &node, sides, &count));
-    for (int i = count - 1; i >= 0; i--) {
+    for (int i = count - 1; i >= 0; --i) {
       stack[waiting++] = sides[i];
     }
   }
@@ -201,23 +201,24 @@ static void explain(const hybrid_build* build)
   const stratus_tree_options* options = build->options;
   const double count = (double)build->voxels->brick_count, volume = build->volume;
   uint32_t fields = 0, leaves = 0;
-  for (uint32_t n = 0; n < build->shape->node_count; n++) {
+  for (uint32_t n = 0; n < build->shape->node_count; ++n) {
     fields += stratus_tree_node_kind(build->shape->nodes + n) == STRATUS_NODE_FIELD;
     leaves += stratus_tree_node_kind(build->shape->nodes + n) == STRATUS_NODE_BRICKS;
   }
   if (build->shape->node_count == 1) {
-    snprintf(s->why, sizeof s->why, "one %s: %.0f occupied bricks in a box of %.0f; a distance field may cover %lld, and %g for each occupied one",
+    snprintf(s->why, sizeof s->why,
+      "one %s: %.0f occupied bricks in a box of %.0f; a distance field may cover %lld, and %g for each occupied one",
       fields ? "distance field" : "leaf of bricks", count, volume, (long long)options->field_bricks, options->field_emptiness);
     return;
   }
   snprintf(s->why, sizeof s->why,
-    "%.0f occupied bricks in a box of %.0f: %s; fields %u, leaves of bricks %u; splits by cluster %d, density %d, surface area %d, median %d", count,
-    volume,
-    build->paper                                   ? "the paper's node test fails"
+    "%.0f occupied bricks in a box of %.0f: %s; fields %u, leaves of bricks %u; splits by cluster %d, density %d, surface area %d, median "
+    "%d",
+    count, volume,
+    build->paper                               ? "the paper's node test fails"
       : volume > (double)options->field_bricks ? "too large for one field"
-                                                   : "too empty for one field",
-    fields, leaves,
-    s->dbscan_splits, s->density_splits, s->sah_splits, s->median_splits);
+                                               : "too empty for one field",
+    fields, leaves, s->dbscan_splits, s->density_splits, s->sah_splits, s->median_splits);
 }
 
 stratus_status stratus_hybrid_tree_shape(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options,
@@ -229,14 +230,15 @@ stratus_status stratus_hybrid_tree_shape(stratus_context* context, const stratus
   void* memory;
   build.paper = options->method == STRATUS_TREE_HYBRID_PAPER;
   if (voxels->brick_count > STRATUS_NODE_COUNT_MAX) {
-    return stratus_fail(context, STRATUS_OVERFLOW, "%lld bricks: a tree takes at most %u", (long long)voxels->brick_count, STRATUS_NODE_COUNT_MAX);
+    return stratus_fail(
+      context, STRATUS_OVERFLOW, "%lld bricks: a tree takes at most %u", (long long)voxels->brick_count, STRATUS_NODE_COUNT_MAX);
   }
   *shape = (stratus_tree_shape){ .nodes = NULL };
   statistics->bandwidth = 0.0;
   statistics->dbscan_splits = statistics->density_splits = statistics->sah_splits = statistics->median_splits = 0;
   TRY_CLEANUP(stratus_allocate(context, bricks, sizeof *shape->order, &memory));
   shape->order = memory;
-  for (uint32_t b = 0; b < bricks; b++) {
+  for (uint32_t b = 0; b < bricks; ++b) {
     shape->order[b] = b;
   }
   TRY_CLEANUP(stratus_allocate(context, bricks, sizeof *build.scratch, &memory));

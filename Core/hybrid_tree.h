@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the files of the hybrid tree's builder share: the node at hand, and planes to split it by. Planes lie between bricks, so none is cut. */
+ * What the files of the hybrid tree's builder share: the node at hand, and planes to split it by. Planes lie between bricks, so none is
+ * cut. */
 #ifndef STRATUS_HYBRID_TREE_H
 #define STRATUS_HYBRID_TREE_H
 
@@ -42,8 +43,10 @@ hybrid_plane hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node
 hybrid_plane hybrid_plane_median(const hybrid_build* build, const hybrid_node* node);
 /* How many of the node's bricks are below. */
 uint32_t hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane);
-/* Moves the bricks below the plane to the front, each side in its order; fills both sides' first, count and boxes, and their nodes' boxes. */
-void hybrid_partition(hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2]);
+/* Moves the bricks below the plane to the front, each side in its order; fills both sides' first, count and boxes, and their nodes' boxes.
+ */
+void hybrid_partition(
+  hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2]);
 /* The box of `count` bricks in order[first ..], tight in bricks and in voxels. */
 void hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box);
 

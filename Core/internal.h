@@ -159,8 +159,8 @@ struct stratus_occupancy {
   int64_t lo[3], hi[3]; /* of the occupied blocks */
 };
 
-/* With pre-integration a block with gaps counts as occupied if anything shows at all: two blocks whose shared layer is not finite may lie on
- * both sides of a peak. (Blocks without gaps share finite voxels, so a cube of empty ones has one connected, transparent hull.) */
+/* With pre-integration a block with gaps counts as occupied if anything shows at all: two blocks whose shared layer is not finite may lie
+ * on both sides of a peak. (Blocks without gaps share finite voxels, so a cube of empty ones has one connected, transparent hull.) */
 /* What is occupied in either; of the same blocks. */
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other);
 stratus_status stratus_occupancy_build(
@@ -180,7 +180,8 @@ struct stratus_distance_map {
   size_t bytes_size; /* all maps and 64 bytes of padding, which traversal may read */
   uint8_t* bytes;
   size_t bounds_at; /* > 0: where the bits of a float a block begin, for rays that look for extremes: kernels/ray_best.h */
-  int tree_nodes; /* > 0: no map but a tree as the march asks it, in the layout of kernels/tree_map.h; kind, pitch and map_bytes mean nothing */
+  int tree_nodes;   /* > 0: no map but a tree as the march asks it, in the layout of kernels/tree_map.h; kind, pitch and map_bytes mean
+                       nothing */
 };
 
 #endif

@@ -6,9 +6,9 @@
  * unfilled on the way (any offset is a sum of them). The paper's figure 5 falls by more, from 48 to 15 and from 10 to 3: on a line of 128 a
  * voxel at 42 never gets to 16 of the places.
  *
- * The paper gives AJFA's rule without a threshold: after a good pass the step falls more slowly, after a poor one faster. Here a pass is good
- * where it took GOOD of the distance away on the mean over all that searched, E1 (1 - E2); then the next step is 3/4 of this one, else 1/2,
- * never less. At step 1 passes are repeated while more than AGAIN of the voxels come nearer. */
+ * The paper gives AJFA's rule without a threshold: after a good pass the step falls more slowly, after a poor one faster. Here a pass is
+ * good where it took GOOD of the distance away on the mean over all that searched, E1 (1 - E2); then the next step is 3/4 of this one, else
+ * 1/2, never less. At step 1 passes are repeated while more than AGAIN of the voxels come nearer. */
 #include "jump_flooding.h"
 
 #include <string.h>
@@ -21,7 +21,7 @@
 typedef struct flood_plan {
   stratus_field_method method;
   int first;
-  int count;  /* passes that are sure; AJFA: so far */
+  int count; /* passes that are sure; AJFA: so far */
   int steps[PASSES_MAX];
 } flood_plan;
 
@@ -45,7 +45,7 @@ static void add_halves(flood_plan* plan)
 static void add_figure_5(flood_plan* plan)
 {
   static const int printed[] = { 64, 48, 15, 10, 3, 1 };
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     const int64_t scaled = ((int64_t)printed[i] * plan->first + 32) / 64, step = i == 5 || scaled < 1 ? 1 : scaled;
     if (i == 0 || step != plan->steps[plan->count - 1]) {
       add_step(plan, step);
@@ -117,9 +117,9 @@ static void seed(const stratus_context* context, const stratus_bits* set, int so
   const int64_t nx = f->n[0], rows = f->n[1] * f->n[2];
   int64_t searched = 0;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : searched)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     const int64_t j = row % f->n[1], k = row / f->n[1];
-    for (int64_t i = 0; i < nx; i++) {
+    for (int64_t i = 0; i < nx; ++i) {
       const int is_sought = stratus_bits_get(set, i, j, k) == sought;
       f->from[row * nx + i] = is_sought ? flood_pack(layout, i, j, k) : FLOOD_UNKNOWN;
       searched += !is_sought;
@@ -148,13 +148,13 @@ static void tell(stratus_field_report* report, int step, const flood_count* coun
     report->e1[report->passes] = e1;
     report->e2[report->passes] = e2;
   }
-  report->passes++;
+  ++report->passes;
   report->updated += count->updated;
 }
 
 static stratus_status run_plan(stratus_context* context, flooding* f, flood_plan plan, stratus_field_report* report)
 {
-  for (int pass = 0; pass < plan.count; pass++) {
+  for (int pass = 0; pass < plan.count; ++pass) {
     flood_count count;
     TRY(run_pass(context, f, plan.steps[pass], &count));
     const double updated = (double)count.updated;
@@ -179,7 +179,7 @@ static stratus_status flood(stratus_context* context, const stratus_bits* set, i
   const size_t count = (size_t)(set->n[0] * set->n[1] * set->n[2]);
   int64_t diagonal = 0;
   memcpy(f.n, set->n, sizeof f.n);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     diagonal += f.n[a] * f.n[a];
   }
   f.wide = diagonal > INT32_MAX;
@@ -215,8 +215,8 @@ static void merge(const stratus_context* context, const stratus_bits* set, const
 {
   const int64_t nx = set->n[0], rows = set->n[1] * set->n[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t row = 0; row < rows; row++) {
-    for (int64_t i = 0; i < nx; i++) {
+  for (int64_t row = 0; row < rows; ++row) {
+    for (int64_t i = 0; i < nx; ++i) {
       if (stratus_bits_get(set, i, row % set->n[1], row / set->n[1])) {
         nearest[row * nx + i] = inner[row * nx + i];
       }

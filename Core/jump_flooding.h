@@ -15,9 +15,9 @@ typedef struct flood_layout {
 static inline flood_layout flood_shifts(const int64_t n[3])
 {
   int bits[3] = { 0, 0, 0 };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     while ((int64_t)1 << bits[a] < n[a]) {
-      bits[a]++;
+      ++bits[a];
     }
   }
   return (flood_layout){ bits[0], bits[0] + bits[1], bits[0] + bits[1] + bits[2] };
@@ -44,14 +44,16 @@ typedef struct flood_count {
 stratus_status stratus_flood(stratus_context* context, const stratus_bits* set, const stratus_field_options* options, stratus_field* field,
   stratus_field_report* report);
 
-/* A pass on the host from[] -> to[]; wide: squared distances need 64 bits. rooms: of stratus_flood_room_bytes() a thread. jump_flooding_host.c */
+/* A pass on the host from[] -> to[]; wide: squared distances need 64 bits. rooms: of stratus_flood_room_bytes() a thread.
+ * jump_flooding_host.c */
 size_t stratus_flood_room_bytes(const int64_t n[3]);
 void stratus_flood_pass(const stratus_context* context, const int64_t n[3], int step, int wide, const uint32_t* from, uint32_t* to,
   unsigned char* rooms, flood_count* count);
 
 /* On the device: begin copies from[] there, a pass swaps the buffers, end copies the result back. distance_field_device.c */
 typedef struct flood_device flood_device;
-stratus_status stratus_flood_device_create(stratus_context* context, const int64_t n[3], int wide, const uint32_t* from, flood_device** device);
+stratus_status stratus_flood_device_create(
+  stratus_context* context, const int64_t n[3], int wide, const uint32_t* from, flood_device** device);
 stratus_status stratus_flood_device_pass(stratus_context* context, flood_device* device, int step, flood_count* count);
 stratus_status stratus_flood_device_read(stratus_context* context, const flood_device* device, uint32_t* to);
 void stratus_flood_device_destroy(stratus_context* context, flood_device* device); /* takes NULL */

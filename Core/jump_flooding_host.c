@@ -73,7 +73,7 @@ void stratus_flood_pass(const stratus_context* context, const int64_t n[3], int 
     flood_count mine = { 0, 0 };
     void* my_room = rooms + (size_t)omp_get_thread_num() * room;
 #pragma omp for schedule(dynamic, 64)
-    for (int64_t r = 0; r < rows; r++) {
+    for (int64_t r = 0; r < rows; ++r) {
       row(&p, r % n[1], r / n[1], my_room, &mine);
     }
     updated += mine.updated;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A row of a flooding pass, included by jump_flooding_host.c for each width of squared distances and each instruction set: plain loops over x
- * that the compiler vectorises. FLOOD_NAME(x) names a function, LENGTH and ULENGTH are the distances, LENGTH_MAX says "unknown". */
+ * A row of a flooding pass, included by jump_flooding_host.c for each width of squared distances and each instruction set: plain loops over
+ * x that the compiler vectorises. FLOOD_NAME(x) names a function, LENGTH and ULENGTH are the distances, LENGTH_MAX says "unknown". */
 
 /* Squared distances from voxels (x, j, k) to positions[x]. Unsigned: what the sum of an unknown one may overflow does not matter. */
-static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(
-  uint32_t position, int32_t x, int32_t j, int32_t k, flood_layout layout)
+static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(uint32_t position, int32_t x, int32_t j, int32_t k, flood_layout layout)
 {
   const uint32_t mask_x = (1u << layout.shift_y) - 1, mask_y = (1u << (layout.shift_z - layout.shift_y)) - 1;
   const ULENGTH dx = (ULENGTH)((int32_t)(position & mask_x) - x);
@@ -15,11 +14,11 @@ static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(
 }
 
 /* nearest[x] becomes other[x + shift] where that is nearer to voxel (x, j, k), or as near and of a smaller index. */
-static ALWAYS_INLINE FLOOD_TARGET void FLOOD_NAME(ask)(const uint32_t* restrict other, int64_t shift, int64_t n,
-  int32_t j, int32_t k, flood_layout layout, uint32_t* restrict nearest, LENGTH* restrict distance)
+static ALWAYS_INLINE FLOOD_TARGET void FLOOD_NAME(ask)(const uint32_t* restrict other, int64_t shift, int64_t n, int32_t j, int32_t k,
+  flood_layout layout, uint32_t* restrict nearest, LENGTH* restrict distance)
 {
   const int64_t first = shift < 0 ? -shift : 0, last = shift > 0 ? n - shift : n;
-  for (int64_t x = first; x < last; x++) {
+  for (int64_t x = first; x < last; ++x) {
     const uint32_t position = other[x + shift];
     const LENGTH d = FLOOD_NAME(squared)(position, (int32_t)x, j, k, layout), best = distance[x];
     const int nearer = (d < best) | ((d == best) & (position < nearest[x]));
@@ -36,7 +35,7 @@ static FLOOD_TARGET void FLOOD_NAME(row)(const flood_pass* p, int64_t j, int64_t
   LENGTH* restrict before = distance + nx;
   const uint32_t* own = p->from + (k * ny + j) * nx;
   uint32_t* nearest = p->to + (k * ny + j) * nx;
-  for (int64_t x = 0; x < nx; x++) {
+  for (int64_t x = 0; x < nx; ++x) {
     nearest[x] = own[x];
     distance[x] = before[x] = FLOOD_NAME(squared)(own[x], (int32_t)x, y, z, p->layout);
   }
@@ -49,7 +48,7 @@ static FLOOD_TARGET void FLOOD_NAME(row)(const flood_pass* p, int64_t j, int64_t
     }
   }
   int64_t updated = 0, ratios = 0;
-  for (int64_t x = 0; x < nx; x++) {
+  for (int64_t x = 0; x < nx; ++x) {
     const int nearer = distance[x] < before[x];
     const int ratio = flood_ratio(nearer ? (float)distance[x] : 1.0f, nearer ? (float)before[x] : 1.0f);
     updated += nearer;

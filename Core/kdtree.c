@@ -80,7 +80,7 @@ static stratus_status see_in_frame(stratus_partition* partition, int rotation)
   }
   TRY(stratus_kdtree_reserve(partition->context, (void**)&partition->along, &partition->along_capacity, (size_t)partition->point_count, 0,
     3 * sizeof *partition->along));
-  for (int64_t i = 0; i < 3 * partition->point_count; i++) {
+  for (int64_t i = 0; i < 3 * partition->point_count; ++i) {
     const double *p = partition->points + 3 * (i / 3), *row = partition->frame + 3 * (i % 3);
     partition->along[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
   }
@@ -92,7 +92,7 @@ static stratus_status see_in_frame(stratus_partition* partition, int rotation)
 static double largest_coordinate(const stratus_mesh* mesh)
 {
   double largest = 0.0;
-  for (int64_t i = 0; i < 12 * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 12 * mesh->cell_count; ++i) {
     largest = fmax(largest, fabs(mesh->points[3 * (int64_t)mesh->vertices[i / 3] + i % 3]));
   }
   return largest;
@@ -115,7 +115,7 @@ static stratus_status take_mesh(stratus_partition* partition, const stratus_mesh
   *root = (stratus_kdtree_node){ .box = { -INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY }, .plane = { .axis = -1 } };
   partition->node_count = 1;
   TRY(stratus_kdtree_reserve(context, (void**)&root->cells, &root->capacity, cells, 0, sizeof *root->cells));
-  for (size_t i = 0; i < cells; i++) {
+  for (size_t i = 0; i < cells; ++i) {
     memcpy(root->cells[i].vertex, mesh->vertices + 4 * i, sizeof root->cells[i].vertex);
     root->cells[i].origin = (int32_t)i;
   }
@@ -127,7 +127,7 @@ static stratus_status take_mesh(stratus_partition* partition, const stratus_mesh
 /* The root's plane, after as many rotations as it takes. */
 static stratus_status choose_root_plane(stratus_partition* partition, stratus_kdtree_plane* plane)
 {
-  for (int rotation = 0; rotation <= partition->options.rotations; rotation++) {
+  for (int rotation = 0; rotation <= partition->options.rotations; ++rotation) {
     TRY(see_in_frame(partition, rotation));
     TRY(stratus_kdtree_choose_plane(partition, partition->nodes, plane));
     if (plane->axis >= 0) {
@@ -140,9 +140,9 @@ static stratus_status choose_root_plane(stratus_partition* partition, stratus_kd
 static stratus_status cut_levels(stratus_partition* partition)
 {
   int32_t begin = 0;
-  for (int level = 0; level < partition->options.depth; level++) {
+  for (int level = 0; level < partition->options.depth; ++level) {
     const int32_t end = partition->node_count;
-    for (int32_t n = begin; n < end; n++) {
+    for (int32_t n = begin; n < end; ++n) {
       stratus_kdtree_plane plane;
       if (partition->nodes[n].count <= partition->options.leaf_cells) {
         continue;
@@ -167,7 +167,7 @@ static stratus_status make_result(stratus_partition* partition)
   stratus_context* context = partition->context;
   void* memory;
   partition->cell_count = 0;
-  for (int32_t n = 0; n < partition->node_count; n++) {
+  for (int32_t n = 0; n < partition->node_count; ++n) {
     partition->cell_count += partition->nodes[n].count;
   }
   if (partition->cell_count > INT32_MAX / 2) {
@@ -183,7 +183,7 @@ static stratus_status make_result(stratus_partition* partition)
   TRY(stratus_allocate(context, (size_t)partition->node_count, sizeof *partition->tree, &memory));
   partition->tree = memory;
   int64_t cell = 0;
-  for (int32_t n = 0; n < partition->node_count; n++) {
+  for (int32_t n = 0; n < partition->node_count; ++n) {
     stratus_kdtree_node* node = partition->nodes + n;
     partition->tree[n] = node->plane;
     if (node->plane.axis >= 0) {
@@ -192,12 +192,12 @@ static stratus_status make_result(stratus_partition* partition)
     partition->tree[n].below = partition->leaf_count;
     TRY(stratus_kdtree_list_cells(partition, node));
     partition->largest_leaf = node->count > partition->largest_leaf ? node->count : partition->largest_leaf;
-    for (int64_t i = 0; i < node->count; i++, cell++) {
+    for (int64_t i = 0; i < node->count; ++i, ++cell) {
       memcpy(partition->vertices + 4 * cell, node->cells[i].vertex, sizeof node->cells[i].vertex);
       partition->cells[cell] = node->cells[i].origin;
       partition->leaf[cell] = partition->leaf_count;
     }
-    partition->leaf_count++;
+    ++partition->leaf_count;
     stratus_release(context, node->cells);
     node->cells = NULL;
   }
@@ -241,7 +241,7 @@ void stratus_partition_destroy(stratus_partition* partition)
     return;
   }
   stratus_context* context = partition->context;
-  for (int32_t n = 0; n < partition->node_count; n++) {
+  for (int32_t n = 0; n < partition->node_count; ++n) {
     stratus_release(context, partition->nodes[n].cells);
   }
   if (partition->along_capacity > 0) {

@@ -27,7 +27,7 @@ struct stratus_partition {
   int32_t node_count, leaf_count;
 
   double* points;
-  double* along; /* the points in the frame; `points` itself while the frame is the identity */
+  double* along;    /* the points in the frame; `points` itself while the frame is the identity */
   double tolerance; /* points so near a plane are on it */
   size_t point_capacity, along_capacity;
   int64_t point_count, old_points;
@@ -68,7 +68,8 @@ static inline void stratus_kdtree_pieces(int below, int above, int* pieces_below
 }
 
 /* ---- kdtree_planes.c */
-stratus_status stratus_kdtree_choose_plane(const stratus_partition* partition, const stratus_kdtree_node* node, stratus_kdtree_plane* plane);
+stratus_status stratus_kdtree_choose_plane(
+  const stratus_partition* partition, const stratus_kdtree_node* node, stratus_kdtree_plane* plane);
 
 /* ---- kdtree_cut.c: two children for a node. Cells of other nodes that share an edge with one that is cut are divided along. */
 stratus_status stratus_kdtree_cut(stratus_partition* partition, int32_t node, const stratus_kdtree_plane* plane);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cutting. Every edge that crosses the plane gets one point, found by its ends; then each cell is halved at its new points in rising order of
- * their numbers. Two cells that share a face halve it in the same order, so the pieces meet in the same triangles, without any table of
- * cases: a cell becomes the 2, 3, 4 or 6 pieces of Li et al. 2012, figure 2, and one of another leaf that only shares an edge or a face with
- * what is cut becomes 2 or 3. */
+ * Cutting. Every edge that crosses the plane gets one point, found by its ends; then each cell is halved at its new points in rising order
+ * of their numbers. Two cells that share a face halve it in the same order, so the pieces meet in the same triangles, without any table of
+ * cases: a cell becomes the 2, 3, 4 or 6 pieces of Li et al. 2012, figure 2, and one of another leaf that only shares an edge or a face
+ * with what is cut becomes 2 or 3. */
 #include "kdtree.h"
 
 #include <string.h>
@@ -50,8 +50,7 @@ static stratus_status make_edge_table(cut_task* task, int64_t cells)
   stratus_context* context = task->partition->context;
   void* memory;
   /* A cell has at most 4 edges that cross. */
-  for (task->table.mask = 1; task->table.mask < 8 * (uint64_t)cells; task->table.mask = 2 * task->table.mask + 1) {
-  }
+  for (task->table.mask = 1; task->table.mask < 8 * (uint64_t)cells; task->table.mask = 2 * task->table.mask + 1) {}
   TRY(stratus_allocate_zero(context, task->table.mask + 1, sizeof(uint64_t), &memory));
   task->table.edges = memory;
   TRY(stratus_allocate(context, task->table.mask + 1, sizeof(int32_t), &memory));
@@ -77,7 +76,8 @@ static stratus_status add_point(cut_task* task, int32_t p, int32_t q, int32_t* n
   TRY(stratus_kdtree_reserve(
     context, (void**)&partition->points, &partition->point_capacity, count + 1, count, 3 * sizeof *partition->points));
   if (turned) {
-    TRY(stratus_kdtree_reserve(context, (void**)&partition->along, &partition->along_capacity, count + 1, count, 3 * sizeof *partition->along));
+    TRY(stratus_kdtree_reserve(
+      context, (void**)&partition->along, &partition->along_capacity, count + 1, count, 3 * sizeof *partition->along));
   } else {
     partition->along = partition->points;
   }
@@ -88,7 +88,7 @@ static stratus_status add_point(cut_task* task, int32_t p, int32_t q, int32_t* n
   const int32_t a = p < q ? p : q, b = p < q ? q : p; /* one order for all that ask */
   const double from = side_of(task, a), to = side_of(task, b);
   const double weight = fmin(fmax(from / (from - to), 0x1p-1022), 1.0 - 0x1p-53);
-  for (size_t axis = 0; axis < 3; axis++) {
+  for (size_t axis = 0; axis < 3; ++axis) {
     partition->points[3 * count + axis] = between(partition->points[3 * (size_t)a + axis], partition->points[3 * (size_t)b + axis], weight);
     if (turned) {
       partition->along[3 * count + axis] = between(partition->along[3 * (size_t)a + axis], partition->along[3 * (size_t)b + axis], weight);
@@ -106,9 +106,9 @@ static stratus_status add_point(cut_task* task, int32_t p, int32_t q, int32_t* n
 static stratus_status cut_edges(cut_task* task, const stratus_kdtree_node* node)
 {
   static const int8_t ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     const int32_t* v = node->cells[i].vertex;
-    for (int e = 0; e < 6 && crosses(task, v); e++) {
+    for (int e = 0; e < 6 && crosses(task, v); ++e) {
       const int32_t p = v[ends[e][0]], q = v[ends[e][1]];
       const double a = side_of(task, p), b = side_of(task, q);
       const uint64_t slot = edge_slot(&task->table, p, q);
@@ -125,14 +125,14 @@ static stratus_status cut_edges(cut_task* task, const stratus_kdtree_node* node)
 static int find_cuts(const cut_task* task, const int32_t v[4], int32_t cuts[4][3])
 {
   int count = 0;
-  for (int p = 0; p < 4; p++) {
-    for (int q = p + 1; q < 4; q++) {
+  for (int p = 0; p < 4; ++p) {
+    for (int q = p + 1; q < 4; ++q) {
       const uint64_t slot = edge_slot(&task->table, v[p], v[q]);
       if (task->table.edges[slot] == 0 || count == 4) {
         continue;
       }
       int at = count++;
-      for (; at > 0 && cuts[at - 1][0] > task->table.points[slot]; at--) {
+      for (; at > 0 && cuts[at - 1][0] > task->table.points[slot]; --at) {
         memcpy(cuts[at], cuts[at - 1], sizeof cuts[at]);
       }
       cuts[at][0] = task->table.points[slot];
@@ -154,8 +154,8 @@ static bool is_flat(const stratus_partition* partition, const int32_t v[4])
   return stratus_orientation(x + 3 * (int64_t)v[0], x + 3 * (int64_t)v[1], x + 3 * (int64_t)v[2], x + 3 * (int64_t)v[3]) == 0;
 }
 
-/* The pieces of a cell, itself if it has no cut edge. Rounding may leave one without volume, which is no piece; those of a flat cell are, as
- * orders pass through them. */
+/* The pieces of a cell, itself if it has no cut edge. Rounding may leave one without volume, which is no piece; those of a flat cell are,
+ * as orders pass through them. */
 static int divide(cut_task* task, const stratus_kdtree_cell* cell, stratus_kdtree_cell pieces[PIECES_MAX])
 {
   stratus_partition* partition = task->partition;
@@ -163,8 +163,8 @@ static int divide(cut_task* task, const stratus_kdtree_cell* cell, stratus_kdtre
   const int cut_count = find_cuts(task, cell->vertex, cuts);
   int count = 1, kept = 0;
   pieces[0] = *cell;
-  for (int c = 0; c < cut_count; c++) {
-    for (int i = 0, before = count; i < before; i++) {
+  for (int c = 0; c < cut_count; ++c) {
+    for (int i = 0, before = count; i < before; ++i) {
       const int p = find_vertex(pieces[i].vertex, cuts[c][1]), q = find_vertex(pieces[i].vertex, cuts[c][2]);
       if (p >= 0 && q >= 0) {
         pieces[count] = pieces[i];
@@ -179,7 +179,7 @@ static int divide(cut_task* task, const stratus_kdtree_cell* cell, stratus_kdtre
   partition->cut_cells += partition->cut[cell->origin] == 0;
   partition->cut[cell->origin] = 1;
   const bool flat = is_flat(partition, cell->vertex);
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     const bool keep = flat || !is_flat(partition, pieces[i].vertex);
     pieces[kept] = pieces[i];
     kept += keep;
@@ -202,14 +202,14 @@ static stratus_status divide_beside(cut_task* task, stratus_kdtree_node* node)
   stratus_kdtree_cell pieces[PIECES_MAX];
   int64_t kept = 0;
   const int64_t count = node->count;
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     const stratus_kdtree_cell cell = node->cells[i];
     int made = 1;
     pieces[0] = cell;
     if (crosses(task, cell.vertex)) {
       made = divide(task, &cell, pieces);
     }
-    for (int p = 0; p < made; p++) {
+    for (int p = 0; p < made; ++p) {
       if (p == 0) {
         node->cells[kept++] = pieces[p];
       } else {
@@ -238,13 +238,13 @@ static bool boxes_touch(const double p[6], const double q[6], double tolerance)
 static stratus_status hand_down(cut_task* task, const stratus_kdtree_node* node, stratus_kdtree_node* below, stratus_kdtree_node* above)
 {
   stratus_kdtree_cell pieces[PIECES_MAX];
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     int made = 1;
     pieces[0] = node->cells[i];
     if (crosses(task, node->cells[i].vertex)) {
       made = divide(task, node->cells + i, pieces);
     }
-    for (int p = 0; p < made; p++) {
+    for (int p = 0; p < made; ++p) {
       const int32_t* v = pieces[p].vertex;
       const double highest = fmax(fmax(side_of(task, v[0]), side_of(task, v[1])), fmax(side_of(task, v[2]), side_of(task, v[3])));
       TRY(append(task->partition->context, highest > 0.0 ? above : below, pieces + p));
@@ -261,18 +261,18 @@ static stratus_status cut_node(cut_task* task, int32_t number)
   TRY(stratus_kdtree_reserve(context, (void**)&partition->nodes, &partition->node_capacity, (size_t)partition->node_count + 2,
     (size_t)partition->node_count, sizeof *partition->nodes));
   stratus_kdtree_node* node = partition->nodes + number;
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     crossing += crosses(task, node->cells[i].vertex);
   }
   TRY(make_edge_table(task, crossing));
   TRY(cut_edges(task, node));
-  for (int32_t n = 0; n < partition->node_count && crossing > 0; n++) {
+  for (int32_t n = 0; n < partition->node_count && crossing > 0; ++n) {
     if (n != number && partition->nodes[n].plane.axis < 0 && boxes_touch(node->box, partition->nodes[n].box, partition->tolerance)) {
       TRY(divide_beside(task, partition->nodes + n));
     }
   }
   const int32_t below = partition->node_count, above = below + 1;
-  for (int32_t child = below; child <= above; child++) {
+  for (int32_t child = below; child <= above; ++child) {
     partition->nodes[child] = (stratus_kdtree_node){ .plane = { .axis = -1 } };
     memcpy(partition->nodes[child].box, node->box, sizeof node->box);
     partition->nodes[child].box[2 * task->plane->axis + (child == below)] = task->plane->value;

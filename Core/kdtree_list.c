@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A leaf's cells as they are listed. A mesher's cells come in any order; what then goes over a leaf's cells, neighbour by neighbour, spends its
- * time on memory. So cells that lie scattered are listed in Morton order; all others stay as they come. */
+ * A leaf's cells as they are listed. A mesher's cells come in any order; what then goes over a leaf's cells, neighbour by neighbour, spends
+ * its time on memory. So cells that lie scattered are listed in Morton order; all others stay as they come. */
 #include "cell_morton.h"
 #include "kdtree.h"
 
@@ -13,7 +13,7 @@
 static void add_corners(const stratus_partition* partition, const stratus_kdtree_cell* cell, double sum[3])
 {
   sum[0] = sum[1] = sum[2] = 0.0;
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 12; ++i) {
     sum[i % 3] += partition->points[3 * (int64_t)cell->vertex[i / 3] + i % 3];
   }
 }
@@ -23,9 +23,9 @@ static double find_extent(const stratus_partition* partition, const stratus_kdtr
 {
   double high[3] = { -INFINITY, -INFINITY, -INFINITY }, sum[3];
   low[0] = low[1] = low[2] = INFINITY;
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     add_corners(partition, node->cells + i, sum);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       low[a] = fmin(low[a], sum[a]);
       high[a] = fmax(high[a], sum[a]);
     }
@@ -38,7 +38,7 @@ static bool is_scattered(const stratus_partition* partition, const stratus_kdtre
 {
   double distance = 0.0, here[3], next[3];
   int64_t asked = 0;
-  for (int64_t i = 0; i + 1 < node->count; i += 61, asked++) {
+  for (int64_t i = 0; i + 1 < node->count; i += 61, ++asked) {
     add_corners(partition, node->cells + i, here);
     add_corners(partition, node->cells + i + 1, next);
     distance += fmax(fmax(fabs(next[0] - here[0]), fabs(next[1] - here[1])), fabs(next[2] - here[2]));
@@ -58,7 +58,7 @@ static uint32_t place_cell(const void* data, int64_t cell, double at[3])
   const leaf_places* leaf = data;
   double sum[3];
   add_corners(leaf->partition, leaf->cells + cell, sum);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     at[a] = (sum[a] - leaf->low[a]) / leaf->extent * ((1 << AXIS_BITS) - 1);
   }
   return 0;
@@ -79,7 +79,7 @@ stratus_status stratus_kdtree_list_cells(const stratus_partition* partition, str
   TRY_CLEANUP(stratus_allocate(context, count, sizeof(uint32_t), &ranks));
   TRY_CLEANUP(stratus_morton_order(context, &places, ranks));
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *node->cells, &cells));
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     ((stratus_kdtree_cell*)cells)[i] = node->cells[((const uint32_t*)ranks)[i]];
   }
   memcpy(node->cells, cells, count * sizeof *node->cells);

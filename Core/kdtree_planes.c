@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The plane that a node is cut by: every candidate's new cells (the paper's beta) and balance (alpha) are counted, none is estimated. Of the
- * median rule the candidates pass through points of the mesh: a grid, however bent, often has planes of faces that cut nothing. */
+ * The plane that a node is cut by: every candidate's new cells (the paper's beta) and balance (alpha) are counted, none is estimated. Of
+ * the median rule the candidates pass through points of the mesh: a grid, however bent, often has planes of faces that cut nothing. */
 #include "bvh.h"
 #include "kdtree.h"
 
@@ -45,20 +45,20 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
   memset(set->below, 0, (size_t)(set->count + 1) * sizeof *set->below);
   memset(set->above, 0, (size_t)(set->count + 1) * sizeof *set->above);
   memset(set->added, 0, (size_t)(set->count + 1) * sizeof *set->added);
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     double x[4], low = INFINITY, high = -INFINITY;
-    for (int v = 0; v < 4; v++) {
+    for (int v = 0; v < 4; ++v) {
       x[v] = coordinate(partition, axis, node->cells[i].vertex[v]);
       low = fmin(low, x[v]);
       high = fmax(high, x[v]);
     }
     /* A cell within the plane is below it. */
     const int first_cut = find_candidate(set, low, tolerance, true), first_below = find_candidate(set, high, tolerance, false);
-    set->below[first_below]++;
+    ++set->below[first_below];
     set->above[first_cut < first_below ? first_cut : first_below]++;
-    for (int c = first_cut; c < first_below; c++) {
+    for (int c = first_cut; c < first_below; ++c) {
       int below = 0, above = 0, pieces_below, pieces_above;
-      for (int v = 0; v < 4; v++) {
+      for (int v = 0; v < 4; ++v) {
         const double side = stratus_kdtree_above(x[v], set->values[c], tolerance);
         below += side < 0.0;
         above += side > 0.0;
@@ -74,7 +74,7 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
   }
   /* above[c] so far holds the cells that are no longer above from candidate c on. */
   int64_t below = 0, gone = 0;
-  for (int c = 0; c < set->count; c++) {
+  for (int c = 0; c < set->count; ++c) {
     below += set->below[c];
     gone += set->above[c];
     set->below[c] = below;
@@ -82,10 +82,10 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
   }
 }
 
-static void take_best(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, const candidate_set* set,
-  stratus_kdtree_plane* best)
+static void take_best(
+  const stratus_partition* partition, const stratus_kdtree_node* node, int axis, const candidate_set* set, stratus_kdtree_plane* best)
 {
-  for (int c = 0; c < set->count; c++) {
+  for (int c = 0; c < set->count; ++c) {
     const double below = (double)set->below[c], above = (double)set->above[c];
     const double growth = (double)set->added[c] / (double)node->count, imbalance = fabs(below - above) / (0.5 * (below + above));
     if (below == 0.0 || above == 0.0 || growth > partition->options.growth || !(imbalance < partition->options.imbalance)) {
@@ -100,13 +100,13 @@ static void take_best(const stratus_partition* partition, const stratus_kdtree_n
 static void evenly_spaced(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, candidate_set* set)
 {
   double low = INFINITY, high = -INFINITY;
-  for (int64_t i = 0; i < 4 * node->count; i++) {
+  for (int64_t i = 0; i < 4 * node->count; ++i) {
     const double x = coordinate(partition, axis, node->cells[i / 4].vertex[i % 4]);
     low = fmin(low, x);
     high = fmax(high, x);
   }
   set->count = 0;
-  for (int i = 1; i <= partition->options.planes; i++) {
+  for (int i = 1; i <= partition->options.planes; ++i) {
     const double share = i / (partition->options.planes + 1.0), value = low * (1.0 - share) + high * share;
     if (value > low && value < high && (set->count == 0 || value > set->values[set->count - 1])) {
       set->values[set->count++] = value;
@@ -131,14 +131,14 @@ static double number_of(uint64_t bits)
   return value;
 }
 
-/* keys: the middle of the sorted coordinates, `count` of them. Half of the candidates are the values that come most often, the others evenly
- * spread: where each comes once, those alone. */
+/* keys: the middle of the sorted coordinates, `count` of them. Half of the candidates are the values that come most often, the others
+ * evenly spread: where each comes once, those alone. */
 static void through_points(const uint64_t* keys, int64_t count, int planes, candidate_set* set)
 {
   int64_t runs = 0, longest = 1, least = 1;
-  for (int64_t i = 0, begin = 0; i < count; i++) {
+  for (int64_t i = 0, begin = 0; i < count; ++i) {
     if (i + 1 == count || keys[i + 1] != keys[i]) {
-      runs++;
+      ++runs;
       longest = i + 1 - begin > longest ? i + 1 - begin : longest;
       begin = i + 1;
     }
@@ -146,7 +146,7 @@ static void through_points(const uint64_t* keys, int64_t count, int planes, cand
   /* The least length of which no more than half of what is asked for are as long: by doubling, as only the long ones matter. */
   for (int64_t longer = runs; longer > planes / 2 && least <= longest; least *= 2) {
     longer = 0;
-    for (int64_t i = 0, begin = 0; i < count; i++) {
+    for (int64_t i = 0, begin = 0; i < count; ++i) {
       if (i + 1 == count || keys[i + 1] != keys[i]) {
         longer += i + 1 - begin >= 2 * least;
         begin = i + 1;
@@ -156,12 +156,12 @@ static void through_points(const uint64_t* keys, int64_t count, int planes, cand
   const int64_t spread = planes - planes / 2;
   set->count = 0;
   int64_t run = 0;
-  for (int64_t i = 0, begin = 0; i < count && set->count < planes; i++) {
+  for (int64_t i = 0, begin = 0; i < count && set->count < planes; ++i) {
     if (i + 1 == count || keys[i + 1] != keys[i]) {
       if (i + 1 - begin >= least || run * spread / runs != (run + 1) * spread / runs) {
         set->values[set->count++] = number_of(keys[i]);
       }
-      run++;
+      ++run;
       begin = i + 1;
     }
   }
@@ -175,7 +175,7 @@ static stratus_status middle_points(const stratus_partition* partition, const st
   TRY_CLEANUP(stratus_allocate(context, (size_t)node->count, sizeof(uint64_t), &keys));
   TRY_CLEANUP(stratus_allocate(context, (size_t)node->count, sizeof(uint32_t), &numbers));
   uint64_t* key = keys;
-  for (int64_t i = 0; i < node->count; i++) {
+  for (int64_t i = 0; i < node->count; ++i) {
     key[i] = bits_of(coordinate(partition, axis, node->cells[i].vertex[i % 4]));
   }
   memset(numbers, 0, (size_t)node->count * sizeof(uint32_t));
@@ -202,7 +202,7 @@ stratus_status stratus_kdtree_choose_plane(const stratus_partition* partition, c
   set.below = counts;
   set.above = set.below + room;
   set.added = set.above + room;
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; ++axis) {
     if (partition->options.rule == STRATUS_PARTITION_PAPER) {
       evenly_spaced(partition, node, axis, &set);
     } else {

@@ -29,7 +29,8 @@ stratus_volume stratus_mesh_values(const stratus_mesh* mesh)
 static stratus_status check_counts(stratus_context* context, const stratus_mesh* mesh)
 {
   if (mesh->point_count < 0 || mesh->point_count > POINTS_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh point_count %lld outside 0..%lld", (long long)mesh->point_count, POINTS_MAX);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "mesh point_count %lld outside 0..%lld", (long long)mesh->point_count, POINTS_MAX);
   }
   if (mesh->cell_count < 0 || mesh->cell_count > CELLS_MAX) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_count %lld outside 0..%lld", (long long)mesh->cell_count, CELLS_MAX);
@@ -68,7 +69,7 @@ static stratus_status check_points(stratus_context* context, const stratus_mesh*
 {
   int64_t wrong = INT64_MAX;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : wrong)
-  for (int64_t i = 0; i < mesh->point_count; i++) {
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
     const double* p = mesh->points + 3 * i;
     const int64_t here = isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) ? INT64_MAX : i;
     wrong = here < wrong ? here : wrong;
@@ -85,7 +86,7 @@ static stratus_status check_vertices(stratus_context* context, const stratus_mes
 {
   int64_t wrong = INT64_MAX;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : wrong)
-  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * mesh->cell_count; ++i) {
     const int64_t here = mesh->vertices[i] >= 0 && mesh->vertices[i] < mesh->point_count ? INT64_MAX : i;
     wrong = here < wrong ? here : wrong;
   }
@@ -100,14 +101,14 @@ static stratus_status check_matrix(stratus_context* context, const stratus_mesh*
 {
   const double* m = mesh->matrix;
   double inverse[16];
-  for (int i = 0; i < 16; i++) {
+  for (int i = 0; i < 16; ++i) {
     if (!isfinite(m[i])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix[%d] is %g, must be finite", i, m[i]);
     }
   }
   if (m[12] != 0.0 || m[13] != 0.0 || m[14] != 0.0 || m[15] != 1.0) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix has the last row %g %g %g %g, must be 0 0 0 1 (affine)", m[12], m[13],
-      m[14], m[15]);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "mesh matrix has the last row %g %g %g %g, must be 0 0 0 1 (affine)", m[12], m[13], m[14], m[15]);
   }
   if (!stratus_matrix_invert_affine(m, inverse)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh matrix is singular, must be invertible");

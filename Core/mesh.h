@@ -8,9 +8,9 @@
 /* Of the largest coordinate: what lies nearer to a partition's plane lies on it. Some roundings of a point that is computed to be there. */
 #define STRATUS_PLANE_TOLERANCE 0x1p-46
 
-/* Face f of a cell is opposite its vertex f. neighbours[4*cell + f]: the cell on the other side, -1 at the border. A face that more than two
- * cells share, or two on the same side, is a border to all of them (counted). A cell that names a point twice has no neighbours; what lies on both
- * sides of it has. Threaded; the same at any thread count. */
+/* Face f of a cell is opposite its vertex f. neighbours[4*cell + f]: the cell on the other side, -1 at the border. A face that more than
+ * two cells share, or two on the same side, is a border to all of them (counted). A cell that names a point twice has no neighbours; what
+ * lies on both sides of it has. Threaded; the same at any thread count. */
 typedef struct stratus_adjacency {
   stratus_context* context;
   int64_t cell_count;
@@ -34,8 +34,8 @@ static inline bool stratus_names_a_point_twice(const int32_t v[4])
   return v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3];
 }
 
-/* Face f's vertices in rising order of point number, so that both owners see the same, and where they stand in the cell: returns the sign that
- * turns the cell's orientation into the orientation of (a, b, c, vertex f), 1 or -1. */
+/* Face f's vertices in rising order of point number, so that both owners see the same, and where they stand in the cell: returns the sign
+ * that turns the cell's orientation into the orientation of (a, b, c, vertex f), 1 or -1. */
 static inline int stratus_face_points(const int32_t cell[4], int f, int32_t point[3])
 {
   /* With f behind them these are even permutations of 0 1 2 3. */

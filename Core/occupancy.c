@@ -15,14 +15,14 @@ static ALWAYS_INLINE void test_run(
   const stratus_table* table, const float* restrict lo, const float* restrict hi, int64_t count, uint8_t* restrict occupied)
 {
   int first[RUN], last[RUN];
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     const float from = lo[b] <= hi[b] ? lo[b] : 0.0f, to = lo[b] <= hi[b] ? hi[b] : 0.0f;
     /* Not fmaxf(): what it promises of NaN keeps it a call. */
     const float slack = SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
     first[b] = stratus_table_entry(table, from - slack);
     last[b] = stratus_table_entry(table, to + slack);
   }
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     occupied[b] = (lo[b] <= hi[b]) & (table->next_shown[first[b]] <= last[b]);
   }
 }
@@ -61,21 +61,21 @@ typedef struct extent {
 static void widen_extent(extent* whole, const uint8_t* row, int64_t n, int64_t j, int64_t k)
 {
   int64_t count = 0, first = 0, last = n;
-  for (int64_t i = 0; i < n; i++) {
+  for (int64_t i = 0; i < n; ++i) {
     count += row[i];
   }
   if (count == 0) {
     return;
   }
   while (!row[first]) {
-    first++;
+    ++first;
   }
   while (!row[last - 1]) {
-    last--;
+    --last;
   }
   const int64_t lo[3] = { first, j, k }, hi[3] = { last, j + 1, k + 1 };
   whole->count += count;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     whole->lo[a] = lo[a] < whole->lo[a] ? lo[a] : whole->lo[a];
     whole->hi[a] = hi[a] > whole->hi[a] ? hi[a] : whole->hi[a];
   }
@@ -93,13 +93,13 @@ static void test_rows(
   {
     extent mine = { 0, { INT64_MAX, INT64_MAX, INT64_MAX }, { 0, 0, 0 } };
 #pragma omp for schedule(static) nowait
-    for (int64_t row = 0; row < rows; row++) {
+    for (int64_t row = 0; row < rows; ++row) {
       const int64_t block = row * n;
       uint8_t* occupied = occupancy->occupied + block;
       for (int64_t i = 0; ranges && i < n; i += RUN) {
         test(table, ranges->lo + block + i, ranges->hi + block + i, n - i < RUN ? n - i : RUN, occupied + i);
       }
-      for (int64_t i = 0; gaps_show && i < n; i++) {
+      for (int64_t i = 0; gaps_show && i < n; ++i) {
         occupied[i] |= ranges->gaps[block + i];
       }
       widen_extent(&mine, occupied, n, row % occupancy->blocks[1], row / occupancy->blocks[1]);
@@ -107,7 +107,7 @@ static void test_rows(
 #pragma omp critical(stratus_occupancy)
     {
       whole.count += mine.count;
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         whole.lo[a] = mine.lo[a] < whole.lo[a] ? mine.lo[a] : whole.lo[a];
         whole.hi[a] = mine.hi[a] > whole.hi[a] ? mine.hi[a] : whole.hi[a];
       }
@@ -164,7 +164,7 @@ cleanup:
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other)
 {
   const int64_t blocks = occupancy->blocks[0] * occupancy->blocks[1] * occupancy->blocks[2];
-  for (int64_t b = 0; b < blocks; b++) {
+  for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] |= other->occupied[b];
   }
   test_rows(occupancy->context, NULL, NULL, occupancy); /* counts and bounds */
@@ -195,8 +195,8 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   return status;
 }
 
-/* The least and the greatest of the fetched values that may stand for one in lower..upper. Wide types: fetching is monotone, so that what a value
- * beyond an end is fetched as lies beyond what the end is, or is the same. */
+/* The least and the greatest of the fetched values that may stand for one in lower..upper. Wide types: fetching is monotone, so that what a
+ * value beyond an end is fetched as lies beyond what the end is, or is the same. */
 static void find_ends(const stratus_value_range* ranges, double lower, double upper, float* first, float* last)
 {
   *first = ranges->wide ? (float)(lower - ranges->bias) : stratus_float_above(lower); /* narrow types are floats as they are */
@@ -221,7 +221,7 @@ stratus_status stratus_occupancy_create_between(
   find_ends(ranges, lower, upper, &first, &last);
   const int64_t blocks = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t b = 0; b < blocks; b++) {
+  for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
   }
   test_rows(context, NULL, NULL, occupancy); /* counts and bounds */
@@ -270,7 +270,7 @@ int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t
 
 void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (lo) {
       lo[a] = occupancy ? occupancy->lo[a] : 0;
     }

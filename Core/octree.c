@@ -53,7 +53,7 @@ static stratus_status check_options(stratus_context* context, const stratus_octr
 
 static void forget_hull(stratus_octree* tree)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->hull[2 * a] = INFINITY;
     tree->hull[2 * a + 1] = -INFINITY;
   }
@@ -112,8 +112,8 @@ void stratus_octree_clear(stratus_octree* tree)
   }
   stratus_context* context = tree->context;
   /* Level 0 keeps its one group: what has been made needs no memory again. */
-  for (int l = 0; l <= tree->depth; l++) {
-    for (size_t n = 0; n < 8 * tree->levels[l].groups; n++) {
+  for (int l = 0; l <= tree->depth; ++l) {
+    for (size_t n = 0; n < 8 * tree->levels[l].groups; ++n) {
       stratus_list_release(context, &tree->levels[l].nodes[n]);
     }
     tree->levels[l].groups = l == 0;

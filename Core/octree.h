@@ -63,8 +63,8 @@ struct stratus_octree {
   double corner[3]; /* of the root's cell, relative to origin, a multiple of edge / 1024 when it was made */
   double edge;      /* a power of two */
   double first_edge;
-  double reach; /* no relative coordinate was ever larger */
-  double hull[6];   /* world: holds every bounded object that there is (and some that were) */
+  double reach;   /* no relative coordinate was ever larger */
+  double hull[6]; /* world: holds every bounded object that there is (and some that were) */
   bool has_origin, changed;
   uint32_t clock;
   uint8_t* octants; /* scratch of splits */
@@ -148,7 +148,8 @@ void stratus_octree_make_root(stratus_octree* tree);
 stratus_status stratus_octree_reserve_groups(stratus_context* context, stratus_octree_level* level, size_t needed);
 void stratus_octree_count_splits(stratus_octree_level* level); /* into rank[] */
 
-/* Every split node of `level` whose children are not split and were last used more than `age` calls ago is whole again. age < 0: all of them. */
+/* Every split node of `level` whose children are not split and were last used more than `age` calls ago is whole again. age < 0: all of
+ * them. */
 stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t age, uint64_t* collapses);
 /* The whole tree into the root's list; the next split makes a new root. */
 stratus_status stratus_octree_flatten(stratus_octree* tree);
@@ -218,7 +219,8 @@ struct stratus_octree_view {
 typedef struct stratus_octree_walk {
   const void* self;
   unsigned mask; /* planes that may cut; 0: all is seen */
-  /* Of the eight children about this centre, of half width `quarter` each: the planes that cross it, 0 if it is seen whole, 0x80 if not at all. */
+  /* Of the eight children about this centre, of half width `quarter` each: the planes that cross it, 0 if it is seen whole, 0x80 if not at
+   * all. */
   void (*children)(const stratus_octree* tree, const void* self, unsigned mask, const double center[3], double quarter, uint8_t masks[8]);
   /* The stop rule: true if a node that is seen in part is to be split. Its count, level and depth have been looked at. */
   bool (*divides)(const stratus_octree* tree, const void* self, int level, const stratus_octree_place* place);

@@ -25,7 +25,7 @@ static void look_at_children(
 static double share_of_window(const stratus_frustum_plan* plan, const double point[3], double width)
 {
   double height = 0.0;
-  for (int p = 2; p < 4; p++) {
+  for (int p = 2; p < 4; ++p) {
     const double* n = plan->planes[p];
     if (!(plan->used >> p & 1)) {
       return INFINITY;
@@ -41,7 +41,7 @@ static bool look_divides(const stratus_octree* tree, const void* self, int level
   const double size = stratus_octree_cell_size(tree, level);
   double center[3], manhattan = 0.0, euclid = 0.0;
   stratus_octree_cell_corner(tree, level, place, center);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     center[a] += tree->origin[a] + 0.5 * size;
     const double away = fabs(center[a] - look->plan->eye[a]);
     manhattan += away;
@@ -80,13 +80,13 @@ static uint64_t test_job(const stratus_octree_view* view, const looker* look, bo
   uint64_t retested = 0;
   job->kept = 0;
   stratus_octree_test_packs(&look->planes, job->mask, exact || tree->turned, job->boxes, job->hints, packs, keep, unsure);
-  for (uint32_t p = 0; p < packs; p++) {
+  for (uint32_t p = 0; p < packs; ++p) {
     const uint32_t rest = job->count - p * STRATUS_PACK;
     const unsigned lanes = rest < STRATUS_PACK ? (1u << rest) - 1u : 0xffffu;
     unsigned kept = keep[p] & lanes;
     for (unsigned ask = unsure[p] & kept; ask; ask &= ask - 1) {
       const int lane = __builtin_ctz(ask);
-      retested++;
+      ++retested;
       if (!stratus_octree_object_seen(tree, look->plan, job->ids[p * STRATUS_PACK + (uint32_t)lane], exact)) {
         kept &= ~(1u << lane);
       }
@@ -105,7 +105,7 @@ static void tell_job(const stratus_octree_view* view, const stratus_octree_job* 
   }
   const uint16_t* keep = view->keep + job->first;
   uint32_t told = 0;
-  for (uint32_t p = 0; told < job->kept; p++) {
+  for (uint32_t p = 0; told < job->kept; ++p) {
     for (unsigned kept = keep[p]; kept; kept &= kept - 1) {
       ids[told++] = job->ids[p * STRATUS_PACK + (uint32_t)__builtin_ctz(kept)];
     }
@@ -115,7 +115,7 @@ static void tell_job(const stratus_octree_view* view, const stratus_octree_job* 
 static size_t drop_repeated(stratus_octree_view* view, size_t count)
 {
   size_t once = 0;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const uint32_t id = view->ids[i];
     if (view->stamps[id] != view->stamp) {
       view->stamps[id] = view->stamp;
@@ -147,7 +147,7 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
   size_t count = tree->unbounded.count;
   TRY(reserve_results(view));
 #pragma omp parallel for if (several) num_threads(threads) schedule(dynamic, 8) reduction(+ : tested, retested)
-  for (int64_t j = 0; j < jobs; j++) {
+  for (int64_t j = 0; j < jobs; ++j) {
     stratus_octree_job* job = &view->jobs[j];
     if (job->mask) {
       tested += job->count;
@@ -156,7 +156,7 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
       job->kept = job->count;
     }
   }
-  for (int64_t j = 0; j < jobs; j++) {
+  for (int64_t j = 0; j < jobs; ++j) {
     count += view->jobs[j].kept;
   }
   void* ids = view->ids;
@@ -166,7 +166,7 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
     memcpy(view->ids, stratus_list_ids(&tree->unbounded), tree->unbounded.count * sizeof *view->ids);
   }
   size_t told = tree->unbounded.count;
-  for (int64_t j = 0; j < jobs; j++) {
+  for (int64_t j = 0; j < jobs; ++j) {
     if (view->jobs[j].kept > 0) { /* without any there may be no place to tell them */
       tell_job(view, &view->jobs[j], view->ids + told);
       told += view->jobs[j].kept;
@@ -229,7 +229,7 @@ static stratus_status measure_all(stratus_octree_view* view, const stratus_frust
   TRY(stratus_octree_reserve(tree->context, &depth, &view->depth_capacity, count, 0, sizeof *view->depth));
   view->depth = depth;
 #pragma omp parallel for if (n > 16384) num_threads(threads)
-  for (int64_t i = 0; i < n; i++) {
+  for (int64_t i = 0; i < n; ++i) {
     measure(tree, plan, view->ids[i], &view->coverage[i], &view->depth[i]);
   }
   return STRATUS_OK;
@@ -241,7 +241,7 @@ static stratus_status measure_all(stratus_octree_view* view, const stratus_frust
 static unsigned planes_that_cut(const stratus_octree* tree, const stratus_frustum_plan* plan)
 {
   unsigned mask = plan->used;
-  for (int p = 0; p < STRATUS_PLANES && tree->options.levels > 0; p++) {
+  for (int p = 0; p < STRATUS_PLANES && tree->options.levels > 0; ++p) {
     if (stratus_plan_side(plan, 1u << p, tree->hull) == STRATUS_SIDE_INSIDE) {
       mask &= ~(1u << p);
     }
@@ -256,7 +256,7 @@ static stratus_status collapse_unseen(stratus_octree* tree, uint64_t* collapses)
   if (after == 0 || tree->options.stop == STRATUS_OCTREE_STOP_STATIC || tree->clock % every != 0) {
     return STRATUS_OK;
   }
-  for (int level = tree->depth - 1; level >= 0; level--) {
+  for (int level = tree->depth - 1; level >= 0; --level) {
     TRY(stratus_octree_collapse(tree, level, after, collapses));
   }
   return STRATUS_OK;
@@ -272,7 +272,7 @@ static stratus_status look(
   walk.test_whole = walk.boxes_stick_out && options->exact;
   walk.budget = tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;
   uint64_t splits = 0, handed_down = 0;
-  tree->clock++;
+  ++tree->clock;
   if (walk.mask || tree->options.stop == STRATUS_OCTREE_STOP_STATIC) {
     stratus_octree_make_root(tree);
   }

@@ -45,7 +45,7 @@ cleanup:
 
 static void release_level(stratus_context* context, stratus_octree_level* level)
 {
-  for (size_t n = 0; n < 8 * level->groups; n++) {
+  for (size_t n = 0; n < 8 * level->groups; ++n) {
     stratus_list_release(context, &level->nodes[n]);
   }
   stratus_release(context, level->nodes);
@@ -65,7 +65,7 @@ stratus_status stratus_octree_levels_create(stratus_octree* tree)
 
 void stratus_octree_levels_release(stratus_octree* tree)
 {
-  for (int l = 0; l <= STRATUS_OCTREE_LEVELS_MAX; l++) {
+  for (int l = 0; l <= STRATUS_OCTREE_LEVELS_MAX; ++l) {
     release_level(tree->context, &tree->levels[l]);
   }
   tree->depth = 0;
@@ -75,7 +75,7 @@ void stratus_octree_levels_release(stratus_octree* tree)
 void stratus_octree_count_splits(stratus_octree_level* level)
 {
   uint32_t before = 0;
-  for (size_t g = 0; g < level->groups; g++) {
+  for (size_t g = 0; g < level->groups; ++g) {
     level->rank[g] = before;
     before += (uint32_t)__builtin_popcount(level->split[g]);
   }
@@ -89,37 +89,37 @@ static void fit_root(stratus_octree* tree)
   const stratus_octree_list* list = &tree->levels[0].nodes[0];
   const uint32_t* ids = stratus_list_ids(list);
   double least[3] = { INFINITY, INFINITY, INFINITY }, greatest[3] = { -INFINITY, -INFINITY, -INFINITY }, width = 0.0;
-  for (uint32_t i = 0; i < list->count; i++) {
-    for (int a = 0; a < 3; a++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
+    for (int a = 0; a < 3; ++a) {
       least[a] = fmin(least[a], tree->bounds[ids[i]][2 * a]);
       greatest[a] = fmax(greatest[a], tree->bounds[ids[i]][2 * a + 1]);
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->hull[2 * a] = least[a], tree->hull[2 * a + 1] = greatest[a];
     tree->origin[a] = 0.5 * (least[a] + greatest[a]);
     least[a] = INFINITY, greatest[a] = -INFINITY;
   }
   tree->reach = 0.0;
-  for (uint32_t i = 0; i < list->count; i++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
     float box[6];
     double lo[3], hi[3];
     stratus_octree_relative(tree, tree->bounds[ids[i]], box);
     stratus_list_set(list, i, box);
     stratus_octree_extent(tree, box, lo, hi);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       least[a] = fmin(least[a], lo[a]);
       greatest[a] = fmax(greatest[a], hi[a]);
       tree->reach = fmax(tree->reach, fmax(fabs(lo[a]), fabs(hi[a])));
     }
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     width = fmax(width, greatest[a] - least[a]);
   }
   int exponent;
   (void)frexp(fmax(1.01 * width, (double)FLT_MIN), &exponent);
   tree->edge = tree->first_edge = ldexp(1.0, exponent);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     /* In the cube's middle, so that what spreads finds room on each side. */
     const double corner = 0.5 * (least[a] + greatest[a]) - 0.5 * tree->edge;
     tree->corner[a] = floor(corner * (FIRST_GRID / tree->edge) + 0.5) * (tree->edge / FIRST_GRID);
@@ -140,7 +140,7 @@ void stratus_octree_make_root(stratus_octree* tree)
 static void gather(stratus_octree* tree, const stratus_octree_list* from, stratus_octree_list* to)
 {
   const uint32_t* ids = from->count ? stratus_list_ids(from) : NULL;
-  for (uint32_t i = 0; i < from->count; i++) {
+  for (uint32_t i = 0; i < from->count; ++i) {
     const uint32_t guess = tree->slot[ids[i]];
     float box[6];
     /* An object of several children comes once: its place is then known to be in the new list. */
@@ -165,7 +165,7 @@ static stratus_status allocate_whole(
   stratus_octree* tree, const stratus_octree_list* own, const stratus_octree_list* children, stratus_octree_list* whole)
 {
   size_t count = own->count;
-  for (int o = 0; o < 8; o++) {
+  for (int o = 0; o < 8; ++o) {
     count += children[o].count;
   }
   return stratus_list_allocate(tree->context, count, whole);
@@ -177,7 +177,7 @@ stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t 
   stratus_octree_level *above = &tree->levels[level], *below = &tree->levels[level + 1];
   stratus_status status = STRATUS_OK;
   size_t group = 0, kept = 0;
-  for (size_t node = 0; node < 8 * above->groups; node++) {
+  for (size_t node = 0; node < 8 * above->groups; ++node) {
     if (!stratus_octree_is_split(above, node)) {
       continue;
     }
@@ -190,7 +190,7 @@ stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t 
     if (stale && status == STRATUS_OK) {
       gather(tree, &above->nodes[node], &whole);
       stratus_list_release(tree->context, &above->nodes[node]);
-      for (int o = 0; o < 8; o++) {
+      for (int o = 0; o < 8; ++o) {
         gather(tree, &children[o], &whole);
         stratus_list_release(tree->context, &children[o]);
       }
@@ -198,20 +198,20 @@ stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t 
       above->split[node >> 3] = (uint8_t)(above->split[node >> 3] & ~(1u << (node & 7)));
       ++*collapses;
     } else if (kept == group) {
-      kept++;
+      ++kept;
     } else {
       memcpy(below->nodes + 8 * kept, children, 8 * sizeof *children);
       below->split[kept] = below->split[group];
       below->stuck[kept] = below->stuck[group];
       below->used[kept++] = below->used[group];
     }
-    group++;
+    ++group;
   }
   below->groups = kept;
   stratus_octree_count_splits(above);
   stratus_octree_count_splits(below);
   while (tree->depth > 0 && tree->levels[tree->depth].groups == 0) {
-    tree->depth--;
+    --tree->depth;
   }
   return status;
 }
@@ -254,10 +254,10 @@ static stratus_status raise_root(stratus_octree* tree, unsigned octant)
   top.groups = 1;
   top.split[0] = 1;
   tree->levels[0] = top;
-  tree->depth++;
+  ++tree->depth;
   stratus_octree_count_splits(&tree->levels[0]);
   stratus_octree_count_splits(&tree->levels[1]);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->corner[a] -= octant >> a & 1 ? tree->edge : 0.0;
   }
   tree->edge *= 2.0;
@@ -270,7 +270,7 @@ stratus_status stratus_octree_grow(stratus_octree* tree, const float box[6])
     double lo[3], hi[3];
     unsigned octant = 0;
     stratus_octree_extent(tree, box, lo, hi);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       /* Towards the object: what was the root is the upper half where the object is below it. */
       octant |= (unsigned)(lo[a] <= tree->corner[a]) << a;
     }

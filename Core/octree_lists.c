@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A node's list of boxes: packs of sixteen, so that one instruction tests as many as the machine is wide, and ids beside them, so that a list
- * that is seen whole is copied as it stands. */
+ * A node's list of boxes: packs of sixteen, so that one instruction tests as many as the machine is wide, and ids beside them, so that a
+ * list that is seen whole is copied as it stands. */
 #include "octree.h"
 
 #include <string.h>
@@ -31,7 +31,7 @@ void stratus_list_release(stratus_context* context, stratus_octree_list* list)
 void stratus_list_set(const stratus_octree_list* list, uint32_t slot, const float box[6])
 {
   float* to = stratus_list_box(list, slot);
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     to[i * STRATUS_PACK] = box[i];
   }
 }
@@ -39,7 +39,7 @@ void stratus_list_set(const stratus_octree_list* list, uint32_t slot, const floa
 void stratus_list_get(const stratus_octree_list* list, uint32_t slot, float box[6])
 {
   const float* from = stratus_list_box(list, slot);
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     box[i] = from[i * STRATUS_PACK];
   }
 }
@@ -90,7 +90,7 @@ uint32_t stratus_list_find(const stratus_octree_list* list, uint32_t id, uint32_
   if (guess < list->count && ids[guess] == id) {
     return guess;
   }
-  for (uint32_t i = 0; i < list->count; i++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
     if (ids[i] == id) {
       return i;
     }

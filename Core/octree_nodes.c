@@ -14,14 +14,14 @@ static stratus_status for_each_node(const stratus_octree* tree,
   size_t now_capacity = 0, next_capacity = 0, count = 1;
   TRY(stratus_octree_reserve(context, &now_memory, &now_capacity, 1, 0, sizeof(stratus_octree_place)));
   *(stratus_octree_place*)now_memory = (stratus_octree_place){ 0 };
-  for (int l = 0; count > 0; l++) {
+  for (int l = 0; count > 0; ++l) {
     const stratus_octree_level* level = &tree->levels[l];
     size_t next = 0;
     TRY_CLEANUP(stratus_octree_reserve(context, &next_memory, &next_capacity, 8 * count, 0, sizeof(stratus_octree_place)));
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
       const stratus_octree_place* place = (const stratus_octree_place*)now_memory + i;
       TRY_CLEANUP(visit(tree, l, place, user));
-      for (unsigned o = 0; o < 8 && stratus_octree_is_split(level, place->node); o++) {
+      for (unsigned o = 0; o < 8 && stratus_octree_is_split(level, place->node); ++o) {
         ((stratus_octree_place*)next_memory)[next++] = stratus_octree_child(place, stratus_octree_child_group(level, place->node), o);
       }
     }
@@ -47,15 +47,15 @@ void stratus_octree_get_statistics(const stratus_octree* tree, stratus_octree_st
   }
   stratus_octree_statistics s = { .objects = tree->count, .unbounded = tree->unbounded_count, .depth = tree->depth };
   size_t bytes = sizeof *tree, lists = 0;
-  for (int l = 0; l <= tree->depth; l++) {
+  for (int l = 0; l <= tree->depth; ++l) {
     const stratus_octree_level* level = &tree->levels[l];
     bytes += level->capacity * (8 * sizeof *level->nodes + 2 + sizeof *level->rank + sizeof *level->used);
     s.nodes += l == 0 ? 1 : 8 * level->groups;
-    for (size_t n = 0; n < 8 * level->groups; n++) {
+    for (size_t n = 0; n < 8 * level->groups; ++n) {
       s.references += level->nodes[n].count;
       lists += stratus_list_bytes(&level->nodes[n]);
     }
-    for (size_t g = 0; g < level->groups; g++) {
+    for (size_t g = 0; g < level->groups; ++g) {
       s.split_nodes += (size_t)__builtin_popcount(level->split[g]);
     }
   }
@@ -67,7 +67,7 @@ void stratus_octree_get_statistics(const stratus_octree* tree, stratus_octree_st
   const size_t given = sizeof *tree->bounds + sizeof *tree->kind + sizeof *tree->slot + (tree->turned ? sizeof *tree->turned : 0);
   s.object_bytes = tree->limit * given + least;
   s.bytes = bytes + (lists > least ? lists - least : 0);
-  for (int a = 0; a < 3 && tree->rooted; a++) {
+  for (int a = 0; a < 3 && tree->rooted; ++a) {
     s.root[2 * a] = tree->origin[a] + tree->corner[a];
     s.root[2 * a + 1] = tree->origin[a] + (tree->corner[a] + tree->edge);
   }
@@ -88,7 +88,7 @@ static stratus_status show(const stratus_octree* tree, int level, const stratus_
   const double size = stratus_octree_cell_size(tree, level);
   double corner[3];
   stratus_octree_cell_corner(tree, level, place, corner);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     node->bounds[2 * a] = tree->rooted ? tree->origin[a] + corner[a] : 0.0;
     node->bounds[2 * a + 1] = tree->rooted ? tree->origin[a] + (corner[a] + size) : 0.0;
   }
@@ -148,7 +148,7 @@ static stratus_status check_node(const stratus_octree* tree, int level, const st
 {
   checker* c = user;
   const stratus_octree_list* list = &tree->levels[level].nodes[place->node];
-  for (uint32_t i = 0; i < list->count; i++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
     const uint32_t id = stratus_list_ids(list)[i];
     float box[6], right[6];
     if (id >= tree->limit || (tree->kind[id] != STRATUS_OBJECT_BOX && tree->kind[id] != STRATUS_OBJECT_TURNED)) {
@@ -166,8 +166,8 @@ static stratus_status check_node(const stratus_octree* tree, int level, const st
       return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree: object %u is in slot %u, not %u", (unsigned)id, (unsigned)i,
         (unsigned)tree->slot[id]);
     }
-    c->seen[id]++;
-    c->references++;
+    ++c->seen[id];
+    ++c->references;
   }
   return STRATUS_OK;
 }
@@ -175,13 +175,13 @@ static stratus_status check_node(const stratus_octree* tree, int level, const st
 static stratus_status check_objects(const stratus_octree* tree, const checker* c)
 {
   size_t used = 0, unbounded = 0;
-  for (uint32_t i = 0; i < tree->unbounded.count; i++) {
+  for (uint32_t i = 0; i < tree->unbounded.count; ++i) {
     c->seen[stratus_list_ids(&tree->unbounded)[i]]++;
   }
-  for (uint32_t id = 0; id < tree->limit; id++) {
+  for (uint32_t id = 0; id < tree->limit; ++id) {
     size_t places = 0;
     if (tree->kind[id] == STRATUS_OBJECT_UNBOUNDED) {
-      unbounded++;
+      ++unbounded;
       places = 1;
     } else if (tree->kind[id] != STRATUS_OBJECT_FREE) {
       float box[6];

@@ -57,7 +57,7 @@ static uint32_t take_id(stratus_octree* tree)
   } else {
     tree->free_head = tree->slot[id];
   }
-  tree->count++;
+  ++tree->count;
   return id;
 }
 
@@ -66,7 +66,7 @@ static void free_id(stratus_octree* tree, uint32_t id)
   tree->kind[id] = STRATUS_OBJECT_FREE;
   tree->slot[id] = tree->free_head;
   tree->free_head = id;
-  tree->count--;
+  --tree->count;
 }
 
 static bool is_used(const stratus_octree* tree, uint32_t id)
@@ -87,7 +87,7 @@ static stratus_status read_bounds(stratus_context* context, const double* number
 {
   g->turned = turned ? numbers : NULL;
   g->kind = turned ? STRATUS_OBJECT_TURNED : STRATUS_OBJECT_BOX;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (turned) {
       /* One step outward covers what the sum rounds. */
       const double half = (fabs(numbers[3 + a]) + fabs(numbers[6 + a]) + fabs(numbers[9 + a])) * (1.0 + 1e-15);
@@ -117,7 +117,7 @@ static stratus_status check_call(const stratus_octree* tree, const double* numbe
     return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree %s is NULL", numbers ? "ids" : "bounds");
   }
   TRY(stratus_array_check(tree->context, "boxes", count, (turned ? 12 : 6) * sizeof *numbers));
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     given g;
     TRY(read_bounds(tree->context, numbers + (turned ? 12 : 6) * i, turned, i, &g));
   }
@@ -161,7 +161,7 @@ static stratus_status note_place(stratus_octree* tree, int level, size_t node, v
   (void)tree;
   v->level = level;
   v->node = node;
-  v->places++;
+  ++v->places;
   return STRATUS_OK;
 }
 
@@ -171,7 +171,7 @@ static void unplace(stratus_octree* tree, uint32_t id)
   visitor v = { .box = box, .id = id };
   if (tree->kind[id] == STRATUS_OBJECT_UNBOUNDED) {
     stratus_list_remove(&tree->unbounded, stratus_list_find(&tree->unbounded, id, tree->slot[id]), tree->slot);
-    tree->unbounded_count--;
+    --tree->unbounded_count;
   } else {
     stratus_octree_relative(tree, tree->bounds[id], box);
     (void)stratus_octree_visit_places(tree, box, take_from, &v);
@@ -186,11 +186,11 @@ static stratus_status place(stratus_octree* tree, uint32_t id)
   tree->slot[id] = 0;
   if (tree->kind[id] == STRATUS_OBJECT_UNBOUNDED) {
     TRY(stratus_list_append(tree->context, &tree->unbounded, box, id, &tree->slot[id]));
-    tree->unbounded_count++;
+    ++tree->unbounded_count;
     return STRATUS_OK;
   }
   if (!tree->has_origin) {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       tree->origin[a] = 0.5 * (tree->bounds[id][2 * a] + tree->bounds[id][2 * a + 1]);
     }
     tree->has_origin = true;
@@ -199,7 +199,7 @@ static stratus_status place(stratus_octree* tree, uint32_t id)
   TRY(stratus_octree_grow(tree, box));
   double lo[3], hi[3];
   stratus_octree_extent(tree, box, lo, hi);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->reach = fmax(tree->reach, fmax(fabs(lo[a]), fabs(hi[a])));
   }
   const stratus_status status = stratus_octree_visit_places(tree, box, add_to, &v);
@@ -213,7 +213,7 @@ static void store(stratus_octree* tree, uint32_t id, const given* g)
 {
   memcpy(tree->bounds[id], g->bounds, sizeof g->bounds);
   tree->kind[id] = g->kind;
-  for (int a = 0; a < 3 && g->kind != STRATUS_OBJECT_UNBOUNDED; a++) {
+  for (int a = 0; a < 3 && g->kind != STRATUS_OBJECT_UNBOUNDED; ++a) {
     tree->hull[2 * a] = fmin(tree->hull[2 * a], g->bounds[2 * a]);
     tree->hull[2 * a + 1] = fmax(tree->hull[2 * a + 1], g->bounds[2 * a + 1]);
   }
@@ -241,7 +241,7 @@ static stratus_status insert(stratus_octree* tree, const double* numbers, size_t
     TRY(stratus_list_reserve(tree->context, root, root->count + count));
   }
   tree->changed = true;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     given g;
     (void)read_bounds(tree->context, numbers + (turned ? 12 : 6) * i, turned, i, &g);
     ids[i] = take_id(tree);
@@ -290,7 +290,7 @@ static bool move_within(stratus_octree* tree, uint32_t id, const given* g)
   stratus_octree_level* level = &tree->levels[new.level];
   double lo[3], hi[3];
   stratus_octree_extent(tree, to, lo, hi);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->reach = fmax(tree->reach, fmax(fabs(lo[a]), fabs(hi[a])));
   }
   const uint32_t slot = stratus_list_find(&level->nodes[new.node], id, tree->slot[id]);
@@ -332,7 +332,7 @@ static stratus_status move_one(stratus_octree* tree, uint32_t id, const given* g
 
 stratus_status stratus_octree_check_ids(const stratus_octree* tree, const uint32_t* ids, size_t count)
 {
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     if (!is_used(tree, ids[i])) {
       return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree has no object %u (%zu of the call); ids in use are below %zu",
         (unsigned)ids[i], i, tree->limit);
@@ -349,7 +349,7 @@ static stratus_status move(stratus_octree* tree, const uint32_t* ids, const doub
     TRY(reserve_turned(tree));
   }
   tree->changed = true;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     given g;
     (void)read_bounds(tree->context, numbers + (turned ? 12 : 6) * i, turned, i, &g);
     TRY(move_one(tree, ids[i], &g));
@@ -380,7 +380,7 @@ stratus_status stratus_octree_remove(stratus_octree* tree, const uint32_t* ids, 
   /* A high bit on each kind finds those that come twice. */
   stratus_status status = STRATUS_OK;
   size_t marked = 0;
-  for (; marked < count && status == STRATUS_OK; marked++) {
+  for (; marked < count && status == STRATUS_OK; ++marked) {
     if (tree->kind[ids[marked]] & 0x80) {
       status =
         stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree object %u comes twice among those to remove", (unsigned)ids[marked]);
@@ -388,10 +388,10 @@ stratus_status stratus_octree_remove(stratus_octree* tree, const uint32_t* ids, 
     }
     tree->kind[ids[marked]] |= 0x80;
   }
-  for (size_t i = 0; i < marked; i++) {
+  for (size_t i = 0; i < marked; ++i) {
     tree->kind[ids[i]] &= 0x7f;
   }
-  for (size_t i = 0; i < count && status == STRATUS_OK; i++) {
+  for (size_t i = 0; i < count && status == STRATUS_OK; ++i) {
     tree->changed = true;
     unplace(tree, ids[i]);
     free_id(tree, ids[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sixteen boxes, or eight nodes, against a frustum's planes at once: by the corner farthest inside (p-vertex) and, where it matters, the one
- * farthest outside (n-vertex). Plane coherency: the plane that rejected a pack last time is asked first. */
+ * Sixteen boxes, or eight nodes, against a frustum's planes at once: by the corner farthest inside (p-vertex) and, where it matters, the
+ * one farthest outside (n-vertex). Plane coherency: the plane that rejected a pack last time is asked first. */
 #include "clones.h"
 #include "octree.h"
 
@@ -14,14 +14,14 @@
 void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_frustum_plan* plan, stratus_octree_planes* planes)
 {
   double reach = tree->reach;
-  for (int a = 0; tree->rooted && a < 3; a++) {
+  for (int a = 0; tree->rooted && a < 3; ++a) {
     reach = fmax(reach, fmax(fabs(tree->corner[a]), fabs(tree->corner[a] + tree->edge)) + tree->pad * tree->edge);
   }
   memset(planes, 0, sizeof *planes);
-  for (int p = 0; p < STRATUS_PLANES; p++) {
+  for (int p = 0; p < STRATUS_PLANES; ++p) {
     const double* n = plan->planes[p];
     double offset = n[3], size = fabs(n[3]), sum = 0.0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       offset += n[a] * tree->origin[a];
       size += fabs(n[a] * tree->origin[a]);
       sum += fabs(n[a]);
@@ -32,7 +32,7 @@ void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_fru
       planes->band[p] = FLT_MAX;
       continue;
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       planes->normal[p][a] = (float)n[a];
       planes->wide[p][a] = n[a];
     }
@@ -56,13 +56,13 @@ static ALWAYS_INLINE void test_pack(
   const float *u = box + (a > 0.0f ? 0 : row), *v = box + (b > 0.0f ? 0 : row) + STRATUS_PACK,
               *w = box + (c > 0.0f ? 0 : row) + 2 * STRATUS_PACK;
   unsigned out = 0, close = 0;
-  for (int i = 0; i < STRATUS_PACK; i++) {
+  for (int i = 0; i < STRATUS_PACK; ++i) {
     const float inner = a * x[i] + b * y[i] + c * z[i] + d;
     out |= inner < -band ? bit[i] : 0u;
     close |= inner < band ? bit[i] : 0u;
   }
   if (turned) {
-    for (int i = 0; i < STRATUS_PACK; i++) {
+    for (int i = 0; i < STRATUS_PACK; ++i) {
       const float outer = a * u[i] + b * v[i] + c * w[i] + d;
       close |= outer < band ? bit[i] : 0u;
     }
@@ -74,7 +74,7 @@ static ALWAYS_INLINE void test_pack(
 static ALWAYS_INLINE void test_packs(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,
   size_t packs, uint16_t* keep, uint16_t* unsure)
 {
-  for (size_t i = 0; i < packs; i++) {
+  for (size_t i = 0; i < packs; ++i) {
     const float* box = boxes + i * STRATUS_PACK_FLOATS;
     const unsigned first = hints[i];
     unsigned rejected = 0, near = 0;
@@ -109,13 +109,13 @@ static ALWAYS_INLINE void test_children(
     const double band = (double)planes->band[p], a = n[0] * quarter, b = n[1] * quarter, c = n[2] * quarter;
     const double middle = n[0] * center[0] + n[1] * center[1] + n[2] * center[2] + n[3];
     const double radius = (fabs(a) + fabs(b) + fabs(c)) * looseness + band;
-    for (int o = 0; o < 8; o++) {
+    for (int o = 0; o < 8; ++o) {
       const double value = middle + sign_x[o] * a + sign_y[o] * b + sign_z[o] * c;
       outside[o] |= value < -radius ? OUTSIDE : 0;
       crossed[o] |= value < radius ? 1 << p : 0;
     }
   }
-  for (int o = 0; o < 8; o++) {
+  for (int o = 0; o < 8; ++o) {
     masks[o] = (uint8_t)(outside[o] | crossed[o]);
   }
 }

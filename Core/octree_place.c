@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where a box belongs: a function of the box and the root's cell alone, so that an object is found again without a link to its node. Cells are
- * exact in double (widths are powers of two), and the same before and after the root has grown. */
+ * Where a box belongs: a function of the box and the root's cell alone, so that an object is found again without a link to its node. Cells
+ * are exact in double (widths are powers of two), and the same before and after the root has grown. */
 #include "octree.h"
 
 /* nextafterf() by a step of the bits: it is asked for every bound of every object. */
@@ -16,7 +16,7 @@ static float next_above(float value)
 
 void stratus_octree_relative(const stratus_octree* tree, const double bounds[6], float box[6])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     /* One step beyond the nearest float also covers the rounding of the difference. */
     box[a] = -next_above((float)(tree->origin[a] - bounds[2 * a]));
     box[a + 3] = next_above((float)(bounds[2 * a + 1] - tree->origin[a]));
@@ -27,7 +27,7 @@ void stratus_octree_relative(const stratus_octree* tree, const double bounds[6],
 static double sphere_of(const float box[6], double center[3])
 {
   double sum = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double half = 0.5 * ((double)box[a + 3] - (double)box[a]);
     center[a] = 0.5 * ((double)box[a + 3] + (double)box[a]);
     sum += half * half;
@@ -39,7 +39,7 @@ void stratus_octree_extent(const stratus_octree* tree, const float box[6], doubl
 {
   double center[3];
   const double radius = tree->options.placement == STRATUS_OCTREE_TOUCHING ? sphere_of(box, center) : 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     lo[a] = radius > 0.0 ? center[a] - radius : (double)box[a];
     hi[a] = radius > 0.0 ? center[a] + radius : (double)box[a + 3];
   }
@@ -49,7 +49,7 @@ bool stratus_octree_root_holds(const stratus_octree* tree, const float box[6])
 {
   double lo[3], hi[3];
   stratus_octree_extent(tree, box, lo, hi);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!(lo[a] > tree->corner[a] && hi[a] < tree->corner[a] + tree->edge)) {
       return false;
     }
@@ -61,7 +61,7 @@ static unsigned enclosing_octant(double pad, const double corner[3], double size
 {
   const double half = 0.5 * size, room = pad * half;
   unsigned octant = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double middle = corner[a] + half;
     const bool upper = 0.5 * ((double)box[a] + (double)box[a + 3]) >= middle;
     const double lo = upper ? middle : corner[a];
@@ -80,7 +80,7 @@ static unsigned touched_octants(const double corner[3], double size, const float
   double center[3];
   const double radius = sphere_of(box, center);
   unsigned octants = 0xff;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double middle = corner[a] + 0.5 * size;
     const unsigned below = center[a] - radius <= middle ? lower[a] : 0u, above = center[a] + radius >= middle ? 0xffu ^ lower[a] : 0u;
     octants &= below | above;
@@ -122,7 +122,7 @@ stratus_status stratus_octree_visit_places(stratus_octree* tree, const float box
       continue;
     }
     const size_t group = stratus_octree_child_group(level, place.node);
-    for (unsigned o = 0; o < 8; o++) {
+    for (unsigned o = 0; o < 8; ++o) {
       if (octants >> o & 1) {
         stack[height].place = stratus_octree_child(&place, group, o);
         stack[height++].level = l + 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What else is asked of an octree: boxes, spheres, rays, nearest objects. Nodes are tested with room for rounding, objects as they were given, in
- * double precision: the answer is that of a loop over all of them. */
+ * What else is asked of an octree: boxes, spheres, rays, nearest objects. Nodes are tested with room for rounding, objects as they were
+ * given, in double precision: the answer is that of a loop over all of them. */
 #include "octree.h"
 
 #include <stdlib.h>
@@ -26,7 +26,7 @@ typedef struct found {
 static double distance_to(const double bounds[6], const double point[3])
 {
   double sum = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double away = fmax(fmax(bounds[2 * a] - point[a], point[a] - bounds[2 * a + 1]), 0.0);
     sum += away * away;
   }
@@ -42,7 +42,7 @@ static bool overlaps(const double a[6], const double b[6])
 static double enters(const double bounds[6], const query* q)
 {
   double from = 0.0, to = q->radius;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (q->direction[a] == 0.0) {
       if (q->point[a] < bounds[2 * a] || q->point[a] > bounds[2 * a + 1]) {
         return INFINITY;
@@ -79,7 +79,7 @@ static bool has(const query* q, const double bounds[6], double* value)
 static bool swallows(const query* q, const double bounds[6])
 {
   double far = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (q->kind == QUERY_BOX && !(q->bounds[2 * a] <= bounds[2 * a] && bounds[2 * a + 1] <= q->bounds[2 * a + 1])) {
       return false;
     }
@@ -95,9 +95,9 @@ static void ask_children(
   const query* q = self;
   const double half = quarter * (1.0 + 2.0 * tree->pad);
   (void)mask;
-  for (unsigned o = 0; o < 8; o++) {
+  for (unsigned o = 0; o < 8; ++o) {
     double bounds[6], value;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       const double middle = center[a] + (o >> a & 1 ? quarter : -quarter);
       /* Lists hold boxes rounded to floats; and a double rounds where the origin is far away. */
       const double room = 1e-6 * (fabs(middle) + half) + 1e-14 * (fabs(tree->origin[a]) + fabs(q->point[a]));
@@ -141,11 +141,11 @@ static stratus_status collect(stratus_octree* tree, const query* q, found** list
   if (tree->options.placement == STRATUS_OCTREE_TOUCHING) {
     TRY(stratus_octree_view_reserve_stamps(view));
   }
-  for (size_t j = 0; j < view->job_count; j++) {
+  for (size_t j = 0; j < view->job_count; ++j) {
     const stratus_octree_job* job = &view->jobs[j];
     TRY_CLEANUP(stratus_octree_reserve(tree->context, &memory, &capacity, n + job->count, n, sizeof **list));
     found* all = memory;
-    for (uint32_t i = 0; i < job->count; i++) {
+    for (uint32_t i = 0; i < job->count; ++i) {
       const uint32_t id = job->ids[i];
       double value;
       if (!has(q, tree->bounds[id], &value)) {
@@ -178,7 +178,7 @@ static stratus_status check_numbers(const stratus_octree* tree, const char* what
   if (!numbers) {
     return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree query's %s is NULL", what);
   }
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     if (!isfinite(numbers[i])) {
       return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree query's %s[%d] is %g, must be finite", what, i, numbers[i]);
     }
@@ -196,7 +196,7 @@ static stratus_status check_output(const stratus_octree* tree, const uint32_t* i
 
 static void tell(const found* list, size_t n, size_t capacity, uint32_t* ids, double* values)
 {
-  for (size_t i = 0; i < n && i < capacity; i++) {
+  for (size_t i = 0; i < n && i < capacity; ++i) {
     ids[i] = list[i].id;
     if (values) {
       values[i] = list[i].value;
@@ -216,7 +216,7 @@ stratus_status stratus_octree_query_box(stratus_octree* tree, const double bound
   TRY(check_numbers(tree, "bounds", bounds, 0));
   TRY(check_output(tree, ids, capacity, count));
   query q = { .kind = QUERY_BOX };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!(bounds[2 * a] <= bounds[2 * a + 1])) {
       return stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree query's bounds are %g..%g on axis %d, must not fall",
         bounds[2 * a], bounds[2 * a + 1], a);
@@ -231,7 +231,7 @@ stratus_status stratus_octree_query_box(stratus_octree* tree, const double bound
   size_t room = n;
   const stratus_status status = stratus_octree_reserve(tree->context, &memory, &room, n + more->count, n, sizeof *list);
   list = memory;
-  for (uint32_t i = 0; status == STRATUS_OK && i < more->count; i++) {
+  for (uint32_t i = 0; status == STRATUS_OK && i < more->count; ++i) {
     list[n++] = (found){ 0.0, stratus_list_ids(more)[i] };
   }
   if (status == STRATUS_OK) {
@@ -300,7 +300,7 @@ stratus_status stratus_octree_query_nearest(
   stratus_octree_make_root(tree);
   if (tree->rooted && wanted > 0) {
     double root[6];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       root[2 * a] = tree->origin[a] + tree->corner[a];
       root[2 * a + 1] = root[2 * a] + tree->edge;
     }

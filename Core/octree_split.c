@@ -29,13 +29,13 @@ static stratus_status part(
   double corner[3];
   stratus_octree_cell_corner(tree, level, place, corner);
   memset(parts, 0, sizeof *parts);
-  for (uint32_t i = 0; i < list->count; i++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
     float box[6];
     stratus_list_get(list, i, box);
     const unsigned code = stratus_octree_octants(tree, corner, size, box);
     codes[i] = (uint8_t)code;
     handed += octants_of(code, touching);
-    for (unsigned o = 0; touching && o < 8; o++) {
+    for (unsigned o = 0; touching && o < 8; ++o) {
       counts[o] += code >> o & 1;
     }
     counts[8] += !touching && code == 8;
@@ -43,11 +43,11 @@ static stratus_status part(
   }
   *productive = touching ? handed <= (size_t)REPEATED * list->count : handed * PARTED >= list->count;
   stratus_status status = STRATUS_OK;
-  for (int o = 0; *productive && o < 9; o++) {
+  for (int o = 0; *productive && o < 9; ++o) {
     TRY_CLEANUP(stratus_list_allocate(tree->context, counts[o], &parts->lists[o]));
   }
 cleanup:
-  for (int o = 0; status != STRATUS_OK && o < 9; o++) {
+  for (int o = 0; status != STRATUS_OK && o < 9; ++o) {
     stratus_list_release(tree->context, &parts->lists[o]);
   }
   return status;
@@ -58,7 +58,7 @@ static void hand_down(stratus_octree* tree, const stratus_octree_list* list, con
 {
   const bool touching = tree->options.placement == STRATUS_OCTREE_TOUCHING;
   const uint32_t* ids = stratus_list_ids(list);
-  for (uint32_t i = 0; i < list->count; i++) {
+  for (uint32_t i = 0; i < list->count; ++i) {
     float box[6];
     stratus_list_get(list, i, box);
     for (unsigned octants = touching ? codes[i] : 1u << codes[i]; octants; octants &= octants - 1) {
@@ -86,12 +86,12 @@ static void insert_groups(stratus_octree* tree, int level, const stratus_octree_
     memmove(below->split + to, below->split + from, move);
     memmove(below->stuck + to, below->stuck + from, move);
     memmove(below->used + to, below->used + from, move * sizeof *below->used);
-    to--;
+    --to;
     memcpy(below->nodes + 8 * to, parts[i].lists, 8 * sizeof *below->nodes);
     below->split[to] = below->stuck[to] = 0;
     below->used[to] = tree->clock;
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const size_t node = places[i].node;
     stratus_list_release(tree->context, &above->nodes[node]);
     above->nodes[node] = parts[i].lists[8];
@@ -116,7 +116,7 @@ stratus_status stratus_octree_split(
   if (count == 0) {
     return STRATUS_OK;
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     largest += nodes->nodes[given[i].node].count;
   }
   TRY_CLEANUP(stratus_allocate(tree->context, count, sizeof(parted), &parts_memory));
@@ -126,7 +126,7 @@ stratus_status stratus_octree_split(
   stratus_octree_place* places = places_memory;
   uint8_t* codes = codes_memory;
   TRY_CLEANUP(stratus_octree_reserve_groups(tree->context, &tree->levels[level + 1], tree->levels[level + 1].groups + count));
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const size_t node = given[i].node;
     bool productive = false;
     TRY_CLEANUP(part(tree, level, &given[i], codes + objects, &parts[done], &productive));
@@ -138,7 +138,7 @@ stratus_status stratus_octree_split(
     places[done++] = given[i];
   }
   objects = 0;
-  for (size_t i = 0; i < done; i++) {
+  for (size_t i = 0; i < done; ++i) {
     const stratus_octree_list* list = &nodes->nodes[places[i].node];
     hand_down(tree, list, codes + objects, &parts[i]);
     objects += list->count;
@@ -147,8 +147,8 @@ stratus_status stratus_octree_split(
   *splits += done;
   *handed_down += objects;
 cleanup:
-  for (size_t i = 0; status != STRATUS_OK && i < done; i++) {
-    for (int o = 0; o < 9; o++) {
+  for (size_t i = 0; status != STRATUS_OK && i < done; ++i) {
+    for (int o = 0; o < 9; ++o) {
       stratus_list_release(tree->context, &((parted*)parts_memory)[i].lists[o]);
     }
   }

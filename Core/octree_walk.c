@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From the root down, one level after the other: a level's nodes that are to be split are split together (Li & Huang 2024, 3.2), and what is met
- * is left as jobs. Each level is visited in Morton order, so that the jobs of a tree are always the same. */
+ * From the root down, one level after the other: a level's nodes that are to be split are split together (Li & Huang 2024, 3.2), and what
+ * is met is left as jobs. Each level is visited in Morton order, so that the jobs of a tree are always the same. */
 #include "octree.h"
 
 stratus_status stratus_octree_view_create(stratus_octree* tree, stratus_octree_view** out)
@@ -43,12 +43,12 @@ stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view)
   const size_t before = view->stamps_capacity;
   TRY(stratus_octree_reserve(view->tree->context, &stamps, &view->stamps_capacity, view->tree->limit, before, sizeof *view->stamps));
   view->stamps = stamps;
-  for (size_t i = before; i < view->stamps_capacity; i++) {
+  for (size_t i = before; i < view->stamps_capacity; ++i) {
     view->stamps[i] = view->stamp;
   }
   if (++view->stamp == 0) {
     /* Once in four thousand million calls all stamps are old. */
-    for (size_t i = 0; i < view->stamps_capacity; i++) {
+    for (size_t i = 0; i < view->stamps_capacity; ++i) {
       view->stamps[i] = 0;
     }
     view->stamp = 1;
@@ -103,7 +103,7 @@ static stratus_status split_level(stratus_octree_view* view, stratus_octree_walk
   }
   TRY(stratus_octree_reserve(tree->context, &memory, &view->batch_capacity, count, 0, sizeof *view->batch));
   view->batch = memory;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     if (places[i].mask && walk->budget > 0 && may_split(tree, level, &places[i]) && walk->divides(tree, walk->self, level, &places[i])) {
       walk->budget -= tree->levels[level].nodes[places[i].node].count;
       view->batch[batch++] = places[i];
@@ -124,14 +124,14 @@ static size_t enter_children(
     const double half = 0.5 * stratus_octree_cell_size(tree, level);
     double center[3];
     stratus_octree_cell_corner(tree, level, place, center);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       center[a] += half;
     }
     walk->children(tree, walk->self, place->mask, center, 0.5 * half, masks);
     walk->nodes_tested += 8;
     below->used[group] = tree->clock;
   }
-  for (unsigned o = 0; o < 8; o++) {
+  for (unsigned o = 0; o < 8; ++o) {
     stratus_octree_place child = stratus_octree_child(place, group, o);
     if (!(masks[o] & 0x80) && (below->nodes[child.node].count > 0 || stratus_octree_is_split(below, child.node))) {
       child.mask = masks[o];
@@ -149,7 +149,7 @@ static unsigned root_mask(const stratus_octree* tree, stratus_octree_walk* walk)
     return walk->mask;
   }
   walk->children(tree, walk->self, walk->mask, tree->corner, 0.5 * tree->edge, masks);
-  walk->nodes_tested++;
+  ++walk->nodes_tested;
   return masks[7];
 }
 
@@ -165,12 +165,12 @@ stratus_status stratus_octree_walk_nodes(stratus_octree_view* view, stratus_octr
   if (view->places[0][0].mask & 0x80) {
     return STRATUS_OK;
   }
-  for (int level = 0, side = 0; count > 0; level++, side = !side) {
+  for (int level = 0, side = 0; count > 0; ++level, side = !side) {
     TRY(split_level(view, walk, level, side, count));
     TRY(reserve_places(view, !side, 8 * count, 0));
     const stratus_octree_level* nodes = &tree->levels[level];
     size_t next = 0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
       const stratus_octree_place* place = &view->places[side][i];
       const stratus_octree_list* list = &nodes->nodes[place->node];
       if (list->count > 0) {
@@ -191,23 +191,23 @@ stratus_status stratus_octree_split_all(stratus_octree_view* view, uint64_t* spl
   size_t count = 1;
   TRY(reserve_places(view, 0, 1, 0));
   view->places[0][0] = (stratus_octree_place){ 0 };
-  for (int level = 0, side = 0; count > 0 && level < tree->options.levels; level++, side = !side) {
+  for (int level = 0, side = 0; count > 0 && level < tree->options.levels; ++level, side = !side) {
     void* memory = view->batch;
     size_t batch = 0, next = 0;
     TRY(stratus_octree_reserve(tree->context, &memory, &view->batch_capacity, count, 0, sizeof *view->batch));
     view->batch = memory;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
       if (may_split(tree, level, &view->places[side][i])) {
         view->batch[batch++] = view->places[side][i];
       }
     }
     TRY(stratus_octree_split(tree, level, view->batch, batch, splits, handed_down));
     TRY(reserve_places(view, !side, 8 * count, 0));
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
       const stratus_octree_place* place = &view->places[side][i];
       if (stratus_octree_is_split(&tree->levels[level], place->node)) {
         const size_t group = stratus_octree_child_group(&tree->levels[level], place->node);
-        for (unsigned o = 0; o < 8; o++) {
+        for (unsigned o = 0; o < 8; ++o) {
           view->places[!side][next++] = stratus_octree_child(place, group, o);
         }
       }

@@ -6,7 +6,8 @@
 #include <float.h>
 #include <string.h>
 
-/* Of the sum of the six products' magnitudes: of three differences, two products and three sums each rounds by DBL_EPSILON/2 at most; twice that. */
+/* Of the sum of the six products' magnitudes: of three differences, two products and three sums each rounds by DBL_EPSILON/2 at most; twice
+ * that. */
 #define ERROR_BOUND (8.0 * DBL_EPSILON)
 /* Six products of three numbers, each a head and a tail: 8 terms a product, 4 components a term. */
 #define COMPONENTS_MAX (6 * 8 * 4)
@@ -27,7 +28,7 @@ static inline void add_exactly(double a, double b, double* sum, double* rest)
 static void expansion_add(expansion* e, double value)
 {
   int kept = 0;
-  for (int i = 0; i < e->count; i++) {
+  for (int i = 0; i < e->count; ++i) {
     double rest;
     add_exactly(value, e->part[i], &value, &rest);
     if (rest != 0.0) {
@@ -56,29 +57,30 @@ static void expansion_add_product(expansion* e, double a, double b, double c)
 /* rows: three vectors, head[r][axis] + tail[r][axis]. */
 static int exact_sign(double head[3][3], double tail[3][3])
 {
-  static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } }; /* three even, three odd */
+  static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 0, 2, 1 }, { 2, 1, 0 },
+    { 1, 0, 2 } }; /* three even, three odd */
   expansion sum = { .count = 0 };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     /* An axis may be scaled without a change of sign: by a power of two, lest a product underflow. */
     double largest = 0.0;
     int exponent;
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
       largest = fmax(largest, fabs(head[r][a]));
     }
     if (largest == 0.0) {
       return 0;
     }
     (void)frexp(largest, &exponent);
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
       head[r][a] = ldexp(head[r][a], -exponent);
       tail[r][a] = ldexp(tail[r][a], -exponent);
     }
   }
-  for (int p = 0; p < 6; p++) {
+  for (int p = 0; p < 6; ++p) {
     const double sign = p < 3 ? 1.0 : -1.0;
-    for (int term = 0; term < 8; term++) {
+    for (int term = 0; term < 8; ++term) {
       double factor[3];
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         factor[a] = term >> a & 1 ? tail[order[p][a]][a] : head[order[p][a]][a];
       }
       expansion_add_product(&sum, sign * factor[0], factor[1], factor[2]);
@@ -104,7 +106,7 @@ static inline int filtered_sign(double value, double size)
 
 static void difference(const double a[3], const double b[3], double head[3], double tail[3])
 {
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     add_exactly(a[i], -b[i], &head[i], &tail[i]);
   }
 }
@@ -112,7 +114,7 @@ static void difference(const double a[3], const double b[3], double head[3], dou
 int stratus_orientation(const double a[3], const double b[3], const double c[3], const double d[3])
 {
   double head[3][3], tail[3][3], size;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     head[0][i] = b[i] - a[i];
     head[1][i] = c[i] - a[i];
     head[2][i] = d[i] - a[i];
@@ -172,7 +174,7 @@ int stratus_orientation_along(const double a[3], const double b[3], const double
   if (axis >= 0 && find_sign_along_axis(a, b, c, direction, axis, &axis_sign)) {
     return axis_sign;
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     head[0][i] = b[i] - a[i];
     head[1][i] = c[i] - a[i];
   }

@@ -11,9 +11,9 @@
 typedef enum stratus_ray_variant {
   STRATUS_RAY_MIDPOINT,
   STRATUS_RAY_PREINTEGRATED,
-  STRATUS_RAY_BEST, /* maxima and minima */
-  STRATUS_RAY_ADDED, /* means and sums */
-  STRATUS_RAY_CONTOURS, /* isosurfaces */
+  STRATUS_RAY_BEST,           /* maxima and minima */
+  STRATUS_RAY_ADDED,          /* means and sums */
+  STRATUS_RAY_CONTOURS,       /* isosurfaces */
   STRATUS_RAY_LOOKS_MIDPOINT, /* samples that are lit, .. */
   STRATUS_RAY_LOOKS_PREINTEGRATED
 } stratus_ray_variant;

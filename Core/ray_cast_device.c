@@ -7,7 +7,8 @@
 #include <string.h>
 
 #define LOCAL_SIDE 8 /* work items a group along each axis where a work item is a ray */
-#define TILE 16 /* pixels along each side of a work item's tile where it marches packets: PoCL hands out the last 64 groups in one piece */
+/* Pixels along each side of a work item's tile where it marches packets: PoCL hands out the last 64 groups in one piece. */
+#define TILE 16
 
 _Static_assert(sizeof(stratus_ray_cast_arguments) == 4 * STRATUS_RAY_CAST_ARGUMENTS_WORDS, "arguments must have no padding");
 
@@ -171,9 +172,10 @@ static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_
     [STRATUS_RAY_LOOKS_MIDPOINT] = STRATUS_RAY_LOOKS,
     [STRATUS_RAY_LOOKS_PREINTEGRATED] = STRATUS_RAY_LOOKS };
   char defines[192];
-  int used = snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
-    type, variant == STRATUS_RAY_PREINTEGRATED || variant == STRATUS_RAY_LOOKS_PREINTEGRATED, packets ? 16 : 1, TILE,
-    stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  int used =
+    snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
+      type, variant == STRATUS_RAY_PREINTEGRATED || variant == STRATUS_RAY_LOOKS_PREINTEGRATED, packets ? 16 : 1, TILE,
+      stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
   }
@@ -238,8 +240,8 @@ static stratus_status draw_and_count(
   return status;
 }
 
-stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant,
-  stratus_ray_counts* counts, double* upload_ms, bool* drawn)
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type,
+  stratus_ray_variant variant, stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
   stratus_context* context = caster->context;
   const char* why_not = obstacle(caster);

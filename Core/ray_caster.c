@@ -111,9 +111,8 @@ static bool same_data(const stratus_ray_caster* caster, const stratus_volume* vo
   const stratus_volume* old = &caster->volume;
   return caster->ranges && caster->ranges->block_size == block_size && old->values == volume->values && old->type == volume->type &&
     memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
-    stratus_volume_components(old) == stratus_volume_components(volume) &&
-    old->cell_centered == volume->cell_centered && old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts &&
-    old->revision == volume->revision;
+    stratus_volume_components(old) == stratus_volume_components(volume) && old->cell_centered == volume->cell_centered &&
+    old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts && old->revision == volume->revision;
 }
 
 static int chosen_block_size(const stratus_volume* volume, int wanted)
@@ -288,7 +287,8 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   return caster->looks ? stratus_ray_looks_tables(caster, caster->dependent) : STRATUS_OK;
 }
 
-/* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit. */
+/* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit.
+ */
 static stratus_structure choose_structure(
   const stratus_ray_caster* caster, stratus_structure wanted, bool offered, char* why, size_t capacity)
 {

@@ -57,9 +57,9 @@ struct stratus_ray_caster {
   int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK, HIDDEN_LABELS: what `hidden` holds */
   const uint8_t* mask; /* that it was made from, or NULL */
   uint64_t mask_revision;
-  double* points; /* the transfer functions', copied: opacity, then colour, then gradient opacity, of each */
-  stratus_transfer transfer;     /* the first, or only, .. */
-  stratus_transfer* transfers;   /* .. of these, which stand before the points */
+  double* points;              /* the transfer functions', copied: opacity, then colour, then gradient opacity, of each */
+  stratus_transfer transfer;   /* the first, or only, .. */
+  stratus_transfer* transfers; /* .. of these, which stand before the points */
   int transfer_count;
   stratus_interpolation interpolation; /* with the next three: what the choice was made for */
   stratus_sampling wanted_sampling;
@@ -68,7 +68,7 @@ struct stratus_ray_caster {
   stratus_table* table;
   double table_distance;   /* the sample distance that the table is for .. */
   stratus_ray_shown shown; /* .. and the values */
-  bool looks, dependent; /* of the render at hand: stratus_ray_looks_wanted() */
+  bool looks, dependent;   /* of the render at hand: stratus_ray_looks_wanted() */
   stratus_ray_look_tables look_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
@@ -119,7 +119,8 @@ double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options,
 void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table);
 /* Puts what each block holds at best behind the map's bytes, where the mode asks for it. */
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map);
-void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
+void stratus_ray_modes_arguments(
+  const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster);
 /* Rays show something wherever they meet the bounds, whatever the values. */
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options);
@@ -133,16 +134,17 @@ void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus
 /* ray_looks_table.c */
 int stratus_volume_components(const stratus_volume* volume);
 stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* as a volume of its own */
-int stratus_ray_looks_media(const stratus_volume* volume, const stratus_ray_cast_options* options); /* transfer functions that the render takes */
+int stratus_ray_looks_media(
+  const stratus_volume* volume, const stratus_ray_cast_options* options); /* transfer functions that the render takes */
 stratus_status stratus_ray_looks_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster); /* of the components beside the first */
 void stratus_ray_looks_choose(
   stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent); /* after caster->table */
-bool stratus_ray_looks_several(const stratus_ray_caster* caster); /* tables, so that one map of opacity is not enough */
-bool stratus_ray_looks_show(const stratus_ray_caster* caster); /* anything at all */
-stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
+bool stratus_ray_looks_several(const stratus_ray_caster* caster);                    /* tables, so that one map of opacity is not enough */
+bool stratus_ray_looks_show(const stratus_ray_caster* caster);                       /* anything at all */
+stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster);              /* caster->occupancy, of several components */
 void stratus_ray_looks_release(stratus_ray_caster* caster);
 
 /* ray_mask.c: the bytes of cells that ghosts hide, NULL: none. */
@@ -150,8 +152,7 @@ stratus_status stratus_ray_hidden_make(stratus_context* context, const stratus_v
 /* Whether the mask is the one that caster->hidden was made from; and one put before the bytes of cells (NULL: none are hidden). */
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_mask_join(
-  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden,
-  int* hides);
+  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden, int* hides);
 /* Bytes a cell, as traversal reads them. */
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value);
 
@@ -168,19 +169,20 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
 void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
 
-/* The same checks and window for who draws otherwise. Pixels [window[0], window[1]) x [window[2], window[3]) that the box [lo, hi] covers, and one
- * more each way: all of them where it reaches behind the eye. Vectors as in stratus_camera, in the box's coordinates. */
+/* The same checks and window for who draws otherwise. Pixels [window[0], window[1]) x [window[2], window[3]) that the box [lo, hi] covers,
+ * and one more each way: all of them where it reaches behind the eye. Vectors as in stratus_camera, in the box's coordinates. */
 stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image);
-void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel, const double lo[3],
-  const double hi[3], const int sides[2], int window[4]);
+void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
+  const double lo[3], const double hi[3], const int sides[2], int window[4]);
 
 /* ray_cast.c: all tiles on the host. */
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
 
-/* ray_cast_device.c: the same on the OpenCL device. *drawn stays false where the device can't (too large, no double): the host draws then. */
-stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant,
-  stratus_ray_counts* counts, double* upload_ms, bool* drawn);
+/* ray_cast_device.c: the same on the OpenCL device. *drawn stays false where the device can't (too large, no double): the host draws then.
+ */
+stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type,
+  stratus_ray_variant variant, stratus_ray_counts* counts, double* upload_ms, bool* drawn);
 void stratus_ray_device_destroy(stratus_ray_caster* caster);
 
 #endif

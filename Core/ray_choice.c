@@ -11,17 +11,17 @@
 #define PLACES 8
 /* Pre-integration pays where the opacity is this far from linear within a step, relative to itself. */
 #define BEND_LARGEST 0.25
-/* Steps of the midpoint rule, in voxels, by the mean change of alpha from voxel to voxel. Thin smooth media bear more than a voxel (fog at 1.15:
- * 82 dB); at .9 what the step gets wrong is well below what 8 bits round away; where more than SHARPNESS_LARGEST changes, the step shrinks
- * with it. */
+/* Steps of the midpoint rule, in voxels, by the mean change of alpha from voxel to voxel. Thin smooth media bear more than a voxel (fog
+ * at 1.15: 82 dB); at .9 what the step gets wrong is well below what 8 bits round away; where more than SHARPNESS_LARGEST changes, the step
+ * shrinks with it. */
 #define SHARPNESS_THIN 0.005
 #define SHARPNESS_LARGEST 0.08
 #define MIDPOINT_LONGEST 1.15
 #define MIDPOINT_USUAL 0.9
 #define MIDPOINT_SHORTEST 0.25
-/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear, which narrow peaks over rough fields feel most. Scene peak:
- * 40.1, 38.8, 37.6, 36.5, 35.5 dB at steps of .5, .55, .6, .65, .7, its edited function 1 dB less each: of these the
- * longest that keeps both above 36. */
+/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear, which narrow peaks over rough fields feel most.
+ * Scene peak: 40.1, 38.8, 37.6, 36.5, 35.5 dB at steps of .5, .55, .6, .65, .7, its edited function 1 dB less each: of these the longest
+ * that keeps both above 36. */
 #define PREINTEGRATED_STEP 0.6
 
 /* Axes of no extent count where they are this many times shorter than the others: a sample may not be long along any of them. */

@@ -39,8 +39,9 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
   const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
   const bool fits = slice * slices <= FETCHED_BYTES_MOST / sizeof(float) / (size_t)components;
   if (must && !fits) {
-    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d components of %zu values each of 32 bits and more: together at most %zu values",
-      components, slice * slices, FETCHED_BYTES_MOST / sizeof(float));
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
+      "%d components of %zu values each of 32 bits and more: together at most %zu values", components, slice * slices,
+      FETCHED_BYTES_MOST / sizeof(float));
   }
   if (!caster->fetched) {
     if (!must && (caster->samples_since_data < slice * slices || !fits)) {

@@ -290,8 +290,8 @@ static double pair_value(stratus_pair pair)
   return (double)pair.hi + (double)pair.lo;
 }
 
-void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel, const double lo[3],
-  const double hi[3], const int sides[2], int window[4])
+void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
+  const double lo[3], const double hi[3], const int sides[2], int window[4])
 {
   double matrix[16] = { [15] = 1.0 }, inverse[16], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
   window[0] = window[2] = 0;

@@ -26,8 +26,7 @@ static double length_of(const double v[3])
 }
 
 /* The light as floats tell it: directions of length 1, positions from index (0,0,0) in units of `edge`. */
-static void set_light(
-  const stratus_light* light, const double index_to_world[16], double edge, int number, stratus_ray_cast_arguments* a)
+static void set_light(const stratus_light* light, const double index_to_world[16], double edge, int number, stratus_ray_cast_arguments* a)
 {
   double vector[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -46,8 +45,8 @@ static void set_light(
   a->light_positional[number] = near;
 }
 
-static void set_lights(const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge,
-  stratus_ray_cast_arguments* a)
+static void set_lights(
+  const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge, stratus_ray_cast_arguments* a)
 {
   a->light_count = shading->light_count;
   for (int i = 0; i < shading->light_count; ++i) {
@@ -83,7 +82,8 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
     a->look_scale[c] = table ? table->scale : 0.0f;
     a->look_offset[c] = table ? table->offset : 0.0f;
     a->look_last[c] = table ? (float)(table->size - 1) : 0.0f;
-    a->component_weight[c] = c < looks->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
+    a->component_weight[c] =
+      c < looks->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
   }
 }
 

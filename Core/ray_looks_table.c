@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What samples of looks are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a table
- * each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
+ * What samples of looks are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a
+ * table each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
 #include "ray_caster.h"
 
 #include <float.h>
@@ -38,8 +38,8 @@ stratus_status stratus_ray_looks_check_volume(
       stratus_mode_name(options->mode), components);
   }
   if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one", options->label_count,
-      options->mask ? "with" : "without");
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",
+      options->label_count, options->mask ? "with" : "without");
   }
   if (options->label_count > 0 && (components > 1 || options->mode != STRATUS_MODE_COMPOSITE)) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "labels in mode %s of a volume of %d components: only composite of 1 takes them",
@@ -49,7 +49,8 @@ stratus_status stratus_ray_looks_check_volume(
     return stratus_fail(context, STRATUS_UNSUPPORTED, "3 dependent components, must be 2 or 4");
   }
   if (options->dependent && components == 4 && volume->type != STRATUS_UINT8) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
   }
   for (int c = 0; c < stratus_ray_looks_media(volume, options); ++c) {
     TRY(stratus_transfer_check(context, transfer + c));
@@ -58,7 +59,8 @@ stratus_status stratus_ray_looks_check_volume(
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
     }
     if (options->label_count > 0 && c > 0 && transfer[c].gradient_count > 0) {
-      return stratus_fail(context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
+      return stratus_fail(
+        context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
     }
   }
   return STRATUS_OK;
@@ -121,7 +123,8 @@ static const stratus_value_range* range_of(const stratus_ray_caster* caster, int
   return c == 0 ? caster->ranges : caster->look_tables.ranges[c];
 }
 
-void stratus_ray_looks_choose(stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+void stratus_ray_looks_choose(
+  stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(&caster->volume), media = stratus_ray_looks_media(&caster->volume, options);
   if (components == 1 && media == 1) {
@@ -129,8 +132,11 @@ void stratus_ray_looks_choose(stratus_ray_caster* caster, double voxel, const st
   }
   for (int m = 0; m < media; ++m) {
     stratus_ray_choice choice;
-    stratus_ray_choose(range_of(caster, components == 1 ? 0 : media == 1 ? components - 1 : m), voxel, transfer + m, options->interpolation,
-      STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
+    stratus_ray_choose(range_of(caster,
+                         components == 1 ? 0
+                           : media == 1  ? components - 1
+                                         : m),
+      voxel, transfer + m, options->interpolation, STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
     if (m == 0 || choice.sample_distance < caster->choice.sample_distance) {
       caster->choice = choice;
     }
@@ -152,8 +158,7 @@ static void thicken(const stratus_table* table, float* out)
   }
 }
 
-static stratus_status create_table(
-  stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
+static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
 {
   const stratus_value_range* ranges = range_of(caster, c);
   const bool any = ranges->whole_lo <= ranges->whole_hi;
@@ -332,7 +337,8 @@ stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster)
   stratus_occupancy* whole = NULL;
   stratus_status status = STRATUS_OK;
   const bool labels = has_labels(caster);
-  const int first = caster->dependent && !labels ? looks->components - 1 : 0, count = labels ? looks->label_tables_count : looks->components;
+  const int first = caster->dependent && !labels ? looks->components - 1 : 0,
+            count = labels ? looks->label_tables_count : looks->components;
   for (int c = first; c < count; ++c) {
     stratus_occupancy* part = NULL;
     TRY_CLEANUP(stratus_occupancy_build(

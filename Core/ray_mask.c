@@ -54,8 +54,7 @@ stratus_status stratus_ray_hidden_make(stratus_context* context, const stratus_v
 }
 
 stratus_status stratus_ray_mask_join(
-  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden,
-  int* hides)
+  stratus_context* context, const stratus_volume* volume, const uint8_t* mask, bool labels, bool by_value, uint8_t** hidden, int* hides)
 {
   const int64_t* n = volume->dimensions;
   const size_t values = (size_t)n[0] * (size_t)n[1] * (size_t)n[2], cells = *hidden ? stratus_ray_hidden_cells(volume, by_value) : 0;

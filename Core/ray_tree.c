@@ -29,7 +29,8 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
     TRY(stratus_origin_take_cells(caster->context, caster->ranges, &criterion, &wanted));
     wanted.hash = caster->hash;
     /* Cells of values taken as they are lie apart from those between values: who built the tree knew of the latter only. */
-    caster->tree_serves = stratus_tree_fits(tree, &caster->volume) && stratus_origin_covers(&tree->origin, &wanted) && !caster->hidden_by_value;
+    caster->tree_serves =
+      stratus_tree_fits(tree, &caster->volume) && stratus_origin_covers(&tree->origin, &wanted) && !caster->hidden_by_value;
   }
   *serves = caster->tree_serves == 1;
   return STRATUS_OK;

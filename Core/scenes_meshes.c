@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The meshes of record that are made, not read: a lattice of tetrahedra, where every plane and edge lies in line with others, and a plate full of
- * holes, whose surface a mesher fills: gaps all over, which an order has to see across. Tests and benchmarks share them; a scene is never changed. */
+ * The meshes of record that are made, not read: a lattice of tetrahedra, where every plane and edge lies in line with others, and a plate
+ * full of holes, whose surface a mesher fills: gaps all over, which an order has to see across. Tests and benchmarks share them; a scene is
+ * never changed. */
 #include "internal.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ typedef struct mesh_storage {
 static double wavelet_value(const double point[3])
 {
   double p[3], square = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     p[a] = 2.0 * point[a] / LATTICE - 1.0;
     square += p[a] * p[a];
   }
@@ -43,7 +44,7 @@ static double wavelet_value(const double point[3])
 static double holes_value(const double point[3])
 {
   double along = 1.0, across = 0.0;
-  for (int h = 0; h < HOLES_X * HOLES_Y; h++) {
+  for (int h = 0; h < HOLES_X * HOLES_Y; ++h) {
     const double x = point[0] - (h % HOLES_X + 0.5), y = point[1] - (h / HOLES_X + 0.5), square = fmax(x * x + y * y, 1e-3);
     along -= RADIUS * RADIUS * (x * x - y * y) / (square * square);
     across -= 2.0 * RADIUS * RADIUS * x * y / (square * square);
@@ -66,17 +67,17 @@ static stratus_status make_wavelet(stratus_context* context, mesh_storage* stora
   double* points = storage->points;
   float* values = storage->values;
   int32_t* vertices = storage->vertices;
-  for (int i = 0; i < mesh->point_count; i++) {
+  for (int i = 0; i < mesh->point_count; ++i) {
     points[3 * i] = i % side;
     points[3 * i + 1] = i / side % side;
     points[3 * i + 2] = i / side / side;
     values[i] = (float)wavelet_value(points + 3 * i);
   }
-  for (int box = 0; box < LATTICE * LATTICE * LATTICE; box++) {
-    for (int c = 0; c < 6; c++) {
+  for (int box = 0; box < LATTICE * LATTICE * LATTICE; ++box) {
+    for (int c = 0; c < 6; ++c) {
       int corner = box % LATTICE + box / LATTICE % LATTICE * step[1] + box / LATTICE / LATTICE * step[2];
       *vertices++ = corner;
-      for (int v = 0; v < 3; v++) {
+      for (int v = 0; v < 3; ++v) {
         *vertices++ = corner += step[path[c][v]];
       }
     }
@@ -120,20 +121,23 @@ static void add_quad(plate* p, int32_t a, int32_t b, int32_t c, int32_t d)
   memcpy(p->quads + 4 * p->quad_count++, quad, sizeof quad);
 }
 
-/* Both faces around a hole, its wall, and where the square is at the plate's border the wall there; all seen from outside counterclockwise. */
+/* Both faces around a hole, its wall, and where the square is at the plate's border the wall there; all seen from outside counterclockwise.
+ */
 static void add_square(plate* p, int column, int row, const int32_t* circle, int32_t top)
 {
-  for (int s = 0; s < AROUND; s++) {
+  for (int s = 0; s < AROUND; ++s) {
     int here[2], there[2];
     around_square(s, here);
     around_square((s + 1) % AROUND, there);
-    const int32_t a = p->corner[row * SIDE + here[1]][column * SIDE + here[0]], b = p->corner[row * SIDE + there[1]][column * SIDE + there[0]];
+    const int32_t a = p->corner[row * SIDE + here[1]][column * SIDE + here[0]],
+                  b = p->corner[row * SIDE + there[1]][column * SIDE + there[0]];
     const int32_t c = circle[(s + 1) % AROUND], d = circle[s];
     const int edge = s / SIDE;
     add_quad(p, top + a, top + b, top + c, top + d);
     add_quad(p, d, c, b, a);
     add_quad(p, top + d, top + c, c, d);
-    if ((edge == 0 && row == 0) || (edge == 1 && column == HOLES_X - 1) || (edge == 2 && row == HOLES_Y - 1) || (edge == 3 && column == 0)) {
+    if ((edge == 0 && row == 0) || (edge == 1 && column == HOLES_X - 1) || (edge == 2 && row == HOLES_Y - 1) ||
+      (edge == 3 && column == 0)) {
       add_quad(p, top + b, top + a, a, b);
     }
   }
@@ -151,21 +155,21 @@ static stratus_status make_holes(stratus_context* context, mesh_storage* storage
   TRY(stratus_allocate(context, QUADS, 4 * sizeof(int32_t), &storage->quads));
   p.points = storage->points;
   p.quads = storage->quads;
-  for (int j = 0; j < ACROSS_Y; j++) {
-    for (int i = 0; i < ACROSS_X; i++) {
+  for (int j = 0; j < ACROSS_Y; ++j) {
+    for (int i = 0; i < ACROSS_X; ++i) {
       p.corner[j][i] = i % SIDE == 0 || j % SIDE == 0 ? add_point(&p, (double)i / SIDE, (double)j / SIDE) : -1;
     }
   }
-  for (int h = 0; h < HOLES_X * HOLES_Y; h++) {
+  for (int h = 0; h < HOLES_X * HOLES_Y; ++h) {
     int32_t circle[AROUND];
-    for (int s = 0; s < AROUND; s++) {
+    for (int s = 0; s < AROUND; ++s) {
       const double angle = 2.0 * pi * (s - 1.5 * SIDE) / AROUND; /* corner 0 lies lower left */
       circle[s] = add_point(&p, h % HOLES_X + 0.5 + RADIUS * cos(angle), h / HOLES_X + 0.5 + RADIUS * sin(angle));
     }
     add_square(&p, h % HOLES_X, h / HOLES_X, circle, LAYER_POINTS);
   }
   memcpy(p.points + 3 * LAYER_POINTS, p.points, 3 * LAYER_POINTS * sizeof(double));
-  for (int i = LAYER_POINTS; i < 2 * LAYER_POINTS; i++) {
+  for (int i = LAYER_POINTS; i < 2 * LAYER_POINTS; ++i) {
     p.points[3 * i + 2] = THICKNESS;
   }
   storage->scene.mesh.point_count = 2 * LAYER_POINTS;
@@ -196,7 +200,7 @@ const char* stratus_mesh_scene_name(int index)
 
 static int find_recipe(const char* name)
 {
-  for (int i = 0; i < RECIPES; i++) {
+  for (int i = 0; i < RECIPES; ++i) {
     if (name && strcmp(name, recipes[i].name) == 0) {
       return i;
     }
@@ -215,8 +219,7 @@ stratus_status stratus_mesh_scene_create(stratus_context* context, const char* n
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the scene's address is NULL");
   }
   if (index < 0) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "unknown mesh \"%.100s\"; there are: holes, wavelet", name ? name : "(null)");
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unknown mesh \"%.100s\"; there are: holes, wavelet", name ? name : "(null)");
   }
   TRY(stratus_allocate_zero(context, 1, sizeof(mesh_storage), &memory));
   mesh_storage* storage = memory;

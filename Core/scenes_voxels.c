@@ -110,13 +110,13 @@ typedef struct ball {
 static void fill_blobs(bit_set* set, const ball* blobs, int count, int64_t voxels, uint64_t* state)
 {
   double total = 0.0;
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     total += blobs[i].weight * blobs[i].weight * blobs[i].weight;
   }
   for (int64_t done = 0; done < voxels;) {
     double left = random_unit(state) * total;
     int i = 0;
-    for (; i < count - 1; i++) {
+    for (; i < count - 1; ++i) {
       left -= blobs[i].weight * blobs[i].weight * blobs[i].weight;
       if (left < 0.0) {
         break;
@@ -136,12 +136,12 @@ static void fill_shells(bit_set* set, const ball* shells, int count, int64_t vox
 {
   const int *n = set->n, shorter = n[1] < n[2] ? n[1] : n[2], least = n[0] < shorter ? n[0] : shorter;
   double squares = 0.0;
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     squares += shells[i].weight * shells[i].weight;
   }
   const double radius = fmin((double)least * 0.45, sqrt((double)voxels * 1.6 / (12.566 * squares)));
   int64_t tries = 0;
-  for (int64_t done = 0; done < voxels; tries++) {
+  for (int64_t done = 0; done < voxels; ++tries) {
     const ball* s = shells + random_below(state, count);
     const double a = random_normal(state), b = random_normal(state), c = random_normal(state), length = sqrt(a * a + b * b + c * c);
     const double here = radius * s->weight * (tries > voxels * 50 ? 1.0 + 0.5 * random_unit(state) : 1.0);
@@ -157,16 +157,16 @@ static stratus_status fill_mixture(stratus_context* context, const recipe* recip
   const int64_t in_blobs = (int64_t)((double)recipe->voxels * recipe->in_blobs);
   const int64_t in_shells = (int64_t)((double)recipe->voxels * recipe->in_shells);
   uint64_t state = recipe->seed;
-  for (int i = 0; i < recipe->blobs; i++) {
-    for (int a = 0; a < 3; a++) {
+  for (int i = 0; i < recipe->blobs; ++i) {
+    for (int a = 0; a < 3; ++a) {
       blobs[i].at[a] = random_unit(&state) * recipe->n[a] * .8 + .1 * recipe->n[a];
     }
     blobs[i].weight = 0.5 + random_unit(&state);
   }
   fill_blobs(set, blobs, recipe->blobs, in_blobs, &state);
   TRY(stratus_progress(context, "voxel scene", 0.6));
-  for (int i = 0; i < shell_count; i++) {
-    for (int a = 0; a < 3; a++) {
+  for (int i = 0; i < shell_count; ++i) {
+    for (int a = 0; a < 3; ++a) {
       shells[i].at[a] = random_unit(&state) * recipe->n[a];
     }
     shells[i].weight = 0.5 + random_unit(&state);
@@ -186,10 +186,10 @@ static void fill_cubes(bit_set* set, double in_cubes, uint64_t seed)
   memset(set->bits, 0, words_of(set->n) * sizeof *set->bits);
   while (done < wanted) {
     int at[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       at[a] = random_below(&state, set->n[a] / 8 - 1) * 8;
     }
-    for (int i = 0; i < 8 * 512 && done < wanted; i++) {
+    for (int i = 0; i < 8 * 512 && done < wanted; ++i) {
       const int k = i / 512;
       done += set_voxel(set, at[0] + (k & 1) * 8 + (i & 7), at[1] + (k >> 1 & 1) * 8 + (i >> 3 & 7), at[2] + (k >> 2) * 8 + (i >> 6 & 7));
     }
@@ -203,10 +203,10 @@ static double deviation_of(const bit_set* set)
   const int *n = set->n, rows = DEVIATION_BLOCK;
   double sum = 0.0, squares = 0.0;
   int64_t blocks = 0;
-  for (int64_t b = 0; b < (int64_t)(n[0] / 8) * (n[1] / 8) * (n[2] / 8); b++) {
+  for (int64_t b = 0; b < (int64_t)(n[0] / 8) * (n[1] / 8) * (n[2] / 8); ++b) {
     const size_t i = (size_t)(b % (n[0] / 8)), j = (size_t)(b / (n[0] / 8) % (n[1] / 8)), k = (size_t)(b / (n[0] / 8) / (n[1] / 8));
     int count = 0;
-    for (int r = 0; r < rows * rows; r++) {
+    for (int r = 0; r < rows * rows; ++r) {
       const size_t at = i * 8 + (size_t)n[0] * (j * 8 + (size_t)(r % rows) + (size_t)n[1] * (k * 8 + (size_t)(r / rows)));
       count += __builtin_popcountll(set->bits[at >> 6] >> (at & 63) & 0xff);
     }
@@ -214,7 +214,7 @@ static double deviation_of(const bit_set* set)
       const double density = count / 512.0;
       sum += density;
       squares += density * density;
-      blocks++;
+      ++blocks;
     }
   }
   const double mean = sum / (double)blocks;
@@ -224,7 +224,7 @@ static double deviation_of(const bit_set* set)
 static stratus_status fill_to_deviation(stratus_context* context, const recipe* recipe, bit_set* set)
 {
   double lo = 0.0, hi = 0.9999;
-  for (int i = 0; i < BISECTIONS; i++) {
+  for (int i = 0; i < BISECTIONS; ++i) {
     const double middle = .5 * (lo + hi);
     TRY(stratus_progress(context, "voxel scene", (double)i / BISECTIONS));
     fill_cubes(set, middle, recipe->seed);
@@ -252,7 +252,7 @@ const char* stratus_voxel_scene_name(int index)
 static stratus_status find_recipe(stratus_context* context, const char* name, const recipe** result)
 {
   char names[128] = "";
-  for (int i = 0; i < RECIPES; i++) {
+  for (int i = 0; i < RECIPES; ++i) {
     if (name && strcmp(name, recipes[i].name) == 0) {
       *result = recipes + i;
       return STRATUS_OK;
@@ -267,7 +267,7 @@ static stratus_status find_recipe(stratus_context* context, const char* name, co
 static void list_voxels(const bit_set* set, int32_t* positions)
 {
   const size_t nx = (size_t)set->n[0], ny = (size_t)set->n[1], words = words_of(set->n);
-  for (size_t w = 0; w < words; w++) {
+  for (size_t w = 0; w < words; ++w) {
     for (uint64_t bits = set->bits[w]; bits; bits &= bits - 1) {
       const size_t at = 64 * w + (size_t)__builtin_ctzll(bits);
       *positions++ = (int32_t)(at % nx);
@@ -296,7 +296,7 @@ stratus_status stratus_voxel_scene_create(
   TRY_CLEANUP(recipe->blobs ? fill_mixture(context, recipe, &set) : fill_to_deviation(context, recipe, &set));
   TRY_CLEANUP(stratus_allocate(context, 3 * (size_t)recipe->voxels, sizeof **positions, &list));
   list_voxels(&set, list);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     dimensions[a] = recipe->n[a];
   }
   *positions = list;
@@ -318,7 +318,7 @@ void stratus_voxel_scene_release(stratus_context* context, int32_t* positions)
 /* Kept as floats are, and never all but parallel to a face. */
 static void set_direction(stratus_ray* ray, const double d[3], double length)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const float f = (float)(d[a] / length);
     ray->direction[a] = (double)(fabsf(f) < LEAST_DIRECTION ? LEAST_DIRECTION : f);
   }
@@ -338,14 +338,14 @@ static void primary_rays(const int64_t n[3], stratus_ray* rays)
   const double eye[3] = { nx / 2. + 0.62 * diagonal * 0.70, ny / 2. + 0.62 * diagonal * 0.45, nz / 2. - 0.62 * diagonal * 0.9 };
   double f[3] = { nx / 2. - eye[0], ny / 2. - eye[1], nz / 2. - eye[2] };
   double length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     f[a] /= length;
   }
   length = sqrt(f[2] * f[2] + f[0] * f[0]);
   const double right[3] = { f[2] / length, 0.0, -f[0] / length };
   const double up[3] = { f[1] * right[2] - f[2] * right[1], f[2] * right[0] - f[0] * right[2], f[0] * right[1] - f[1] * right[0] };
   uint64_t state = 99;
-  for (int p = 0; p < RAYS_ACROSS * RAYS_ACROSS; p++) {
+  for (int p = 0; p < RAYS_ACROSS * RAYS_ACROSS; ++p) {
     const double a = (p % RAYS_ACROSS + random_unit(&state)) / RAYS_ACROSS - .5;
     const double b = (p / RAYS_ACROSS + random_unit(&state)) / RAYS_ACROSS - .5;
     const double d[3] = { f[0] + a * right[0] + b * up[0], f[1] + a * right[1] + b * up[1], f[2] + a * right[2] + b * up[2] };
@@ -359,11 +359,11 @@ static void random_rays(const stratus_voxels* voxels, stratus_ray* rays)
 {
   const int64_t* n = voxels->dimensions;
   uint64_t state = 7;
-  for (int p = 0; p < RAYS_ACROSS * RAYS_ACROSS; p++) {
+  for (int p = 0; p < RAYS_ACROSS * RAYS_ACROSS; ++p) {
     int64_t at[3];
     rays[p] = (stratus_ray){ .t_max = INFINITY };
     do {
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         rays[p].origin[a] = round_to_float(random_unit(&state) * (double)n[a]);
         at[a] = (int64_t)rays[p].origin[a]; /* rounding may put it on the far border */
       }

@@ -10,12 +10,11 @@
  *   frees, and _destroy takes NULL. A call that fails returns a status, leaves its outputs as they were, and leaves a
  *   sentence with the value and the allowed range in stratus_context_message().
  *   NULL: options may be, and mean the defaults; else only what a comment says. Otherwise a call that returns a status refuses it with
- *   STRATUS_INVALID_ARGUMENT (without a message where there is no object to leave it in); a call without a status takes an object that is NULL
- *   for an empty one, and writes to no address that is.
- *   One context serves one thread at a time; different contexts are independent, and several threads may make theirs at once. One lock for the
- *   process, the core's only global state, lets a single thread at a time ask OpenCL for its devices, as not every platform's first answer
- *   bears more; nothing else is done under it.
- *   A thread that calls, and each of OpenMP's, needs 128 KiB of stack on the host; what an OpenCL implementation needs comes on top.
+ *   STRATUS_INVALID_ARGUMENT (without a message where there is no object to leave it in); a call without a status takes an object that is
+ * NULL for an empty one, and writes to no address that is. One context serves one thread at a time; different contexts are independent, and
+ * several threads may make theirs at once. One lock for the process, the core's only global state, lets a single thread at a time ask
+ * OpenCL for its devices, as not every platform's first answer bears more; nothing else is done under it. A thread that calls, and each of
+ * OpenMP's, needs 128 KiB of stack on the host; what an OpenCL implementation needs comes on top.
  */
 #ifndef STRATUS_H
 #define STRATUS_H
@@ -127,7 +126,8 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes; 0 for no type
 
 /* A view of values on a regular grid.
  * Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: such a voxel). Types of more than 24
- * bits are taken relative to one of their values (the least in magnitude of some thousand), in double, so that an offset costs no digits. */
+ * bits are taken relative to one of their values (the least in magnitude of some thousand), in double, so that an offset costs no digits.
+ */
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, value_stride apart */
   stratus_type type;
@@ -138,13 +138,13 @@ typedef struct stratus_volume {
   double direction[9];         /* row-major rotation: local = origin + direction * (spacing * index); default identity */
   double matrix[16];           /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
   int cell_centered;           /* 1: a value belongs to a cell: the volume is dimensions*spacing wide and, where linear, clamps
-                            * within half a cell of its border. Default 0: values sit on points, the volume is (dimensions-1)*spacing wide. */
+                                * within half a cell of its border. Default 0: values sit on points, the volume is (dimensions-1)*spacing wide. */
   const uint8_t* point_ghosts; /* dimensions[] flags, NULL: none; not used if cell_centered */
-  const uint8_t* cell_ghosts;  /* a flag a cell, NULL: none. Cells along an axis: dimensions-1, but 1 where that is 0, as VTK counts those of flat
-                                * images; cell_centered: dimensions. */
-  uint64_t revision;           /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
-  int components;              /* 1..4, default 1 (0 is 1): value v's component c is values[v*value_stride + c]. More than 1: ray casts in composite
-                                * mode only; everything else takes component 0. */
+  const uint8_t* cell_ghosts; /* a flag a cell, NULL: none. Cells along an axis: dimensions-1, but 1 where that is 0, as VTK counts those of
+                               * flat images; cell_centered: dimensions. */
+  uint64_t revision;          /* the caller raises it when values or ghosts change under the same pointer. Default 0. */
+  int components; /* 1..4, default 1 (0 is 1): value v's component c is values[v*value_stride + c]. More than 1: ray casts in composite
+                   * mode only; everything else takes component 0. */
 } stratus_volume;
 
 STRATUS_API stratus_volume stratus_volume_default(void);
@@ -160,9 +160,9 @@ typedef struct stratus_transfer {
   size_t color_count;    /* >= 1 */
   double unit_distance;  /* world length that `opacity` is per, > 0. Default 1. */
   int clamp;             /* 1: the end points' opacity holds beyond them. 0: transparent there. Default 1. Colours always hold. */
-  /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1 (above 0,
-   * opacity 1 stays opaque); the ends hold beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it), whatever
-   * the volume's matrix. Default NULL, 0: none. */
+  /* Ray cast, composite: gradient_count pairs: the gradient's magnitude, and what the optical depth is multiplied by there, in 0..1 (above
+   * 0, opacity 1 stays opaque); the ends hold beyond. The magnitude is in values per mean spacing of the grid (as VTK's mappers have it),
+   * whatever the volume's matrix. Default NULL, 0: none. */
   const double* gradient;
   size_t gradient_count;
   double weight; /* independent components: what their optical depth is multiplied by, 0..1. Default 1. */
@@ -223,14 +223,14 @@ typedef struct stratus_occupancy stratus_occupancy;
 /* A block is occupied if the transfer function, as it is sampled, shows anything over the hull of the block's range. */
 STRATUS_API stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges,
   const stratus_transfer* transfer, stratus_sampling sampling, stratus_occupancy** occupancy);
-/* A block is occupied if a value from the least to the largest in it lies in lower..upper, ends included, lower <= upper, infinities allowed.
- * Compared exactly, but types of more than 24 bits as the floats that stand for them, the ends rounded as the values are: such a float counts if
- * any value that it may stand for does. */
+/* A block is occupied if a value from the least to the largest in it lies in lower..upper, ends included, lower <= upper, infinities
+ * allowed. Compared exactly, but types of more than 24 bits as the floats that stand for them, the ends rounded as the values are: such a
+ * float counts if any value that it may stand for does. */
 STRATUS_API stratus_status stratus_occupancy_create_between(
   stratus_context* context, const stratus_value_range* ranges, double lower, double upper, stratus_occupancy** occupancy);
 STRATUS_API void stratus_occupancy_destroy(stratus_occupancy* occupancy);
 STRATUS_API void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks[3], int* block_size);
-STRATUS_API int64_t stratus_occupancy_count(const stratus_occupancy* occupancy); /* occupied blocks */
+STRATUS_API int64_t stratus_occupancy_count(const stratus_occupancy* occupancy);                            /* occupied blocks */
 STRATUS_API int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k); /* 0 beyond the blocks */
 /* Smallest box of occupied blocks, [lo, hi) in blocks; lo = hi = 0 if none. */
 STRATUS_API void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3]);
@@ -268,9 +268,10 @@ typedef struct stratus_voxels stratus_voxels;
 /* Finite values that meet the criterion, but none that is hidden or owned by another piece (cell flags count where cell_centered). */
 STRATUS_API stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
-/* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has them;
- * what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is cell
- * (i,j,k), between the values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges' blocks. */
+/* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has
+ * them; what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is
+ * cell (i,j,k), between the values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges'
+ * blocks. */
 STRATUS_API stratus_status stratus_voxels_create_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* `count` triples of i, j, k, each in 0..dimensions-1; one that comes twice counts once. Index (i,j,k) is world (i+.5, j+.5, k+.5): the
@@ -285,30 +286,31 @@ STRATUS_API int stratus_voxels_get(const stratus_voxels* voxels, int64_t i, int6
 STRATUS_API void stratus_voxels_bounds(const stratus_voxels* voxels, int64_t lo[3], int64_t hi[3]);
 
 /* ---------------------------------------------------------------- density
- * Kernel density of effective voxels (eq. 2 to 5) with the quartic kernel, whose constant in three dimensions is 105 / (32 pi) for densities
- * a voxel to add up to 1. Lengths are voxels, at voxel centres. */
+ * Kernel density of effective voxels (eq. 2 to 5) with the quartic kernel, whose constant in three dimensions is 105 / (32 pi) for
+ * densities a voxel to add up to 1. Lengths are voxels, at voxel centres. */
 
 /* Bandwidth by eq. 3 and 4, never below 1 voxel (a shell's deviation of radii is next to nothing, and below 1 a voxel sees only itself);
  * 1 for fewer than two voxels. `raw`, may be NULL: as printed, unbounded below. */
-STRATUS_API stratus_status stratus_density_bandwidth(stratus_context* context, const stratus_voxels* voxels, double* bandwidth, double* raw);
+STRATUS_API stratus_status stratus_density_bandwidth(
+  stratus_context* context, const stratus_voxels* voxels, double* bandwidth, double* raw);
 /* Density at a point in index coordinates, with its first (eq. 10) and second (eq. 11) partial derivatives. first, second: may be NULL. */
-STRATUS_API stratus_status stratus_density_at(stratus_context* context, const stratus_voxels* voxels, double bandwidth, const double point[3],
-  double* density, double first[3], double second[3]);
+STRATUS_API stratus_status stratus_density_at(stratus_context* context, const stratus_voxels* voxels, double bandwidth,
+  const double point[3], double* density, double first[3], double second[3]);
 
 /* ---------------------------------------------------------------- distance field
  * Euclidean distance, voxel centre to voxel centre, from each voxel to the nearest effective one. */
 
 typedef enum stratus_field_method {
-  STRATUS_FIELD_EXACT,      /* separable, squared distances as integers; zigzag or envelope, whichever is cheaper for the set */
-  STRATUS_FIELD_ZIGZAG,     /* rows searched outward from each voxel, up to the best so far */
-  STRATUS_FIELD_ENVELOPE,   /* lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012) */
-  STRATUS_FIELD_JFA,        /* jump flooding (Rong & Tan 2006): steps n/2, n/4 .. 1 */
-  STRATUS_FIELD_JFA_1,      /* JFA+1: one more pass of step 1 */
-  STRATUS_FIELD_JFA_2,      /* JFA+2: passes of steps 2 and 1 more */
-  STRATUS_FIELD_1_JFA,      /* 1+JFA: a pass of step 1 first */
+  STRATUS_FIELD_EXACT,       /* separable, squared distances as integers; zigzag or envelope, whichever is cheaper for the set */
+  STRATUS_FIELD_ZIGZAG,      /* rows searched outward from each voxel, up to the best so far */
+  STRATUS_FIELD_ENVELOPE,    /* lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012) */
+  STRATUS_FIELD_JFA,         /* jump flooding (Rong & Tan 2006): steps n/2, n/4 .. 1 */
+  STRATUS_FIELD_JFA_1,       /* JFA+1: one more pass of step 1 */
+  STRATUS_FIELD_JFA_2,       /* JFA+2: passes of steps 2 and 1 more */
+  STRATUS_FIELD_1_JFA,       /* 1+JFA: a pass of step 1 first */
   STRATUS_FIELD_JFA_SQUARED, /* JFA^2: all passes twice */
-  STRATUS_FIELD_AJFA,       /* adaptive: E1 (1 - E2) of a pass (eq. 6 and 7) of .05 or more lets the step fall to 3/4, else to 1/2 */
-  STRATUS_FIELD_AJFA_FIG5   /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid; leaves voxels unfilled */
+  STRATUS_FIELD_AJFA,        /* adaptive: E1 (1 - E2) of a pass (eq. 6 and 7) of .05 or more lets the step fall to 3/4, else to 1/2 */
+  STRATUS_FIELD_AJFA_FIG5    /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid; leaves voxels unfilled */
 } stratus_field_method;
 
 STRATUS_API const char* stratus_field_method_name(stratus_field_method method);
@@ -322,10 +324,10 @@ typedef struct stratus_field_options {
 STRATUS_API stratus_field_options stratus_field_options_default(void);
 
 typedef struct stratus_field_report {
-  int passes;              /* over the grid; exact: 3, signed too, for both halves share them; signed floodings: both of them */
-  uint64_t updated;        /* voxels that a flooding pass brought nearer, all passes */
-  int steps[64];           /* floodings: step of each of the first 64 passes */
-  double e1[64], e2[64];   /* floodings: eq. 6 and 7 of each, over the voxels that are not sought; e2 is 1 where none came nearer */
+  int passes;            /* over the grid; exact: 3, signed too, for both halves share them; signed floodings: both of them */
+  uint64_t updated;      /* voxels that a flooding pass brought nearer, all passes */
+  int steps[64];         /* floodings: step of each of the first 64 passes */
+  double e1[64], e2[64]; /* floodings: eq. 6 and 7 of each, over the voxels that are not sought; e2 is 1 where none came nearer */
   double build_ms;
 } stratus_field_report;
 
@@ -334,17 +336,17 @@ typedef struct stratus_field stratus_field;
 /* Over all of the voxels' dimensions. report: may be NULL. Exact fields take 2 bytes a voxel where all distances are below 176, 8 where the
  * grid's diagonal is 46339 or longer, else 4; none where no voxel or every one is effective. STRATUS_OVERFLOW where 4 bytes a voxel do not
  * fit the address space, or where a flooding would need more than 31 bits to name a voxel. Floodings err on the long side only. */
-STRATUS_API stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels, const stratus_field_options* options,
-  stratus_field** field, stratus_field_report* report);
+STRATUS_API stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels,
+  const stratus_field_options* options, stratus_field** field, stratus_field_report* report);
 STRATUS_API void stratus_field_destroy(stratus_field* field);
 /* Distance in voxels; INFINITY where no effective voxel is known (none at all, or a flooding left it unfilled), -INFINITY inside a signed
  * field that is all effective; INFINITY beyond the dimensions. */
 STRATUS_API double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64_t k);
 /* dimensions[0]*[1]*[2] distances, x fastest. */
 STRATUS_API void stratus_field_distances(const stratus_field* field, float* distances);
-/* The paper's layout (2.3): four floats a voxel, the nearest effective voxel's position and the distance; -1, -1, -1, INFINITY where unknown.
- * A signed field names the voxel that its distance goes to; of several equally near ones, the one of the smallest index (a flooding: of those
- * that it found). voxels: those of the field; others of another size or count are STRATUS_INVALID_ARGUMENT. */
+/* The paper's layout (2.3): four floats a voxel, the nearest effective voxel's position and the distance; -1, -1, -1, INFINITY where
+ * unknown. A signed field names the voxel that its distance goes to; of several equally near ones, the one of the smallest index (a
+ * flooding: of those that it found). voxels: those of the field; others of another size or count are STRATUS_INVALID_ARGUMENT. */
 STRATUS_API stratus_status stratus_field_rgba(const stratus_field* field, const stratus_voxels* voxels, float* rgba);
 
 /* ---------------------------------------------------------------- trees for first hits */
@@ -365,7 +367,8 @@ typedef enum stratus_tree_method {
 
 #define STRATUS_TREE_METHODS 11
 
-STRATUS_API const char* stratus_tree_method_name(stratus_tree_method method); /* "hybrid", "hybrid-paper", "distance", "octant", "sah", .. */
+STRATUS_API const char* stratus_tree_method_name(
+  stratus_tree_method method); /* "hybrid", "hybrid-paper", "distance", "octant", "sah", .. */
 
 typedef struct stratus_tree_options {
   stratus_tree_method method; /* default hybrid */
@@ -385,24 +388,24 @@ STRATUS_API stratus_tree_options stratus_tree_options_default(void);
 
 typedef struct stratus_tree stratus_tree;
 
-/* A copy of what it needs: the voxels may go. Out-of-range options: STRATUS_INVALID_ARGUMENT. No voxel at all makes a tree that nothing hits.
- * The same tree on host and device, at any thread count. */
+/* A copy of what it needs: the voxels may go. Out-of-range options: STRATUS_INVALID_ARGUMENT. No voxel at all makes a tree that nothing
+ * hits. The same tree on host and device, at any thread count. */
 STRATUS_API stratus_status stratus_tree_create(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree** tree);
 STRATUS_API void stratus_tree_destroy(stratus_tree* tree);
 
 typedef struct stratus_tree_statistics {
   stratus_tree_method method;
-  int64_t voxels, bricks;    /* bricks: with any effective voxel */
+  int64_t voxels, bricks; /* bricks: with any effective voxel */
   int64_t nodes, leaves, field_leaves;
-  int64_t field_bricks;      /* that distance-field leaves cover */
-  int depth;                 /* of the deepest leaf, the root's is 0 */
+  int64_t field_bricks; /* that distance-field leaves cover */
+  int depth;            /* of the deepest leaf, the root's is 0 */
   size_t bytes;
-  double sah;                /* surface area heuristic, both costs 1; a distance-field leaf counts as one primitive */
-  double bandwidth;          /* of density; 0: none was needed */
+  double sah;       /* surface area heuristic, both costs 1; a distance-field leaf counts as one primitive */
+  double bandwidth; /* of density; 0: none was needed */
   int dbscan_splits, density_splits, sah_splits, median_splits; /* how each split was found */
   double build_ms;
-  char why[256];             /* one sentence: what decided the shape */
+  char why[256]; /* one sentence: what decided the shape */
 } stratus_tree_statistics;
 
 STRATUS_API void stratus_tree_get_statistics(const stratus_tree* tree, stratus_tree_statistics* statistics);
@@ -431,30 +434,31 @@ STRATUS_API void stratus_tree_save(const stratus_tree* tree, void* bytes);
 /* STRATUS_INVALID_ARGUMENT for bytes that are cut short, of another version or byte order, or changed. */
 STRATUS_API stratus_status stratus_tree_load(stratus_context* context, const void* bytes, size_t size, stratus_tree** tree);
 /* 1 if the tree may stand in for one of these voxels' making: it was built for the same use (cells or voxels) from a volume with the same
- * values, dimensions and hidden parts, and its criterion covers this one. Where the volume lies does not count. Reads the whole volume once. */
-STRATUS_API stratus_status stratus_tree_covers(
-  stratus_context* context, const stratus_tree* tree, const stratus_volume* volume, const stratus_criterion* criterion, int cells, int* covers);
+ * values, dimensions and hidden parts, and its criterion covers this one. Where the volume lies does not count. Reads the whole volume
+ * once. */
+STRATUS_API stratus_status stratus_tree_covers(stratus_context* context, const stratus_tree* tree, const stratus_volume* volume,
+  const stratus_criterion* criterion, int cells, int* covers);
 
 typedef struct stratus_ray {
-  double origin[3];     /* world */
-  double direction[3];  /* world, any length > 0 (longest component at least 1e-290 voxels) */
-  double t_min, t_max;  /* origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
+  double origin[3];    /* world */
+  double direction[3]; /* world, any length > 0 (longest component at least 1e-290 voxels) */
+  double t_min, t_max; /* origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
 } stratus_ray;
 
 typedef struct stratus_hit {
-  double t;           /* where the ray enters the voxel, t_min if it begins inside; INFINITY: no hit */
-  int32_t voxel[3];   /* -1: no hit */
-  int32_t face;       /* 2*axis + (1 if it is the upper one) of the voxel's face that the ray enters by; -1 where it begins inside, or no hit */
-  float normal[3];    /* outward, world, of that face (of length 1); begun inside: against the direction */
-  uint32_t visited;   /* nodes and steps in distance fields */
+  double t;         /* where the ray enters the voxel, t_min if it begins inside; INFINITY: no hit */
+  int32_t voxel[3]; /* -1: no hit */
+  int32_t face; /* 2*axis + (1 if it is the upper one) of the voxel's face that the ray enters by; -1 where it begins inside, or no hit */
+  float normal[3];  /* outward, world, of that face (of length 1); begun inside: against the direction */
+  uint32_t visited; /* nodes and steps in distance fields */
 } stratus_hit;
 
 /* The first effective voxel along each of `count` rays: that of stratus_voxels_first_hit() to the bit, edges and corners included, for
  * origins up to some 1e9 voxels away (farther ones may differ where rays graze edges). Rays with a direction of length 0, or with a number
  * that is not finite (t_max aside): STRATUS_INVALID_ARGUMENT with the first one's index, and `hits` undefined. Threads and device: the
  * context's; trees of one leaf go in packets, or on the device, others ray by ray on the host. */
-STRATUS_API stratus_status stratus_tree_first_hit(stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count,
-  stratus_hit* hits);
+STRATUS_API stratus_status stratus_tree_first_hit(
+  stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count, stratus_hit* hits);
 /* The same answer by a plain walk from voxel to voxel in double precision, one thread: slow, and the measure of the other. */
 STRATUS_API stratus_status stratus_voxels_first_hit(
   stratus_context* context, const stratus_voxels* voxels, const stratus_ray* rays, size_t count, stratus_hit* hits);
@@ -477,18 +481,20 @@ typedef enum stratus_interpolation { STRATUS_INTERPOLATION_LINEAR, STRATUS_INTER
 
 typedef enum stratus_mode {
   STRATUS_MODE_COMPOSITE, /* light through the whole of a ray */
-  STRATUS_MODE_FIRST_HIT, /* effective voxels (opacity > 0) as lit solids, opaque. Structure none walks from voxel to voxel, block and distance
-                           * read one distance field, octant eight of them, hybrid and auto a hybrid tree: all the same picture. */
-  STRATUS_MODE_MAXIMUM, /* the largest value sampled along the ray, in its colour and its opacity (not per length) */
-  STRATUS_MODE_MINIMUM, /* the smallest */
-  STRATUS_MODE_AVERAGE, /* grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in average_range */
-  STRATUS_MODE_ADDITIVE, /* grey: the integral of opacity times value along the ray, lengths in unit_distance */
-  STRATUS_MODE_ISOSURFACE /* surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind the other.
-                           * Linear interpolation only. Exact: the field is a cubic along the ray in each cell, and all its roots are met. */
+  STRATUS_MODE_FIRST_HIT, /* effective voxels (opacity > 0) as lit solids, opaque. Structure none walks from voxel to voxel, block and
+                           * distance read one distance field, octant eight of them, hybrid and auto a hybrid tree: all the same picture. */
+  STRATUS_MODE_MAXIMUM,   /* the largest value sampled along the ray, in its colour and its opacity (not per length) */
+  STRATUS_MODE_MINIMUM,   /* the smallest */
+  STRATUS_MODE_AVERAGE,   /* grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in
+                             average_range */
+  STRATUS_MODE_ADDITIVE,  /* grey: the integral of opacity times value along the ray, lengths in unit_distance */
+  STRATUS_MODE_ISOSURFACE /* surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind
+                           * the other. Linear interpolation only. Exact: the field is a cubic along the ray in each cell, and all its roots
+                           * are met. */
 } stratus_mode;
 
-/* Means and sums take a value as a part of the whole volume's range of finite values, are cut off at 1, and are opaque: sums wherever a ray meets the
- * volume's bounds, means where anything counts. */
+/* Means and sums take a value as a part of the whole volume's range of finite values, are cut off at 1, and are opaque: sums wherever a ray
+ * meets the volume's bounds, means where anything counts. */
 
 /* "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" */
 STRATUS_API const char* stratus_mode_name(stratus_mode mode);
@@ -507,10 +513,10 @@ typedef struct stratus_light {
   int positional;
 } stratus_light;
 
-/* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R V)^power).
- * Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn), and specular
- * where N L > 0 only; N against the gradient by central differences, 0 where that is 0. Where nothing is lit (first hit: on is 0; composite and
- * isosurface: shade is 0; other modes), no other number of it is read or refused. */
+/* Phong's: with the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R
+ * V)^power). Samples of volumes (composite) are lit as VTK's mappers light them: N H in place of R V, H half way between L and V (Blinn),
+ * and specular where N L > 0 only; N against the gradient by central differences, 0 where that is 0. Where nothing is lit (first hit: on is
+ * 0; composite and isosurface: shade is 0; other modes), no other number of it is read or refused. */
 typedef struct stratus_shading {
   int on;                /* first hit; 0: c = C. Default 1. Composite: see stratus_ray_cast_options.shade */
   double ambient;        /* 0..STRATUS_LIGHT_MAX, as the next three; default .1 */
@@ -519,7 +525,7 @@ typedef struct stratus_shading {
   double specular_power; /* default 10 */
   int light_count;       /* 0..8, or -1 (default): one white light at the eye (parallel: from its plane) */
   stratus_light lights[STRATUS_LIGHTS_MAX];
-  int one_sided;         /* composite; 1: only sides that face the light, against the gradient, are lit. Default 0: N is turned towards the eye. */
+  int one_sided; /* composite; 1: only sides that face the light, against the gradient, are lit. Default 0: N is turned towards the eye. */
 } stratus_shading;
 
 #define STRATUS_CLIP_PLANES_MAX 6
@@ -536,12 +542,13 @@ typedef struct stratus_ray_cast_options {
   int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4. More where the maps would outgrow 2e9 bytes. */
   int crop;               /* 1: only the regions of crop_regions. Default 0. */
   double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
-  uint32_t crop_regions;  /* of the 27 that the bounds' six planes divide space into: bit x + 3 y + 9 z is set where region (x, y, z) is shown, each 0
-                           * (below the lower plane), 1 (between the planes) or 2. Default STRATUS_CROP_INSIDE: between all planes. */
-  int clip_plane_count;   /* 0..6 */
+  uint32_t
+    crop_regions; /* of the 27 that the bounds' six planes divide space into: bit x + 3 y + 9 z is set where region (x, y, z) is shown, each
+                   * 0 (below the lower plane), 1 (between the planes) or 2. Default STRATUS_CROP_INSIDE: between all planes. */
+  int clip_plane_count;                           /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: a x + b y + c z + d >= 0 is kept */
   int audit;                                      /* 1: also march without structure and count the pixels whose bits differ. Default 0. */
-  stratus_mode mode;       /* default composite */
+  stratus_mode mode;                              /* default composite */
   stratus_normals normals; /* first hit; default faces. A ray that a clip plane or the crop cuts within a voxel has their normal. */
   stratus_shading shading; /* first hit; composite and isosurface with shade */
   int shade;               /* composite and isosurface; 1: samples are lit by `shading`. Default 0 */
@@ -617,9 +624,9 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
  * one, occupancy_builds the making of voxels; sampling, sample distance, termination and block size are not used. A change of colours alone
  * rebuilds nothing. */
 
-/* Offers a tree that comes with the data, as stratus_tree_save() wrote it: structure hybrid, and auto in first hits, use it in place of one of the
- * caster's own where it serves (stratus_tree_covers(); first hits: with the same voxels exactly). The bytes are copied. NULL: none any more. Bytes
- * that stratus_tree_load() refuses: its status, and none is offered any more. */
+/* Offers a tree that comes with the data, as stratus_tree_save() wrote it: structure hybrid, and auto in first hits, use it in place of one
+ * of the caster's own where it serves (stratus_tree_covers(); first hits: with the same voxels exactly). The bytes are copied. NULL: none
+ * any more. Bytes that stratus_tree_load() refuses: its status, and none is offered any more. */
 STRATUS_API stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const void* bytes, size_t size);
 
 /* Frees what was built, on host and device; the next render builds anew. An offered tree stays. */
@@ -627,8 +634,8 @@ STRATUS_API void stratus_ray_caster_release(stratus_ray_caster* caster);
 
 /* ---------------------------------------------------------------- frustum
  * What a camera sees, as six half-spaces: a x + b y + c z + d >= 0 is inside. Normals of any length. A plane {0, 0, 0, d} is none if d >= 0
- * (a far plane at infinity), and lets nothing through if d < 0. So off-centre and stereo cameras, and a window's part, are frusta like others;
- * vtkCamera::GetFrustumPlanes() has this order and sign. */
+ * (a far plane at infinity), and lets nothing through if d < 0. So off-centre and stereo cameras, and a window's part, are frusta like
+ * others; vtkCamera::GetFrustumPlanes() has this order and sign. */
 typedef struct stratus_frustum {
   double planes[6][4]; /* left, right, bottom, top, near, far */
   double eye[3];       /* stop rules by distance measure from here; the planes alone tell what is seen */
@@ -641,25 +648,25 @@ STRATUS_API stratus_status stratus_frustum_check(stratus_context* context, const
 
 typedef enum stratus_side { STRATUS_SIDE_OUTSIDE, STRATUS_SIDE_CROSSING, STRATUS_SIDE_INSIDE } stratus_side;
 
-/* A box xmin xmax ymin ymax zmin zmax against the six half-spaces, by its nearest and farthest corner (Assarsson & Moller 2000). "Outside" is
- * certain; a box beyond a frustum's edge may be told as crossing, unless `exact` (1) also tries every separating axis. Bounds that
- * are not finite cross. */
+/* A box xmin xmax ymin ymax zmin zmax against the six half-spaces, by its nearest and farthest corner (Assarsson & Moller 2000). "Outside"
+ * is certain; a box beyond a frustum's edge may be told as crossing, unless `exact` (1) also tries every separating axis. Bounds that are
+ * not finite cross. */
 STRATUS_API stratus_side stratus_frustum_side(const stratus_frustum* frustum, const double bounds[6], int exact);
 
 /* ---------------------------------------------------------------- octree of objects
- * Thousands to millions of boxes, and which of them a frustum sees: Li & Huang 2024 (layered linear octree, split on demand). Each level is one
- * array in Morton order, eight slots a parent. A node's code is its place: it is not stored, nor is any link; its children are found by
+ * Thousands to millions of boxes, and which of them a frustum sees: Li & Huang 2024 (layered linear octree, split on demand). Each level is
+ * one array in Morton order, eight slots a parent. A node's code is its place: it is not stored, nor is any link; its children are found by
  * counting the split nodes before it. A node is split when a frustum's border (or a query's) crosses it and the stop rule allows, and
  * is whole again when no border has crossed it for long.
  *
  * What is seen does not depend on the tree: an object is visible if its box reaches into each of the six half-spaces (rounded so that a box
  * that touches is seen), at every stop rule, depth, history and number of threads; with `exact`, if it also has no separating axis.
- * Only the order of the list depends on the tree. Touching placement without `exact` is the paper's, and differs where boxes are out of sight: it
- * keeps those whose sphere touches a node that is seen whole, and drops those of which no node crosses the frustum.
+ * Only the order of the list depends on the tree. Touching placement without `exact` is the paper's, and differs where boxes are out of
+ * sight: it keeps those whose sphere touches a node that is seen whole, and drops those of which no node crosses the frustum.
  *
- * Objects have ids 0.. that stay theirs until removed; the lowest-numbered freed ids are not necessarily the next. Bounds are xmin xmax ymin
- * ymax zmin zmax, min <= max; an empty interval (min > max) is refused. An object with a bound that is NaN, infinite or beyond 1e30 has no
- * bounds: it is in every frustum and box, and in no answer of the other queries. */
+ * Objects have ids 0.. that stay theirs until removed; the lowest-numbered freed ids are not necessarily the next. Bounds are xmin xmax
+ * ymin ymax zmin zmax, min <= max; an empty interval (min > max) is refused. An object with a bound that is NaN, infinite or beyond 1e30
+ * has no bounds: it is in every frustum and box, and in no answer of the other queries. */
 
 typedef enum stratus_octree_placement {
   STRATUS_OCTREE_ENCLOSING, /* in the smallest node that encloses it: once. Default. */
@@ -679,21 +686,20 @@ typedef enum stratus_octree_stop {
 typedef struct stratus_octree_options {
   stratus_octree_placement placement; /* default enclosing */
   stratus_octree_stop stop;           /* default pixels */
-  int levels;            /* below the root, 0..21; default 21. 0 is the linear list: every object is tested, and nothing is built. */
-  int leaf_objects;      /* a node of so many or fewer is not split, 1..2^20; default 256 */
-  double pixels;         /* > 0, of a window 1000 pixels high; default 32 */
-  double c;              /* C of the rules by distance, > 0; default 35 */
-  double looseness;      /* enclosing: nodes count as this many times wider, 1..2, so that few objects straddle; default 1.25 */
-  int collapse_after;    /* calls of stratus_octree_cull() that a node's children outlive unseen, 0: for ever; default 256 */
-  int64_t split_budget;  /* objects that one call may hand down to children before it leaves the rest for the next one, 0: any; default 0 */
+  int levels;           /* below the root, 0..21; default 21. 0 is the linear list: every object is tested, and nothing is built. */
+  int leaf_objects;     /* a node of so many or fewer is not split, 1..2^20; default 256 */
+  double pixels;        /* > 0, of a window 1000 pixels high; default 32 */
+  double c;             /* C of the rules by distance, > 0; default 35 */
+  double looseness;     /* enclosing: nodes count as this many times wider, 1..2, so that few objects straddle; default 1.25 */
+  int collapse_after;   /* calls of stratus_octree_cull() that a node's children outlive unseen, 0: for ever; default 256 */
+  int64_t split_budget; /* objects that one call may hand down to children before it leaves the rest for the next one, 0: any; default 0 */
 } stratus_octree_options;
 
 STRATUS_API stratus_octree_options stratus_octree_options_default(void);
 
 typedef struct stratus_octree stratus_octree;
 
-STRATUS_API stratus_status stratus_octree_create(
-  stratus_context* context, const stratus_octree_options* options, stratus_octree** octree);
+STRATUS_API stratus_status stratus_octree_create(stratus_context* context, const stratus_octree_options* options, stratus_octree** octree);
 /* Its views first. */
 STRATUS_API void stratus_octree_destroy(stratus_octree* octree);
 
@@ -727,8 +733,8 @@ typedef struct stratus_octree_cull_options {
 
 typedef struct stratus_octree_visible {
   const uint32_t* ids;   /* of what is visible, each once */
-  const float* coverage; /* NULL unless asked for: share of the window, 0..1, of the square about the object's bounding sphere, both cut at the
-                          * slice through its centre; 1 for objects without bounds, and where there is no slice */
+  const float* coverage; /* NULL unless asked for: share of the window, 0..1, of the square about the object's bounding sphere, both cut at
+                          * the slice through its centre; 1 for objects without bounds, and where there is no slice */
   const float* depth;    /* NULL unless asked for: distance of its centre from the near plane, negative before it; 0 without bounds */
   size_t count;
   /* of this call */
@@ -738,14 +744,15 @@ typedef struct stratus_octree_visible {
   uint64_t objects_handed_down;          /* by splits */
 } stratus_octree_visible;
 
-/* What the frustum sees; options may be NULL. The arrays stay valid until the view's next call or end. Refines the tree where the frustum's border
- * is. Out of memory leaves the tree whole, and what was visible undefined. */
-STRATUS_API stratus_status stratus_octree_cull(stratus_octree_view* view, const stratus_frustum* frustum,
-  const stratus_octree_cull_options* options, stratus_octree_visible* visible);
+/* What the frustum sees; options may be NULL. The arrays stay valid until the view's next call or end. Refines the tree where the frustum's
+ * border is. Out of memory leaves the tree whole, and what was visible undefined. */
+STRATUS_API stratus_status stratus_octree_cull(
+  stratus_octree_view* view, const stratus_frustum* frustum, const stratus_octree_cull_options* options, stratus_octree_visible* visible);
 
-/* Queries refine the tree, too: they split what they cross if it holds more than leaf_objects, whatever the stop rule. Lists are in rising order of
- * id (nearest: of distance, then id). `ids` gets the first `capacity`, *count how many there are. Boxes are closed, a turned one counts as its
- * bounds; distances go to the box, 0 within. Numbers that are not finite, where the comments name none: STRATUS_INVALID_ARGUMENT. */
+/* Queries refine the tree, too: they split what they cross if it holds more than leaf_objects, whatever the stop rule. Lists are in rising
+ * order of id (nearest: of distance, then id). `ids` gets the first `capacity`, *count how many there are. Boxes are closed, a turned one
+ * counts as its bounds; distances go to the box, 0 within. Numbers that are not finite, where the comments name none:
+ * STRATUS_INVALID_ARGUMENT. */
 /* min <= max; bounds may be infinite. */
 STRATUS_API stratus_status stratus_octree_query_box(
   stratus_octree* octree, const double bounds[6], uint32_t* ids, size_t capacity, size_t* count);
@@ -773,7 +780,7 @@ typedef struct stratus_octree_statistics {
 STRATUS_API void stratus_octree_get_statistics(const stratus_octree* octree, stratus_octree_statistics* statistics);
 
 typedef struct stratus_octree_node {
-  double bounds[6];  /* of the cell */
+  double bounds[6]; /* of the cell */
   int level;
   int split;
   size_t objects;    /* in its own list */
@@ -782,24 +789,25 @@ typedef struct stratus_octree_node {
 
 /* All nodes, statistics.nodes of them, level by level in Morton order; bounds are 0 while statistics.root is. frustum may be NULL. */
 STRATUS_API stratus_status stratus_octree_nodes(const stratus_octree* octree, const stratus_frustum* frustum, stratus_octree_node* nodes);
-/* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message. */
+/* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message.
+ */
 STRATUS_API stratus_status stratus_octree_check(const stratus_octree* octree);
 
 /* ---------------------------------------------------------------- tetrahedra */
 
 /* A view of a mesh of linear tetrahedra. */
 typedef struct stratus_mesh {
-  const double* points;     /* point_count triples, local coordinates, finite */
-  int64_t point_count;      /* 0..2^31-1; points that no cell uses are allowed */
-  const int32_t* vertices;  /* cell_count quadruples of point numbers; any orientation */
-  int64_t cell_count;       /* 0..2^30-1 */
-  const void* values;       /* a value a point, or a cell, value_stride apart; NULL where only geometry counts */
+  const double* points;    /* point_count triples, local coordinates, finite */
+  int64_t point_count;     /* 0..2^31-1; points that no cell uses are allowed */
+  const int32_t* vertices; /* cell_count quadruples of point numbers; any orientation */
+  int64_t cell_count;      /* 0..2^30-1 */
+  const void* values;      /* a value a point, or a cell, value_stride apart; NULL where only geometry counts */
   stratus_type type;
-  int64_t value_stride;     /* in values, >= 1. Default 1. */
-  int cell_values;          /* 1: a value belongs to a cell, constant in it. Default 0. */
-  const uint8_t* hidden;    /* a flag a cell, not 0: transparent; NULL: none. Values that are not finite hide their cells, too. */
-  double matrix[16];        /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
-  uint64_t revision;        /* the caller raises it when anything changes under the same pointers. Default 0. */
+  int64_t value_stride;  /* in values, >= 1. Default 1. */
+  int cell_values;       /* 1: a value belongs to a cell, constant in it. Default 0. */
+  const uint8_t* hidden; /* a flag a cell, not 0: transparent; NULL: none. Values that are not finite hide their cells, too. */
+  double matrix[16];     /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
+  uint64_t revision;     /* the caller raises it when anything changes under the same pointers. Default 0. */
 } stratus_mesh;
 
 STRATUS_API stratus_mesh stratus_mesh_default(void);
@@ -809,11 +817,12 @@ STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const st
 /* ---------------------------------------------------------------- partition of a mesh
  * A mesh cut along planes into the leaves of a K-D tree (Li et al. 2012, section 2), so that each cell lies in one leaf and leaves can be
  * sorted apart. Points keep their numbers; a point on a cut edge comes behind them, once, whoever asks for it: pieces of neighbours meet in
- * the same points and faces. A point within 2^-46 of the cells' largest coordinate of a plane lies on it, for all cells alike: it is not cut
- * off, stays where it is, and its cells reach over the plane by so much. A cell that has a volume leaves no piece without one. */
+ * the same points and faces. A point within 2^-46 of the cells' largest coordinate of a plane lies on it, for all cells alike: it is not
+ * cut off, stays where it is, and its cells reach over the plane by so much. A cell that has a volume leaves no piece without one. */
 
 typedef enum stratus_partition_rule {
-  STRATUS_PARTITION_MEDIAN, /* of the planes through the mesh's own points between the 40 % and the 60 % quantile, the one that cuts fewest cells */
+  STRATUS_PARTITION_MEDIAN, /* of the planes through the mesh's own points between the 40 % and the 60 % quantile, the one that cuts fewest
+                               cells */
   STRATUS_PARTITION_PAPER   /* of evenly spaced planes, the one that adds fewest cells among those that growth and imbalance admit */
 } stratus_partition_rule;
 
@@ -821,11 +830,11 @@ typedef struct stratus_partition_options {
   stratus_partition_rule rule; /* default median */
   int depth;                   /* 0..16: at most 2^depth leaves. Default 3. */
   int planes;                  /* tried an axis and node, 1..4096. Default 64. */
-  double growth;               /* the paper's Phi: most new cells per cell of the node, > 0, may be INFINITY. Default INFINITY (paper: .3). */
-  double imbalance;            /* the paper's epsilon: |l - r| / ((l + r)/2) is below it, > 0. Default .5. */
-  int rotations;               /* where no plane is admissible at the root the mesh is turned this many times at most, and cut again,
-                                * 0..64. Default 0. */
-  int64_t leaf_cells;          /* a node of so many or fewer is not cut, >= 1. Default 1024. */
+  double growth;      /* the paper's Phi: most new cells per cell of the node, > 0, may be INFINITY. Default INFINITY (paper: .3). */
+  double imbalance;   /* the paper's epsilon: |l - r| / ((l + r)/2) is below it, > 0. Default .5. */
+  int rotations;      /* where no plane is admissible at the root the mesh is turned this many times at most, and cut again,
+                       * 0..64. Default 0. */
+  int64_t leaf_cells; /* a node of so many or fewer is not cut, >= 1. Default 1024. */
 } stratus_partition_options;
 
 STRATUS_API stratus_partition_options stratus_partition_options_default(void);
@@ -842,10 +851,10 @@ typedef struct stratus_partition_node {
 /* A tree over a mesh: what a partition gives, and what an order takes. */
 typedef struct stratus_leaves {
   const stratus_partition_node* nodes;
-  int32_t node_count;      /* >= 1 */
-  int32_t leaf_count;      /* 1..65536 */
-  const int32_t* leaf;     /* of each cell, 0..leaf_count-1 */
-  double frame[9];         /* rows: the axes along which the tree cuts, in the mesh's local coordinates. The identity unless it was rotated. */
+  int32_t node_count;  /* >= 1 */
+  int32_t leaf_count;  /* 1..65536 */
+  const int32_t* leaf; /* of each cell, 0..leaf_count-1 */
+  double frame[9];     /* rows: the axes along which the tree cuts, in the mesh's local coordinates. The identity unless it was rotated. */
 } stratus_leaves;
 
 typedef struct stratus_partition stratus_partition;
@@ -856,19 +865,19 @@ STRATUS_API stratus_status stratus_partition_create(
 STRATUS_API void stratus_partition_destroy(stratus_partition* partition);
 
 typedef struct stratus_partition_result {
-  const double* points;     /* point_count triples: the mesh's, then those on cut edges */
+  const double* points; /* point_count triples: the mesh's, then those on cut edges */
   int64_t point_count;
-  const int32_t* vertices;  /* cell_count quadruples, leaf by leaf; each with the orientation of the cell that it comes from */
+  const int32_t* vertices; /* cell_count quadruples, leaf by leaf; each with the orientation of the cell that it comes from */
   int64_t cell_count;
-  const int32_t* cells;     /* the mesh's cell that each comes from */
+  const int32_t* cells; /* the mesh's cell that each comes from */
   stratus_leaves leaves;
-  int64_t old_points;       /* points of the mesh */
-  const int32_t* ends;      /* 2 for each new point old_points + i: the ends of its edge, lower numbers than its own (one may be new, too) */
-  const double* weights;    /* 1 for each: value = (1 - weight)*value(ends[0]) + weight*value(ends[1]), 0 < weight < 1 */
-  int64_t cut_cells;        /* of the mesh, that are not whole any more */
-  int64_t tiny_pieces;      /* left out: of cells with a volume, but rounding left them none */
-  int64_t largest_leaf;     /* cells */
-  int rotations;            /* made */
+  int64_t old_points;    /* points of the mesh */
+  const int32_t* ends;   /* 2 for each new point old_points + i: the ends of its edge, lower numbers than its own (one may be new, too) */
+  const double* weights; /* 1 for each: value = (1 - weight)*value(ends[0]) + weight*value(ends[1]), 0 < weight < 1 */
+  int64_t cut_cells;     /* of the mesh, that are not whole any more */
+  int64_t tiny_pieces;   /* left out: of cells with a volume, but rounding left them none */
+  int64_t largest_leaf;  /* cells */
+  int rotations;         /* made */
 } stratus_partition_result;
 
 /* Valid while the partition lives. */
@@ -877,71 +886,72 @@ STRATUS_API void stratus_partition_get(const stratus_partition* partition, strat
 /* ---------------------------------------------------------------- visibility order
  * The cells of a mesh in an order in which none hides one before it. Which of two neighbours lies in front follows from the side of their
  * face on which the eye is: in double where its rounding cannot matter, else in exact arithmetic. So an order is exact where relations pass
- * through faces. Cells on both sides of a gap are ordered by their border faces where these cover one another in the view (nearest first only;
- * layers crosses gaps as it comes). Leaves are in order by their planes.
- * Cells without volume pass relations on; folded ones (two neighbours on the same side of a face) count as not sharing it. Cells with
- * coincident faces count as sharing them, even if they name different points. */
+ * through faces. Cells on both sides of a gap are ordered by their border faces where these cover one another in the view (nearest first
+ * only; layers crosses gaps as it comes). Leaves are in order by their planes. Cells without volume pass relations on; folded ones (two
+ * neighbours on the same side of a face) count as not sharing it. Cells with coincident faces count as sharing them, even if they name
+ * different points. */
 
 typedef struct stratus_visibility_order stratus_visibility_order;
 
 typedef enum stratus_peeling {
-  STRATUS_PEELING_NEAREST, /* one of the nearest, by distance in steps of hundreds of cells, after all that hide it and have not come yet, which
-                            * are looked for depth first (Williams 1992). Default. */
+  STRATUS_PEELING_NEAREST, /* one of the nearest, by distance in steps of hundreds of cells, after all that hide it and have not come yet,
+                            * which are looked for depth first (Williams 1992). Default. */
   STRATUS_PEELING_LAYERS   /* all that nothing hides, then all that only these hid, ... (Li et al. 2012, section 3.1) */
 } stratus_peeling;
 
-/* Borrows the mesh (points, vertices) and what `leaves` points at, for as long as the order lives. leaves NULL: one leaf. A cell that leaves
- * its leaf's box, by more than a partition's cells may, is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
+/* Borrows the mesh (points, vertices) and what `leaves` points at, for as long as the order lives. leaves NULL: one leaf. A cell that
+ * leaves its leaf's box, by more than a partition's cells may, is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
 STRATUS_API stratus_status stratus_visibility_order_create(
   stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** order);
 STRATUS_API void stratus_visibility_order_destroy(stratus_visibility_order* order);
 
 typedef struct stratus_visibility_result {
-  const uint32_t* cells;    /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
+  const uint32_t* cells; /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
   int64_t count;
-  int layers;               /* peeling layers: of the leaf that has most; else 0 */
-  int64_t cycles;           /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
-                             * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
-  int64_t forced;           /* cells that may have come before some that hide them. Layers: by distance alone, as cycles were too many to follow. Nearest:
-                             * that came without a look across the gaps at them, as those were given up, see `overlaps` and `gate_tests` */
-  int64_t overlaps;         /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
-                             * A leaf of n cells gives up gaps after 64 + sqrt(n), */
-  int64_t gate_tests;       /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make.
-                             * or after 64 g sqrt(g) of these, for its g border faces at gaps, or after parts of both that add up to one */
-  int64_t exact_signs;      /* that double could not tell */
+  int layers;     /* peeling layers: of the leaf that has most; else 0 */
+  int64_t cycles; /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
+                   * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
+  int64_t
+    forced;            /* cells that may have come before some that hide them. Layers: by distance alone, as cycles were too many to follow.
+                        * Nearest:      that came without a look across the gaps at them, as those were given up, see `overlaps` and `gate_tests` */
+  int64_t overlaps;    /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
+                        * A leaf of n cells gives up gaps after 64 + sqrt(n), */
+  int64_t gate_tests;  /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make.
+                        * or after 64 g sqrt(g) of these, for its g border faces at gaps, or after parts of both that add up to one */
+  int64_t exact_signs; /* that double could not tell */
   int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
-  int reused;               /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
-                             * has not moved (parallel: nor the direction turned). */
-  size_t bytes;             /* the order's own */
+  int reused;   /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
+                 * has not moved (parallel: nor the direction turned). */
+  size_t bytes; /* the order's own */
   double build_ms, signs_ms, peel_ms; /* of its making; of this call */
 } stratus_visibility_result;
 
 /* The order from the camera's eye (parallel: along its forward), whose right and up don't count. matrix: world = matrix * local, as in
- * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the signs
- * of meshes that are not small, the host what rounding leaves open, and the order. */
+ * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the
+ * signs of meshes that are not small, the host what rounding leaves open, and the order. */
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 
 /* ---------------------------------------------------------------- tetrahedra picture
- * Rays march from cell to cell through faces. Every cell that a ray meets counts with its exact thickness, its field linear between where the
- * ray enters and leaves (a cell's own value: constant), the transfer function pre-integrated over it. No order is needed, and gaps, hollows and
- * several parts are walked in the order in which the ray meets their borders. Which faces a ray meets is decided exactly, in one plane
- * for all cells, so that no ray slips between two cells or meets a face twice. Folded and inverted cells are drawn as parts of their own: where
- * cells overlap, both count, one after the other. */
+ * Rays march from cell to cell through faces. Every cell that a ray meets counts with its exact thickness, its field linear between where
+ * the ray enters and leaves (a cell's own value: constant), the transfer function pre-integrated over it. No order is needed, and gaps,
+ * hollows and several parts are walked in the order in which the ray meets their borders. Which faces a ray meets is decided exactly, in
+ * one plane for all cells, so that no ray slips between two cells or meets a face twice. Folded and inverted cells are drawn as parts of
+ * their own: where cells overlap, both count, one after the other. */
 
 typedef enum stratus_tetra_mode {
   STRATUS_TETRA_COMPOSITE, /* light through the whole of a ray */
   STRATUS_TETRA_MAXIMUM    /* the largest value on a ray: its colour, at the opacity of one unit distance */
 } stratus_tetra_mode;
 
-/* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same sums. They differ by the rounding of
- * floats: below .01 of 255 on the mean (root mean square), from whatever distance, and however a parallel camera's right and up lean towards its
- * forward. (A perspective one's are taken as they are: beyond 60 degrees off the right angle thickness loses digits.) A pixel in which projection
- * finds its cells out of order is drawn again, nearest piece first, so that no order of cells is trusted. Only where cells overlap do the ways
- * differ: pieces in order of depth, or one way through neighbours after the other. */
+/* Two ways to one picture: the same faces are met at the same depths, and pieces of cells shaded by the same sums. They differ by the
+ * rounding of floats: below .01 of 255 on the mean (root mean square), from whatever distance, and however a parallel camera's right and up
+ * lean towards its forward. (A perspective one's are taken as they are: beyond 60 degrees off the right angle thickness loses digits.) A
+ * pixel in which projection finds its cells out of order is drawn again, nearest piece first, so that no order of cells is trusted. Only
+ * where cells overlap do the ways differ: pieces in order of depth, or one way through neighbours after the other. */
 typedef enum stratus_tetra_method {
-  STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never changes it.
-                                * Where the context has a device: march */
+  STRATUS_TETRA_METHOD_AUTO,   /* the one that should cost less, by counts of cells, pixels and segments; a camera that stands still never
+                                * changes it.   Where the context has a device: march */
   STRATUS_TETRA_METHOD_MARCH,  /* rays march from cell to cell */
   STRATUS_TETRA_METHOD_PROJECT /* cells that can show something are sorted, dealt to tiles of pixels, and composited there */
 } stratus_tetra_method;
@@ -950,11 +960,11 @@ STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
 
 typedef struct stratus_tetra_options {
   stratus_tetra_mode mode; /* default composite */
-  double termination;      /* a ray ends when its alpha passes this, 0..1; default .9999: what is left out is a fortieth of a step of 8 bits.
-                            * Not in mode maximum. */
-  stratus_tetra_method method; /* default auto */
-  const stratus_leaves* leaves; /* of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster
-                                 * draws with others or is released. Default NULL: one leaf. */
+  double termination; /* a ray ends when its alpha passes this, 0..1; default .9999: what is left out is a fortieth of a step of 8 bits.
+                       * Not in mode maximum. */
+  stratus_tetra_method method;  /* default auto */
+  const stratus_leaves* leaves; /* of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the
+                                 * caster draws with others or is released. Default NULL: one leaf. */
 } stratus_tetra_options;
 
 STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
@@ -962,34 +972,36 @@ STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
 typedef struct stratus_tetra_report {
   stratus_tetra_method method; /* march or project */
   char why[256];               /* the reason, one sentence */
-  uint64_t rays;     /* march: pixels whose ray meets a cell, in front of the eye or behind it; project: that meet a cell which can show */
-  uint64_t entries;  /* march: faces through which rays came in from outside */
-  uint64_t segments; /* march: cells that rays passed, those before the near plane included; project: pieces of cells that were composited */
-  uint64_t stuck;    /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
-  int64_t cells, shown_cells;      /* of the mesh; those neither hidden nor blanked */
-  int64_t blanked;                 /* left out though not hidden: of values that are not finite floats, or that name a point more than once */
-  int64_t repeated;                /* of those: that name a point more than once, and so have no volume */
-  int64_t border_faces;            /* of shown cells */
-  int64_t flat, inverted, broken_faces, folded_faces; /* cells without volume, of negative orientation; faces shared by more than two; by two on
-                                                       * the same side */
-  uint64_t mesh_builds, table_builds; /* since the caster was created: a camera move raises none */
+  uint64_t rays;    /* march: pixels whose ray meets a cell, in front of the eye or behind it; project: that meet a cell which can show */
+  uint64_t entries; /* march: faces through which rays came in from outside */
+  uint64_t
+    segments;     /* march: cells that rays passed, those before the near plane included; project: pieces of cells that were composited */
+  uint64_t stuck; /* ways through cells that ended inside, for no face could be told: 0 unless coordinates underflow */
+  int64_t cells, shown_cells; /* of the mesh; those neither hidden nor blanked */
+  int64_t blanked;            /* left out though not hidden: of values that are not finite floats, or that name a point more than once */
+  int64_t repeated;           /* of those: that name a point more than once, and so have no volume */
+  int64_t border_faces;       /* of shown cells */
+  int64_t flat, inverted, broken_faces, folded_faces; /* cells without volume, of negative orientation; faces shared by more than two; by
+                                                       * two on the same side */
+  uint64_t mesh_builds, table_builds;                 /* since the caster was created: a camera move raises none */
   double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* of this call; 0: not done */
-  int64_t cells_in_view;               /* project: that can show something in some pixel */
-  uint64_t pairs;                      /* project: of a cell and a tile */
-  int32_t leaves;                      /* project: sorted in parallel */
-  int64_t cycles;                      /* project: of the order, see stratus_visibility_result */
-  uint64_t again;                      /* project: pixels drawn twice, as their cells had come in a wrong order */
-  double sort_ms, bin_ms, project_ms;  /* project: order, outlines and tiles of cells, pixels */
-  size_t bytes;      /* of what is kept for the mesh, and a frame's */
+  int64_t cells_in_view;                                         /* project: that can show something in some pixel */
+  uint64_t pairs;                                                /* project: of a cell and a tile */
+  int32_t leaves;                                                /* project: sorted in parallel */
+  int64_t cycles;                                                /* project: of the order, see stratus_visibility_result */
+  uint64_t again;                                                /* project: pixels drawn twice, as their cells had come in a wrong order */
+  double sort_ms, bin_ms, project_ms;                            /* project: order, outlines and tiles of cells, pixels */
+  size_t bytes;                                                  /* of what is kept for the mesh, and a frame's */
 } stratus_tetra_report;
 
 typedef struct stratus_tetra_caster stratus_tetra_caster;
 
-/* World lengths between the camera and what it draws are at most the first, 1.2e27, and a mesh is at least one over it long (or a point), so that
- * lengths and optical depths over them are floats with all their digits. A parallel camera's window is at most the second, 1.1e12, times
- * narrower than what it draws lies off its middle, so that products of two such coordinates, and a value, are floats. The first holds for
- * coordinates in units of a perspective camera's right and up, too, times forward's length, and for how far a parallel one's lean along forward; the
- * second for how much longer than forward a perspective one's are. Others are STRATUS_INVALID_ARGUMENT, with the number in the message. */
+/* World lengths between the camera and what it draws are at most the first, 1.2e27, and a mesh is at least one over it long (or a point),
+ * so that lengths and optical depths over them are floats with all their digits. A parallel camera's window is at most the second, 1.1e12,
+ * times narrower than what it draws lies off its middle, so that products of two such coordinates, and a value, are floats. The first holds
+ * for coordinates in units of a perspective camera's right and up, too, times forward's length, and for how far a parallel one's lean along
+ * forward; the second for how much longer than forward a perspective one's are. Others are STRATUS_INVALID_ARGUMENT, with the number in the
+ * message. */
 #define STRATUS_TETRA_REACH 1237940039285380274899124224.0 /* 2^90 */
 #define STRATUS_TETRA_WINDOWS 1099511627776.0              /* 2^40 */
 
@@ -997,12 +1009,14 @@ STRATUS_API stratus_status stratus_tetra_caster_create(stratus_context* context,
 STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
 /* Marches on the context's device, or on the host where there is none or the mesh is too large for it; projects on the host, whatever the
- * device. The mesh must have values; it is read when pointers, counts, type, stride or revision differ from the last call's, else only its matrix.
- * Opacity is per world length. image: samples gets the segments of the pixel; depth the world distance to the first segment that contributes
- * (maximum: to where the largest value is). options, report may be NULL. A failed call leaves the picture undefined, and the caster fit for the
- * next call. At most INT32_MAX/8 cells, INT32_MAX/4 points and INT32_MAX/8 faces at the border: more are STRATUS_UNSUPPORTED. */
-STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
+ * device. The mesh must have values; it is read when pointers, counts, type, stride or revision differ from the last call's, else only its
+ * matrix. Opacity is per world length. image: samples gets the segments of the pixel; depth the world distance to the first segment that
+ * contributes (maximum: to where the largest value is). options, report may be NULL. A failed call leaves the picture undefined, and the
+ * caster fit for the next call. At most INT32_MAX/8 cells, INT32_MAX/4 points and INT32_MAX/8 faces at the border: more are
+ * STRATUS_UNSUPPORTED. */
+STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh,
+  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
+  stratus_tetra_report* report);
 /* Frees what was built; the next render builds anew. */
 STRATUS_API void stratus_tetra_caster_release(stratus_tetra_caster* caster);
 
@@ -1013,11 +1027,11 @@ typedef struct stratus_scene {
   const char* name;
   stratus_volume volume;
   stratus_transfer transfer;
-  stratus_transfer edited; /* the second transfer function, for measuring edits */
+  stratus_transfer edited;           /* the second transfer function, for measuring edits */
   const stratus_transfer* transfers; /* as many as the volume has components: the first is `transfer` */
-  int up_axis;             /* 0..2, of the cameras */
-  double occupied;         /* fraction of values > 0 */
-  double mean;             /* of the values */
+  int up_axis;                       /* 0..2, of the cameras */
+  double occupied;                   /* fraction of values > 0 */
+  double mean;                       /* of the values */
 } stratus_scene;
 
 /* Names: cloud, plume, fog, haze, peak, voxel; plume2: the plume as two pollutants, of which the first turns into the second on the way. */
@@ -1032,8 +1046,8 @@ STRATUS_API stratus_status stratus_scene_camera(
 /* World bounds of a volume. */
 STRATUS_API stratus_status stratus_volume_bounds(stratus_context* context, const stratus_volume* volume, double bounds[6]);
 
-/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M; and their rays, 512*512 of each kind: kind 0 primary, 1 random from empty
- * voxels, in world coordinates of stratus_voxels_create_list(). */
+/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M; and their rays, 512*512 of each kind: kind 0 primary, 1 random from
+ * empty voxels, in world coordinates of stratus_voxels_create_list(). */
 STRATUS_API int stratus_voxel_scene_count(void);
 STRATUS_API const char* stratus_voxel_scene_name(int index); /* NULL beyond */
 /* *positions: *count triples, freed with stratus_voxel_scene_release(). */
@@ -1045,8 +1059,8 @@ STRATUS_API stratus_status stratus_voxel_scene_rays(stratus_context* context, co
 /* Meshes of record that are made: holes (a plate with 24 of them) and wavelet (998,250 tetrahedra of a lattice). */
 typedef struct stratus_mesh_scene {
   const char* name;
-  stratus_mesh mesh;     /* wavelet: tetrahedra and a float a point. holes: points of a closed surface, no cells and no values */
-  const int32_t* quads;  /* holes: its faces, 4 point numbers each, planar, counterclockwise from outside; else NULL */
+  stratus_mesh mesh;    /* wavelet: tetrahedra and a float a point. holes: points of a closed surface, no cells and no values */
+  const int32_t* quads; /* holes: its faces, 4 point numbers each, planar, counterclockwise from outside; else NULL */
   int64_t quad_count;
   double maximum_volume; /* of a tetrahedron when a mesher fills the surface: about 800 thousand of them by TetGen; else 0 */
 } stratus_mesh_scene;

@@ -18,7 +18,7 @@ static stratus_status make_input(stratus_context* context, size_t bytes, const v
 
 static void release_buffers(cl_mem* buffers, size_t count)
 {
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     stratus_device_buffer_release(buffers[i]);
   }
 }
@@ -163,7 +163,7 @@ static stratus_status search_maps(stratus_context* context, stratus_distance_map
 
   TRY_CLEANUP(make_buffer(context, sums_count(map->blocks) * sizeof(cl_uint), &sums));
   TRY_CLEANUP(run_sums(context, map->blocks, occupied, sums));
-  for (int octant = 0; octant < octants; octant++) {
+  for (int octant = 0; octant < octants; ++octant) {
     const cl_int whole = octants == 1;
     const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
     const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x),
@@ -184,7 +184,7 @@ static stratus_status run_paper(stratus_context* context, const int64_t blocks[3
   const cl_ulong count = (cl_ulong)(nx * ny * nz);
   const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(target), ARGUMENT(count), ARGUMENT(distance[0]) };
   TRY(stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
-  for (cl_int axis = 0; axis < 3; axis++) {
+  for (cl_int axis = 0; axis < 3; ++axis) {
     const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
       ARGUMENT(distance[(axis + 1) & 1]) };
     TRY(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), blocks));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The renderer of tetrahedra: checks what it is given, builds anew what changed (mesh -> cells and border; transfer function -> table), draws,
- * reports. */
+ * The renderer of tetrahedra: checks what it is given, builds anew what changed (mesh -> cells and border; transfer function -> table),
+ * draws, reports. */
 #include "tetra_caster.h"
 
 #include "image.h"
@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the error. */
+/* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the
+ * error. */
 #define PIECES 4.0f
 /* Cells end at any value, tables at entries: what light errs by falls with their width. */
 #define ENTRIES 32768

@@ -11,15 +11,15 @@
 /* What rays read of a mesh, made once for all views. Only shown cells are linked to each other. */
 typedef struct stratus_tetra_mesh {
   stratus_context* context;
-  int32_t* cells;    /* TETRA_CELL*cell_count, those near each other in space near each other here */
-  int32_t* names;    /* of each of the mesh's points in `cells` and `faces`, in the order in which cells come to them */
-  float* values;     /* a fetched value a point; NULL where cells have them */
+  int32_t* cells;     /* TETRA_CELL*cell_count, those near each other in space near each other here */
+  int32_t* names;     /* of each of the mesh's points in `cells` and `faces`, in the order in which cells come to them */
+  float* values;      /* a fetched value a point; NULL where cells have them */
   float* cell_values; /* a fetched value a cell, in the order of `cells`, or NULL */
-  uint8_t* shown;    /* a byte a cell */
+  uint8_t* shown;     /* a byte a cell */
   stratus_tetra_face* faces;
   size_t face_count;
-  double lo[3], hi[3];   /* bounds of the points that shown cells use, local */
-  float low, high;       /* fetched values of shown cells, low > high if there is none */
+  double lo[3], hi[3]; /* bounds of the points that shown cells use, local */
+  float low, high;     /* fetched values of shown cells, low > high if there is none */
   double bias;
   int64_t cell_count, shown_cells, blanked, repeated, flat, inverted, broken, folded;
   size_t bytes;
@@ -30,11 +30,11 @@ struct stratus_tetra_caster {
   stratus_mesh view; /* what `mesh` was made from */
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
-  double* transfer_points; /* the transfer function's, copied: opacity, then colour */
+  double* transfer_points;            /* the transfer function's, copied: opacity, then colour */
   stratus_transfer transfer;
   stratus_tetra_mode mode; /* that the table is for */
   stratus_table* table;
-  int32_t* march_sums; /* stratus_tetra_sums() */
+  int32_t* march_sums;          /* stratus_tetra_sums() */
   stratus_tetra_device* device; /* copies on the OpenCL device, NULL on the host */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
@@ -53,12 +53,13 @@ typedef struct stratus_tetra_places {
 stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names);
 
 /* tetra_march.c: running sums of a table up to the middle of each entry, for values are rounded to the nearest one: up to its lower end all
- * would be taken as half an entry too low. Behind them what each entry is by itself. Four of an entry side by side. Then the table's two rows of
- * opaque entries. NULL where it has none. */
+ * would be taken as half an entry too low. Behind them what each entry is by itself. Four of an entry side by side. Then the table's two
+ * rows of opaque entries. NULL where it has none. */
 #define STRATUS_TETRA_SUMS 10 /* ints an entry */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
-/* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept. */
+/* tetra_frame.c: points in the rays' coordinates, rays of rows and columns; to march also border faces by tile. Buffers grow and are kept.
+ */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
 /* tetra_choice.c: march or project, and the reason. */

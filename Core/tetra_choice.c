@@ -11,8 +11,8 @@
 /* Cells looked at: their counts are right to some percent, which costs less than a tenth of a millisecond. */
 #define SAMPLE 2048
 
-/* Nanoseconds of one core, measured on three meshes of 190 to 860 thousand cells at 512 x 512: per cell that a ray passes; per piece composited,
- * packet of pixels tried, cell in view, cell sorted. Only their proportions count. */
+/* Nanoseconds of one core, measured on three meshes of 190 to 860 thousand cells at 512 x 512: per cell that a ray passes; per piece
+ * composited, packet of pixels tried, cell in view, cell sorted. Only their proportions count. */
 #define MARCH_SEGMENT 7.5
 #define PROJECT_PIECE 6.0
 #define PROJECT_PACKET 14.0
@@ -23,7 +23,7 @@
 #define PACKET_EDGE 4.0
 
 typedef struct view_counts {
-  double passed;                  /* segments of rays */
+  double passed;                 /* segments of rays */
   double shown, pieces, packets; /* cells in view that can show something, and of those */
 } view_counts;
 
@@ -47,8 +47,8 @@ static double length_of(const double v[3])
 }
 
 /* Pixels that a cell covers, on the mean over its turns: a quarter of its surface (Cauchy). 0: out of view. */
-static double covered_pixels(const stratus_mesh* mesh, const stratus_camera* camera, const stratus_image* image, const double inverse[16],
-  int64_t cell)
+static double covered_pixels(
+  const stratus_mesh* mesh, const stratus_camera* camera, const stratus_image* image, const double inverse[16], int64_t cell)
 {
   double p[4][3], middle[3] = { 0.0 }, from[3], seen[3], surface = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -87,8 +87,8 @@ static bool can_show(const stratus_tetra_caster* caster, const stratus_mesh* mes
   return !*hidden && (caster->mode == STRATUS_TETRA_MAXIMUM || stratus_table_shows(caster->table, lo, hi));
 }
 
-static void count_view(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera, const stratus_image* image,
-  const double inverse[16], view_counts* counts)
+static void count_view(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_image* image, const double inverse[16], view_counts* counts)
 {
   const int64_t sample = mesh->cell_count < SAMPLE ? mesh->cell_count : SAMPLE;
   const double each = (double)mesh->cell_count / (double)sample;
@@ -134,7 +134,8 @@ stratus_tetra_method stratus_tetra_choose(const stratus_tetra_caster* caster, co
   const double project =
     PROJECT_PIECE * counts.pieces + PROJECT_PACKET * counts.packets + PROJECT_CELL * counts.shown + PROJECT_SORT * sorted;
   const stratus_tetra_method method = project < march ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
-  snprintf(why, capacity, "%s: some %.2g million cells to be passed by rays, against %.2g million pieces of %.2g million cells, %.2g million sorted",
+  snprintf(why, capacity,
+    "%s: some %.2g million cells to be passed by rays, against %.2g million pieces of %.2g million cells, %.2g million sorted",
     stratus_tetra_method_name(method), 1e-6 * counts.passed, 1e-6 * counts.pieces, 1e-6 * counts.shown, 1e-6 * sorted);
   return method;
 }

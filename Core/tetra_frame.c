@@ -57,8 +57,8 @@ static double lean_of(const double side[3], const double forward[3])
   return fabs(along) > RIGHT_ANGLE * sqrt(stratus_vector_dot(side, side) * square) ? along / square : 0.0;
 }
 
-/* Parallel rays are the same from wherever along them k is counted: from a plane at right angles to them, so that a mesh is as deep as it is, and
- * not as its width leans along a sheared camera's right and up. Perspective: as the camera is. */
+/* Parallel rays are the same from wherever along them k is counted: from a plane at right angles to them, so that a mesh is as deep as it
+ * is, and not as its width leans along a sheared camera's right and up. Perspective: as the camera is. */
 static void find_basis(frame_build* build, double basis[16])
 {
   stratus_tetra_frame* frame = build->frame;
@@ -98,8 +98,9 @@ static stratus_status find_matrix(frame_build* build)
   return STRATUS_OK;
 }
 
-/* World lengths, along rays, and optical depths over them have to be floats; parallel: edges of faces, products of two coordinates in windows, times
- * values, too. *largest in forwards. What is flat, seen from the front, may be as thin as it likes: it is not drawn, nor refused. */
+/* World lengths, along rays, and optical depths over them have to be floats; parallel: edges of faces, products of two coordinates in
+ * windows, times values, too. *largest in forwards. What is flat, seen from the front, may be as thin as it likes: it is not drawn, nor
+ * refused. */
 static stratus_status check_reach(const frame_build* build, double size, double across, double* largest)
 {
   const stratus_tetra_frame* frame = build->frame;
@@ -214,7 +215,8 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   const stratus_camera* c = &frame->camera;
   const stratus_image* image = &frame->image;
   const double *f = c->forward, *r = c->right, *u = c->up, square = stratus_vector_dot(f, f);
-  const double products[6] = { square, 2.0 * stratus_vector_dot(f, r), 2.0 * stratus_vector_dot(f, u), stratus_vector_dot(r, r), 2.0 * stratus_vector_dot(r, u), stratus_vector_dot(u, u) };
+  const double products[6] = { square, 2.0 * stratus_vector_dot(f, r), 2.0 * stratus_vector_dot(f, u), stratus_vector_dot(r, r),
+    2.0 * stratus_vector_dot(r, u), stratus_vector_dot(u, u) };
   for (int i = 0; i < 6; ++i) { /* parallel rays are all as long, however wide their window */
     a->square[i] = c->parallel && i > 0 ? 0.0f : (float)(products[i] / square);
   }

@@ -14,7 +14,8 @@ static void find_shown(
 {
   int64_t shown = 0, blanked = 0, repeated = 0;
   float low = INFINITY, high = -INFINITY;
-#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown, blanked, repeated) reduction(min : low) reduction(max : high)
+#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown, blanked, repeated) reduction(min : low)                  \
+  reduction(max : high)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const int32_t* v = mesh->vertices + 4 * cell;
     float least = INFINITY, most = -INFINITY;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra on the host: the cells in view, in order of visibility, dealt to tiles so that each tile has its own nearest first;
- * then all tiles, in parallel. Which thread does what changes nothing: a tile's cells come in the one order. */
+ * Projection of tetrahedra on the host: the cells in view, in order of visibility, dealt to tiles so that each tile has its own nearest
+ * first; then all tiles, in parallel. Which thread does what changes nothing: a tile's cells come in the one order. */
 #include "tetra_caster.h"
 
 #include "mesh.h"
@@ -221,8 +221,7 @@ static stratus_status bin_cells(
   return STRATUS_OK;
 }
 
-static stratus_status draw_tiles(
-  stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
+static stratus_status draw_tiles(stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
 {
   const int tiles = projection->columns * projection->rows;
   stratus_tetra_project_tile* const work = tile_for(best_isa(context));

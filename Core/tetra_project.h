@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Tetrahedra drawn by projection: cells in order of visibility are dealt to tiles of pixels, and each tile composites its cells front to back.
- * The work on lanes is compiled once for each instruction set and picked at run time. */
+ * Tetrahedra drawn by projection: cells in order of visibility are dealt to tiles of pixels, and each tile composites its cells front to
+ * back. The work on lanes is compiled once for each instruction set and picked at run time. */
 #ifndef STRATUS_TETRA_PROJECT_H
 #define STRATUS_TETRA_PROJECT_H
 
@@ -34,8 +34,8 @@ typedef struct stratus_tetra_projection {
   const uint32_t* bins;      /* cells that may cover a tile, nearest first */
 } stratus_tetra_projection;
 
-/* rects of cells [first, beyond): empty where a cell is hidden, transparent, before the near plane or beyond the far one, or covers no pixel.
- * Returns how many are not. */
+/* rects of cells [first, beyond): empty where a cell is hidden, transparent, before the near plane or beyond the far one, or covers no
+ * pixel. Returns how many are not. */
 typedef int64_t stratus_tetra_outlines(const stratus_tetra_projection* projection, int64_t first, int64_t beyond);
 /* The pixels of one tile. */
 typedef void stratus_tetra_project_tile(const stratus_tetra_projection* projection, int tile, stratus_tetra_project_counts* counts);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pixels of a tile whose pieces came out of order, drawn again: the nearest pieces of their rays are collected from all cells of the tile, drawn,
- * and then the nearest behind those. Included by tetra_project_host.c. */
+ * Pixels of a tile whose pieces came out of order, drawn again: the nearest pieces of their rays are collected from all cells of the tile,
+ * drawn, and then the nearest behind those. Included by tetra_project_host.c. */
 #ifndef STRATUS_TETRA_PROJECT_AGAIN_H
 #define STRATUS_TETRA_PROJECT_AGAIN_H
 
@@ -12,7 +12,7 @@
 typedef struct nearest_pieces {
   int pixel[WIDTH], pixels; /* which, how many */
   float us[WIDTH], uw[WIDTH], vs[WIDTH], vw[WIDTH];
-  int x0, x1, y0, y1; /* about them, of the picture */
+  int x0, x1, y0, y1;            /* about them, of the picture */
   int count[WIDTH], lost[WIDTH]; /* lost: there are more than KEPT */
   float at[WIDTH][KEPT], to[WIDTH][KEPT], first[WIDTH][KEPT], last[WIDTH][KEPT];
   uint32_t rank[WIDTH][KEPT]; /* of the cell, for equal depths */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which rays of a packet meet a cell, and where they enter and leave it. Included by tetra_project_host.c.
  *
- * Any cell: by the signs of its edges as rays see them, exact and the same for all cells that share one, as the march does. Most cells: by the four
- * planes. Where a ray meets plane k is linear over the screen in s = 1 - w0/w (parallel: w - w0), w0 the depth of the cell's first point: so that
- * nothing is lost of a small cell far away. It enters at the largest s of the planes that face the eye, leaves at the smallest of the others. A
- * cell for which floats would not do (seen edge-on, thin, behind the eye in part) goes the other way. */
+ * Any cell: by the signs of its edges as rays see them, exact and the same for all cells that share one, as the march does. Most cells: by
+ * the four planes. Where a ray meets plane k is linear over the screen in s = 1 - w0/w (parallel: w - w0), w0 the depth of the cell's first
+ * point: so that nothing is lost of a small cell far away. It enters at the largest s of the planes that face the eye, leaves at the
+ * smallest of the others. A cell for which floats would not do (seen edge-on, thin, behind the eye in part) goes the other way. */
 #ifndef STRATUS_TETRA_PROJECT_CELLS_H
 #define STRATUS_TETRA_PROJECT_CELLS_H
 
@@ -12,8 +12,8 @@
 
 /* Cells that come nearer than this to the eye's plane, in units of the largest coordinate, have no safe outline in floats. */
 #define NEAREST_OUTLINE 0x1p-6f
-/* Planes may be used where rounding moves a barycentric coordinate by less than 2^-13, and where rays meet a plane by less than 2^-12 of the
- * cell's depth; 2^-22 is what each of their few operations adds at most. */
+/* Planes may be used where rounding moves a barycentric coordinate by less than 2^-13, and where rays meet a plane by less than 2^-12 of
+ * the cell's depth; 2^-22 is what each of their few operations adds at most. */
 #define COORDINATE_MOST 0x1p9f
 #define CROSSING_MOST 0x1p10f
 
@@ -85,7 +85,8 @@ INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vf
 
 /* ---- most cells */
 
-/* Planes of a batch of cells, a cell a lane. s of plane k = c + a dx + b dy; the field at s is value + (vc + va dx + vb dy - vs s)/(1 - shear s). */
+/* Planes of a batch of cells, a cell a lane. s of plane k = c + a dx + b dy; the field at s is value + (vc + va dx + vb dy - vs s)/(1 -
+ * shear s). */
 typedef struct cell_planes {
   float a[4][WIDTH], b[4][WIDTH], c[4][WIDTH];
   float value[WIDTH], va[WIDTH], vb[WIDTH], vc[WIDTH], vs[WIDTH], least[WIDTH], most[WIDTH];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra for one instruction set, STRATUS_ISA: outlines of cells, a cell a lane; then the cells of a tile, a pixel a lane. What a
- * pixel shows depends on its cells and their order alone, not on how many lanes there are. Where cells come in a wrong order (across gaps, in
- * cycles, where they overlap) it shows: a piece begins before the last one ends. Such pixels are drawn again, nearest pieces first. */
+ * Projection of tetrahedra for one instruction set, STRATUS_ISA: outlines of cells, a cell a lane; then the cells of a tile, a pixel a
+ * lane. What a pixel shows depends on its cells and their order alone, not on how many lanes there are. Where cells come in a wrong order
+ * (across gaps, in cycles, where they overlap) it shows: a piece begins before the last one ends. Such pixels are drawn again, nearest
+ * pieces first. */
 #include "tetra_project_again.h"
 #include "tetra_project_cells.h"
 
@@ -175,8 +176,7 @@ static void draw_any_cell(project_tile* t, uint32_t cell)
       const vmask live = v_lt(near, v_load(t->open + place));
       ray_piece piece;
       if (m_any(live)) {
-        const vmask met =
-          pass_cell(&c, v_load(t->us[column]), v_load(t->uw[column]), v_load(t->vs[row]), v_load(t->vw[row]), live, &piece);
+        const vmask met = pass_cell(&c, v_load(t->us[column]), v_load(t->uw[column]), v_load(t->vs[row]), v_load(t->vw[row]), live, &piece);
         if (m_any(met)) {
           put_piece(t, met, &piece, place);
         }

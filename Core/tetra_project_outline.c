@@ -2,7 +2,8 @@
  * The outline of a cell that reaches behind the eye: what of it lies before the near plane is cut off, then the rest has one. */
 #include "tetra_project.h"
 
-/* Nearer than this to the eye's plane nothing is looked for, in units of the largest coordinate: less than a float's rounding of the depth. */
+/* Nearer than this to the eye's plane nothing is looked for, in units of the largest coordinate: less than a float's rounding of the depth.
+ */
 #define NEAREST_CUT 0x1p-30
 #define SLACK 1.0 /* pixels */
 

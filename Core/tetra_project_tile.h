@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tile of pixels under projection: what its pixels have gathered, and pieces of cells on their way there. Included by tetra_project_host.c.
- * Pieces are shaded a piece a lane, then put behind what their pixels have gathered, one after the other. */
+ * A tile of pixels under projection: what its pixels have gathered, and pieces of cells on their way there. Included by
+ * tetra_project_host.c. Pieces are shaded a piece a lane, then put behind what their pixels have gathered, one after the other. */
 #ifndef STRATUS_TETRA_PROJECT_TILE_H
 #define STRATUS_TETRA_PROJECT_TILE_H
 
@@ -14,8 +14,8 @@
 #define UPWARDS (PROJECT_TILE / PACKET_Y)
 #define PIECES 256 /* collected before they are shaded: few enough to stay in the innermost cache */
 
-/* A piece lies before the last one of its pixel, out of order, if it begins by more before that one's end than rounding explains: a share of its
- * depth and of its length. */
+/* A piece lies before the last one of its pixel, out of order, if it begins by more before that one's end than rounding explains: a share
+ * of its depth and of its length. */
 #define OUT_OF_ORDER 0x1p-19f
 #define OUT_OF_ORDER_LENGTH 0x1p-8f
 
@@ -39,7 +39,7 @@ typedef struct project_tile {
   float dx[ACROSS][WIDTH], dy[UPWARDS][WIDTH]; /* from the tile's first pixel, in pixels */
   float length[PIXELS], offset[PIXELS];        /* world distance = offset + length z */
   float begin[PIXELS], end[PIXELS];            /* what is seen, in z */
-  float open[PIXELS]; /* what begins behind it need not be looked at: no end, until the pixel is opaque */
+  float open[PIXELS];                          /* what begins behind it need not be looked at: no end, until the pixel is opaque */
   tile_pixel pixels[PIXELS];
   int wrong; /* pixels */
   int count; /* pieces */
@@ -56,7 +56,8 @@ static int place_of(int x, int y)
 static void clear_pixel(project_tile* t, int p, bool inside)
 {
   const bool maximum = t->projection->frame->arguments.maximum;
-  t->pixels[p] = (tile_pixel){ .light = { 0.0f, maximum ? -LARGEST_FLOAT : 0.0f, 0.0f, 1.0f }, .back = -LARGEST_FLOAT, .depth = LARGEST_FLOAT };
+  t->pixels[p] =
+    (tile_pixel){ .light = { 0.0f, maximum ? -LARGEST_FLOAT : 0.0f, 0.0f, 1.0f }, .back = -LARGEST_FLOAT, .depth = LARGEST_FLOAT };
   t->open[p] = inside ? LARGEST_FLOAT : -LARGEST_FLOAT;
 }
 
@@ -104,8 +105,8 @@ static void begin_tile(project_tile* t, int tile)
 
 /* Of WIDTH pieces. maximum: light holds where the larger end is, and the value there. */
 typedef struct layers {
-  four_floats light[WIDTH];  /* red, green, blue, less transparency */
-  float limit[WIDTH];        /* the piece is out of order if another ends behind this */
+  four_floats light[WIDTH]; /* red, green, blue, less transparency */
+  float limit[WIDTH];       /* the piece is out of order if another ends behind this */
   float to[WIDTH], depth[WIDTH];
   int visible[WIDTH];
 } layers;
@@ -170,7 +171,9 @@ INLINE void shade_pieces(project_tile* t, int i, layers* out)
     put_light(out, v_select(v_lt(first, last), beyond, near), v_max(first, last), zero, zero);
     return;
   }
-  stratus_tetra_light light = { .red = zero, .green = zero, .blue = zero, .transparency = one, .depth = v_set(LARGEST_FLOAT), .most = zero };
+  stratus_tetra_light light = {
+    .red = zero, .green = zero, .blue = zero, .transparency = one, .depth = v_set(LARGEST_FLOAT), .most = zero
+  };
   const stratus_tetra_place from = tetra_place(a, frame->march_sums, first, mask), until = tetra_place(a, frame->march_sums, last, mask);
   tetra_integrate(a, frame->march_sums, &light, mask, first, last, &from, &until, (end - begin) * length, near);
   const vmask counts = mask & v_lt(light.transparency, one);

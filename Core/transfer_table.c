@@ -12,8 +12,8 @@
 #define ENTRIES_A_FEATURE 32
 /* Opacity 1 is an infinite optical depth. A midpoint sample's stands for it in any part of a sample that floats tell from none. */
 #define OPAQUE_DEPTH 1e30f
-/* Sums have no room for an infinite depth: entries of opacity 1 have this one per unit distance, and fill_opaque() tells them apart. Opacities just
- * below 1 may have more. */
+/* Sums have no room for an infinite depth: entries of opacity 1 have this one per unit distance, and fill_opaque() tells them apart.
+ * Opacities just below 1 may have more. */
 #define OPAQUE_TAU 16.0
 /* Optical depths per length, whose unit may be next to nothing, up to a bound: their sums stay doubles. */
 #define TAU_MOST 1e290
@@ -167,8 +167,8 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
   }
 }
 
-/* Writes the four running sums in doubles; returns the most that a colour changes from one entry to the next where either shows. The function is
- * taken at the entry's middle, not over its width: a value that is transparent must stay so beside one that is not. */
+/* Writes the four running sums in doubles; returns the most that a colour changes from one entry to the next where either shows. The
+ * function is taken at the entry's middle, not over its width: a value that is transparent must stay so beside one that is not. */
 static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
@@ -190,7 +190,8 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   return steepest;
 }
 
-/* Whether a value where the function is 1 is one of several in a row. *at: a point below it, of one call after the other with rising values. */
+/* Whether a value where the function is 1 is one of several in a row. *at: a point below it, of one call after the other with rising
+ * values. */
 static bool stays_opaque(const stratus_transfer* transfer, double value, size_t* at)
 {
   const double* p = transfer->opacity;
@@ -205,9 +206,10 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
   return stays;
 }
 
-/* Behind the sums, where rays meet opacity 1: for each entry the next one upwards, `size` if there is none, then the next one downwards, or -1.
- * A ray stops at once at an entry of opacity 1, on its way to others at the first where the function stays 1. A value at which it no more than
- * touches 1 has an infinite depth, too, but a logarithm's: it adds up to little on the way through, and to all for those who stay. */
+/* Behind the sums, where rays meet opacity 1: for each entry the next one upwards, `size` if there is none, then the next one downwards, or
+ * -1. A ray stops at once at an entry of opacity 1, on its way to others at the first where the function stays 1. A value at which it no
+ * more than touches 1 has an infinite depth, too, but a logarithm's: it adds up to little on the way through, and to all for those who
+ * stay. */
 static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
 {
   const int size = table->size;

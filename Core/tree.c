@@ -8,8 +8,8 @@
 /* The paper's fields have an entry a voxel: 256^3 of them. */
 #define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
 
-static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh", "ploc",
-  "ac", "dpc", "kmeans" };
+static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh",
+  "ploc", "ac", "dpc", "kmeans" };
 
 const char* stratus_tree_method_name(stratus_tree_method method)
 {
@@ -59,11 +59,11 @@ static stratus_status whole_shape(stratus_context* context, const stratus_voxels
   shape->nodes = memory;
   TRY(stratus_allocate(context, (size_t)voxels->brick_count, sizeof *shape->order, &memory));
   shape->order = memory;
-  for (int64_t b = 0; b < voxels->brick_count; b++) {
+  for (int64_t b = 0; b < voxels->brick_count; ++b) {
     shape->order[b] = (uint32_t)b;
   }
   shape->nodes[0] = (stratus_tree_node){ .kind_count = stratus_tree_kind_count(STRATUS_NODE_FIELD, (uint32_t)voxels->brick_count) };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     shape->nodes[0].lo[a] = (int32_t)voxels->lo[a];
     shape->nodes[0].hi[a] = (int32_t)voxels->hi[a];
   }
@@ -88,19 +88,19 @@ static stratus_status hierarchy(
   boxes = memory;
   TRY_CLEANUP(stratus_allocate(context, (size_t)voxels->count, sizeof *tree->bricks, &memory));
   tree->bricks = memory;
-  for (int64_t b = 0; b < voxels->brick_count; b++) {
+  for (int64_t b = 0; b < voxels->brick_count; ++b) {
     const stratus_brick* brick = &voxels->bricks[b];
-    for (uint64_t left = brick->mask; left; left &= left - 1, n++) {
+    for (uint64_t left = brick->mask; left; left &= left - 1, ++n) {
       const int bit = __builtin_ctzll(left);
       const int32_t at[3] = { brick->at[0] * 4 + (bit & 3), brick->at[1] * 4 + (bit >> 2 & 3), brick->at[2] * 4 + (bit >> 4) };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         boxes[n].lo[a] = at[a];
         boxes[n].hi[a] = at[a] + 1;
       }
     }
   }
   TRY_CLEANUP(stratus_bvh_create(context, boxes, n, &wanted, &bvh));
-  for (uint32_t i = 0; i < n; i++) {
+  for (uint32_t i = 0; i < n; ++i) {
     const int32_t* at = boxes[bvh.order[i]].lo;
     tree->bricks[i] = (stratus_brick){ .mask = 1ull << ((at[2] & 3) << 4 | (at[1] & 3) << 2 | (at[0] & 3)),
       .at = { (uint16_t)(at[0] >> 2), (uint16_t)(at[1] >> 2), (uint16_t)(at[2] >> 2) },
@@ -118,8 +118,7 @@ cleanup:
 }
 
 /* Bricks of the leaves that hold them, in the leaves' order, and the fields of the others. */
-static stratus_status fill_leaves(
-  stratus_context* context, const stratus_voxels* voxels, stratus_tree_shape* shape, stratus_tree* tree)
+static stratus_status fill_leaves(stratus_context* context, const stratus_voxels* voxels, stratus_tree_shape* shape, stratus_tree* tree)
 {
   void* memory;
   uint32_t count = 0;
@@ -127,17 +126,17 @@ static stratus_status fill_leaves(
   tree->nodes = memory;
   tree->node_count = shape->node_count;
   memcpy(tree->nodes, shape->nodes, shape->node_count * sizeof *tree->nodes);
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     count += stratus_tree_node_kind(&tree->nodes[n]) == STRATUS_NODE_BRICKS ? stratus_tree_node_count(&tree->nodes[n]) : 0;
   }
   TRY(stratus_allocate(context, count, sizeof *tree->bricks, &memory));
   tree->bricks = memory;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     stratus_tree_node* node = &tree->nodes[n];
     if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
       const uint32_t first = node->first;
       node->first = tree->brick_count;
-      for (uint32_t b = 0; b < stratus_tree_node_count(node); b++) {
+      for (uint32_t b = 0; b < stratus_tree_node_count(node); ++b) {
         tree->bricks[tree->brick_count++] = voxels->bricks[shape->order[first + b]];
       }
     }
@@ -145,8 +144,7 @@ static stratus_status fill_leaves(
   return stratus_tree_make_fields(context, voxels, shape, tree);
 }
 
-static stratus_status build(
-  stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree* tree)
+static stratus_status build(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree* tree)
 {
   stratus_tree_shape shape = { 0 };
   stratus_status status = STRATUS_OK;
@@ -186,7 +184,7 @@ static void find_depths(const stratus_tree* tree, uint8_t* depth)
   if (tree->node_count) {
     depth[0] = 0;
   }
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&tree->nodes[n]) == STRATUS_NODE_INNER) {
       depth[tree->nodes[n].first] = depth[tree->nodes[n].first + 1] = (uint8_t)(depth[n] < 255 ? depth[n] + 1 : 255);
     }
@@ -204,9 +202,9 @@ stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tre
   s->field_leaves = tree->field_count;
   s->leaves = 0;
   s->depth = 0;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&tree->nodes[n]) != STRATUS_NODE_INNER) {
-      s->leaves++;
+      ++s->leaves;
       s->depth = depth[n] > s->depth ? depth[n] : s->depth;
     }
   }
@@ -251,7 +249,7 @@ stratus_status stratus_tree_create(
   tree->entry_bytes = 2; /* until distance fields ask for more; a tree without fields, or without a node, has a width, too */
   memcpy(tree->index_to_world, voxels->index_to_world, sizeof tree->index_to_world);
   stratus_matrix_invert_affine(tree->index_to_world, tree->world_to_index);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     tree->dimensions[a] = (int32_t)voxels->dimensions[a];
   }
   if (voxels->count > 0) {
@@ -298,9 +296,9 @@ void stratus_tree_get_statistics(const stratus_tree* tree, stratus_tree_statisti
 static int64_t voxels_of_field(const stratus_tree* tree, const stratus_tree_field* field)
 {
   int64_t count = 0;
-  for (int32_t k = 0; k < field->cells[2]; k++) {
-    for (int32_t j = 0; j < field->cells[1]; j++) {
-      for (int32_t i = 0; i < field->cells[0]; i++) {
+  for (int32_t k = 0; k < field->cells[2]; ++k) {
+    for (int32_t j = 0; j < field->cells[1]; ++j) {
+      for (int32_t i = 0; i < field->cells[0]; ++i) {
         uint64_t mask;
         stratus_tree_field_leap(tree, field, 0, i, j, k, &mask);
         count += __builtin_popcountll(mask);
@@ -315,13 +313,13 @@ void stratus_tree_boxes(const stratus_tree* tree, stratus_node_box* boxes)
   if (!tree || !boxes) {
     return;
   }
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     const stratus_tree_node* node = &tree->nodes[n];
     stratus_node_box* box = &boxes[n];
     box->kind = stratus_tree_node_kind(node);
     box->depth = n == 0 ? 0 : box->depth;
     box->voxels = 0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       box->lo[a] = node->lo[a];
       box->hi[a] = node->hi[a];
     }
@@ -330,7 +328,7 @@ void stratus_tree_boxes(const stratus_tree* tree, stratus_node_box* boxes)
     } else if (box->kind == STRATUS_NODE_FIELD) {
       box->voxels = voxels_of_field(tree, &tree->fields[node->first]);
     } else {
-      for (uint32_t b = 0; b < stratus_tree_node_count(node); b++) {
+      for (uint32_t b = 0; b < stratus_tree_node_count(node); ++b) {
         box->voxels += __builtin_popcountll(tree->bricks[node->first + b].mask);
       }
     }

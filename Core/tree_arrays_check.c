@@ -9,7 +9,7 @@
 
 static bool box_inside(const stratus_tree_node* node, const int32_t lo[3], const int32_t hi[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (node->lo[a] < lo[a] || node->hi[a] > hi[a] || node->lo[a] >= node->hi[a]) {
       return false;
     }
@@ -20,7 +20,7 @@ static bool box_inside(const stratus_tree_node* node, const int32_t lo[3], const
 /* A leaf's bricks lie in its box, bit by bit, and are no other leaf's. */
 static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, uint8_t* taken)
 {
-  for (uint32_t b = node->first; b < node->first + stratus_tree_node_count(node); b++) {
+  for (uint32_t b = node->first; b < node->first + stratus_tree_node_count(node); ++b) {
     const stratus_brick* brick = &tree->bricks[b];
     if (taken[b]) {
       return false;
@@ -29,7 +29,7 @@ static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, 
     for (uint64_t left = brick->mask; left; left &= left - 1) {
       const int bit = __builtin_ctzll(left);
       const int32_t voxel[3] = { brick->at[0] * 4 + (bit & 3), brick->at[1] * 4 + (bit >> 2 & 3), brick->at[2] * 4 + (bit >> 4) };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         if (voxel[a] < node->lo[a] || voxel[a] >= node->hi[a]) {
           return false;
         }
@@ -45,7 +45,7 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
   static const int32_t zero[3] = { 0, 0, 0 };
   uint32_t bricks = 0, fields = 0;
   memset(depth, 255, tree->node_count);
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     const stratus_tree_node* node = &tree->nodes[n];
     const uint32_t count = stratus_tree_node_count(node);
     if (n == 0) {
@@ -73,7 +73,7 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
         if (node->first >= tree->field_count) {
           return WRONG("node %u of the tree has a distance field that is not there", n);
         }
-        fields++;
+        ++fields;
         break;
       default:
         return WRONG("node %u of the tree is of no kind", n);
@@ -84,7 +84,7 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
 
 static stratus_status check_bricks(stratus_context* context, const stratus_tree* tree)
 {
-  for (uint32_t b = 0; b < tree->brick_count; b++) {
+  for (uint32_t b = 0; b < tree->brick_count; ++b) {
     const stratus_brick* brick = &tree->bricks[b];
     if (brick->mask == 0 || brick->count != __builtin_popcountll(brick->mask)) {
       return WRONG("brick %u of the tree is empty, or has another number of voxels than it says", b);
@@ -98,16 +98,17 @@ static stratus_status check_entries(stratus_context* context, const stratus_tree
   const uint32_t n = (uint32_t)field->cells[0];
   const int bits = tree->entry_bytes;
   const uint32_t low = (1u << bits) - 1u;
-  for (uint32_t row = 0; row < (uint32_t)field->cells[1] * (uint32_t)field->cells[2]; row++) {
+  for (uint32_t row = 0; row < (uint32_t)field->cells[1] * (uint32_t)field->cells[2]; ++row) {
     const uint8_t* e = tree->entries + ((size_t)field->first_entry + (size_t)row * n) * (size_t)bits;
-    for (uint32_t i = 0; i < n; i++, e += bits) {
+    for (uint32_t i = 0; i < n; ++i, e += bits) {
       const uint32_t entry = (uint32_t)e[0] | (uint32_t)e[1] << 8 | (bits == 3 ? (uint32_t)e[2] << 16 : 0u);
       bool fine = true;
       if (!(entry & low)) {
         fine = tree->cell_log2 == 0 ||
-          (tree->rows[field->first_row + row] < tree->mask_count && (entry >> bits) < tree->mask_count - tree->rows[field->first_row + row]);
+          (tree->rows[field->first_row + row] < tree->mask_count &&
+            (entry >> bits) < tree->mask_count - tree->rows[field->first_row + row]);
       } else if (tree->octants) {
-        for (int octant = 1; octant < 8; octant++) {
+        for (int octant = 1; octant < 8; ++octant) {
           fine = fine && (entry >> (octant * bits) & low) != 0;
         }
       } else {
@@ -124,10 +125,10 @@ static stratus_status check_entries(stratus_context* context, const stratus_tree
 static stratus_status check_fields(stratus_context* context, const stratus_tree* tree)
 {
   uint64_t entries = 0, rows = 0;
-  for (uint32_t f = 0; f < tree->field_count; f++) {
+  for (uint32_t f = 0; f < tree->field_count; ++f) {
     const stratus_tree_field* field = &tree->fields[f];
     bool fine = field->first_entry == entries && field->first_row == rows;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       fine = fine && field->at[a] >= 0 && field->cells[a] >= 1 && field->cells[a] <= STRATUS_AXIS_MAX &&
         ((int64_t)field->at[a] + field->cells[a] - 1) << tree->cell_log2 < tree->dimensions[a];
     }
@@ -145,9 +146,9 @@ static stratus_status check_fields(stratus_context* context, const stratus_tree*
 static uint64_t bits_outside(const stratus_tree_node* node, const int32_t first[3])
 {
   uint64_t outside = 0;
-  for (int bit = 0; bit < 64; bit++) {
+  for (int bit = 0; bit < 64; ++bit) {
     const int32_t voxel[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       outside |= voxel[a] < node->lo[a] || voxel[a] >= node->hi[a] ? 1ull << bit : 0;
     }
   }
@@ -158,8 +159,8 @@ static uint64_t bits_outside(const stratus_tree_node* node, const int32_t first[
 static bool masks_fit(const stratus_tree* tree, const stratus_tree_node* node, const stratus_tree_field* field)
 {
   const int32_t* n = field->cells;
-  for (int32_t k = 0; k < n[2] && tree->cell_log2; k++) {
-    for (int32_t j = 0; j < n[1]; j++) {
+  for (int32_t k = 0; k < n[2] && tree->cell_log2; ++k) {
+    for (int32_t j = 0; j < n[1]; ++j) {
       const bool whole_row = k == 0 || k == n[2] - 1 || j == 0 || j == n[1] - 1;
       for (int32_t i = 0; i < n[0]; i += whole_row || n[0] == 1 ? 1 : n[0] - 1) {
         const int32_t first[3] = { (field->at[0] + i) * 4, (field->at[1] + j) * 4, (field->at[2] + k) * 4 };
@@ -177,11 +178,11 @@ static bool masks_fit(const stratus_tree* tree, const stratus_tree_node* node, c
 /* A node of a field covers cells of that field only. */
 static stratus_status check_covers(stratus_context* context, const stratus_tree* tree)
 {
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     const stratus_tree_node* node = &tree->nodes[n];
     if (stratus_tree_node_kind(node) == STRATUS_NODE_FIELD) {
       const stratus_tree_field* field = &tree->fields[node->first];
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         if (node->lo[a] >> tree->cell_log2 != field->at[a] || (node->hi[a] - 1) >> tree->cell_log2 != field->at[a] + field->cells[a] - 1) {
           return WRONG("node %u of the tree and its distance field lie apart", n);
         }

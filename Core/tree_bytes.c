@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees as bytes: a header, then the arrays, each at a multiple of 8. What is read back is trusted with nothing: sizes, numbers and leaps are
- * all checked before the tree is handed out, so that no bytes can lead traversal astray. */
+ * Trees as bytes: a header, then the arrays, each at a multiple of 8. What is read back is trusted with nothing: sizes, numbers and leaps
+ * are all checked before the tree is handed out, so that no bytes can lead traversal astray. */
 #include "tree.h"
 #include "voxels_build.h"
 
@@ -37,7 +37,7 @@ static uint64_t checksum(const void* bytes, size_t size)
     h = (h ^ word) * 0xff51afd7ed558ccdull;
     h ^= h >> 32;
   }
-  for (; size > 0; size--, p++) {
+  for (; size > 0; --size, ++p) {
     h = (h ^ *p) * 0xff51afd7ed558ccdull;
     h ^= h >> 29;
   }
@@ -53,7 +53,7 @@ static size_t array_sizes(const header* h, size_t sizes[ARRAYS])
     h->field_count * sizeof(stratus_tree_field), h->entry_count * (size_t)h->entry_bytes + 4, h->row_count * sizeof(uint32_t),
     h->mask_count * sizeof(uint64_t) };
   size_t sum = sizeof *h;
-  for (int i = 0; i < ARRAYS; i++) {
+  for (int i = 0; i < ARRAYS; ++i) {
     sizes[i] = plain[i];
     sum += (plain[i] + 7) / 8 * 8;
   }
@@ -116,7 +116,7 @@ void stratus_tree_save(const stratus_tree* tree, void* bytes)
   h.size = array_sizes(&h, sizes);
   memset(p, 0, h.size);
   p += sizeof h;
-  for (int i = 0; i < ARRAYS; i++) {
+  for (int i = 0; i < ARRAYS; ++i) {
     if (arrays[i]) {
       memcpy(p, arrays[i], sizes[i]);
     }
@@ -149,12 +149,12 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   bool fine = h->method >= 0 && h->method < STRATUS_TREE_METHODS && (h->octants == 0 || h->octants == 1) &&
     (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->octants || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 &&
     h->origin.intervals >= 0 && h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 &&
-    (h->node_count == 0) == (h->voxels == 0) &&
-    (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX && h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
-  for (int a = 0; a < 3; a++) {
+    (h->node_count == 0) == (h->voxels == 0) && (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX &&
+    h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
+  for (int a = 0; a < 3; ++a) {
     fine = fine && h->dimensions[a] >= 1 && h->dimensions[a] <= STRATUS_AXIS_MAX;
   }
-  for (int32_t i = 0; fine && i < h->origin.intervals; i++) {
+  for (int32_t i = 0; fine && i < h->origin.intervals; ++i) {
     const double* interval = h->origin.interval[i];
     const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY; /* equal to nobody's */
     fine = emptied || (interval[0] <= interval[1] && (i == 0 || h->origin.interval[i - 1][1] < interval[0]));
@@ -177,7 +177,7 @@ static stratus_status read_arrays(stratus_context* context, const header* h, con
   void* arrays[ARRAYS] = { NULL };
   stratus_status status = STRATUS_OK;
   array_sizes(h, sizes);
-  for (int i = 0; i < ARRAYS && status == STRATUS_OK; i++) {
+  for (int i = 0; i < ARRAYS && status == STRATUS_OK; ++i) {
     status = copy_array(context, &p, sizes[i], &arrays[i]);
   }
   tree->nodes = arrays[0];
@@ -208,8 +208,14 @@ static stratus_status fill_tree(stratus_context* context, const header* h, const
   tree->entry_count = h->entry_count;
   tree->row_count = h->row_count;
   tree->mask_count = h->mask_count;
-  *s = (stratus_tree_statistics){ .method = (stratus_tree_method)h->method, .voxels = h->voxels, .bricks = h->bricks, .bandwidth = h->bandwidth,
-    .dbscan_splits = h->splits[0], .density_splits = h->splits[1], .sah_splits = h->splits[2], .median_splits = h->splits[3] };
+  *s = (stratus_tree_statistics){ .method = (stratus_tree_method)h->method,
+    .voxels = h->voxels,
+    .bricks = h->bricks,
+    .bandwidth = h->bandwidth,
+    .dbscan_splits = h->splits[0],
+    .density_splits = h->splits[1],
+    .sah_splits = h->splits[2],
+    .median_splits = h->splits[3] };
   memcpy(s->why, h->why, sizeof s->why);
   TRY(read_arrays(context, h, bytes, tree));
   TRY(stratus_tree_check_arrays(context, tree));
@@ -243,8 +249,8 @@ stratus_status stratus_tree_load(stratus_context* context, const void* bytes, si
   return STRATUS_OK;
 }
 
-stratus_status stratus_tree_covers(
-  stratus_context* context, const stratus_tree* tree, const stratus_volume* volume, const stratus_criterion* criterion, int cells, int* covers)
+stratus_status stratus_tree_covers(stratus_context* context, const stratus_tree* tree, const stratus_volume* volume,
+  const stratus_criterion* criterion, int cells, int* covers)
 {
   stratus_origin wanted;
   if (!context) {
@@ -270,7 +276,7 @@ bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume)
 {
   int64_t cells[3];
   stratus_volume_cells(volume, cells);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t blocks = ((cells[a] > 0 ? cells[a] : 1) + STRATUS_BRICK - 1) / STRATUS_BRICK;
     if (tree->dimensions[a] != (tree->origin.cells ? blocks * STRATUS_BRICK : volume->dimensions[a])) {
       return false;

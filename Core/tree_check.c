@@ -26,7 +26,8 @@ static int64_t find_brick(const stratus_voxels* voxels, const int32_t at[3])
       hi = middle;
     }
   }
-  return lo < voxels->brick_count && voxels->bricks[lo].at[0] == at[0] && voxels->bricks[lo].at[1] == at[1] && voxels->bricks[lo].at[2] == at[2]
+  return lo < voxels->brick_count && voxels->bricks[lo].at[0] == at[0] && voxels->bricks[lo].at[1] == at[1] &&
+      voxels->bricks[lo].at[2] == at[2]
     ? lo
     : -1;
 }
@@ -42,11 +43,11 @@ static bool count_mask(census* c, const int32_t at[3], uint64_t mask, int32_t lo
   for (; mask; mask &= mask - 1) {
     const int bit = __builtin_ctzll(mask);
     const int32_t voxel[3] = { at[0] * 4 + (bit & 3), at[1] * 4 + (bit >> 2 & 3), at[2] * 4 + (bit >> 4) };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       lo[a] = voxel[a] < lo[a] ? voxel[a] : lo[a];
       hi[a] = voxel[a] + 1 > hi[a] ? voxel[a] + 1 : hi[a];
     }
-    c->count++;
+    ++c->count;
   }
   return true;
 }
@@ -58,9 +59,9 @@ static int64_t occupied_in(const stratus_tree_field* f, const int64_t* sums, con
 {
   const int64_t nx = f->cells[0] + 1, ny = f->cells[1] + 1;
   int64_t sum = 0;
-  for (int corner = 0; corner < 8; corner++) {
+  for (int corner = 0; corner < 8; ++corner) {
     int64_t at[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       at[a] = corner >> a & 1 ? hi[a] : lo[a];
       at[a] = at[a] < 0 ? 0 : at[a] > f->cells[a] ? f->cells[a] : at[a];
     }
@@ -72,15 +73,15 @@ static int64_t occupied_in(const stratus_tree_field* f, const int64_t* sums, con
 
 static stratus_status check_leaps(stratus_context* context, const stratus_tree* tree, const stratus_tree_field* f, const int64_t* sums)
 {
-  for (int32_t k = 0; k < f->cells[2]; k++) {
-    for (int32_t j = 0; j < f->cells[1]; j++) {
-      for (int32_t i = 0; i < f->cells[0]; i++) {
-        for (int octant = 0; octant < 8; octant++) {
+  for (int32_t k = 0; k < f->cells[2]; ++k) {
+    for (int32_t j = 0; j < f->cells[1]; ++j) {
+      for (int32_t i = 0; i < f->cells[0]; ++i) {
+        for (int octant = 0; octant < 8; ++octant) {
           uint64_t mask;
           const int32_t leap = stratus_tree_field_leap(tree, f, octant, i, j, k, &mask);
           const int32_t at[3] = { i, j, k };
           int64_t lo[3], hi[3];
-          for (int a = 0; a < 3; a++) {
+          for (int a = 0; a < 3; ++a) {
             const bool up = octant >> a & 1;
             lo[a] = up && tree->octants ? at[a] : at[a] - leap + 1;
             hi[a] = !up && tree->octants ? at[a] + 1 : at[a] + leap;
@@ -105,10 +106,10 @@ static stratus_status check_field(
   TRY(stratus_product(context, "sums of a distance field", (size_t)nx, (size_t)ny, (size_t)nz, &size));
   TRY(stratus_allocate_zero(context, size, sizeof(int64_t), &memory));
   int64_t* const sums = memory;
-  for (int32_t k = 0; k < f->cells[2] && status == STRATUS_OK; k++) {
-    for (int32_t j = 0; j < f->cells[1] && status == STRATUS_OK; j++) {
+  for (int32_t k = 0; k < f->cells[2] && status == STRATUS_OK; ++k) {
+    for (int32_t j = 0; j < f->cells[1] && status == STRATUS_OK; ++j) {
       int64_t row = 0;
-      for (int32_t i = 0; i < f->cells[0]; i++) {
+      for (int32_t i = 0; i < f->cells[0]; ++i) {
         uint64_t mask;
         stratus_tree_field_leap(tree, f, 0, i, j, k, &mask);
         row += mask != 0;
@@ -117,7 +118,7 @@ static stratus_status check_field(
         int32_t at[3] = { f->at[0] + i, f->at[1] + j, f->at[2] + k };
         if (mask && tree->cell_log2 == 0) {
           mask <<= (at[2] & 3) << 4 | (at[1] & 3) << 2 | (at[0] & 3);
-          for (int a = 0; a < 3; a++) {
+          for (int a = 0; a < 3; ++a) {
             at[a] >>= 2;
           }
         }
@@ -142,7 +143,7 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
   for (uint32_t n = tree->node_count; n-- > 0;) {
     const stratus_tree_node* node = &tree->nodes[n];
     stratus_box* box = &boxes[n];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       box->lo[a] = INT32_MAX;
       box->hi[a] = INT32_MIN;
     }
@@ -151,14 +152,14 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
         if (node->first <= n || node->first + 1 >= tree->node_count) {
           return WRONG("node %u has children %u and %u of %u nodes", n, node->first, node->first + 1, tree->node_count);
         }
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           const stratus_box *left = &boxes[node->first], *right = left + 1;
           box->lo[a] = left->lo[a] < right->lo[a] ? left->lo[a] : right->lo[a];
           box->hi[a] = left->hi[a] > right->hi[a] ? left->hi[a] : right->hi[a];
         }
         break;
       case STRATUS_NODE_BRICKS:
-        for (uint32_t b = 0; b < stratus_tree_node_count(node); b++) {
+        for (uint32_t b = 0; b < stratus_tree_node_count(node); ++b) {
           const stratus_brick* brick = &tree->bricks[node->first + b];
           const int32_t at[3] = { brick->at[0], brick->at[1], brick->at[2] };
           if (!count_mask(c, at, brick->mask, box->lo, box->hi)) {
@@ -171,8 +172,8 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
         break;
     }
     if (memcmp(box->lo, node->lo, sizeof box->lo) != 0 || memcmp(box->hi, node->hi, sizeof box->hi) != 0) {
-      return WRONG("node %u: its box %d %d %d .. %d %d %d is not the tight one, %d %d %d .. %d %d %d", n, node->lo[0], node->lo[1], node->lo[2],
-        node->hi[0], node->hi[1], node->hi[2], box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2]);
+      return WRONG("node %u: its box %d %d %d .. %d %d %d is not the tight one, %d %d %d .. %d %d %d", n, node->lo[0], node->lo[1],
+        node->lo[2], node->hi[0], node->hi[1], node->hi[2], box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2]);
     }
   }
   return STRATUS_OK;

@@ -28,7 +28,7 @@ int32_t stratus_tree_field_leap(
 /* Cells of a field: bricks, or where the tree says so the voxels of the bricks. */
 static void place_field(const stratus_tree_node* node, int cell_log2, stratus_tree_field* field)
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int32_t first = node->lo[a] >> cell_log2, last = (node->hi[a] - 1) >> cell_log2;
     field->at[a] = first;
     field->cells[a] = last - first + 1;
@@ -40,7 +40,7 @@ static void mark_cells(const stratus_voxels* voxels, const stratus_tree_shape* s
   const stratus_tree_field* field, uint8_t* occupied)
 {
   const uint32_t count = stratus_tree_node_count(node);
-  for (uint32_t b = 0; b < count; b++) {
+  for (uint32_t b = 0; b < count; ++b) {
     const stratus_brick* brick = &voxels->bricks[shape->order[node->first + b]];
     const int side = cell_log2 ? 1 : STRATUS_BRICK;
     for (uint64_t left = cell_log2 ? 1u : brick->mask; left; left &= left - 1) {
@@ -70,25 +70,25 @@ static stratus_status number_masks(stratus_context* context, const stratus_voxel
     return status;
   }
   uint32_t* const sorted = memory;
-  for (uint32_t b = 0; b < count; b++) {
+  for (uint32_t b = 0; b < count; ++b) {
     const stratus_brick* brick = &voxels->bricks[shape->order[node->first + b]];
     next[(uint32_t)(brick->at[2] - field->at[2]) * (uint32_t)field->cells[1] + (uint32_t)(brick->at[1] - field->at[1]) + 1]++;
   }
-  for (uint32_t r = 0; r < rows; r++) {
+  for (uint32_t r = 0; r < rows; ++r) {
     next[r + 1] += next[r];
     start[r] = *mask + next[r];
   }
-  for (uint32_t b = 0; b < count; b++) { /* into rows, each kept sorted by insertion: a node's bricks are nearly in order */
+  for (uint32_t b = 0; b < count; ++b) { /* into rows, each kept sorted by insertion: a node's bricks are nearly in order */
     const uint32_t number = shape->order[node->first + b];
     const stratus_brick* brick = &voxels->bricks[number];
     const uint32_t row = (uint32_t)(brick->at[2] - field->at[2]) * (uint32_t)field->cells[1] + (uint32_t)(brick->at[1] - field->at[1]);
     uint32_t at = next[row]++;
-    for (; at > start[row] - *mask && voxels->bricks[sorted[at - 1]].at[0] > brick->at[0]; at--) {
+    for (; at > start[row] - *mask && voxels->bricks[sorted[at - 1]].at[0] > brick->at[0]; --at) {
       sorted[at] = sorted[at - 1];
     }
     sorted[at] = number;
   }
-  for (uint32_t b = 0; b < count; b++) {
+  for (uint32_t b = 0; b < count; ++b) {
     const stratus_brick* brick = &voxels->bricks[sorted[b]];
     const uint32_t row = (uint32_t)(brick->at[2] - field->at[2]) * (uint32_t)field->cells[1] + (uint32_t)(brick->at[1] - field->at[1]);
     const uint32_t value = (*mask + b - start[row]) << bytes;
@@ -110,25 +110,24 @@ static stratus_status number_masks(stratus_context* context, const stratus_voxel
 /* ---------------------------------------------------------------- distances */
 
 /* Chebyshev distance by the sweeps of distance_sweep.c. */
-static stratus_status fill_distances(
-  stratus_context* context, const stratus_tree_field* field, uint8_t* occupied, stratus_tree* tree)
+static stratus_status fill_distances(stratus_context* context, const stratus_tree_field* field, uint8_t* occupied, stratus_tree* tree)
 {
   stratus_occupancy occupancy = { .context = context, .block_size = STRATUS_BRICK, .occupied = occupied };
   stratus_distance_map* map = NULL;
   size_t i = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     occupancy.blocks[a] = field->cells[a];
     occupancy.lo[a] = 0;
     occupancy.hi[a] = field->cells[a];
   }
-  for (size_t n = (size_t)field->cells[0] * (size_t)field->cells[1] * (size_t)field->cells[2]; i < n; i++) {
+  for (size_t n = (size_t)field->cells[0] * (size_t)field->cells[1] * (size_t)field->cells[2]; i < n; ++i) {
     occupancy.count += occupied[i];
   }
   TRY(stratus_distance_map_create(context, &occupancy, STRATUS_DISTANCE_FULL, &map));
   uint8_t* e = tree->entries + (size_t)field->first_entry * 2;
-  for (int64_t row = 0; row < occupancy.blocks[1] * occupancy.blocks[2]; row++) {
+  for (int64_t row = 0; row < occupancy.blocks[1] * occupancy.blocks[2]; ++row) {
     const uint8_t* const bytes = map->bytes + (size_t)row * map->pitch;
-    for (i = 0; i < (size_t)field->cells[0]; i++, e += 2) {
+    for (i = 0; i < (size_t)field->cells[0]; ++i, e += 2) {
       const unsigned value = bytes[i] < 128 ? (unsigned)bytes[i] << 2 | 1u : 0u;
       e[0] = (uint8_t)value;
       e[1] = (uint8_t)(value >> 8);
@@ -147,25 +146,25 @@ static stratus_status cut_out(stratus_context* context, const stratus_voxels* vo
   *part = (stratus_voxels){ .context = context, .brick_count = count };
   TRY(stratus_allocate(context, count, sizeof *part->bricks, &memory));
   part->bricks = memory;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int32_t first = node->lo[a] / STRATUS_BRICK, last = (node->hi[a] - 1) / STRATUS_BRICK;
     part->bricks_along[a] = last - first + 1;
     part->dimensions[a] = part->bricks_along[a] * STRATUS_BRICK;
     part->lo[a] = node->lo[a] - first * STRATUS_BRICK;
     part->hi[a] = node->hi[a] - first * STRATUS_BRICK;
   }
-  for (uint32_t b = 0; b < count; b++) {
+  for (uint32_t b = 0; b < count; ++b) {
     part->bricks[b] = voxels->bricks[shape->order[node->first + b]];
     part->count += part->bricks[b].count;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       part->bricks[b].at[a] = (uint16_t)(part->bricks[b].at[a] - node->lo[a] / STRATUS_BRICK);
     }
   }
   return STRATUS_OK;
 }
 
-/* The paper's leaf: a Euclidean field by its adaptive flooding (2.3). A ray may leap so many cells that the cube of those is sure to lie within the
- * sphere. Floodings tell distances too long: the Chebyshev distance, which is there already, corrects them. */
+/* The paper's leaf: a Euclidean field by its adaptive flooding (2.3). A ray may leap so many cells that the cube of those is sure to lie
+ * within the sphere. Floodings tell distances too long: the Chebyshev distance, which is there already, corrects them. */
 static stratus_status shorten_by_flooding(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree)
 {
@@ -182,17 +181,17 @@ static stratus_status shorten_by_flooding(stratus_context* context, const stratu
   stratus_field_distances(flooded, distances);
   const int32_t* n = field->cells;
 #pragma omp parallel for collapse(2) schedule(static) num_threads(context->threads)
-  for (int32_t k = 0; k < n[2]; k++) {
-    for (int32_t j = 0; j < n[1]; j++) {
+  for (int32_t k = 0; k < n[2]; ++k) {
+    for (int32_t j = 0; j < n[1]; ++j) {
       const size_t line = (size_t)(k + part.lo[2]) * (size_t)part.dimensions[1] + (size_t)(j + part.lo[1]);
       const float* row = (const float*)distances + line * (size_t)part.dimensions[0] + part.lo[0];
       uint8_t* e = tree->entries + 2 * ((size_t)field->first_entry + ((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0]);
-      for (int32_t i = 0; i < n[0]; i++, e += 2) {
+      for (int32_t i = 0; i < n[0]; ++i, e += 2) {
         const unsigned longest = (unsigned)(e[0] | e[1] << 8) >> 2;
         unsigned leap = 1;
         /* (leap)^3 about the cell lie within the sphere if 3 leap^2 < d^2: one more step leaves them. */
         while (leap < longest && 3.0f * (float)(leap * leap) < row[i] * row[i]) {
-          leap++;
+          ++leap;
         }
         if (longest > 0) {
           const unsigned value = leap << 2 | 1u;
@@ -236,7 +235,7 @@ static stratus_status place_fields(
   uint64_t entries = 0, rows = 0, masks = 0;
   uint32_t f = 0;
   bool long_rows = false;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     const stratus_tree_node* node = &shape->nodes[n];
     if (stratus_tree_node_kind(node) == STRATUS_NODE_FIELD) {
       stratus_tree_field* field = &tree->fields[f++];
@@ -254,7 +253,8 @@ static stratus_status place_fields(
     return stratus_fail(context, STRATUS_UNSUPPORTED, "a distance field of rows longer than %d bricks", STRATUS_FIELD_ROW_MAX);
   }
   if (entries * (uint64_t)tree->entry_bytes > INT32_MAX - 64 || rows > INT32_MAX / 4 || masks > INT32_MAX / 8) {
-    return stratus_fail(context, STRATUS_OVERFLOW, "distance fields of %llu entries: at most %d bytes", (unsigned long long)entries, INT32_MAX - 64);
+    return stratus_fail(
+      context, STRATUS_OVERFLOW, "distance fields of %llu entries: at most %d bytes", (unsigned long long)entries, INT32_MAX - 64);
   }
   tree->entry_count = (uint32_t)entries;
   tree->row_count = tree->cell_log2 ? (uint32_t)rows : 0;
@@ -267,7 +267,7 @@ stratus_status stratus_tree_make_fields(
 {
   void* memory;
   uint32_t f = 0, mask = 0;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     tree->field_count += stratus_tree_node_kind(&shape->nodes[n]) == STRATUS_NODE_FIELD;
   }
   if (tree->field_count == 0) {
@@ -283,7 +283,7 @@ stratus_status stratus_tree_make_fields(
   tree->rows = memory;
   TRY(stratus_allocate(context, tree->mask_count, sizeof *tree->masks, &memory));
   tree->masks = memory;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&shape->nodes[n]) == STRATUS_NODE_FIELD) {
       TRY(make_field(context, voxels, shape, &shape->nodes[n], tree, &tree->fields[f], &mask));
       tree->nodes[n].first = f++;

@@ -15,7 +15,7 @@ typedef struct extent {
 static extent blocks_of(const stratus_tree_node* node)
 {
   extent e;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     e.lo[a] = node->lo[a] / STRATUS_BRICK;
     e.n[a] = (node->hi[a] - 1) / STRATUS_BRICK - e.lo[a] + 1;
   }
@@ -37,7 +37,7 @@ static void mark_leaf(const stratus_tree* tree, const stratus_tree_node* node, c
 {
   memset(occupied, 0, volume_of(e));
   if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
-    for (uint32_t b = 0; b < stratus_tree_node_count(node); b++) {
+    for (uint32_t b = 0; b < stratus_tree_node_count(node); ++b) {
       const stratus_brick* brick = &tree->bricks[node->first + b];
       mark(e, (const int32_t[3]){ brick->at[0], brick->at[1], brick->at[2] }, occupied);
     }
@@ -45,9 +45,9 @@ static void mark_leaf(const stratus_tree* tree, const stratus_tree_node* node, c
   }
   const stratus_tree_field* field = &tree->fields[node->first];
   const int shift = tree->cell_log2 ? 0 : 2; /* from cells to blocks */
-  for (int32_t k = 0; k < field->cells[2]; k++) {
-    for (int32_t j = 0; j < field->cells[1]; j++) {
-      for (int32_t i = 0; i < field->cells[0]; i++) {
+  for (int32_t k = 0; k < field->cells[2]; ++k) {
+    for (int32_t j = 0; j < field->cells[1]; ++j) {
+      for (int32_t i = 0; i < field->cells[0]; ++i) {
         uint64_t mask;
         if (stratus_tree_field_leap(tree, field, 0, i, j, k, &mask) == 0) {
           const int32_t at[3] = { (field->at[0] + i) >> shift, (field->at[1] + j) >> shift, (field->at[2] + k) >> shift };
@@ -64,19 +64,19 @@ static stratus_status fill_leaf(stratus_context* context, const extent* e, uint8
   const size_t blocks = volume_of(e);
   stratus_distance_map* map = NULL;
   if (blocks <= SMALL_LEAF) {
-    for (size_t b = 0; b < blocks; b++) {
+    for (size_t b = 0; b < blocks; ++b) {
       bytes[b] = bytes[b] ? 129 : 1;
     }
     return STRATUS_OK;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     occupancy.blocks[a] = occupancy.hi[a] = e->n[a];
   }
-  for (size_t b = 0; b < blocks; b++) {
+  for (size_t b = 0; b < blocks; ++b) {
     occupancy.count += bytes[b];
   }
   TRY(stratus_distance_map_create(context, &occupancy, STRATUS_DISTANCE_FULL, &map));
-  for (size_t row = 0; row < (size_t)e->n[1] * (size_t)e->n[2]; row++) {
+  for (size_t row = 0; row < (size_t)e->n[1] * (size_t)e->n[2]; ++row) {
     memcpy(bytes + row * (size_t)e->n[0], map->bytes + row * map->pitch, (size_t)e->n[0]);
   }
   stratus_distance_map_destroy(map);
@@ -88,12 +88,12 @@ static stratus_status fill(stratus_context* context, const stratus_tree* tree, s
   int32_t* const records = (int32_t*)(void*)map->bytes;
   size_t place = (tree->node_count + (size_t)tree->statistics.leaves) * 8 * sizeof(int32_t);
   int32_t leaves = 0;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     const stratus_tree_node* node = &tree->nodes[n];
     const extent e = blocks_of(node);
     int32_t* const record = records + 8 * n;
     const bool inner = stratus_tree_node_kind(node) == STRATUS_NODE_INNER;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       record[a] = e.lo[a];
       record[3 + a] = e.lo[a] + e.n[a] - 1;
     }
@@ -101,7 +101,7 @@ static stratus_status fill(stratus_context* context, const stratus_tree* tree, s
     record[7] = !inner;
     if (!inner) {
       int32_t* const leaf = records + 8 * (tree->node_count + (uint32_t)leaves++);
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         leaf[a] = e.lo[a];
         leaf[3 + a] = e.n[a];
       }
@@ -120,7 +120,7 @@ stratus_status stratus_tree_map_create(stratus_context* context, const stratus_t
 {
   double size = ((double)tree->node_count + (double)tree->statistics.leaves) * 8 * sizeof(int32_t) + PADDING;
   void* memory;
-  for (uint32_t n = 0; n < tree->node_count; n++) {
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&tree->nodes[n]) != STRATUS_NODE_INNER) {
       const extent e = blocks_of(&tree->nodes[n]);
       size += (double)e.n[0] * (double)e.n[1] * (double)e.n[2];
@@ -135,7 +135,7 @@ stratus_status stratus_tree_map_create(stratus_context* context, const stratus_t
   map->tree_nodes = (int)tree->node_count;
   map->block_size = block_size;
   map->bytes_size = (size_t)size;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     map->blocks[a] = (tree->dimensions[a] + STRATUS_BRICK - 1) / STRATUS_BRICK;
   }
   stratus_status status = stratus_allocate(context, map->bytes_size, 1, &memory);
@@ -156,7 +156,7 @@ stratus_status stratus_tree_of_occupancy(stratus_context* context, const stratus
   stratus_voxels voxels = { .context = context, .brick_count = occupancy->count, .count = occupancy->count * 64 };
   void* memory;
   int64_t next = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (occupancy->blocks[a] > STRATUS_AXIS_MAX / STRATUS_BRICK) {
       return stratus_fail(context, STRATUS_UNSUPPORTED, "a tree of %lld blocks along an axis: at most %d", (long long)occupancy->blocks[a],
         STRATUS_AXIS_MAX / STRATUS_BRICK);
@@ -170,9 +170,9 @@ stratus_status stratus_tree_of_occupancy(stratus_context* context, const stratus
   voxels.index_to_world[15] = 1.0;
   TRY(stratus_allocate(context, (size_t)occupancy->count, sizeof *voxels.bricks, &memory));
   voxels.bricks = memory;
-  for (int64_t k = 0, b = 0; k < occupancy->blocks[2]; k++) {
-    for (int64_t j = 0; j < occupancy->blocks[1]; j++) {
-      for (int64_t i = 0; i < occupancy->blocks[0]; i++, b++) {
+  for (int64_t k = 0, b = 0; k < occupancy->blocks[2]; ++k) {
+    for (int64_t j = 0; j < occupancy->blocks[1]; ++j) {
+      for (int64_t i = 0; i < occupancy->blocks[0]; ++i, ++b) {
         if (occupancy->occupied[b]) {
           voxels.bricks[next++] = (stratus_brick){ .mask = ~0ull, .at = { (uint16_t)i, (uint16_t)j, (uint16_t)k }, .count = 64 };
         }

@@ -5,8 +5,8 @@
 
 #include "tree.h"
 
-/* Of a tree whose bricks are the blocks, of block_size cells, of a march. Stands where a distance map may stand. STRATUS_OVERFLOW beyond 2^31
- * bytes. */
+/* Of a tree whose bricks are the blocks, of block_size cells, of a march. Stands where a distance map may stand. STRATUS_OVERFLOW beyond
+ * 2^31 bytes. */
 stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, int block_size, stratus_distance_map** map);
 
 /* A hybrid tree of the occupied blocks: a block is a brick of 4^3 voxels, whatever its size in cells. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How far a ray of each octant may leap from a cell, found on bits, 64 cells a word: a leap of n is free if no bit is set among the n^3 cells that
- * begin with the cell, which a few shifts and ORs along each axis decide for a word at a time. Leaps are tried from short to long; a
- * code counts those that are free. */
+ * How far a ray of each octant may leap from a cell, found on bits, 64 cells a word: a leap of n is free if no bit is set among the n^3
+ * cells that begin with the cell, which a few shifts and ORs along each axis decide for a word at a time. Leaps are tried from short to
+ * long; a code counts those that are free. */
 #include "tree_fields.h"
 
 #include <string.h>
@@ -16,7 +16,7 @@ static void or_along_rows(const bit_grid* grid, const uint64_t* restrict from, i
 {
   const int64_t n = grid->words;
   if (n == 1) {
-    for (int64_t w = 0; w < grid->size; w++) {
+    for (int64_t w = 0; w < grid->size; ++w) {
       to[w] = from[w] | (by > 0 ? from[w] >> by : from[w] << -by);
     }
     return;
@@ -25,13 +25,13 @@ static void or_along_rows(const bit_grid* grid, const uint64_t* restrict from, i
     const uint64_t* restrict f = from + row;
     uint64_t* restrict t = to + row;
     if (by > 0) {
-      for (int64_t w = 0; w < n - 1; w++) {
+      for (int64_t w = 0; w < n - 1; ++w) {
         t[w] = f[w] | f[w] >> by | f[w + 1] << (64 - by);
       }
       t[n - 1] = f[n - 1] | f[n - 1] >> by;
     } else {
       t[0] = f[0] | f[0] << -by;
-      for (int64_t w = 1; w < n; w++) {
+      for (int64_t w = 1; w < n; ++w) {
         t[w] = f[w] | f[w] << -by | f[w - 1] >> (64 + by);
       }
     }
@@ -46,13 +46,13 @@ static void or_along_runs(int64_t size, int64_t run, const uint64_t* restrict fr
     const uint64_t* restrict f = from + first;
     uint64_t* restrict t = to + first;
     if (by > 0) {
-      for (int64_t w = 0; w < both; w++) {
+      for (int64_t w = 0; w < both; ++w) {
         t[w] = f[w] | f[w + away];
       }
       memcpy(t + both, f + both, (size_t)(run - both) * sizeof *t);
     } else {
       memcpy(t, f, (size_t)(run - both) * sizeof *t);
-      for (int64_t w = 0; w < both; w++) {
+      for (int64_t w = 0; w < both; ++w) {
         t[w + away] = f[w + away] | f[w];
       }
     }
@@ -82,7 +82,7 @@ static uint64_t* dilate(const bit_grid* grid, int axis, int sign, int cells, con
 static void count_free(const bit_grid* grid, int bits, const uint64_t* blocked, const uint64_t* inside, uint64_t* planes)
 {
   const int64_t n = grid->size;
-  for (int64_t w = 0; w < n; w++) {
+  for (int64_t w = 0; w < n; ++w) {
     const uint64_t free = ~blocked[w] & inside[w];
     const uint64_t carry = planes[w] & free;
     planes[w] ^= free;
@@ -114,18 +114,18 @@ static void write_row(const uint64_t* planes, int64_t apart, int bits, int64_t c
     const int64_t w = first / 64;
     const int shift = (int)(first % 64), n = cells - first < 8 ? (int)(cells - first) : 8;
     uint8_t bytes[3][8];
-    for (int part = 0; part < bits; part++) {
+    for (int part = 0; part < bits; ++part) {
       uint64_t matrix = 0;
-      for (int p = 0; p < 8; p++) {
+      for (int p = 0; p < 8; ++p) {
         matrix |= (planes[(part * 8 + p) * apart + w] >> shift & 255u) << (8 * p);
       }
       matrix = transpose(matrix);
-      for (int c = 0; c < 8; c++) {
+      for (int c = 0; c < 8; ++c) {
         bytes[part][c] = (uint8_t)(matrix >> (8 * c));
       }
     }
-    for (int c = 0; c < n; c++) {
-      for (int part = 0; part < bits; part++) {
+    for (int c = 0; c < n; ++c) {
+      for (int part = 0; part < bits; ++part) {
         entries[(first + c) * bits + part] = bytes[part][c];
       }
     }
@@ -133,17 +133,18 @@ static void write_row(const uint64_t* planes, int64_t apart, int bits, int64_t c
 }
 
 /* The codes of the two octants with one pair of signs along x and y. room: 4 grids. */
-static void find_leaps(const bit_grid* grid, int bits, int xy, const uint64_t* occupied, const uint64_t* inside, uint64_t* room, uint64_t* planes)
+static void find_leaps(
+  const bit_grid* grid, int bits, int xy, const uint64_t* occupied, const uint64_t* inside, uint64_t* room, uint64_t* planes)
 {
   const int64_t n = grid->size;
   const int sx = xy & 1 ? 1 : -1, sy = xy & 2 ? 1 : -1;
-  for (int code = 1; code < 1 << bits; code++) {
+  for (int code = 1; code < 1 << bits; ++code) {
     const int cells = stratus_leap_of_code(bits, code);
     const uint64_t* const x = dilate(grid, 0, sx, cells, occupied, room, room + n);
     uint64_t* const other = x == room ? room + n : room;
     const uint64_t* const y = dilate(grid, 1, sy, cells, x, other, room + 2 * n);
     uint64_t* const spare = y == room + 2 * n ? other : room + 2 * n;
-    for (int z = 0; z < 2; z++) {
+    for (int z = 0; z < 2; ++z) {
       const uint64_t* const blocked = dilate(grid, 2, z ? 1 : -1, cells, y, room + 3 * n, spare);
       count_free(grid, bits, blocked, inside, planes + (xy + 4 * z) * bits * n);
     }
@@ -156,12 +157,12 @@ static void mark_bits(const stratus_voxels* voxels, const stratus_tree_shape* sh
 {
   const uint32_t count = stratus_tree_node_count(node);
   memset(occupied, 0, (size_t)grid->size * sizeof *occupied);
-  for (uint32_t b = 0; b < count; b++) {
+  for (uint32_t b = 0; b < count; ++b) {
     const stratus_brick* brick = &voxels->bricks[shape->order[node->first + b]];
     const int64_t i = brick->at[0] - field->at[0], j = brick->at[1] - field->at[1], k = brick->at[2] - field->at[2];
     occupied[(k * grid->rows[0] + j) * grid->words + i / 64] |= 1ull << (i % 64);
   }
-  for (int64_t w = 0; w < grid->size; w++) {
+  for (int64_t w = 0; w < grid->size; ++w) {
     const int64_t left = field->cells[0] - w % grid->words * 64;
     empty[w] = ~occupied[w] & (left < 64 ? (1ull << left) - 1 : ~0ull);
   }
@@ -185,11 +186,11 @@ stratus_status stratus_tree_octants(stratus_context* context, const stratus_voxe
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp for schedule(dynamic, 1)
-    for (int xy = 0; xy < 4; xy++) {
+    for (int xy = 0; xy < 4; ++xy) {
       find_leaps(&grid, bits, xy, occupied, empty, room + xy * 4 * n, planes);
     }
 #pragma omp for schedule(static)
-    for (int64_t row = 0; row < grid.rows[0] * grid.rows[1]; row++) {
+    for (int64_t row = 0; row < grid.rows[0] * grid.rows[1]; ++row) {
       uint8_t* const entries = tree->entries + ((size_t)field->first_entry + (size_t)(row * field->cells[0])) * (size_t)bits;
       write_row(planes + row * grid.words, n, bits, field->cells[0], entries);
     }

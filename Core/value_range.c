@@ -195,7 +195,7 @@ static stratus_status reduce_on_host(stratus_context* context, const stratus_vol
     };
     give_room(&s, (uint8_t*)memory + (size_t)thread * room);
 #pragma omp for schedule(static)
-    for (int64_t row = 0; row < rows; row++) {
+    for (int64_t row = 0; row < rows; ++row) {
       int stopped;
 #pragma omp atomic read
       stopped = stop;
@@ -234,13 +234,13 @@ static int touched(int64_t at, int64_t size, int64_t blocks, int shared, int64_t
 static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, stratus_value_range* ranges)
 {
   int64_t n[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     n[a] = volume->cell_centered || volume->dimensions[a] == 1 ? volume->dimensions[a] : volume->dimensions[a] - 1;
   }
   const int64_t *blocks = ranges->blocks, size = ranges->block_size;
-  for (int64_t k = 0; k < n[2]; k++) {
-    for (int64_t j = 0; j < n[1]; j++) {
-      for (int64_t i = 0; i < n[0]; i++) {
+  for (int64_t k = 0; k < n[2]; ++k) {
+    for (int64_t j = 0; j < n[1]; ++j) {
+      for (int64_t i = 0; i < n[0]; ++i) {
         if (!hidden[(k * n[1] + j) * n[0] + i]) {
           continue;
         }
@@ -248,7 +248,7 @@ static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, str
         const int nx = touched(i, size, blocks[0], volume->cell_centered, bx);
         const int ny = touched(j, size, blocks[1], volume->cell_centered, by);
         const int nz = touched(k, size, blocks[2], volume->cell_centered, bz);
-        for (int c = 0; c < nx * ny * nz; c++) {
+        for (int c = 0; c < nx * ny * nz; ++c) {
           ranges->gaps[(bz[c / (nx * ny)] * blocks[1] + by[c / nx % ny]) * blocks[0] + bx[c % nx]] = 1;
         }
       }
@@ -259,7 +259,7 @@ static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, str
 /* In lanes, for a single running minimum waits for itself. */
 static void widen_lanes(const float* restrict lo, const float* restrict hi, float* restrict least, float* restrict most)
 {
-  for (int lane = 0; lane < LANES; lane++) {
+  for (int lane = 0; lane < LANES; ++lane) {
     least[lane] = lo[lane] < least[lane] ? lo[lane] : least[lane];
     most[lane] = hi[lane] > most[lane] ? hi[lane] : most[lane];
   }
@@ -275,20 +275,20 @@ static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
     float least[LANES], most[LANES];
     lo = INFINITY; /* the reduction's own start may be FLT_MAX, which is a value */
     hi = -INFINITY;
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < LANES; ++lane) {
       least[lane] = INFINITY;
       most[lane] = -INFINITY;
     }
 #pragma omp for schedule(static)
-    for (int64_t g = 0; g < groups; g++) {
+    for (int64_t g = 0; g < groups; ++g) {
       widen_lanes(ranges->lo + g * LANES, ranges->hi + g * LANES, least, most);
     }
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < LANES; ++lane) {
       lo = least[lane] < lo ? least[lane] : lo;
       hi = most[lane] > hi ? most[lane] : hi;
     }
   }
-  for (int64_t b = groups * LANES; b < count; b++) {
+  for (int64_t b = groups * LANES; b < count; ++b) {
     lo = ranges->lo[b] < lo ? ranges->lo[b] : lo;
     hi = ranges->hi[b] > hi ? ranges->hi[b] : hi;
   }
@@ -310,7 +310,7 @@ static stratus_status allocate_blocks(stratus_context* context, const stratus_vo
   size_t count;
   void* memory;
   stratus_volume_cells(volume, cells);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     ranges->blocks[a] = cells[a] ? (cells[a] + ranges->block_size - 1) / ranges->block_size : 1;
   }
   TRY(stratus_product(context, "blocks", (size_t)ranges->blocks[0], (size_t)ranges->blocks[1], (size_t)ranges->blocks[2], &count));
@@ -381,7 +381,7 @@ void stratus_value_range_destroy(stratus_value_range* ranges)
 
 void stratus_value_range_blocks(const stratus_value_range* ranges, int64_t blocks[3], int* block_size)
 {
-  for (int a = 0; blocks && a < 3; a++) {
+  for (int a = 0; blocks && a < 3; ++a) {
     blocks[a] = ranges ? ranges->blocks[a] : 0;
   }
   if (block_size) {

@@ -17,7 +17,7 @@ static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
     return values;
   }
   TYPE* copy = scratch;
-  for (int64_t x = 0; x < s->nx; x++) {
+  for (int64_t x = 0; x < s->nx; ++x) {
     copy[x] = values[x * s->volume->value_stride];
   }
   return copy;
@@ -30,7 +30,7 @@ static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* 
   const TYPE* restrict a = rows[0], * restrict b = rows[1], * restrict c = rows[2], * restrict d = rows[3];
   int bad = 0;
   (void)bias;
-  for (int64_t x = 0; x < nx; x++) {
+  for (int64_t x = 0; x < nx; ++x) {
     const ACC va = LOAD(a[x]), vb = LOAD(b[x]), vc = LOAD(c[x]), vd = LOAD(d[x]);
 #if FLOATS
     bad |= !(fabsf(va) <= FLT_MAX) | !(fabsf(vb) <= FLT_MAX) | !(fabsf(vc) <= FLT_MAX) | !(fabsf(vd) <= FLT_MAX);
@@ -53,7 +53,7 @@ static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
 {
   for (int step = 1; step <= size; step *= 2) {
     const int64_t ahead = step < size ? step : 1; /* windows of 2, 4 .. size, and one more value: the halo */
-    for (int64_t x = 0; x < nx - ahead; x++) {
+    for (int64_t x = 0; x < nx - ahead; ++x) {
       lo[x] = lo[x + ahead] < lo[x] ? lo[x + ahead] : lo[x];
       hi[x] = hi[x + ahead] > hi[x] ? hi[x + ahead] : hi[x];
     }
@@ -66,14 +66,14 @@ static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
 {
   const double bias = s->bias;
   (void)bias;
-  for (int64_t x = 0; x < s->nx; x++) {
+  for (int64_t x = 0; x < s->nx; ++x) {
     lo[x] = INFINITY;
     hi[x] = -INFINITY;
     bad[x] = 0;
   }
-  for (int64_t r = 0; r < s->rows; r++) {
+  for (int64_t r = 0; r < s->rows; ++r) {
     const TYPE* values = NAME(row)(s, r, s->strided);
-    for (int64_t x = 0; x < s->nx; x++) {
+    for (int64_t x = 0; x < s->nx; ++x) {
       const ACC v = LOAD(values[x]);
       const int finite = fabsf(v) <= FLT_MAX;
       bad[x] |= (uint8_t)!finite;
@@ -92,24 +92,24 @@ static void NAME(reduce)(const span* s)
   int bad = 0;
   (void)bias;
   const TYPE* first = NAME(row)(s, 0, s->strided);
-  for (int64_t x = 0; x < s->nx; x++) {
+  for (int64_t x = 0; x < s->nx; ++x) {
     lo[x] = hi[x] = LOAD(first[x]);
   }
   for (int64_t r = 0; r < s->rows; r += 4) {
     const TYPE* rows[4];
-    for (int64_t i = 0; i < 4; i++) { /* the last row again where there are no more: it changes nothing */
+    for (int64_t i = 0; i < 4; ++i) { /* the last row again where there are no more: it changes nothing */
       const int64_t at = r + i < s->rows ? r + i : s->rows - 1;
       rows[i] = NAME(row)(s, at, (TYPE*)s->strided + i * s->nx);
     }
     bad |= NAME(widen)(rows, s->nx, bias, lo, hi);
   }
-  for (int64_t b = 0; b < s->blocks; b++) {
+  for (int64_t b = 0; b < s->blocks; ++b) {
     s->gaps[b] = 0;
   }
 #if FLOATS
   if (bad) {
     NAME(careful)(s, lo, hi, s->bad);
-    for (int64_t x = 0; x < s->nx; x++) {
+    for (int64_t x = 0; x < s->nx; ++x) {
       const int64_t b = x / s->size < s->blocks ? x / s->size : s->blocks - 1;
       s->gaps[b] |= s->bad[x];
       if (x % s->size == 0 && x > 0) { /* the halo of the block before */
@@ -120,7 +120,7 @@ static void NAME(reduce)(const span* s)
 #endif
   (void)bad;
   NAME(window)(s->nx, s->size, lo, hi);
-  for (int64_t b = 0; b < s->blocks; b++) {
+  for (int64_t b = 0; b < s->blocks; ++b) {
     const ACC least = lo[b * s->size], most = hi[b * s->size];
     s->block_lo[b] = FETCH(least) + 0.0f; /* -0 becomes 0: which zero comes first must not show in the bits */
     s->block_hi[b] = FETCH(most) + 0.0f;

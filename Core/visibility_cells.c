@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space, since
- * peeling goes from neighbour to neighbour. */
+ * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space,
+ * since peeling goes from neighbour to neighbour. */
 #include "cell_morton.h"
 #include "visibility_order.h"
 
@@ -36,9 +36,9 @@ static uint32_t place_cell(const void* data, int64_t cell, double at[3])
 {
   const cell_places* places = data;
   const stratus_visibility_order* order = places->order;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     double middle = 0.0;
-    for (int v = 0; v < 4; v++) {
+    for (int v = 0; v < 4; ++v) {
       middle += 0.25 * (order->points[3 * (int64_t)order->vertices[4 * cell + v] + a] - order->bounds[2 * a]);
     }
     at[a] = middle * places->scale;
@@ -63,11 +63,11 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
 {
   bool listed = true; /* as they come */
   void* memory;
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+  for (int64_t cell = 0; cell < order->cell_count; ++cell) {
     order->leaf_begin[(leaf ? leaf[cell] : 0) + 1]++;
     listed = listed && (cell == 0 || !leaf || leaf[cell - 1] <= leaf[cell]);
   }
-  for (int32_t l = 0; l < order->leaf_count; l++) {
+  for (int32_t l = 0; l < order->leaf_count; ++l) {
     order->leaf_begin[l + 1] += order->leaf_begin[l];
   }
   const bool scattered = is_scattered(order, leaf);
@@ -79,10 +79,10 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
   if (scattered) {
     return list_by_place(order, leaf);
   }
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+  for (int64_t cell = 0; cell < order->cell_count; ++cell) {
     order->listed[order->leaf_begin[leaf[cell]]++] = (uint32_t)cell;
   }
-  for (int32_t l = order->leaf_count; l > 0; l--) {
+  for (int32_t l = order->leaf_count; l > 0; --l) {
     order->leaf_begin[l] = order->leaf_begin[l - 1];
   }
   order->leaf_begin[0] = 0;
@@ -93,10 +93,10 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
 static void fill_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf, const uint32_t* places)
 {
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
-  for (int64_t place = 0; place < order->cell_count; place++) {
+  for (int64_t place = 0; place < order->cell_count; ++place) {
     const uint32_t cell = stratus_order_cell(order, (uint32_t)place);
     unsigned sides = (unsigned)(side[cell] + 1) << 4;
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4; ++f) {
       const int32_t neighbour = order->adjacency->neighbours[4 * (int64_t)cell + f];
       const bool other = neighbour < 0 || (leaf && leaf[neighbour] != leaf[cell]);
       order->neighbours[4 * place + f] = other ? (int32_t)place : places ? (int32_t)places[neighbour] : neighbour;
@@ -128,7 +128,7 @@ stratus_status stratus_order_take_cells(stratus_visibility_order* order, const i
   TRY(allocate_cells(order));
   if (order->listed) {
     TRY(stratus_allocate(order->context, (size_t)order->cell_count, sizeof(uint32_t), &places));
-    for (int64_t place = 0; place < order->cell_count; place++) {
+    for (int64_t place = 0; place < order->cell_count; ++place) {
       ((uint32_t*)places)[order->listed[place]] = (uint32_t)place;
     }
   }

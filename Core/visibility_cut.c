@@ -7,7 +7,7 @@ void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face)
   const uint32_t before = (uint32_t)order->neighbours[4 * (int64_t)cell + face];
   const unsigned after = stratus_order_after(order, before);
   order->state[cell] = (uint8_t)(order->state[cell] & ~(16u << face));
-  for (int f = 0; f < 4; f++) {
+  for (int f = 0; f < 4; ++f) {
     if (after >> f & 1 && order->neighbours[4 * (int64_t)before + f] == (int32_t)cell) {
       order->state[before] = (uint8_t)(order->state[before] & ~(1u << f));
       return;

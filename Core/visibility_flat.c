@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cells without volume lie on no side of their faces, but what lies before and behind them still hides one another through them. So they get the
- * side on which they would lie were they blown up a little: the one that fits a neighbour's, passed on from cell to cell. */
+ * Cells without volume lie on no side of their faces, but what lies before and behind them still hides one another through them. So they
+ * get the side on which they would lie were they blown up a little: the one that fits a neighbour's, passed on from cell to cell. */
 #include "visibility_order.h"
 
 /* The neighbour's face that names the same points, -1 if none does; signs as stratus_face_points() returns them. */
@@ -8,9 +8,10 @@ static int find_face(const stratus_visibility_order* order, int64_t cell, int f,
 {
   int32_t points[3], other[3];
   *sign = stratus_face_points(order->vertices + 4 * cell, f, points);
-  for (int g = 0; g < 4; g++) {
+  for (int g = 0; g < 4; ++g) {
     *neighbour_sign = stratus_face_points(order->vertices + 4 * neighbour, g, other);
-    if (points[0] == other[0] && points[1] == other[1] && points[2] == other[2] && order->adjacency->neighbours[4 * neighbour + g] == cell) {
+    if (points[0] == other[0] && points[1] == other[1] && points[2] == other[2] &&
+      order->adjacency->neighbours[4 * neighbour + g] == cell) {
       return g;
     }
   }
@@ -32,8 +33,8 @@ static int wanted_side(const stratus_visibility_order* order, int64_t cell, int 
 static void spread_sides(stratus_visibility_order* order, uint32_t* queue)
 {
   int64_t end = 0;
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    for (int f = 0; f < 4 && order->side[cell] == 0; f++) {
+  for (int64_t cell = 0; cell < order->cell_count; ++cell) {
+    for (int f = 0; f < 4 && order->side[cell] == 0; ++f) {
       const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
       if (neighbour >= 0 && order->adjacency->orientation[neighbour] != 0) {
         order->side[cell] = (int8_t)wanted_side(order, cell, f);
@@ -43,11 +44,11 @@ static void spread_sides(stratus_visibility_order* order, uint32_t* queue)
       }
     }
   }
-  for (int64_t begin = 0; begin < end; begin++) {
+  for (int64_t begin = 0; begin < end; ++begin) {
     const int32_t* neighbours = order->adjacency->neighbours + 4 * (int64_t)queue[begin];
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4; ++f) {
       const int64_t neighbour = neighbours[f];
-      for (int g = 0; g < 4 && neighbour >= 0 && order->side[neighbour] == 0; g++) {
+      for (int g = 0; g < 4 && neighbour >= 0 && order->side[neighbour] == 0; ++g) {
         if (order->adjacency->neighbours[4 * neighbour + g] == (int32_t)queue[begin]) {
           order->side[neighbour] = (int8_t)wanted_side(order, neighbour, g);
           if (order->side[neighbour] != 0) {
@@ -68,8 +69,8 @@ stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order)
   TRY(stratus_allocate(order->context, (size_t)order->adjacency->flat, sizeof(uint32_t), &queue));
   spread_sides(order, queue);
   stratus_release(order->context, queue);
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
-    for (int f = 0; f < 4 && order->adjacency->orientation[cell] == 0; f++) {
+  for (int64_t cell = 0; cell < order->cell_count; ++cell) {
+    for (int f = 0; f < 4 && order->adjacency->orientation[cell] == 0; ++f) {
       const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
       int sign, neighbour_sign;
       const int g = neighbour < 0 ? -1 : find_face(order, cell, f, neighbour, &sign, &neighbour_sign);

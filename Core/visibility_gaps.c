@@ -31,7 +31,7 @@ static int64_t count_boxes(int64_t faces)
 
 static void grow(double box[6], const double low[3], const double high[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     box[2 * a] = fmin(box[2 * a], low[a]);
     box[2 * a + 1] = fmax(box[2 * a + 1], high[a]);
   }
@@ -49,14 +49,14 @@ static void build_boxes(gap_search* search)
   do {
     const int64_t count = (below + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN,
                   children = search->levels > 0 ? search->level_begin[search->levels - 1] : 0;
-    for (int64_t b = 0; b < count; b++) {
+    for (int64_t b = 0; b < count; ++b) {
       double* box = search->boxes + 6 * (begin + b);
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         box[2 * a] = INFINITY;
         box[2 * a + 1] = -INFINITY;
       }
-      for (int64_t c = STRATUS_GATE_CHILDREN * b; c < STRATUS_GATE_CHILDREN * (b + 1) && c < below; c++) {
-        for (int i = 0; i < 3 && search->levels == 0; i++) {
+      for (int64_t c = STRATUS_GATE_CHILDREN * b; c < STRATUS_GATE_CHILDREN * (b + 1) && c < below; ++c) {
+        for (int i = 0; i < 3 && search->levels == 0; ++i) {
           const double* point = face_point(search->order, search->faces[c], i);
           grow(box, point, point);
         }
@@ -79,11 +79,11 @@ static bool outer_plane(const gap_search* search, uint32_t face, double normal[3
   const double *a = face_point(order, face, 0), *b = face_point(order, face, 1), *c = face_point(order, face, 2),
                *apex = face_point(order, face, 3);
   double inner = 0.0, length = 0.0;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     normal[i] = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     inner += normal[i] * (apex[i] - a[i]);
     length += fabs(normal[i]);
   }
@@ -91,7 +91,7 @@ static bool outer_plane(const gap_search* search, uint32_t face, double normal[3
     return false;
   }
   *least = search->slack * length;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     normal[i] = inner > 0.0 ? -normal[i] : normal[i];
     *least += normal[i] * a[i];
   }
@@ -116,17 +116,18 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
     const int level = stack[--pending].level;
     const int64_t number = stack[pending].box;
     const double* box = search->boxes + 6 * (search->level_begin[level] + number);
-    if (!(stratus_vector_dot(normal, (const double[]){ box[normal[0] > 0.0], box[2 + (normal[1] > 0.0)], box[4 + (normal[2] > 0.0)] }) > least)) {
+    if (!(stratus_vector_dot(normal, (const double[]){ box[normal[0] > 0.0], box[2 + (normal[1] > 0.0)], box[4 + (normal[2] > 0.0)] }) >
+          least)) {
       continue;
     }
     const int64_t below = level > 0 ? search->level_begin[level] - search->level_begin[level - 1] : search->count;
-    for (int64_t i = STRATUS_GATE_CHILDREN * number; i < STRATUS_GATE_CHILDREN * (number + 1) && i < below; i++) {
+    for (int64_t i = STRATUS_GATE_CHILDREN * number; i < STRATUS_GATE_CHILDREN * (number + 1) && i < below; ++i) {
       if (level > 0) {
         stack[pending].level = level - 1;
         stack[pending++].box = i;
         continue;
       }
-      for (int v = 0; v < 3; v++) {
+      for (int v = 0; v < 3; ++v) {
         if (stratus_vector_dot(normal, face_point(search->order, search->faces[i], v)) > least) {
           return true;
         }
@@ -141,9 +142,9 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
 {
   void* memory;
   int64_t count = 0;
-  for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
+  for (int32_t leaf = 0; leaf < order->leaf_count; ++leaf) {
     begin[leaf] = count;
-    for (int64_t i = order->leaf_begin[leaf]; i < order->leaf_begin[leaf + 1]; i++) {
+    for (int64_t i = order->leaf_begin[leaf]; i < order->leaf_begin[leaf + 1]; ++i) {
       count += stratus_order_count_faces(~(unsigned)order->sides[i]);
     }
   }
@@ -151,8 +152,8 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   TRY(stratus_allocate(order->context, (size_t)count, sizeof **faces, &memory));
   *faces = memory;
   count = 0;
-  for (int64_t i = 0; i < order->cell_count; i++) {
-    for (uint32_t f = 0; f < 4; f++) {
+  for (int64_t i = 0; i < order->cell_count; ++i) {
+    for (uint32_t f = 0; f < 4; ++f) {
       if (!(order->sides[i] >> f & 1)) {
         (*faces)[count++] = 4 * (uint32_t)i + f;
       }
@@ -168,10 +169,10 @@ static int64_t keep_gaps(gap_search* search, uint32_t* faces, uint8_t* kept)
   int64_t count = 0;
   build_boxes(search);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
-  for (int64_t i = 0; i < search->count; i++) {
+  for (int64_t i = 0; i < search->count; ++i) {
     kept[i] = stratus_order_side(search->order, faces[i] / 4) != 0 && looks_at_others(search, faces[i]);
   }
-  for (int64_t i = 0; i < search->count; i++) {
+  for (int64_t i = 0; i < search->count; ++i) {
     faces[count] = faces[i];
     count += kept[i];
   }
@@ -193,9 +194,9 @@ static stratus_status take_gaps(stratus_visibility_order* order, const uint32_t*
   const size_t blocks = (size_t)order->cell_count / STRATUS_GAP_BLOCK + 1;
   TRY(stratus_order_allocate(order, blocks, sizeof *order->gap_at, &memory));
   order->gap_at = memory;
-  for (size_t b = 0, face = 0; b < blocks; b++) {
+  for (size_t b = 0, face = 0; b < blocks; ++b) {
     while (face < (size_t)count && faces[face] / 4 < b * STRATUS_GAP_BLOCK) {
-      face++;
+      ++face;
     }
     order->gap_at[b] = (uint32_t)face;
   }
@@ -213,14 +214,14 @@ stratus_status stratus_order_find_gaps(stratus_visibility_order* order)
   TRY_CLEANUP(stratus_allocate(context, (size_t)order->leaf_count + 1, sizeof(int64_t), &begin));
   order->gap_begin = begin;
   TRY_CLEANUP(list_borders(order, order->gap_begin, &faces));
-  for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
+  for (int32_t leaf = 0; leaf < order->leaf_count; ++leaf) {
     const int64_t here = order->gap_begin[leaf + 1] - order->gap_begin[leaf];
     largest = here > largest ? here : largest;
   }
   TRY_CLEANUP(stratus_allocate(context, (size_t)largest, sizeof(uint8_t), &kept));
   TRY_CLEANUP(stratus_allocate(context, (size_t)count_boxes(largest), 6 * sizeof(double), &boxes));
   search.boxes = boxes;
-  for (int32_t leaf = 0; leaf < order->leaf_count; leaf++) {
+  for (int32_t leaf = 0; leaf < order->leaf_count; ++leaf) {
     const int64_t first = order->gap_begin[leaf];
     search.faces = faces + first;
     search.count = order->gap_begin[leaf + 1] - first;

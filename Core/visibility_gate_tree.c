@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ways out into gaps by where they are in the view: boxes over those that follow one another, and so are near one another, as its sides see them:
- * one where rays are parallel, the six of a cube around the eye where not. */
+ * Ways out into gaps by where they are in the view: boxes over those that follow one another, and so are near one another, as its sides see
+ * them: one where rays are parallel, the six of a cube around the eye where not. */
 #include "visibility_order.h"
 
 /* Across, down and ahead of a side of the cube. */
@@ -17,7 +17,7 @@ static void turn_to(int side, const stratus_view_point* point, double turned[3])
 static bool side_sees(int side, const stratus_view_point points[3])
 {
   unsigned outside = 15;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     double p[3];
     turn_to(side, points + i, p);
     outside &= (unsigned)(p[0] > p[2]) | (unsigned)(-p[0] > p[2]) << 1 | (unsigned)(p[1] > p[2]) << 2 | (unsigned)(-p[1] > p[2]) << 3;
@@ -38,7 +38,7 @@ static int only_side(const stratus_view_point points[3])
 {
   const double x = fabs(points->x), y = fabs(points->y), z = fabs(points->z);
   const int side = x > y && x > z ? (points->x > 0.0 ? 0 : 1) : y > z ? (points->y > 0.0 ? 2 : 3) : points->z > 0.0 ? 4 : 5;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     double p[3];
     turn_to(side, points + i, p);
     if (!(fabs(p[0]) < p[2] && fabs(p[1]) < p[2])) {
@@ -61,7 +61,7 @@ void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stra
   gate->box[1] = gate->box[3] = -INFINITY;
   if (only < 0) {
     gate->sides = 0;
-    for (int side = 0; side < gates->sides; side++) {
+    for (int side = 0; side < gates->sides; ++side) {
       gate->sides |= (uint8_t)(side_sees(side, points) << side);
     }
     if (has_box(gate->sides)) { /* and beyond it: none after all */
@@ -71,7 +71,7 @@ void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stra
     return;
   }
   gate->sides = (uint8_t)(1u << only);
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     double p[3] = { points[i].x, points[i].y, 1.0 };
     if (!gates->parallel) {
       turn_to(only, points + i, p);
@@ -108,9 +108,9 @@ void stratus_gates_build_tree(stratus_gates* gates)
   do {
     const int64_t count = (below + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN;
     const stratus_gate_node* children = gates->levels > 0 ? gates->nodes + gates->level_begin[gates->levels - 1] : NULL;
-    for (int64_t n = 0; n < count; n++) {
+    for (int64_t n = 0; n < count; ++n) {
       stratus_gate_node node = { .low = INFINITY, .box = { INFINITY, -INFINITY, INFINITY, -INFINITY } };
-      for (int64_t c = STRATUS_GATE_CHILDREN * n; c < STRATUS_GATE_CHILDREN * (n + 1) && c < below; c++) {
+      for (int64_t c = STRATUS_GATE_CHILDREN * n; c < STRATUS_GATE_CHILDREN * (n + 1) && c < below; ++c) {
         if (children) {
           cover(&node, children[c].low, children[c].sides, children[c].box, children[c].left);
         } else if (gates->gates[c].facing > 0) {
@@ -143,7 +143,7 @@ int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in)
     const int64_t end = first + STRATUS_GATE_CHILDREN < below ? first + STRATUS_GATE_CHILDREN : below;
     gates->tests += end - first;
     gates->tests_left -= end - first;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t i = first; i < end; ++i) {
       if (level > 0) {
         const stratus_gate_node* node = gates->nodes + gates->level_begin[level - 1] + i;
         if (node->left > 0 && may_lie_before(node->low, node->sides, node->box, other)) {
@@ -153,8 +153,8 @@ int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in)
         continue;
       }
       const stratus_gate* gate = gates->gates + i;
-      if (gate->facing > 0 && !gate->passed && may_lie_before(gate->low, gate->sides, gate->box, other) && stratus_gate_cell(gates, i) != cell &&
-        stratus_gate_lies_before(gates, i, way_in)) {
+      if (gate->facing > 0 && !gate->passed && may_lie_before(gate->low, gate->sides, gate->box, other) &&
+        stratus_gate_cell(gates, i) != cell && stratus_gate_lies_before(gates, i, way_in)) {
         return i;
       }
     }
@@ -164,8 +164,8 @@ int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in)
 
 void stratus_gates_take_from_tree(stratus_gates* gates, int64_t way_out)
 {
-  for (int level = 0; level < gates->levels; level++) {
+  for (int level = 0; level < gates->levels; ++level) {
     way_out /= STRATUS_GATE_CHILDREN;
-    gates->nodes[gates->level_begin[level] + way_out].left--;
+    --gates->nodes[gates->level_begin[level] + way_out].left;
   }
 }

@@ -5,16 +5,16 @@
 
 #include <string.h>
 
-#define CORNERS_MAX 6    /* of two triangles' intersection */
-#define LEAST_SHARE 1e-6 /* of a face that another covers: less is rounding's, of faces that only touch */
+#define CORNERS_MAX 6     /* of two triangles' intersection */
+#define LEAST_SHARE 1e-6  /* of a face that another covers: less is rounding's, of faces that only touch */
 #define DEPTH_SLACK 1e-12 /* beyond roundings of depths near 0: what is seen reaches to 1 */
-#define LEAST_DEPTH 1e-9 /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
+#define LEAST_DEPTH 1e-9  /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
 
 static void gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
 {
   const stratus_visibility_order* order = gates->order;
   const int32_t* v = stratus_order_vertices(order, stratus_gate_cell(gates, gate));
-  for (unsigned i = 0; i < 3; i++) {
+  for (unsigned i = 0; i < 3; ++i) {
     const double* p = stratus_order_seen(order, v[(gates->faces[gate] + 1 + i) % 4]);
     points[i] = (stratus_view_point){ p[0], p[1], p[2] };
   }
@@ -34,7 +34,7 @@ static int clip(stratus_view_point* polygon, int count, const double* distance)
 {
   stratus_view_point kept[CORNERS_MAX + 2];
   int made = 0;
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     const int j = i + 1 < count ? i + 1 : 0;
     const stratus_view_point *p = polygon + i, *q = polygon + j;
     if (distance[i] >= 0.0) {
@@ -77,14 +77,14 @@ bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b)
   gate_points(gates, b, back);
   memcpy(polygon, front, sizeof front);
   const double turn = turn_of(gates, back, back + 1, back + 2);
-  for (int e = 0; e < 3 && count >= 3; e++) {
+  for (int e = 0; e < 3 && count >= 3; ++e) {
     double distance[CORNERS_MAX + 2];
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
       distance[i] = turn_of(gates, back + (e + 1) % 3, back + (e + 2) % 3, polygon + i) * turn;
     }
     count = clip(polygon, count, distance);
   }
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     size += i >= 2 ? fabs(turn_of(gates, polygon, polygon + i - 1, polygon + i)) : 0.0;
     middle.x += polygon[i].x / count;
     middle.y += polygon[i].y / count;
@@ -148,7 +148,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     .nodes = order->gate_nodes + nodes_before(first, leaf) };
   set_bounds(gates, order->leaf_begin[leaf + 1] - order->leaf_begin[leaf]);
   int64_t ways_in = 0, ways_out = 0;
-  for (int64_t g = 0; g < gates->count; g++) {
+  for (int64_t g = 0; g < gates->count; ++g) {
     stratus_gate* gate = gates->gates + g;
     const unsigned state = (unsigned)order->state[stratus_gate_cell(gates, g)] >> gates->faces[g] % 4;
     stratus_view_point points[3];
@@ -166,7 +166,7 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
     return;
   }
   stratus_gates_build_tree(gates);
-  for (int64_t g = 0; g < gates->count; g++) {
+  for (int64_t g = 0; g < gates->count; ++g) {
     const int facing = gates->gates[g].facing;
     order->waiting[stratus_gate_cell(gates, g)] |= (uint8_t)(facing < 0 ? STRATUS_GATE_IN : facing > 0 ? STRATUS_GATE_OUT : 0);
   }
@@ -178,7 +178,7 @@ static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
   int64_t gate = gates->order->gap_at[cell / STRATUS_GAP_BLOCK] - (gates->faces - gates->order->gap_faces);
   gate = gate > 0 ? gate : 0; /* the block may begin in another leaf */
   while (gate < gates->count && stratus_gate_cell(gates, gate) < cell) {
-    gate++;
+    ++gate;
   }
   return gate;
 }
@@ -193,7 +193,7 @@ static uint32_t cell_before(stratus_gates* gates, int64_t way_in)
 uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell)
 {
   uint32_t before = STRATUS_NO_CELL;
-  for (int64_t g = first_gate(gates, cell); before == STRATUS_NO_CELL && g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+  for (int64_t g = first_gate(gates, cell); before == STRATUS_NO_CELL && g < gates->count && stratus_gate_cell(gates, g) == cell; ++g) {
     before = cell_before(gates, g);
   }
   return before;
@@ -202,7 +202,7 @@ uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell)
 bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before)
 {
   bool cut = false;
-  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; ++g) {
     if (cell_before(gates, g) == before) {
       gates->gates[g].facing = 0;
       cut = true;
@@ -214,7 +214,7 @@ bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before)
 
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell)
 {
-  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; g++) {
+  for (int64_t g = first_gate(gates, cell); g < gates->count && stratus_gate_cell(gates, g) == cell; ++g) {
     gates->gates[g].passed = 1;
     if (gates->gates[g].facing > 0) {
       stratus_gates_take_from_tree(gates, g);

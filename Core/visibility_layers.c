@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Peeling of one leaf in layers (Li et al. 2012, section 3.1): all cells that nothing hides through a face, then all that only these hid, ..
- * Gaps are crossed as it comes. */
+ * Peeling of one leaf in layers (Li et al. 2012, section 3.1): all cells that nothing hides through a face, then all that only these hid,
+ * .. Gaps are crossed as it comes. */
 #include "visibility_order.h"
 
-/* out[emitted..ready) may come, up to out[layer_end) in this layer. A cell's `waiting` counts the neighbours that come before it and are not
- * ready yet. */
+/* out[emitted..ready) may come, up to out[layer_end) in this layer. A cell's `waiting` counts the neighbours that come before it and are
+ * not ready yet. */
 typedef struct leaf_peel {
   stratus_visibility_order* order;
   uint32_t first;
@@ -17,7 +17,7 @@ typedef struct leaf_peel {
 /* A cell that waits for neighbours, STRATUS_NO_CELL if none does. */
 static uint32_t find_waiting(leaf_peel* peel)
 {
-  for (; peel->unreleased < peel->count; peel->unreleased++) {
+  for (; peel->unreleased < peel->count; ++peel->unreleased) {
     const uint32_t cell = peel->first + (uint32_t)peel->unreleased;
     if (peel->order->waiting[cell] > 0) {
       return cell;
@@ -33,7 +33,7 @@ static int face_in_front(const stratus_visibility_order* order, uint32_t cell)
   const unsigned before = stratus_order_before(order, cell);
   int f = 0;
   while (f < 3 && !(before >> f & 1 && order->waiting[neighbours[f]] > 0)) {
-    f++;
+    ++f;
   }
   return f;
 }
@@ -43,14 +43,15 @@ static uint32_t cell_in_front(const stratus_visibility_order* order, uint32_t ce
   return (uint32_t)order->neighbours[4 * (int64_t)cell + face_in_front(order, cell)];
 }
 
-/* Nothing is ready, yet cells wait: the relation of a cycle that is seen smallest is taken out. Returns the cell that it led to, ready or not. */
+/* Nothing is ready, yet cells wait: the relation of a cycle that is seen smallest is taken out. Returns the cell that it led to, ready or
+ * not. */
 static uint32_t break_cycle(leaf_peel* peel, uint32_t start)
 {
   /* From cell to cell in front: one comes again. The one that is kept moves up each time the walk has doubled (Brent 1980). */
   stratus_visibility_order* order = peel->order;
   uint32_t kept = start, cell = cell_in_front(order, start);
   int64_t power = 1, length = 1;
-  for (; kept != cell; length++, peel->steps++) {
+  for (; kept != cell; ++length, ++peel->steps) {
     if (length == power) {
       kept = cell;
       power *= 2;
@@ -67,11 +68,11 @@ static uint32_t break_cycle(leaf_peel* peel, uint32_t start)
       least = cell;
     }
     cell = cell_in_front(order, cell);
-    peel->steps++;
+    ++peel->steps;
   } while (cell != kept);
   stratus_order_cut(order, least, face_in_front(order, least));
-  order->waiting[least]--;
-  peel->counts.cycles++;
+  --order->waiting[least];
+  ++peel->counts.cycles;
   return least;
 }
 
@@ -88,11 +89,11 @@ static void unstick(leaf_peel* peel, int32_t leaf, stratus_order_seed* seeds)
   }
   stratus_order_sort_seeds(order, leaf, seeds);
   const uint32_t end = peel->first + (uint32_t)peel->count;
-  for (int64_t s = 0; s < stratus_order_seed_count(peel->count); s++) {
-    for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; cell++) {
+  for (int64_t s = 0; s < stratus_order_seed_count(peel->count); ++s) {
+    for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; ++cell) {
       if (order->waiting[cell] > 0) {
         peel->out[peel->emitted++] = cell;
-        peel->counts.forced++;
+        ++peel->counts.forced;
       }
     }
   }
@@ -101,11 +102,10 @@ static void unstick(leaf_peel* peel, int32_t leaf, stratus_order_seed* seeds)
 stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds)
 {
   const int64_t begin = order->leaf_begin[leaf];
-  leaf_peel peel = { .order = order,
-    .first = (uint32_t)begin,
-    .count = order->leaf_begin[leaf + 1] - begin,
-    .out = order->cells + order->leaf_output[leaf] };
-  for (int64_t i = 0; i < peel.count; i++) {
+  leaf_peel peel = {
+    .order = order, .first = (uint32_t)begin, .count = order->leaf_begin[leaf + 1] - begin, .out = order->cells + order->leaf_output[leaf]
+  };
+  for (int64_t i = 0; i < peel.count; ++i) {
     const uint32_t cell = peel.first + (uint32_t)i;
     const unsigned before = stratus_order_before(order, cell);
     order->waiting[cell] = (uint8_t)stratus_order_count_faces(before);
@@ -120,12 +120,12 @@ stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, i
     }
     if (peel.emitted == peel.layer_end) {
       peel.layer_end = peel.ready;
-      peel.counts.layers++;
+      ++peel.counts.layers;
     }
     const uint32_t cell = peel.out[peel.emitted++];
     const int32_t* neighbours = order->neighbours + 4 * (int64_t)cell;
     const unsigned after = stratus_order_after(order, cell);
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4; ++f) {
       if (after >> f & 1 && --order->waiting[neighbours[f]] == 0) {
         peel.out[peel.ready++] = (uint32_t)neighbours[f];
       }

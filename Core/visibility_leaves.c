@@ -12,26 +12,28 @@ static stratus_status check_tree(stratus_context* context, const stratus_leaves*
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: nodes or leaf is NULL");
   }
   if (leaves->leaf_count < 1 || leaves->leaf_count > STRATUS_LEAVES_MAX) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: leaf_count %d outside 1..%d", (int)leaves->leaf_count, STRATUS_LEAVES_MAX);
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "leaves: leaf_count %d outside 1..%d", (int)leaves->leaf_count, STRATUS_LEAVES_MAX);
   }
   if (leaves->node_count != 2 * leaves->leaf_count - 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: node_count %d, a tree of %d leaves has %d", (int)leaves->node_count,
       (int)leaves->leaf_count, 2 * (int)leaves->leaf_count - 1);
   }
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 9; ++i) {
     if (!isfinite(leaves->frame[i])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: frame[%d] is %g, must be finite", i, leaves->frame[i]);
     }
   }
-  for (int32_t n = 0; n < leaves->node_count; n++) {
+  for (int32_t n = 0; n < leaves->node_count; ++n) {
     const stratus_partition_node* node = leaves->nodes + n;
     const bool leaf = node->axis == -1 && node->below >= 0 && node->below < leaves->leaf_count;
     /* Children come behind their parents: no node is its own ancestor. */
     const bool inner = node->axis >= 0 && node->axis < 3 && node->below > n && node->above > n && node->below < leaves->node_count &&
       node->above < leaves->node_count && node->below != node->above && isfinite(node->value);
     if (!leaf && !inner) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: node %d is no leaf and no plane (axis %d, children %d and %d of %d, value %g)",
-        (int)n, (int)node->axis, (int)node->below, (int)node->above, (int)leaves->node_count, node->value);
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "leaves: node %d is no leaf and no plane (axis %d, children %d and %d of %d, value %g)", (int)n, (int)node->axis, (int)node->below,
+        (int)node->above, (int)leaves->node_count, node->value);
     }
   }
   return STRATUS_OK;
@@ -41,10 +43,10 @@ static stratus_status check_tree(stratus_context* context, const stratus_leaves*
 static stratus_status find_boxes(stratus_context* context, const stratus_leaves* leaves, double* boxes, int32_t* parents)
 {
   memset(parents, 0xff, (size_t)leaves->node_count * sizeof *parents);
-  for (int32_t l = 0; l < leaves->leaf_count; l++) {
+  for (int32_t l = 0; l < leaves->leaf_count; ++l) {
     boxes[6 * l] = NAN;
   }
-  for (int32_t n = 0; n < leaves->node_count; n++) {
+  for (int32_t n = 0; n < leaves->node_count; ++n) {
     const stratus_partition_node* node = leaves->nodes + n;
     const bool leaf = node->axis < 0;
     if ((n > 0 && parents[n] < 0) || (leaf && !isnan(boxes[6 * node->below])) ||
@@ -56,7 +58,7 @@ static stratus_status find_boxes(stratus_context* context, const stratus_leaves*
       continue;
     }
     double* box = boxes + 6 * node->below;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       box[2 * a] = -INFINITY;
       box[2 * a + 1] = INFINITY;
     }
@@ -83,17 +85,17 @@ static bool frame_is_identity(const double frame[9])
 static stratus_status check_cells(const stratus_visibility_order* order, const stratus_leaves* leaves, const double* boxes)
 {
   double size = 0.0;
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     size = fmax(size, fabs(order->bounds[i]));
   }
   const bool turned = !frame_is_identity(leaves->frame);
   const double slack = (turned ? FRAME_SLACK : STRATUS_PLANE_TOLERANCE) * size;
   int64_t wrong = INT64_MAX;
 #pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(min : wrong)
-  for (int64_t cell = 0; cell < order->cell_count; cell++) {
+  for (int64_t cell = 0; cell < order->cell_count; ++cell) {
     const int32_t leaf = leaves->leaf[cell];
     bool right = leaf >= 0 && leaf < leaves->leaf_count;
-    for (int i = 0; i < 12 && right; i++) {
+    for (int i = 0; i < 12 && right; ++i) {
       const double* point = order->points + 3 * (int64_t)order->vertices[4 * cell + i / 3];
       const double* box = boxes + 6 * (int64_t)leaf + 2 * (i % 3);
       const double x = turned ? frame_coordinate(leaves->frame, i % 3, point) : point[i % 3];
@@ -178,7 +180,7 @@ bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_vi
     n = below_first ? node->below : node->above;
   }
   int64_t output = 0;
-  for (int32_t i = 0; i < order->leaf_count; i++) {
+  for (int32_t i = 0; i < order->leaf_count; ++i) {
     const int32_t leaf = order->leaf_order[i];
     order->leaf_output[leaf] = output;
     output += order->leaf_begin[leaf + 1] - order->leaf_begin[leaf];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One leaf's cells, nearest first by steps of some: each comes after all that hide it, through faces or across gaps, which are looked for depth
- * first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. Where rings across gaps, or what has to be
- * looked at to find what hides a cell there, are too many, no gap is looked across any more: cells come after those that hide them through faces. */
+ * One leaf's cells, nearest first by steps of some: each comes after all that hide it, through faces or across gaps, which are looked for
+ * depth first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. Where rings across gaps, or
+ * what has to be looked at to find what hides a cell there, are too many, no gap is looked across any more: cells come after those that
+ * hide them through faces. */
 #include "visibility_order.h"
 
 /* `waiting` of a cell. Bits 0 to 3: neighbours that may have to come before it and were not asked yet. */
@@ -36,13 +37,13 @@ static int face_towards(const stratus_visibility_order* order, uint32_t cell, ui
   const unsigned faces = stratus_order_before(order, cell);
   int f = 3;
   while (f >= 0 && !(faces >> f & 1 && order->neighbours[4 * (int64_t)cell + f] == (int32_t)before)) {
-    f--;
+    --f;
   }
   return f;
 }
 
-/* The relation of a ring that gives way: across a gap if any is, else the one that is seen smallest. The cells from `top` down to `last` wait each
- * for the one above, and top's for `last`. Returns the place of the cell that waited. */
+/* The relation of a ring that gives way: across a gap if any is, else the one that is seen smallest. The cells from `top` down to `last`
+ * wait each for the one above, and top's for `last`. Returns the place of the cell that waited. */
 static uint32_t* find_least(leaf_search* search, uint32_t* top, uint32_t last)
 {
   const stratus_visibility_order* order = search->order;
@@ -55,35 +56,35 @@ static uint32_t* find_least(leaf_search* search, uint32_t* top, uint32_t last)
       least_size = size;
       least = at;
     }
-    search->steps++;
+    ++search->steps;
     if (*at == last) {
       return least;
     }
   }
 }
 
-/* One of a ring waits no more: see find_least(), or, if rings were too many to look at whole, the one on top. What it waited for has to be looked
- * for again. Returns its place, which is on top now. */
+/* One of a ring waits no more: see find_least(), or, if rings were too many to look at whole, the one on top. What it waited for has to be
+ * looked for again. Returns its place, which is on top now. */
 static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
 {
   stratus_visibility_order* order = search->order;
   uint32_t* const least = search->steps > order->steps_per_cell * search->count ? top : find_least(search, top, last);
   const uint32_t before = least == top ? last : least[-1];
   const int face = face_towards(order, *least, before);
-  for (; top < least; top++) {
+  for (; top < least; ++top) {
     const unsigned gates = search->waiting[*top] & GATES;
     search->waiting[*top] = (uint8_t)(gates | stratus_order_before(order, *top));
     search->steps += gates & STRATUS_GATE_IN ? STEPS_PER_GATE : 1;
   }
   if (face >= 0) {
     stratus_order_cut(order, *least, face);
-    search->face_rings++;
+    ++search->face_rings;
     return least;
   }
   if (!stratus_gates_cut(&search->gates, *least, before)) {
     search->waiting[*least] &= (uint8_t)~STRATUS_GATE_IN;
   }
-  search->gap_rings++;
+  ++search->gap_rings;
   return least;
 }
 
@@ -131,7 +132,7 @@ static void bring(leaf_search* search, uint32_t cell)
 static void begin_leaf(leaf_search* search, int32_t leaf)
 {
   stratus_visibility_order* order = search->order;
-  for (int64_t i = 0; i < search->count; i++) {
+  for (int64_t i = 0; i < search->count; ++i) {
     const uint32_t cell = search->first + (uint32_t)i;
     search->waiting[cell] = (uint8_t)stratus_order_before(order, cell);
     if (i % 4 == 0) { /* the whole leaf's are asked for at random soon: now the memory can still be read in a row */
@@ -154,8 +155,8 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
   begin_leaf(&search, leaf);
   stratus_order_sort_seeds(order, leaf, seeds);
   const uint32_t end = search.first + (uint32_t)search.count;
-  for (int64_t s = 0; s < stratus_order_seed_count(search.count); s++) {
-    for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; cell++) {
+  for (int64_t s = 0; s < stratus_order_seed_count(search.count); ++s) {
+    for (uint32_t cell = seeds[s].first; cell < end && cell < seeds[s].first + STRATUS_SEED_CELLS; ++cell) {
       if (!(search.waiting[cell] & CAME)) {
         bring(&search, cell);
       }

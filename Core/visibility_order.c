@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELLS_PER_GATE 8 /* that take as long as one */
+#define CELLS_PER_GATE 8     /* that take as long as one */
 #define COORDINATE_MAX 1e300 /* so that differences are finite */
 
 static stratus_status find_bounds(stratus_visibility_order* order)
@@ -15,7 +15,7 @@ static stratus_status find_bounds(stratus_visibility_order* order)
   double* b = order->bounds;
   double lx = INFINITY, ly = INFINITY, lz = INFINITY, hx = -INFINITY, hy = -INFINITY, hz = -INFINITY;
 #pragma omp parallel for schedule(static) num_threads(order->context->threads) reduction(min : lx, ly, lz) reduction(max : hx, hy, hz)
-  for (int64_t i = 0; i < order->point_count; i++) {
+  for (int64_t i = 0; i < order->point_count; ++i) {
     const double* p = order->points + 3 * i;
     lx = fmin(lx, p[0]);
     ly = fmin(ly, p[1]);
@@ -27,7 +27,7 @@ static stratus_status find_bounds(stratus_visibility_order* order)
   if (order->point_count > 0) {
     memcpy(b, (const double[]){ lx, hx, ly, hy, lz, hz }, 6 * sizeof *b);
   }
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     if (!(fabs(b[i]) <= COORDINATE_MAX)) {
       return stratus_fail(order->context, STRATUS_INVALID_ARGUMENT, "mesh reaches %g, beyond +-%g", b[i], COORDINATE_MAX);
     }
@@ -60,7 +60,7 @@ static stratus_status plan_leaves(stratus_visibility_order* order)
   void* memory;
   TRY(stratus_order_allocate(order, (size_t)order->leaf_count, sizeof *order->leaf_work, &memory));
   order->leaf_work = memory;
-  for (int32_t l = 0; l < order->leaf_count; l++) {
+  for (int32_t l = 0; l < order->leaf_count; ++l) {
     const int64_t cells = order->leaf_begin[l + 1] - order->leaf_begin[l], gates = order->gap_begin[l + 1] - order->gap_begin[l];
     order->leaf_work[l] = (cells + CELLS_PER_GATE * gates) * STRATUS_LEAVES_MAX + l;
   }
@@ -76,7 +76,7 @@ static stratus_status allocate_order(stratus_visibility_order* order)
   order->seen = memory;
   TRY(stratus_order_allocate(order, cells, sizeof *order->cells, &memory));
   order->cells = memory;
-  for (int32_t l = 0; l < order->leaf_count; l++) {
+  for (int32_t l = 0; l < order->leaf_count; ++l) {
     const int64_t seeds = stratus_order_seed_count(order->leaf_begin[l + 1] - order->leaf_begin[l]);
     order->seed_count = seeds > order->seed_count ? seeds : order->seed_count;
   }
@@ -192,7 +192,7 @@ static stratus_status find_view(stratus_visibility_order* order, const stratus_c
   if (!camera) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
   }
-  for (int i = 0; matrix && i < 16; i++) {
+  for (int i = 0; matrix && i < 16; ++i) {
     if (!isfinite(matrix[i]) || (i >= 12 && matrix[i] != (i == 15))) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "matrix[%d] is %g, must be finite, and the last row 0 0 0 1", i, matrix[i]);
     }
@@ -206,7 +206,7 @@ static stratus_status find_view(stratus_visibility_order* order, const stratus_c
   } else {
     stratus_matrix_point(inverse, camera->eye, view->eye);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double number = view->parallel ? view->direction[a] : view->eye[a];
     if (!(fabs(number) <= COORDINATE_MAX)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera %s[%d] is %g in the mesh's coordinates, outside +-%g",
@@ -231,9 +231,9 @@ static stratus_peel_counts peel_leaf(stratus_visibility_order* order, int32_t le
   stratus_order_seed* seeds = order->seeds + omp_get_thread_num() * order->seed_count;
   const int64_t cells = order->leaf_begin[leaf + 1] - order->leaf_begin[leaf];
   uint32_t* out = order->cells + order->leaf_output[leaf];
-  const stratus_peel_counts counts = peeling == STRATUS_PEELING_LAYERS ? stratus_order_leaf_layers(order, leaf, seeds)
-                                                                       : stratus_order_leaf_nearest(order, leaf, seeds);
-  for (int64_t i = 0; i < cells && order->listed; i++) {
+  const stratus_peel_counts counts =
+    peeling == STRATUS_PEELING_LAYERS ? stratus_order_leaf_layers(order, leaf, seeds) : stratus_order_leaf_nearest(order, leaf, seeds);
+  for (int64_t i = 0; i < cells && order->listed; ++i) {
     out[i] = order->listed[out[i]];
   }
   return counts;
@@ -245,7 +245,7 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
   int layers = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced, overlaps, tests)           \
   reduction(max : layers)
-  for (int32_t i = 0; i < order->leaf_count; i++) {
+  for (int32_t i = 0; i < order->leaf_count; ++i) {
     const stratus_peel_counts counts = peel_leaf(order, (int32_t)(order->leaf_work[i] % STRATUS_LEAVES_MAX), peeling);
     cycles += counts.cycles;
     forced += counts.forced;

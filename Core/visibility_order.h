@@ -62,18 +62,18 @@ struct stratus_visibility_order {
   double bounds[6]; /* of the points: xmin xmax ymin .. */
 
   stratus_adjacency* adjacency; /* while the order is made: in the mesh's numbers, those through coincident points put in */
-  int8_t* side;                 /* as long: the adjacency's orientation, flat cells given the one that fits their neighbours; 0: none does */
+  int8_t* side; /* as long: the adjacency's orientation, flat cells given the one that fits their neighbours; 0: none does */
   int64_t flat, folded, inverted;
 
   stratus_partition_node* nodes;
   int32_t node_count, leaf_count;
   double frame[9];
-  uint32_t* listed;     /* leaf by leaf: from here on a cell is a place in it, but in `cells`: the mesh's cell of each; NULL: the same */
-  int32_t* neighbours;  /* 4 a cell, of its leaf; itself where there is none */
-  uint8_t* sides;       /* bit f: it has a neighbour behind face f; from bit 4 on, plus 1: on which side of its faces it lies, 0: flat, and fits
-                         * nowhere */
-  uint8_t* state;       /* of a view. Bit f: what is behind face f comes after the cell, bit 4 + f: before it; borders' faces, too */
-  uint8_t* waiting;     /* what peeling knows of a cell */
+  uint32_t* listed;    /* leaf by leaf: from here on a cell is a place in it, but in `cells`: the mesh's cell of each; NULL: the same */
+  int32_t* neighbours; /* 4 a cell, of its leaf; itself where there is none */
+  uint8_t* sides;   /* bit f: it has a neighbour behind face f; from bit 4 on, plus 1: on which side of its faces it lies, 0: flat, and fits
+                     * nowhere */
+  uint8_t* state;   /* of a view. Bit f: what is behind face f comes after the cell, bit 4 + f: before it; borders' faces, too */
+  uint8_t* waiting; /* what peeling knows of a cell */
   int64_t* leaf_begin;  /* leaf_count + 1 */
   int32_t* leaf_order;  /* front to back */
   int64_t* leaf_output; /* where each begins in the order */
@@ -85,12 +85,12 @@ struct stratus_visibility_order {
   stratus_gate* gates; /* of the gap faces in this view */
   stratus_gate_node* gate_nodes;
 
-  uint32_t* seen_at; /* of each point; NULL: its number */
-  double* seen;     /* 3 a point: stratus_order_see_points() */
-  uint32_t* cells;  /* the order, in the mesh's numbers */
-  bool relations_changed; /* by the last signs: some cell's state is not what it was */
+  uint32_t* seen_at;                         /* of each point; NULL: its number */
+  double* seen;                              /* 3 a point: stratus_order_see_points() */
+  uint32_t* cells;                           /* the order, in the mesh's numbers */
+  bool relations_changed;                    /* by the last signs: some cell's state is not what it was */
   struct stratus_device_signs* device_signs; /* what the device keeps from view to view; NULL: it was not asked */
-  stratus_order_seed* seeds; /* as many as the largest leaf has, for each thread that peels */
+  stratus_order_seed* seeds;                 /* as many as the largest leaf has, for each thread that peels */
   int64_t seed_count;
   int64_t steps_per_cell; /* that the search for rings may take: STRATUS_STEPS_PER_CELL, but for tests */
   size_t bytes;
@@ -182,8 +182,8 @@ stratus_status stratus_order_place_points(stratus_visibility_order* order);
 /* ---- visibility_cells.c: listed, neighbours, sides, state, waiting and leaf_begin. leaf NULL: there is one. */
 stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf);
 
-/* ---- visibility_leaves.c: whether a tree is one, and has the mesh's cells in its leaves: asked first, as a mesh that has moved since is not
- * worth building anything for. NULL: there is none. */
+/* ---- visibility_leaves.c: whether a tree is one, and has the mesh's cells in its leaves: asked first, as a mesh that has moved since is
+ * not worth building anything for. NULL: there is none. */
 stratus_status stratus_order_check_leaves(const stratus_visibility_order* order, const stratus_leaves* leaves);
 /* Takes a checked tree. */
 stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const stratus_leaves* leaves);

@@ -24,7 +24,7 @@ static uint64_t mix(uint64_t hash, uint64_t value)
 static uint64_t hash_point(const double* p)
 {
   uint64_t hash = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double number = p[a] + 0.0; /* -0 is 0 */
     uint64_t bits;
     memcpy(&bits, &number, sizeof bits);
@@ -38,7 +38,7 @@ static int64_t find_coincident(seam_build* seam)
 {
   const stratus_visibility_order* order = seam->order;
   int64_t coincident = 0;
-  for (int64_t i = 0; i < order->point_count; i++) {
+  for (int64_t i = 0; i < order->point_count; ++i) {
     if (seam->same[i] == NONE) {
       continue;
     }
@@ -52,7 +52,7 @@ static int64_t find_coincident(seam_build* seam)
       }
       if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
         seam->same[i] = seam->table[slot];
-        coincident++;
+        ++coincident;
         break;
       }
     }
@@ -66,7 +66,7 @@ static int seam_face(const seam_build* seam, uint32_t face, int32_t points[3])
   const stratus_visibility_order* order = seam->order;
   const int32_t* v = order->vertices + 4 * (int64_t)(face / 4);
   int32_t cell[4];
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     cell[i] = seam->same[v[i]] == NONE ? v[i] : (int32_t)seam->same[v[i]];
   }
   return stratus_face_points(cell, (int)(face % 4), points) * order->side[face / 4];
@@ -97,7 +97,7 @@ static void join_face(seam_build* seam, uint32_t face)
       if (side == -candidate_side && face / 4 != candidate / 4) {
         neighbours[candidate] = (int32_t)(face / 4);
         neighbours[face] = (int32_t)(candidate / 4);
-        seam->joined++;
+        ++seam->joined;
       }
     }
     return;
@@ -111,12 +111,12 @@ static int64_t mark_border(seam_build* seam)
   const stratus_visibility_order* order = seam->order;
   int64_t marked = 0;
   memset(seam->same, 0xff, (size_t)order->point_count * sizeof *seam->same);
-  for (int64_t face = 0; face < 4 * order->cell_count; face++) {
-    for (int i = 0; i < 4 && order->adjacency->neighbours[face] < 0; i++) {
+  for (int64_t face = 0; face < 4 * order->cell_count; ++face) {
+    for (int i = 0; i < 4 && order->adjacency->neighbours[face] < 0; ++i) {
       const int32_t point = order->vertices[4 * (face / 4) + i];
       if (i != face % 4 && seam->same[point] == NONE) {
         seam->same[point] = (uint32_t)point;
-        marked++;
+        ++marked;
       }
     }
   }
@@ -129,8 +129,7 @@ static stratus_status make_table(seam_build* seam, int64_t entries, size_t width
   void* memory;
   stratus_release(seam->order->context, seam->table);
   seam->table = NULL;
-  for (seam->mask = 1; seam->mask < 2 * (uint64_t)entries; seam->mask = 2 * seam->mask + 1) {
-  }
+  for (seam->mask = 1; seam->mask < 2 * (uint64_t)entries; seam->mask = 2 * seam->mask + 1) {}
   TRY(stratus_allocate(seam->order->context, seam->mask + 1, width * sizeof *seam->table, &memory));
   seam->table = memory;
   memset(memory, 0xff, (seam->mask + 1) * width * sizeof *seam->table);
@@ -147,7 +146,7 @@ stratus_status stratus_order_join_seams(stratus_visibility_order* order)
   TRY_CLEANUP(make_table(&seam, mark_border(&seam), 1));
   if (find_coincident(&seam) > 0) {
     TRY_CLEANUP(make_table(&seam, order->adjacency->border_faces, 2));
-    for (int64_t face = 0; face < 4 * order->cell_count; face++) {
+    for (int64_t face = 0; face < 4 * order->cell_count; ++face) {
       if (order->adjacency->neighbours[face] < 0) {
         join_face(&seam, (uint32_t)face);
       }

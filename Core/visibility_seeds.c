@@ -23,15 +23,15 @@ static void sift_down(stratus_order_seed* seeds, int64_t from, int64_t count)
 void stratus_order_sort_seeds(const stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds)
 {
   const int64_t begin = order->leaf_begin[leaf], cells = order->leaf_begin[leaf + 1] - begin, count = stratus_order_seed_count(cells);
-  for (int64_t s = 0; s < count; s++) {
+  for (int64_t s = 0; s < count; ++s) {
     const int64_t first = STRATUS_SEED_CELLS * s, middle = first + STRATUS_SEED_CELLS / 2;
     seeds[s].first = (uint32_t)(begin + first);
     seeds[s].key = stratus_order_key(order, (uint32_t)(begin + (middle < cells ? middle : first)));
   }
-  for (int64_t i = count / 2 - 1; i >= 0; i--) {
+  for (int64_t i = count / 2 - 1; i >= 0; --i) {
     sift_down(seeds, i, count);
   }
-  for (int64_t end = count - 1; end > 0; end--) {
+  for (int64_t end = count - 1; end > 0; --end) {
     const stratus_order_seed seed = seeds[0];
     seeds[0] = seeds[end];
     seeds[end] = seed;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which of two neighbours is in front: the side of their face on which the eye is. The four determinants of a cell share their minors in double;
- * where one is smaller than what rounding may have done to it the exact sign decides, so that both owners of a face always agree. */
+ * Which of two neighbours is in front: the side of their face on which the eye is. The four determinants of a cell share their minors in
+ * double; where one is smaller than what rounding may have done to it the exact sign decides, so that both owners of a face always agree.
+ */
 #include "clones.h"
 #include "visibility_order.h"
 
@@ -14,15 +15,15 @@ static double view_scale(const stratus_visibility_order* order, const double fro
 {
   double largest = 0.0;
   int exponent;
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     largest = fmax(largest, fabs(order->bounds[i] - from[i / 2]));
   }
   (void)frexp(largest, &exponent);
   return ldexp(1.0, exponent < -1000 ? 1000 : -exponent);
 }
 
-/* Perspective: points as seen from the eye. Parallel: x and y across the direction, so that the determinant with ones for z is the one along
- * the direction; z, which is not part of it, says how far. */
+/* Perspective: points as seen from the eye. Parallel: x and y across the direction, so that the determinant with ones for z is the one
+ * along the direction; z, which is not part of it, says how far. */
 void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view)
 {
   const double* d = view->direction;
@@ -35,7 +36,7 @@ void stratus_order_see_points(stratus_visibility_order* order, const stratus_vie
   const double slope_i = view->parallel ? d[i] / d[k] : 0.0, slope_j = view->parallel ? d[j] / d[k] : 0.0;
   const int x_at = d[k] > 0.0 ? 0 : 1; /* turned round, x and y change places */
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
-  for (int64_t p = 0; p < order->point_count; p++) {
+  for (int64_t p = 0; p < order->point_count; ++p) {
     const double* point = order->points + 3 * p;
     double* seen = stratus_order_seen(order, p);
     const double from[3] = { (point[0] - origin[0]) * scale, (point[1] - origin[1]) * scale, (point[2] - origin[2]) * scale };
@@ -76,7 +77,7 @@ typedef struct cell_lanes {
 
 static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
 {
-  for (int l = 0; l < LANES; l++) {
+  for (int l = 0; l < LANES; ++l) {
     const double* seen = lanes->seen;
     const int64_t a = lanes->at[0][l], b = lanes->at[1][l], c = lanes->at[2][l], d = lanes->at[3][l];
     const face_point p0 = { seen[a], seen[a + 1], seen[a + 2] }, p1 = { seen[b], seen[b + 1], seen[b + 2] },
@@ -84,7 +85,7 @@ static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
     double det[4];
     int64_t signs = 0;
     face_determinants(p0, p1, p2, p3, parallel, det);
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4; ++f) {
       signs |= (det[f] > FACE_SIGNS_ERROR_BOUND ? (int64_t)1 << f : 0) | (det[f] < -FACE_SIGNS_ERROR_BOUND ? (int64_t)16 << f : 0);
     }
     lanes->signs[l] = signs;
@@ -125,12 +126,12 @@ static int64_t take_signs(stratus_visibility_order* order, const stratus_view* v
   const int side = stratus_order_side(order, cell);
   unsigned positive = signs & 15u, negative = signs >> 4, open = order->sides[cell] & 15u & ~(positive | negative);
   int64_t exact = 0;
-  for (int f = 0; open && side != 0 && f < 4; f++) {
+  for (int f = 0; open && side != 0 && f < 4; ++f) {
     if (open >> f & 1) {
       const int sign = stratus_order_exact_sign(order, view, (uint32_t)cell, f);
       positive |= (unsigned)(sign > 0) << f;
       negative |= (unsigned)(sign < 0) << f;
-      exact++;
+      ++exact;
     }
   }
   /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
@@ -150,18 +151,18 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
     const int count = order->cell_count - begin < LANES ? (int)(order->cell_count - begin) : LANES;
     cell_lanes lanes;
     lanes.seen = order->seen;
-    for (int l = 0; l < LANES; l++) {
+    for (int l = 0; l < LANES; ++l) {
       const int64_t cell = begin + (l < count ? l : 0); /* the first stands in for those that are missing */
       if (order->listed && cell + AHEAD < order->cell_count) {
         STRATUS_FETCH(order->vertices + 4 * (int64_t)order->listed[cell + AHEAD]);
       }
       const int32_t* v = stratus_order_vertices(order, (uint32_t)cell);
-      for (int k = 0; k < 4; k++) {
+      for (int k = 0; k < 4; ++k) {
         lanes.at[k][l] = stratus_order_seen_at(order, v[k]);
       }
     }
     find(&lanes, view->parallel);
-    for (int l = 0; l < count; l++) {
+    for (int l = 0; l < count; ++l) {
       exact += take_signs(order, view, begin + l, (unsigned)lanes.signs[l], &changed);
     }
   }
@@ -173,7 +174,7 @@ float stratus_order_key(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* v = stratus_order_vertices(order, cell);
   double sum[3] = { 0.0, 0.0, 0.0 };
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     const double* p = stratus_order_seen(order, v[i]);
     sum[0] += p[0];
     sum[1] += p[1];
@@ -188,7 +189,7 @@ double stratus_order_face_size(const stratus_visibility_order* order, uint32_t c
   double det[4], size = 1.0;
   face_determinants(
     seen_point(order, v[0]), seen_point(order, v[1]), seen_point(order, v[2]), seen_point(order, v[3]), order->view.parallel, det);
-  for (int i = 0; i < 4 && !order->view.parallel; i++) {
+  for (int i = 0; i < 4 && !order->view.parallel; ++i) {
     const double* p = stratus_order_seen(order, v[i]);
     size *= i == face ? 1.0 : sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   }

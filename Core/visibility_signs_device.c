@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back a word
- * a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
+ * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back a
+ * word a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
 #include "device.h"
 #include "visibility_order.h"
 
-#define PART ((int64_t)1 << 17)    /* cells that come back at once */
+#define PART ((int64_t)1 << 17)      /* cells that come back at once */
 #define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */
 
 struct stratus_device_signs {
@@ -36,9 +36,9 @@ void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs
 static stratus_status send_corners(
   const stratus_visibility_order* order, stratus_device_signs* signs, int64_t begin, int64_t count, int32_t* corners)
 {
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     const int32_t* v = stratus_order_vertices(order, (uint32_t)(begin + i));
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4; ++f) {
       corners[4 * i + f] = order->seen_at ? (int32_t)order->seen_at[v[f]] : v[f];
     }
   }
@@ -91,11 +91,11 @@ static int64_t take_result(stratus_visibility_order* order, const stratus_view* 
 {
   unsigned state = result & 255u;
   int64_t exact = 0;
-  for (int f = 0; f < 4; f++) {
+  for (int f = 0; f < 4; ++f) {
     if (result >> (8 + f) & 1) {
       const int sign = stratus_order_exact_sign(order, view, cell, f) * stratus_order_side(order, cell);
       state |= (unsigned)(sign < 0) << f | (unsigned)(sign > 0) << (4 + f);
-      exact++;
+      ++exact;
     }
   }
   *changed = stratus_order_take_state(order, cell, state) || *changed;
@@ -121,7 +121,7 @@ stratus_status stratus_order_find_signs_on_device(stratus_visibility_order* orde
     const size_t cell = sizeof(uint16_t);
     TRY_CLEANUP(stratus_device_read(context, order->device_signs->results, (size_t)begin * cell, (size_t)count * cell, memory));
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : open) reduction(|| : changed)
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0; i < count; ++i) {
       open += take_result(order, view, (uint32_t)(begin + i), results[i], &changed);
     }
   }

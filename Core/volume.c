@@ -40,7 +40,9 @@ bool stratus_type_is_wide(stratus_type type)
 
 stratus_volume stratus_volume_default(void)
 {
-  stratus_volume volume = { .type = STRATUS_FLOAT32, .dimensions = { 1, 1, 1 }, .value_stride = 1, .spacing = { 1, 1, 1 }, .components = 1 };
+  stratus_volume volume = {
+    .type = STRATUS_FLOAT32, .dimensions = { 1, 1, 1 }, .value_stride = 1, .spacing = { 1, 1, 1 }, .components = 1
+  };
   memcpy(volume.direction, identity3, sizeof identity3);
   memcpy(volume.matrix, identity4, sizeof identity4);
   return volume;
@@ -50,7 +52,7 @@ stratus_volume stratus_volume_default(void)
 
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     cells[a] = volume->dimensions[a] > 1 ? volume->dimensions[a] - 1 : 0;
   }
 }
@@ -58,19 +60,19 @@ void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3])
 void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[16])
 {
   double local[16] = { [15] = 1.0 };
-  for (int r = 0; r < 3; r++) {
+  for (int r = 0; r < 3; ++r) {
     local[4 * r + 3] = volume->origin[r];
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; ++c) {
       local[4 * r + c] = volume->direction[3 * r + c] * volume->spacing[c];
       if (volume->cell_centered) {
         local[4 * r + 3] += 0.5 * local[4 * r + c];
       }
     }
   }
-  for (int r = 0; r < 4; r++) {
-    for (int c = 0; c < 4; c++) {
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 4; ++c) {
       double sum = 0.0;
-      for (int i = 0; i < 4; i++) {
+      for (int i = 0; i < 4; ++i) {
         sum += volume->matrix[4 * r + i] * local[4 * i + c];
       }
       matrix[4 * r + c] = sum;
@@ -82,7 +84,7 @@ void stratus_matrix_point(const double matrix[16], const double point[3], double
 {
   double moved[3];
   stratus_matrix_vector(matrix, point, moved);
-  for (int r = 0; r < 3; r++) {
+  for (int r = 0; r < 3; ++r) {
     result[r] = moved[r] + matrix[4 * r + 3];
   }
 }
@@ -90,7 +92,7 @@ void stratus_matrix_point(const double matrix[16], const double point[3], double
 void stratus_matrix_vector(const double matrix[16], const double vector[3], double result[3])
 {
   double turned[3];
-  for (int r = 0; r < 3; r++) {
+  for (int r = 0; r < 3; ++r) {
     turned[r] = matrix[4 * r] * vector[0] + matrix[4 * r + 1] * vector[1] + matrix[4 * r + 2] * vector[2];
   }
   memcpy(result, turned, sizeof turned);
@@ -101,19 +103,19 @@ bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16])
   /* Columns are brought to length about 1 by powers of two, which is exact: a spacing of 1e-120 must not underflow the determinant. */
   double a[3][3];
   int exponent[3];
-  for (int c = 0; c < 3; c++) {
+  for (int c = 0; c < 3; ++c) {
     const double longest = fmax(fmax(fabs(matrix[c]), fabs(matrix[4 + c])), fabs(matrix[8 + c]));
     if (!(longest > 0.0) || !isfinite(longest)) {
       return false;
     }
     (void)frexp(longest, &exponent[c]);
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
       a[r][c] = ldexp(matrix[4 * r + c], -exponent[c]);
     }
   }
   double cofactor[3][3];
-  for (int r = 0; r < 3; r++) {
-    for (int c = 0; c < 3; c++) {
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
       const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
       cofactor[r][c] = a[r1][c1] * a[r2][c2] - a[r1][c2] * a[r2][c1];
     }
@@ -123,18 +125,18 @@ bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16])
     return false;
   }
   double result[16] = { [15] = 1.0 };
-  for (int r = 0; r < 3; r++) {
-    for (int c = 0; c < 3; c++) {
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
       result[4 * r + c] = ldexp(cofactor[c][r] / determinant, -exponent[r]);
     }
   }
   const double translation[3] = { -matrix[3], -matrix[7], -matrix[11] };
   double back[3];
   stratus_matrix_vector(result, translation, back);
-  for (int r = 0; r < 3; r++) {
+  for (int r = 0; r < 3; ++r) {
     result[4 * r + 3] = back[r];
   }
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 12; ++i) {
     if (!isfinite(result[i])) {
       return false;
     }
@@ -149,13 +151,13 @@ static void bounds_of(const stratus_volume* volume, double bounds[6])
   double matrix[16];
   stratus_volume_index_to_world(volume, matrix);
   const double margin = volume->cell_centered ? 0.5 : 0.0;
-  for (int corner = 0; corner < 8; corner++) {
+  for (int corner = 0; corner < 8; ++corner) {
     double index[3], world[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       index[a] = (corner >> a & 1) ? (double)(volume->dimensions[a] - 1) + margin : -margin;
     }
     stratus_matrix_point(matrix, index, world);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       bounds[2 * a] = corner == 0 || world[a] < bounds[2 * a] ? world[a] : bounds[2 * a];
       bounds[2 * a + 1] = corner == 0 || world[a] > bounds[2 * a + 1] ? world[a] : bounds[2 * a + 1];
     }
@@ -185,7 +187,7 @@ static stratus_status check_sizes(stratus_context* context, const stratus_volume
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "volume type %d outside %d..%d", (int)volume->type, STRATUS_INT8, STRATUS_FLOAT64);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (volume->dimensions[a] < 1) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume dimension along %c is %lld, must be at least 1", axis[a],
         (long long)volume->dimensions[a]);
@@ -206,7 +208,7 @@ static stratus_status check_sizes(stratus_context* context, const stratus_volume
 
 static stratus_status check_finite(stratus_context* context, const char* what, const double* numbers, int count)
 {
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < count; ++i) {
     if (!isfinite(numbers[i])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %s[%d] is %g, must be finite", what, i, numbers[i]);
     }
@@ -217,7 +219,7 @@ static stratus_status check_finite(stratus_context* context, const char* what, c
 static stratus_status check_geometry(stratus_context* context, const stratus_volume* volume)
 {
   TRY(check_finite(context, "origin", volume->origin, 3));
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (!(volume->spacing[a] > 0.0) || !isfinite(volume->spacing[a])) {
       return stratus_fail(
         context, STRATUS_INVALID_ARGUMENT, "volume spacing[%d] is %g, must be positive and finite", a, volume->spacing[a]);
@@ -230,7 +232,7 @@ static stratus_status check_geometry(stratus_context* context, const stratus_vol
       volume->matrix[12], volume->matrix[13], volume->matrix[14], volume->matrix[15]);
   }
   double direction[16] = { [15] = 1.0 }, world[16], inverse[16], bounds[6];
-  for (int r = 0; r < 3; r++) {
+  for (int r = 0; r < 3; ++r) {
     memcpy(&direction[4 * r], &volume->direction[3 * r], 3 * sizeof(double));
   }
   if (!stratus_matrix_invert_affine(direction, inverse)) {

@@ -36,7 +36,7 @@ static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
   uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
   size_t at = 0;
   for (; at + 32 <= size; at += 32) {
-    for (int l = 0; l < 4; l++) {
+    for (int l = 0; l < 4; ++l) {
       lane[l] = rotate((lane[l] ^ read_word(bytes + at + 8 * l)) * MIX_A, 31);
     }
   }
@@ -53,7 +53,7 @@ static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
   {                                                                                                                                        \
     const type* from = (const type*)volume->values + first;                                                                                \
     type* to = room;                                                                                                                       \
-    for (int64_t i = 0; i < n; i++) {                                                                                                      \
+    for (int64_t i = 0; i < n; ++i) {                                                                                                      \
       to[i] = from[i * volume->value_stride];                                                                                              \
     }                                                                                                                                      \
     return room;                                                                                                                           \
@@ -82,7 +82,7 @@ const void* stratus_volume_row(const stratus_volume* volume, int64_t j, int64_t 
 static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint64_t seed)
 {
   uint64_t sum = 0;
-  for (int64_t i = 0; flags && i < n; i++) {
+  for (int64_t i = 0; flags && i < n; ++i) {
     if (flags[i] & wanted) {
       sum += finish(seed ^ ((uint64_t)i << 8 | (flags[i] & wanted)));
     }
@@ -96,7 +96,7 @@ uint64_t stratus_volume_hash_row(const stratus_volume* volume, int64_t j, int64_
   const uint64_t seed = finish((uint64_t)(k * n[1] + j) + MIX_B);
   const int64_t less = !volume->cell_centered;
   int64_t cells[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     cells[a] = n[a] > 1 ? n[a] - less : 1;
   }
   uint64_t sum = hash_bytes(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
@@ -114,7 +114,7 @@ uint64_t stratus_volume_hash_row(const stratus_volume* volume, int64_t j, int64_
 uint64_t stratus_volume_hash_shape(const stratus_volume* volume)
 {
   uint64_t hash = finish((uint64_t)volume->type * 2 + (volume->cell_centered ? 1 : 0));
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     hash = finish(rotate(hash, 21) ^ (uint64_t)volume->dimensions[a]);
   }
   return hash;
@@ -132,7 +132,7 @@ stratus_status stratus_volume_hash(stratus_context* context, const stratus_volum
   {
     void* mine = (uint8_t*)memory + (size_t)omp_get_thread_num() * room;
 #pragma omp for schedule(static)
-    for (int64_t row = 0; row < rows; row++) {
+    for (int64_t row = 0; row < rows; ++row) {
       const int64_t j = row % ny, k = row / ny;
       sum += stratus_volume_hash_row(volume, j, k, stratus_volume_row(volume, j, k, mine));
     }

@@ -3,8 +3,8 @@
  *
  * A ray crosses the plane p of an axis at t = (p - origin) / direction, and nothing else is ever computed of a crossing. Crossings are
  * taken in the order of t, and at equal t in the order of the axes, so that a ray through an edge or a corner steps along x before y before
- * z and meets the voxels between. A crossing at t_min has been made already: who begins on a face is in the voxel that the ray moves into. A
- * ray that runs within a plane between voxels is in the upper one. */
+ * z and meets the voxels between. A crossing at t_min has been made already: who begins on a face is in the voxel that the ray moves into.
+ * A ray that runs within a plane between voxels is in the upper one. */
 #include "voxels.h"
 
 #include <string.h>
@@ -41,7 +41,7 @@ static int64_t plane_of(const walk* w, int axis, int64_t n)
 static bool enter_box(const walk* w, crossing* entry)
 {
   *entry = (crossing){ w->t_min, 3 };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (w->direction[a] == 0.0) {
       const double place = floor(w->origin[a]);
       if (!(place >= (double)w->voxels->lo[a] && place < (double)w->voxels->hi[a])) {
@@ -106,12 +106,12 @@ static void walk_ray(const walk* w, brick_cache* cache, stratus_hit* hit)
   }
   int64_t at[3];
   double next[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     at[a] = place_after(w, a, last);
     next[a] = next_time(w, a, at[a]);
   }
   for (;;) {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       if (at[a] < w->voxels->lo[a] || at[a] >= w->voxels->hi[a]) {
         return;
       }
@@ -119,7 +119,7 @@ static void walk_ray(const walk* w, brick_cache* cache, stratus_hit* hit)
     if (!(last.t <= w->t_max && last.t < INFINITY)) {
       return;
     }
-    hit->visited++;
+    ++hit->visited;
     if (is_effective(w, cache, at)) {
       break;
     }
@@ -130,7 +130,7 @@ static void walk_ray(const walk* w, brick_cache* cache, stratus_hit* hit)
   }
   hit->t = last.t;
   hit->face = last.axis == 3 ? -1 : 2 * last.axis + (w->direction[last.axis] < 0.0);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     hit->voxel[a] = (int32_t)at[a];
   }
 }
@@ -142,7 +142,7 @@ bool stratus_voxels_world_to_corner(const double index_to_world[16], double worl
   if (!stratus_matrix_invert_affine(index_to_world, world_to_corner)) {
     return false;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     world_to_corner[4 * a + 3] += 0.5;
   }
   return true;
@@ -172,8 +172,9 @@ stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxe
   }
   stratus_matrix_vector(to_voxels, ray->direction, direction);
   if (fmax(fmax(fabs(direction[0]), fabs(direction[1])), fabs(direction[2])) < STRATUS_RAY_SHORTEST) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ray %zu has direction %g %g %g, must be longer than 0: its longest component %g voxels",
-      index, ray->direction[0], ray->direction[1], ray->direction[2], STRATUS_RAY_SHORTEST);
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "ray %zu has direction %g %g %g, must be longer than 0: its longest component %g voxels", index, ray->direction[0], ray->direction[1],
+      ray->direction[2], STRATUS_RAY_SHORTEST);
   }
   return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
     "ray %zu with origin %g %g %g and direction %g %g %g leaves the range of doubles among voxels", index, ray->origin[0], ray->origin[1],
@@ -182,7 +183,7 @@ stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxe
 
 stratus_status stratus_rays_check(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count)
 {
-  for (size_t r = 0; r < count; r++) {
+  for (size_t r = 0; r < count; ++r) {
     if (!stratus_ray_usable(to_voxels, rays + r)) {
       return stratus_ray_refuse(context, to_voxels, rays + r, r);
     }
@@ -226,7 +227,7 @@ stratus_status stratus_voxels_first_hit(
   }
   TRY(stratus_rays_check(context, corner, rays, count));
   brick_cache cache = { { -1, -1, -1 }, 0 };
-  for (size_t r = 0; r < count; r++) {
+  for (size_t r = 0; r < count; ++r) {
     stratus_hit hit = { .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1 };
     walk w = { .voxels = voxels, .t_min = rays[r].t_min, .t_max = rays[r].t_max };
     stratus_matrix_point(corner, rays[r].origin, w.origin);

@@ -11,7 +11,7 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
   static const char axis[] = "xyz";
   void* memory;
   size_t bricks;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (dimensions[a] < 1 || dimensions[a] > STRATUS_AXIS_MAX) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "dimension along %c is %lld voxels, must be in 1..%d", axis[a],
         (long long)dimensions[a], STRATUS_AXIS_MAX);
@@ -20,7 +20,7 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_voxels), &memory));
   stratus_voxels* voxels = memory;
   voxels->context = context;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     voxels->dimensions[a] = dimensions[a];
     voxels->bricks_along[a] = (dimensions[a] + STRATUS_BRICK - 1) / STRATUS_BRICK;
     voxels->index_to_world[5 * a] = 1.0;
@@ -41,16 +41,16 @@ static void count_rows(const stratus_voxels* voxels, const uint64_t* masks, int6
 {
   const int64_t n = voxels->bricks_along[0], rows = voxels->bricks_along[1] * voxels->bricks_along[2];
 #pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     const uint64_t* mask = masks + row * n;
     int64_t count = 0;
-    for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < n; ++i) {
       count += mask[i] != 0;
     }
     start[row + 1] = count;
   }
   start[0] = 0;
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     start[row + 1] += start[row];
   }
 }
@@ -59,9 +59,9 @@ static void write_rows(stratus_voxels* voxels, const uint64_t* masks, const int6
 {
   const int64_t n = voxels->bricks_along[0], ny = voxels->bricks_along[1], rows = ny * voxels->bricks_along[2];
 #pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
-  for (int64_t row = 0; row < rows; row++) {
+  for (int64_t row = 0; row < rows; ++row) {
     stratus_brick* brick = voxels->bricks + start[row];
-    for (int64_t i = 0; i < n && brick < voxels->bricks + start[row + 1]; i++) {
+    for (int64_t i = 0; i < n && brick < voxels->bricks + start[row + 1]; ++i) {
       if (masks[row * n + i]) {
         *brick++ = (stratus_brick){ .mask = masks[row * n + i], .at = { (uint16_t)i, (uint16_t)(row % ny), (uint16_t)(row / ny) } };
       }
@@ -112,7 +112,7 @@ static unsigned layers_of(uint64_t m, int axis)
 /* Widens [lo, hi) by a brick; most bricks lie within and cost a comparison. */
 static void widen(const stratus_brick* brick, int64_t lo[3], int64_t hi[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t first = (int64_t)brick->at[a] * STRATUS_BRICK;
     if (first < lo[a] || first + STRATUS_BRICK > hi[a]) {
       const unsigned layers = layers_of(brick->mask, a);
@@ -130,20 +130,20 @@ void stratus_voxels_measure(stratus_voxels* voxels)
   {
     int64_t low[3] = { INT64_MAX, INT64_MAX, INT64_MAX }, high[3] = { 0, 0, 0 };
 #pragma omp for schedule(static) nowait
-    for (int64_t b = 0; b < voxels->brick_count; b++) {
+    for (int64_t b = 0; b < voxels->brick_count; ++b) {
       stratus_brick* brick = voxels->bricks + b;
       brick->count = (uint16_t)__builtin_popcountll(brick->mask);
       count += brick->count;
       widen(brick, low, high);
     }
 #pragma omp critical(stratus_voxels_measure)
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       lo[a] = low[a] < lo[a] ? low[a] : lo[a];
       hi[a] = high[a] > hi[a] ? high[a] : hi[a];
     }
   }
   voxels->count = count;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     voxels->lo[a] = count ? lo[a] : 0;
     voxels->hi[a] = count ? hi[a] : 0;
   }
@@ -167,14 +167,14 @@ int64_t stratus_voxels_count(const stratus_voxels* voxels)
 
 void stratus_voxels_dimensions(const stratus_voxels* voxels, int64_t dimensions[3])
 {
-  for (int a = 0; dimensions && a < 3; a++) {
+  for (int a = 0; dimensions && a < 3; ++a) {
     dimensions[a] = voxels ? voxels->dimensions[a] : 0;
   }
 }
 
 void stratus_voxels_bounds(const stratus_voxels* voxels, int64_t lo[3], int64_t hi[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (lo) {
       lo[a] = voxels ? voxels->lo[a] : 0;
     }

@@ -19,10 +19,10 @@ typedef struct stratus_brick {
 
 /* What a tree may stand in for. */
 typedef struct stratus_origin {
-  uint64_t hash;      /* of values, type, dimensions and hidden parts; 0: a list, which nothing covers */
-  int32_t cells;      /* 1: of stratus_voxels_create_cells() */
-  int32_t intervals;  /* of values that show. More than the maximum: of cells, merged across their narrowest gaps (and cells
-                       * chosen by that); of voxels, a single one from INFINITY to -INFINITY, so that no tree covers another's. */
+  uint64_t hash;     /* of values, type, dimensions and hidden parts; 0: a list, which nothing covers */
+  int32_t cells;     /* 1: of stratus_voxels_create_cells() */
+  int32_t intervals; /* of values that show. More than the maximum: of cells, merged across their narrowest gaps (and cells
+                      * chosen by that); of voxels, a single one from INFINITY to -INFINITY, so that no tree covers another's. */
   double interval[STRATUS_INTERVALS_MAX][2]; /* ascending, disjoint, ends included */
 } stratus_origin;
 
@@ -30,7 +30,7 @@ struct stratus_voxels {
   stratus_context* context;
   int64_t dimensions[3];
   int64_t bricks_along[3];
-  int64_t count;       /* voxels */
+  int64_t count; /* voxels */
   int64_t brick_count;
   stratus_brick* bricks; /* ascending in (at[2], at[1], at[0]) */
   int64_t lo[3], hi[3];  /* tight box of the voxels */

@@ -26,8 +26,8 @@ stratus_status stratus_criterion_check(stratus_context* context, const stratus_c
 stratus_status stratus_intervals_create(stratus_context* context, const stratus_criterion* criterion, stratus_intervals* intervals);
 /* Keeps the intervals of a criterion on voxels; if there are more than fit, one that is equal to nobody's. */
 void stratus_origin_take(stratus_origin* origin, const stratus_intervals* intervals);
-/* The same for cells: what either sampling's table shows over the ranges' values, rounded outward; of a criterion without transfer function,
- * itself. An end beyond the ranges' values is infinite. */
+/* The same for cells: what either sampling's table shows over the ranges' values, rounded outward; of a criterion without transfer
+ * function, itself. An end beyond the ranges' values is infinite. */
 stratus_status stratus_origin_take_cells(
   stratus_context* context, const stratus_value_range* ranges, const stratus_criterion* criterion, stratus_origin* origin);
 

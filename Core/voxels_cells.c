@@ -12,7 +12,7 @@ static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
 {
   const float slack = SLACK * fmaxf(fabsf(lo), fabsf(hi));
   const double from = (double)(lo - slack), to = (double)(hi + slack);
-  for (int32_t i = 0; lo <= hi && i < origin->intervals; i++) {
+  for (int32_t i = 0; lo <= hi && i < origin->intervals; ++i) {
     if (origin->interval[i][0] - bias <= to && origin->interval[i][1] - bias >= from) {
       return true;
     }
@@ -30,7 +30,7 @@ static void mark_blocks(const stratus_voxels* voxels, const stratus_value_range*
     any = shows(ranges->whole_lo, ranges->whole_hi, ranges->bias, origin);
   }
 #pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     masks[b] = (any && ranges->gaps[b]) || shows(ranges->lo[b], ranges->hi[b], ranges->bias, origin) ? ~UINT64_C(0) : 0;
   }
 }
@@ -42,7 +42,7 @@ static void place_cells(const stratus_volume* volume, double index_to_world[16])
   double first[3];
   stratus_volume_index_to_world(volume, index_to_world);
   stratus_matrix_point(index_to_world, half, first);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     index_to_world[4 * a + 3] = first[a];
   }
 }
@@ -55,7 +55,7 @@ stratus_status stratus_voxels_create_ranges(stratus_context* context, const stra
   void* masks = NULL;
   int64_t dimensions[3];
   TRY(stratus_criterion_check(context, criterion));
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     dimensions[a] = STRATUS_BRICK * ranges->blocks[a];
   }
   TRY(stratus_voxels_create_empty(context, dimensions, &voxels));

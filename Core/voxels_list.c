@@ -22,7 +22,7 @@ static int64_t first_outside(const stratus_voxels* voxels, const voxel_list* lis
   const uint32_t nx = (uint32_t)voxels->dimensions[0], ny = (uint32_t)voxels->dimensions[1], nz = (uint32_t)voxels->dimensions[2];
   int64_t first = list->count;
 #pragma omp parallel for schedule(static) num_threads(voxels->context->threads) reduction(min : first)
-  for (int64_t v = 0; v < list->count; v++) {
+  for (int64_t v = 0; v < list->count; ++v) {
     const int32_t* p = list->positions + 3 * v;
     if (((uint32_t)p[0] >= nx || (uint32_t)p[1] >= ny || (uint32_t)p[2] >= nz) && v < first) {
       first = v;
@@ -44,7 +44,7 @@ static stratus_status take_by_field(stratus_voxels* voxels, const voxel_list* li
   TRY(stratus_allocate_zero(context, (size_t)(nx * ny * voxels->bricks_along[2]), sizeof(uint64_t), &memory));
   uint64_t* masks = memory;
 #pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t v = 0; v < list->count; v++) {
+  for (int64_t v = 0; v < list->count; ++v) {
     const int32_t* p = list->positions + 3 * v;
     const int64_t brick = (p[2] / 4 * ny + p[1] / 4) * nx + p[0] / 4;
     const uint64_t bit = bit_of(p);
@@ -71,18 +71,18 @@ static uint64_t* sort_keys(uint64_t* keys, uint64_t* other, int64_t count, uint6
   for (int shift = 6; count > 0 && shift < 54; shift += DIGIT_BITS) {
     uint64_t sum = 0;
     memset(start, 0, DIGITS * sizeof *start);
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0; i < count; ++i) {
       start[keys[i] >> shift & digit]++;
     }
     if (start[keys[0] >> shift & digit] == (uint64_t)count) {
       continue;
     }
-    for (int d = 0; d < DIGITS; d++) {
+    for (int d = 0; d < DIGITS; ++d) {
       const uint64_t here = start[d];
       start[d] = sum;
       sum += here;
     }
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0; i < count; ++i) {
       other[start[keys[i] >> shift & digit]++] = keys[i];
     }
     uint64_t* swapped = keys;
@@ -99,17 +99,17 @@ static stratus_status take_by_sorting(stratus_voxels* voxels, const voxel_list* 
   void *memory = NULL, *bricks = NULL;
   TRY_CLEANUP(stratus_allocate(context, 2 * (size_t)list->count + DIGITS, sizeof(uint64_t), &memory));
   uint64_t* keys = memory;
-  for (int64_t v = 0; v < list->count; v++) {
+  for (int64_t v = 0; v < list->count; ++v) {
     keys[v] = key_of(list->positions + 3 * v);
   }
   keys = sort_keys(keys, keys + list->count, list->count, keys + 2 * list->count);
   voxels->brick_count = 0;
-  for (int64_t v = 0; v < list->count; v++) {
+  for (int64_t v = 0; v < list->count; ++v) {
     voxels->brick_count += v == 0 || keys[v] >> 6 != keys[v - 1] >> 6;
   }
   TRY_CLEANUP(stratus_allocate(context, (size_t)voxels->brick_count, sizeof(stratus_brick), &bricks));
   voxels->bricks = bricks;
-  for (int64_t v = 0, brick = -1; v < list->count; v++) {
+  for (int64_t v = 0, brick = -1; v < list->count; ++v) {
     if (v == 0 || keys[v] >> 6 != keys[v - 1] >> 6) {
       voxels->bricks[++brick] = (stratus_brick){ .at = { (uint16_t)(keys[v] >> 6), (uint16_t)(keys[v] >> 22), (uint16_t)(keys[v] >> 38) } };
     }
@@ -151,7 +151,7 @@ stratus_status stratus_voxels_create_list(
       (long long)outside, p[0], p[1], p[2], (long long)dimensions[0] - 1, (long long)dimensions[1] - 1, (long long)dimensions[2] - 1);
     goto cleanup;
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     voxels->index_to_world[4 * a + 3] = 0.5;
   }
   const size_t field = (size_t)(voxels->bricks_along[0] * voxels->bricks_along[1] * voxels->bricks_along[2]);

@@ -7,14 +7,14 @@
 static void NAME(mark)(const void* row, int64_t n, const bounds* intervals, int64_t count, uint8_t* restrict flags)
 {
   const TYPE* restrict values = row;
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     const AS lo = (AS)intervals[b].lo.BOUND, hi = (AS)intervals[b].hi.BOUND;
     if (b == 0) {
-      for (int64_t i = 0; i < n; i++) {
+      for (int64_t i = 0; i < n; ++i) {
         flags[i] = (uint8_t)(((AS)values[i] >= lo) & ((AS)values[i] <= hi));
       }
     } else {
-      for (int64_t i = 0; i < n; i++) {
+      for (int64_t i = 0; i < n; ++i) {
         flags[i] |= (uint8_t)(((AS)values[i] >= lo) & ((AS)values[i] <= hi));
       }
     }

@@ -159,10 +159,10 @@ static void add_row(const uint8_t* flags, int64_t bricks, int shift, uint64_t* m
 {
   for (int64_t first = 0; first < bricks; first += WORD / STRATUS_BRICK) {
     uint64_t word = 0;
-    for (int b = 0; b < 8; b++) {
+    for (int b = 0; b < 8; ++b) {
       word |= pack8(flags + first * STRATUS_BRICK + 8 * b) << 8 * b;
     }
-    for (int64_t b = first; word; b++) {
+    for (int64_t b = first; word; ++b) {
       masks[b] |= (word & 15) << shift;
       word >>= STRATUS_BRICK;
     }
@@ -176,13 +176,13 @@ static uint64_t scan_bricks(const scan* s, mark_function mark, int64_t j, int64_
   uint64_t* masks = s->masks + (k * s->bricks_along[1] + j) * s->bricks_along[0];
   uint64_t hash = 0;
   memset(masks, 0, (size_t)s->bricks_along[0] * sizeof *masks);
-  for (int64_t z = 4 * k; z < 4 * k + 4 && z < n[2]; z++) {
-    for (int64_t y = 4 * j; y < 4 * j + 4 && y < n[1]; y++) {
+  for (int64_t z = 4 * k; z < 4 * k + 4 && z < n[2]; ++z) {
+    for (int64_t y = 4 * j; y < 4 * j + 4 && y < n[1]; ++y) {
       const void* row = stratus_volume_row(s->volume, y, z, room);
       hash += stratus_volume_hash_row(s->volume, y, z, row);
       mark(row, n[0], s->intervals, s->count, flags);
       const uint8_t* ghosts = s->ghosts ? s->ghosts + (z * n[1] + y) * n[0] : NULL;
-      for (int64_t i = 0; ghosts && i < n[0]; i++) {
+      for (int64_t i = 0; ghosts && i < n[0]; ++i) {
         flags[i] &= (ghosts[i] & s->hidden) == 0;
       }
       add_row(flags, s->bricks_along[0], (int)((z % 4 * 4 + y % 4) * 4), masks);
@@ -204,7 +204,7 @@ static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* has
   {
     uint8_t* mine = (uint8_t*)memory + (size_t)omp_get_thread_num() * (room + line);
 #pragma omp for schedule(static)
-    for (int64_t row = 0; row < rows; row++) {
+    for (int64_t row = 0; row < rows; ++row) {
       sum += scan_bricks(s, mark, row % ny, row / ny, mine, mine + room);
     }
   }
@@ -223,7 +223,7 @@ static stratus_status take_intervals(
   const stratus_status status = stratus_allocate(context, (size_t)list.count, sizeof(bounds), &memory);
   if (status == STRATUS_OK) {
     bounds* intervals = memory;
-    for (int64_t i = 0; i < list.count; i++) {
+    for (int64_t i = 0; i < list.count; ++i) {
       s->count += bounds_of(s->volume->type, list.of[i], intervals + s->count);
     }
     s->intervals = intervals;

@@ -27,9 +27,9 @@ static inline stratus_box uneven_box(uint32_t i, uint32_t count, uint32_t* rando
 {
   double at[3];
   double length = 0.0;
-  for (int a = 0; a < 3; a++) { /* sums of four: round enough for a blob and its directions */
+  for (int a = 0; a < 3; ++a) { /* sums of four: round enough for a blob and its directions */
     at[a] = 0.0;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
       at[a] += (double)random_below(random, 2001) / 1000.0 - 1.0;
     }
     length += at[a] * at[a];
@@ -46,11 +46,11 @@ static inline stratus_box* make_boxes(box_set set, uint32_t count, uint32_t* ran
 {
   stratus_box* boxes = malloc(count * sizeof *boxes);
   assert_non_null(boxes);
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     const int64_t doubled = (int64_t)1 << i % 28;
     switch (set) {
       case BOXES_RANDOM:
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           boxes[i].lo[a] = (int32_t)(random_below(random, 1000) - 500);
           boxes[i].hi[a] = boxes[i].lo[a] + 1 + (int32_t)random_below(random, 30);
         }

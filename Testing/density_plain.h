@@ -38,16 +38,16 @@ typedef struct plain {
   double density, first[3], second[3];
 } plain;
 
-/* Eq. 5, and its derivatives term by term. Voxels whose distance is the bandwidth to within rounding are left to either side: their terms in the
- * density and its slope vanish there; that of the second derivative jumps, and `edge` tells. */
+/* Eq. 5, and its derivatives term by term. Voxels whose distance is the bandwidth to within rounding are left to either side: their terms
+ * in the density and its slope vanish there; that of the second derivative jumps, and `edge` tells. */
 static inline plain sum_plainly(const stratus_voxels* voxels, double h, const double p[3], int* edge)
 {
   plain sum = { .density = 0.0 };
   const double n = (double)voxels->count, c = 105.0 / (32.0 * PI);
   *edge = 0;
-  for (int64_t v = 0; v < voxels->count; v++) {
+  for (int64_t v = 0; v < voxels->count; ++v) {
     double d[3], squared = 0.0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       d[a] = p[a] - at[v][a];
       squared += d[a] * d[a];
     }
@@ -56,7 +56,7 @@ static inline plain sum_plainly(const stratus_voxels* voxels, double h, const do
     if (t < 1.0) {
       const double u = t * t;
       sum.density += c / (n * h * h * h) * (1.0 - u) * (1.0 - u);
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         sum.first[a] += c / (n * h * h * h) * 2.0 * (1.0 - u) * (-2.0 * d[a] / (h * h));
         sum.second[a] += c / (n * h * h * h) * (8.0 * d[a] * d[a] / (h * h * h * h) - 4.0 * (1.0 - u) / (h * h));
       }

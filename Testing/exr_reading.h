@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-struct ExrPicture
-{
+struct ExrPicture {
   int Width = 0, Height = 0;
   exr_compression_t Compression = EXR_COMPRESSION_NONE;
   std::map<std::string, std::vector<float>> Channels; // rows from the top down

@@ -30,13 +30,13 @@ static inline void take_set(stratus_context* context, test_set* s)
 {
   const int64_t total = set_voxels(s);
   s->count = 0;
-  for (int64_t v = 0; v < total; v++) {
+  for (int64_t v = 0; v < total; ++v) {
     s->count += s->effective[v];
   }
   int32_t* positions = malloc((size_t)(3 * s->count + 1) * sizeof *positions);
   int32_t* next = positions;
   assert_non_null(positions);
-  for (int64_t v = 0; v < total; v++) {
+  for (int64_t v = 0; v < total; ++v) {
     if (s->effective[v]) {
       *next++ = (int32_t)(v % s->n[0]);
       *next++ = (int32_t)(v / s->n[0] % s->n[1]);
@@ -53,7 +53,7 @@ static inline void take_set(stratus_context* context, test_set* s)
 static inline test_set make_random_set(stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
 {
   test_set s = make_set(nx, ny, nz);
-  for (int64_t v = 0; v < set_voxels(&s); v++) {
+  for (int64_t v = 0; v < set_voxels(&s); ++v) {
     s.effective[v] = fill > 0 && random_below(random, fill) == 0;
   }
   take_set(context, &s);
@@ -66,15 +66,15 @@ static inline void free_set(test_set* s)
   free(s->effective);
 }
 
-/* Squared distance from voxel v to the nearest that is effective (or, if v is and the field is signed, to the nearest that is not), -1 if there
- * is none. *nearest: the one of the smallest index. */
+/* Squared distance from voxel v to the nearest that is effective (or, if v is and the field is signed, to the nearest that is not), -1 if
+ * there is none. *nearest: the one of the smallest index. */
 static inline int64_t brute_squared(const test_set* s, int64_t v, int is_signed, int64_t* nearest)
 {
   const int sought = !(is_signed && s->effective[v]);
   const int64_t nx = s->n[0], ny = s->n[1], total = set_voxels(s);
   int64_t best = -1;
   *nearest = -1;
-  for (int64_t o = 0; o < total; o++) {
+  for (int64_t o = 0; o < total; ++o) {
     const int64_t x = o % nx - v % nx, y = o / nx % ny - v / nx % ny, z = o / (nx * ny) - v / (nx * ny);
     const int64_t squared = x * x + y * y + z * z;
     if (s->effective[o] == sought && (best < 0 || squared < best)) {

@@ -24,30 +24,31 @@ static inline double unit_random(uint32_t* state)
 }
 
 /* `fill` in 0..1 of the voxels; cluster > 0: those lie in a few boxes of that edge. */
-static inline stratus_voxels* random_voxels(stratus_context* context, const int64_t dimensions[3], double fill, int cluster, uint32_t* random)
+static inline stratus_voxels* random_voxels(
+  stratus_context* context, const int64_t dimensions[3], double fill, int cluster, uint32_t* random)
 {
   const size_t cells = (size_t)(dimensions[0] * dimensions[1] * dimensions[2]);
   int32_t* positions = malloc((cells + 1) * 3 * sizeof *positions);
   int32_t corner[4][3];
   size_t count = 0;
   stratus_voxels* voxels = NULL;
-  for (int b = 0; b < 4; b++) {
-    for (int a = 0; a < 3; a++) {
+  for (int b = 0; b < 4; ++b) {
+    for (int a = 0; a < 3; ++a) {
       corner[b][a] = (int32_t)(unit_random(random) * (double)dimensions[a]);
     }
   }
-  for (int32_t k = 0; k < dimensions[2]; k++) {
-    for (int32_t j = 0; j < dimensions[1]; j++) {
-      for (int32_t i = 0; i < dimensions[0]; i++) {
+  for (int32_t k = 0; k < dimensions[2]; ++k) {
+    for (int32_t j = 0; j < dimensions[1]; ++j) {
+      for (int32_t i = 0; i < dimensions[0]; ++i) {
         bool inside = cluster == 0;
-        for (int b = 0; b < 4; b++) {
+        for (int b = 0; b < 4; ++b) {
           inside |= abs(i - corner[b][0]) < cluster && abs(j - corner[b][1]) < cluster && abs(k - corner[b][2]) < cluster;
         }
         if (inside && unit_random(random) < fill) {
           positions[3 * count] = i;
           positions[3 * count + 1] = j;
           positions[3 * count + 2] = k;
-          count++;
+          ++count;
         }
       }
     }
@@ -57,12 +58,13 @@ static inline stratus_voxels* random_voxels(stratus_context* context, const int6
   return voxels;
 }
 
-/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, from behind, short, from far away. */
+/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, from behind, short, from far
+ * away. */
 static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
 {
   stratus_ray ray = { .t_max = INFINITY };
   const uint32_t kind = next_random(random) % 8;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double size = (double)dimensions[a];
     ray.origin[a] = (unit_random(random) * 3.0 - 1.0) * size;
     ray.direction[a] = unit_random(random) * 2.0 - 1.0;
@@ -108,13 +110,14 @@ static inline void compare_hits(
   stratus_hit* theirs = malloc(count * sizeof *theirs);
   assert_int_equal(stratus_voxels_first_hit(context, voxels, rays, count, theirs), STRATUS_OK);
   assert_int_equal(stratus_tree_first_hit(context, tree, rays, count, ours), STRATUS_OK);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     const stratus_hit *a = &ours[i], *b = &theirs[i];
     if (memcmp(a->voxel, b->voxel, sizeof a->voxel) != 0 || a->t != b->t || a->face != b->face ||
       memcmp(a->normal, b->normal, sizeof a->normal) != 0) {
       const stratus_ray* r = &rays[i];
-      fail_msg("ray %zu from %.17g %.17g %.17g along %.17g %.17g %.17g, t %g..%g: voxel %d %d %d face %d at %.17g, not %d %d %d face %d at %.17g", i,
-        r->origin[0], r->origin[1], r->origin[2], r->direction[0], r->direction[1], r->direction[2], r->t_min, r->t_max, a->voxel[0],
+      fail_msg(
+        "ray %zu from %.17g %.17g %.17g along %.17g %.17g %.17g, t %g..%g: voxel %d %d %d face %d at %.17g, not %d %d %d face %d at %.17g",
+        i, r->origin[0], r->origin[1], r->origin[2], r->direction[0], r->direction[1], r->direction[2], r->t_min, r->t_max, a->voxel[0],
         a->voxel[1], a->voxel[2], a->face, a->t, b->voxel[0], b->voxel[1], b->voxel[2], b->face, b->t);
     }
     if (a->t < INFINITY && a->face >= 0) {

@@ -32,15 +32,15 @@ static inline stratus_tree_options hybrid_options(stratus_tree_method method)
 /* The tight box of bricks order[first .. first+count-1] in voxels. */
 static inline void plain_box(const stratus_voxels* voxels, const uint32_t* order, uint32_t count, int32_t lo[3], int32_t hi[3])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     lo[a] = INT32_MAX;
     hi[a] = 0;
   }
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     const stratus_brick* b = voxels->bricks + order[i];
-    for (int bit = 0; bit < 64; bit++) {
+    for (int bit = 0; bit < 64; ++bit) {
       const int32_t at[3] = { 4 * b->at[0] + bit % 4, 4 * b->at[1] + bit / 4 % 4, 4 * b->at[2] + bit / 16 };
-      for (int a = 0; a < 3 && b->mask >> bit & 1; a++) {
+      for (int a = 0; a < 3 && b->mask >> bit & 1; ++a) {
         lo[a] = at[a] < lo[a] ? at[a] : lo[a];
         hi[a] = at[a] >= hi[a] ? at[a] + 1 : hi[a];
       }
@@ -52,19 +52,19 @@ static inline void check_leaf(const stratus_tree_options* options, const stratus
 {
   const uint32_t count = stratus_tree_node_count(node);
   double volume = 1.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     volume *= count ? (node->hi[a] - 1) / 4 - node->lo[a] / 4 + 1 : 0;
   }
   if (stratus_tree_node_kind(node) == STRATUS_NODE_FIELD) {
     assert_true(volume <= (double)options->field_bricks);
     s->most_empty = fmax(s->most_empty, volume / count);
-    s->fields++;
+    ++s->fields;
     if (options->method == STRATUS_TREE_HYBRID && depth < options->max_depth) {
       assert_true(volume <= options->field_emptiness * count);
     }
   } else {
     assert_int_equal(stratus_tree_node_kind(node), STRATUS_NODE_BRICKS);
-    s->leaves++;
+    ++s->leaves;
     s->most_in_leaf = count > s->most_in_leaf ? count : s->most_in_leaf;
     assert_true(depth == options->max_depth || (int64_t)count <= options->leaf_bricks);
   }
@@ -80,7 +80,7 @@ static inline uint32_t check_node(
   s->depth = depth > s->depth ? depth : s->depth;
   assert_true(depth <= options->max_depth);
   if (stratus_tree_node_kind(node) == STRATUS_NODE_INNER) {
-    s->inner++;
+    ++s->inner;
     assert_true(node->first > n && node->first + 1 < s->shape.node_count);
     count = check_node(voxels, options, node->first, first, depth + 1, s);
     assert_true(count > 0);
@@ -116,14 +116,15 @@ static inline hybrid_shape make_shape(stratus_context* context, const stratus_vo
   }
   uint8_t* seen = calloc(bricks + 1, 1);
   assert_non_null(seen);
-  for (size_t i = 0; i < bricks; i++) {
+  for (size_t i = 0; i < bricks; ++i) {
     assert_true(s.shape.order[i] < bricks);
     assert_int_equal(seen[s.shape.order[i]]++, 0);
   }
   free(seen);
   assert_int_equal(check_node(voxels, options, 0, 0, 0, &s), bricks);
   assert_int_equal(s.inner + s.fields + s.leaves, s.shape.node_count);
-  assert_int_equal(s.statistics.dbscan_splits + s.statistics.density_splits + s.statistics.sah_splits + s.statistics.median_splits, s.inner);
+  assert_int_equal(
+    s.statistics.dbscan_splits + s.statistics.density_splits + s.statistics.sah_splits + s.statistics.median_splits, s.inner);
   assert_true(strlen(s.statistics.why) > 20 && strlen(s.statistics.why) < sizeof s.statistics.why - 1);
   return s;
 }

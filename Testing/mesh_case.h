@@ -67,25 +67,25 @@ static inline void mesh_case_free(mesh_case* mesh)
   free(mesh->vertices);
 }
 
-/* n[0]*n[1]*n[2] unit cubes of six cells each (Kuhn): conforming. jitter < .2 moves inner points by as much at most, and turns no cell inside
- * out. */
+/* n[0]*n[1]*n[2] unit cubes of six cells each (Kuhn): conforming. jitter < .2 moves inner points by as much at most, and turns no cell
+ * inside out. */
 static inline mesh_case mesh_grid(const int n[3], double jitter, uint32_t seed)
 {
   static const int path[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
   const int step[3] = { 1, n[0] + 1, (n[0] + 1) * (n[1] + 1) };
   mesh_case mesh = mesh_case_allocate((int64_t)step[2] * (n[2] + 1), 6 * (int64_t)n[0] * n[1] * n[2]);
   int64_t cell = 0;
-  for (int k = 0; k <= n[2]; k++) {
-    for (int j = 0; j <= n[1]; j++) {
-      for (int i = 0; i <= n[0]; i++) {
+  for (int k = 0; k <= n[2]; ++k) {
+    for (int j = 0; j <= n[1]; ++j) {
+      for (int i = 0; i <= n[0]; ++i) {
         const int at[3] = { i, j, k }, point = i + j * step[1] + k * step[2];
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           const double moved = at[a] > 0 && at[a] < n[a] ? jitter * (2.0 * mesh_random_unit(&seed) - 1.0) : 0.0;
           mesh.points[3 * point + a] = at[a] + moved;
         }
-        for (int c = 0; c < 6 && i < n[0] && j < n[1] && k < n[2]; c++, cell++) {
+        for (int c = 0; c < 6 && i < n[0] && j < n[1] && k < n[2]; ++c, ++cell) {
           int corner = mesh.vertices[4 * cell] = point;
-          for (int v = 0; v < 3; v++) {
+          for (int v = 0; v < 3; ++v) {
             mesh.vertices[4 * cell + v + 1] = corner += step[path[c][v]];
           }
         }
@@ -98,16 +98,16 @@ static inline mesh_case mesh_grid(const int n[3], double jitter, uint32_t seed)
 /* Cells in another order, and each cell's vertices, too. */
 static inline void mesh_shuffle(mesh_case* mesh, uint32_t seed)
 {
-  for (int64_t i = mesh->cell_count - 1; i > 0; i--) {
+  for (int64_t i = mesh->cell_count - 1; i > 0; --i) {
     const int64_t j = mesh_random(&seed) % (i + 1);
     int32_t cell[4];
     memcpy(cell, mesh->vertices + 4 * i, sizeof cell);
     memcpy(mesh->vertices + 4 * i, mesh->vertices + 4 * j, sizeof cell);
     memcpy(mesh->vertices + 4 * j, cell, sizeof cell);
   }
-  for (int64_t i = 0; i < mesh->cell_count; i++) {
+  for (int64_t i = 0; i < mesh->cell_count; ++i) {
     int32_t* v = mesh->vertices + 4 * i;
-    for (int p = 3; p > 0; p--) {
+    for (int p = 3; p > 0; --p) {
       const int q = (int)(mesh_random(&seed) % (uint32_t)(p + 1));
       const int32_t kept = v[p];
       v[p] = v[q];
@@ -123,7 +123,7 @@ static inline mesh_case mesh_join(mesh_case a, mesh_case b)
   memcpy(mesh.points, a.points, (size_t)a.point_count * 3 * sizeof(double));
   memcpy(mesh.points + 3 * a.point_count, b.points, (size_t)b.point_count * 3 * sizeof(double));
   memcpy(mesh.vertices, a.vertices, (size_t)a.cell_count * 4 * sizeof(int32_t));
-  for (int64_t i = 0; i < 4 * b.cell_count; i++) {
+  for (int64_t i = 0; i < 4 * b.cell_count; ++i) {
     mesh.vertices[4 * a.cell_count + i] = b.vertices[i] + (int32_t)a.point_count;
   }
   mesh_case_free(&a);
@@ -133,18 +133,18 @@ static inline mesh_case mesh_join(mesh_case a, mesh_case b)
 
 static inline void mesh_move(mesh_case* mesh, const double scale[3], const double offset[3])
 {
-  for (int64_t i = 0; i < 3 * mesh->point_count; i++) {
+  for (int64_t i = 0; i < 3 * mesh->point_count; ++i) {
     mesh->points[i] = mesh->points[i] * scale[i % 3] + offset[i % 3];
   }
 }
 
 static inline void mesh_bounds(const mesh_case* mesh, double bounds[6])
 {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     bounds[2 * a] = INFINITY;
     bounds[2 * a + 1] = -INFINITY;
   }
-  for (int64_t i = 0; i < 3 * mesh->point_count; i++) {
+  for (int64_t i = 0; i < 3 * mesh->point_count; ++i) {
     bounds[2 * (i % 3)] = fmin(bounds[2 * (i % 3)], mesh->points[i]);
     bounds[2 * (i % 3) + 1] = fmax(bounds[2 * (i % 3) + 1], mesh->points[i]);
   }
@@ -162,8 +162,8 @@ static inline double* mesh_boxes(const mesh_case* mesh)
 {
   double* boxes = malloc((size_t)mesh->cell_count * 6 * sizeof(double) + 1);
   assert_non_null(boxes);
-  for (int64_t c = 0; c < mesh->cell_count; c++) {
-    for (int i = 0; i < 12; i++) {
+  for (int64_t c = 0; c < mesh->cell_count; ++c) {
+    for (int i = 0; i < 12; ++i) {
       const double x = mesh->points[3 * (int64_t)mesh->vertices[4 * c + i / 3] + i % 3];
       double* box = boxes + 6 * c + 2 * (i % 3);
       box[0] = i < 3 || x < box[0] ? x : box[0];
@@ -176,7 +176,7 @@ static inline double* mesh_boxes(const mesh_case* mesh)
 static inline bool mesh_clip_box(const double* box, const double origin[3], const double direction[3])
 {
   double low = 0.0, high = INFINITY;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (direction[a] == 0.0) {
       if (origin[a] < box[2 * a] || origin[a] > box[2 * a + 1]) {
         return false;
@@ -197,17 +197,17 @@ static inline bool mesh_clip_cell(
   const double* p[4];
   hit->low = 0.0;
   hit->high = INFINITY;
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     p[i] = mesh->points + 3 * (int64_t)mesh->vertices[4 * cell + i];
   }
-  for (int f = 0; f < 4; f++) {
+  for (int f = 0; f < 4; ++f) {
     const double *a = p[(f + 1) % 4], *b = p[(f + 2) % 4], *c = p[(f + 3) % 4];
     double u[3], v[3], normal[3], start = 0.0, slope = 0.0, inner = 0.0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
       u[i] = b[i] - a[i];
       v[i] = c[i] - a[i];
     }
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
       normal[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
       start += normal[i] * (origin[i] - a[i]);
       slope += normal[i] * direction[i];
@@ -238,9 +238,9 @@ static int mesh_compare_intervals(const void* p, const void* q)
   return (x > y) - (x < y);
 }
 
-/* Rays from the camera's eye (parallel: along its forward) through `rays` random points of random cells. Counts cells that follow one another
- * on a ray and come in the other order in `cells`, and how many did follow one another. Lengths below 1e-9 of the mesh don't count: rounding
- * could have made them. */
+/* Rays from the camera's eye (parallel: along its forward) through `rays` random points of random cells. Counts cells that follow one
+ * another on a ray and come in the other order in `cells`, and how many did follow one another. Lengths below 1e-9 of the mesh don't count:
+ * rounding could have made them. */
 static inline int64_t mesh_wrong_pairs(
   const mesh_case* mesh, const stratus_camera* camera, const uint32_t* cells, int rays, uint32_t seed, int64_t* pairs)
 {
@@ -250,32 +250,32 @@ static inline int64_t mesh_wrong_pairs(
   mesh_interval* hits = malloc((size_t)mesh->cell_count * sizeof *hits + 1);
   double* boxes = mesh_boxes(mesh);
   assert_true(rank && hits);
-  for (int64_t i = 0; i < mesh->cell_count; i++) {
+  for (int64_t i = 0; i < mesh->cell_count; ++i) {
     rank[i] = -1;
   }
-  for (int64_t i = 0; i < mesh->cell_count; i++) {
+  for (int64_t i = 0; i < mesh->cell_count; ++i) {
     assert_true(cells[i] < mesh->cell_count && rank[cells[i]] < 0); /* each cell once */
     rank[cells[i]] = i;
   }
   mesh_bounds(mesh, bounds);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     size = fmax(size, bounds[2 * a + 1] - bounds[2 * a]);
   }
-  for (int r = 0; r < rays && mesh->cell_count > 0; r++) {
+  for (int r = 0; r < rays && mesh->cell_count > 0; ++r) {
     const int64_t through = mesh_random(&seed) % mesh->cell_count;
     const int32_t* v = mesh->vertices + 4 * through;
     double target[3] = { 0 }, origin[3], direction[3], weight[4], sum = 0.0, length = 0.0;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
       sum += weight[i] = mesh_random_unit(&seed) + 1e-3;
     }
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
       target[i % 3] += weight[i / 3] / sum * mesh->points[3 * (int64_t)v[i / 3] + i % 3];
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       direction[a] = camera->parallel ? camera->forward[a] : target[a] - camera->eye[a];
       length += direction[a] * direction[a];
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       direction[a] /= sqrt(length);
       origin[a] = camera->parallel ? target[a] - 4.0 * size * direction[a] : camera->eye[a];
     }
@@ -283,13 +283,13 @@ static inline int64_t mesh_wrong_pairs(
     if (!mesh_clip_cell(mesh, through, origin, direction, 1e-9 * size, hits)) {
       continue; /* a flat cell: such a ray runs between the others, in none of them */
     }
-    for (int64_t c = 0; c < mesh->cell_count; c++) {
+    for (int64_t c = 0; c < mesh->cell_count; ++c) {
       if (mesh_clip_box(boxes + 6 * c, origin, direction) && mesh_clip_cell(mesh, c, origin, direction, 1e-9 * size, hits + count)) {
         hits[count++].rank = rank[c];
       }
     }
     qsort(hits, (size_t)count, sizeof *hits, mesh_compare_intervals);
-    for (int64_t i = 1; i < count; i++) {
+    for (int64_t i = 1; i < count; ++i) {
       if (hits[i - 1].high <= hits[i].low + 1e-10 * size) {
         wrong += hits[i - 1].rank > hits[i].rank;
         ++*pairs;

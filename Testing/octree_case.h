@@ -15,7 +15,7 @@ static inline double random_unit(uint32_t* random)
 static inline void random_bounds(uint32_t* random, double scale, double bounds[6])
 {
   const double spread = pow(random_unit(random), 3.0), size = 0.001 * pow(100.0, random_unit(random));
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double center = 0.3 * (double)random_below(random, 4) + spread * (random_unit(random) - 0.5), half = size * random_unit(random);
     bounds[2 * a] = scale * (center - half);
     bounds[2 * a + 1] = scale * (center + half);
@@ -28,7 +28,7 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
   stratus_camera camera;
   stratus_frustum frustum;
   double eye[3], focal[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     eye[a] = scale * (2.0 * random_unit(random) - 0.5);
     focal[a] = scale * random_unit(random);
   }
@@ -43,11 +43,11 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
   camera.far_k = random_below(random, 3) == 0 ? INFINITY : camera.near_k + scale * (0.1 + random_unit(random));
   /* Off centre: the window's middle is not where the camera looks. */
   const double skew = random_below(random, 2) ? 0.8 * random_unit(random) : 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     camera.forward[a] += parallel ? 0.0 : skew * camera.right[a];
   }
   assert_int_equal(stratus_frustum_from_camera(context, &camera, &frustum), STRATUS_OK);
-  for (int a = 0; inside && a < 3; a++) {
+  for (int a = 0; inside && a < 3; ++a) {
     inside[a] = camera.eye[a] + (camera.near_k + 0.05 * scale) * camera.forward[a];
   }
   return frustum;
@@ -57,10 +57,10 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
 static inline long double reach_of(const stratus_frustum* frustum, const double bounds[6])
 {
   long double worst = INFINITY;
-  for (int p = 0; p < 6; p++) {
+  for (int p = 0; p < 6; ++p) {
     const double* n = frustum->planes[p];
     long double value = n[3], size = fabsl((long double)n[3]);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       const long double lo = (long double)n[a] * bounds[2 * a], hi = (long double)n[a] * bounds[2 * a + 1];
       value += lo > hi ? lo : hi;
       size += fmaxl(fabsl(lo), fabsl(hi));
@@ -78,7 +78,7 @@ typedef struct polygon {
 static inline void cut_polygon(polygon* face, const double plane[4], long double room)
 {
   polygon cut = { .count = 0 };
-  for (int i = 0; i < face->count; i++) {
+  for (int i = 0; i < face->count; ++i) {
     const long double *p = face->points[i], *q = face->points[(i + 1) % face->count];
     const long double s = plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] + room;
     const long double t = plane[0] * q[0] + plane[1] * q[1] + plane[2] * q[2] + plane[3] + room;
@@ -86,10 +86,10 @@ static inline void cut_polygon(polygon* face, const double plane[4], long double
       memcpy(cut.points[cut.count++], p, sizeof cut.points[0]);
     }
     if ((s >= 0.0L) != (t >= 0.0L)) {
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         cut.points[cut.count][a] = p[a] + s / (s - t) * (q[a] - p[a]);
       }
-      cut.count++;
+      ++cut.count;
     }
   }
   *face = cut;
@@ -100,18 +100,18 @@ static inline void cut_polygon(polygon* face, const double plane[4], long double
 static inline bool box_meets_frustum(const stratus_frustum* frustum, const double bounds[6], const double inside[3], double room)
 {
   bool holds = true;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     holds = holds && inside[a] >= bounds[2 * a] - room && inside[a] <= bounds[2 * a + 1] + room;
   }
-  for (int f = 0; f < 6 && !holds; f++) {
+  for (int f = 0; f < 6 && !holds; ++f) {
     const int a = f / 2, b = (a + 1) % 3, c = (a + 2) % 3;
     polygon face = { .count = 4 };
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
       face.points[i][a] = bounds[f];
       face.points[i][b] = bounds[i == 1 || i == 2 ? 2 * b + 1 : 2 * b];
       face.points[i][c] = bounds[i >= 2 ? 2 * c + 1 : 2 * c];
     }
-    for (int p = 0; p < 6 && face.count > 0; p++) {
+    for (int p = 0; p < 6 && face.count > 0; ++p) {
       cut_polygon(&face, frustum->planes[p], room);
     }
     holds = face.count > 0;
@@ -133,7 +133,7 @@ static inline uint32_t* sorted_ids(const stratus_octree_visible* visible)
     memcpy(ids, visible->ids, visible->count * sizeof *ids);
     qsort(ids, visible->count, sizeof *ids, compare_ids);
   }
-  for (size_t i = 1; i < visible->count; i++) {
+  for (size_t i = 1; i < visible->count; ++i) {
     assert_true(ids[i - 1] < ids[i]);
   }
   return ids;

@@ -9,7 +9,7 @@
 static inline double volume_of(const double* points, const int32_t* v)
 {
   double m[3][3];
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 9; ++i) {
     m[i / 3][i % 3] = points[3 * (int64_t)v[i / 3 + 1] + i % 3] - points[3 * (int64_t)v[0] + i % 3];
   }
   return (m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) + m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
@@ -30,20 +30,20 @@ static inline void assert_pieces_fill_their_cells(const mesh_case* mesh, const s
   assert_true(sums && field);
   assert_int_equal(cut->old_points, mesh->point_count);
   assert_memory_equal(cut->points, mesh->points, (size_t)mesh->point_count * 3 * sizeof(double));
-  for (int64_t i = 0; i < cut->point_count; i++) {
+  for (int64_t i = 0; i < cut->point_count; ++i) {
     field[i] = i < mesh->point_count ? (double)(i * 37 % 101) : 0.0;
     if (i >= mesh->point_count) {
       const int32_t* end = cut->ends + 2 * (i - mesh->point_count);
       const double w = cut->weights[i - mesh->point_count];
       assert_true(w > 0.0 && w < 1.0 && end[0] < i && end[1] < i && end[0] != end[1]);
       field[i] = (1.0 - w) * field[end[0]] + w * field[end[1]];
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         const double p = cut->points[3 * (int64_t)end[0] + a], q = cut->points[3 * (int64_t)end[1] + a];
         assert_true(fabs((1.0 - w) * p + w * q - cut->points[3 * i + a]) <= 4e-16 * fmax(fabs(p), fabs(q)));
       }
     }
   }
-  for (int64_t c = 0; c < cut->cell_count; c++) {
+  for (int64_t c = 0; c < cut->cell_count; ++c) {
     const int32_t* v = cut->vertices + 4 * c;
     const int32_t origin = cut->cells[c];
     const double volume = volume_of(cut->points, v);
@@ -55,7 +55,7 @@ static inline void assert_pieces_fill_their_cells(const mesh_case* mesh, const s
     sums[2 * origin] += volume;
     sums[2 * origin + 1] += 0.25 * volume * (field[v[0]] + field[v[1]] + field[v[2]] + field[v[3]]);
   }
-  for (int64_t c = 0; c < mesh->cell_count; c++) {
+  for (int64_t c = 0; c < mesh->cell_count; ++c) {
     const int32_t* v = mesh->vertices + 4 * c;
     const double volume = volume_of(mesh->points, v), mean = 0.25 * (field[v[0]] + field[v[1]] + field[v[2]] + field[v[3]]);
     assert_true(fabs(sums[2 * c] - volume) <= 1e-12 * fabs(volume));

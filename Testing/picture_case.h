@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Small smooth volumes at random, views of them, and their pictures by the ray caster and by the reference: what the picture tests share. */
+ * Small smooth volumes at random, views of them, and their pictures by the ray caster and by the reference: what the picture tests share.
+ */
 #ifndef STRATUS_TESTING_PICTURE_CASE_H
 #define STRATUS_TESTING_PICTURE_CASE_H
 
@@ -128,8 +129,8 @@ static inline void case_look(stratus_context* context, picture_case* c, int view
   assert_int_equal(stratus_scene_camera(context, bounds, 2, view, parallel, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
 }
 
-/* Unit spacing, about half of the volume transparent, samples a quarter of a voxel apart: so near that what is left against the reference is
- * rounding and the sampling's own second-order error, and any misplaced half voxel or step stands out. */
+/* Unit spacing, about half of the volume transparent, samples a quarter of a voxel apart: so near that what is left against the reference
+ * is rounding and the sampling's own second-order error, and any misplaced half voxel or step stands out. */
 static inline void case_create(
   stratus_context* context, picture_case* c, stratus_type type, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
 {

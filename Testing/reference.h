@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  *
- * The picture that every renderer here is judged by, written apart from all of them: plain double precision, one ray at a time, small midpoint
- * steps, the transfer function evaluated point by point. It shares the public structs with the core and not a line of its code. */
+ * The picture that every renderer here is judged by, written apart from all of them: plain double precision, one ray at a time, small
+ * midpoint steps, the transfer function evaluated point by point. It shares the public structs with the core and not a line of its code. */
 #ifndef STRATUS_TESTING_REFERENCE_H
 #define STRATUS_TESTING_REFERENCE_H
 
@@ -36,13 +36,13 @@ double reference_value_at(const stratus_volume* volume, int64_t number);
  * where there is none. A ray stops when what is left of its light is below 1e-12. Returns 0, or -1 where memory runs out. */
 int reference_render(const reference_scene* scene, int width, int height, double step, float* rgba, float* depth);
 
-/* Halves the step, from 1/8, until two pictures in a row agree to at least wanted_db + 10 (or the step is 1/1024), and leaves the finer one.
- * reference_db: how well those two agree. */
+/* Halves the step, from 1/8, until two pictures in a row agree to at least wanted_db + 10 (or the step is 1/1024), and leaves the finer
+ * one. reference_db: how well those two agree. */
 int reference_converged(
   const reference_scene* scene, int width, int height, double wanted_db, float* rgba, float* depth, double* reference_db);
 
-/* Peak signal to noise in dB of RGBA in 0..1 over the pixels where either picture has alpha > 0; INFINITY where they are equal. A value that
- * is not finite gives -INFINITY. */
+/* Peak signal to noise in dB of RGBA in 0..1 over the pixels where either picture has alpha > 0; INFINITY where they are equal. A value
+ * that is not finite gives -INFINITY. */
 double reference_psnr(const float* a, const float* b, size_t pixels);
 /* The same in parts, for a figure over several views: adds to the sum of squares, the count of values, and raises the largest error. */
 void reference_error(const float* a, const float* b, size_t pixels, double* squares, double* count, double* largest);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The field that the reference renderer samples: its values, what the transfer function makes of them, the blocks in which that is nothing, and
- * what ghosts hide. The one thing that it skips are blocks of cells in which every value maps to an opacity of zero. */
+ * The field that the reference renderer samples: its values, what the transfer function makes of them, the blocks in which that is nothing,
+ * and what ghosts hide. The one thing that it skips are blocks of cells in which every value maps to an opacity of zero. */
 #include "reference_field.h"
 
 #include "reference_looks.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light, gradient opacity and components of the reference renderer: written from the contract in stratus.h, in doubles, without regard to speed. */
+ * Light, gradient opacity and components of the reference renderer: written from the contract in stratus.h, in doubles, without regard to
+ * speed. */
 #include "reference_looks.h"
 
 #include <math.h>
@@ -16,8 +17,7 @@ int reference_components(const stratus_volume* volume)
 
 int reference_has_looks(const reference_scene* scene)
 {
-  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 ||
-    scene->label_count > 0;
+  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 || scene->label_count > 0;
 }
 
 /* The transfer function of the nearest value's label. */
@@ -202,7 +202,8 @@ void reference_look(const reference_scene* scene, const reference_place* place, 
     const stratus_transfer* transfer = components > 1 ? scene->transfer + c : function_of(scene, place);
     if (!isnan(values[c])) {
       reference_color(transfer, values[c], rgb);
-      add_medium(scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);
+      add_medium(
+        scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);
     }
   }
   if (scene->dependent && whole) {

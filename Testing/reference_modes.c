@@ -239,7 +239,6 @@ static bool next_sample(samples* all)
   return true;
 }
 
-
 static void draw_light(const scene* s, const line* l, double step, float rgba[4], float* depth)
 {
   samples all = begin_samples(s, l, step);

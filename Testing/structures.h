@@ -69,7 +69,7 @@ static inline void spoil(test_volume* v, int64_t one_in, uint32_t* random)
   static const double odd[] = { NAN, INFINITY, -INFINITY, 0.0, -0.0, 1e300, -1e300 };
   const stratus_volume* view = &v->view;
   const int64_t count = view->dimensions[0] * view->dimensions[1] * view->dimensions[2];
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     if (random_below(random, one_in) == 0) {
       const double value = odd[random_below(random, 7)];
       if (view->type == STRATUS_FLOAT32) {
@@ -87,7 +87,7 @@ static inline test_volume make_volume(stratus_type type, int64_t nx, int64_t ny,
   const int64_t last = (nx * ny * nz - 1) * stride;
   v.values = malloc((size_t)(last + 1) * stratus_type_size(type));
   assert_non_null(v.values);
-  for (int64_t i = 0; i <= last; i++) {
+  for (int64_t i = 0; i <= last; ++i) {
     set_value(v.values, type, i, random);
   }
   v.view.values = v.values;
@@ -108,7 +108,7 @@ static inline void add_ghosts(test_volume* v, int cell_centered, int64_t one_in,
   v->cell_ghosts = malloc((size_t)count);
   assert_non_null(v->point_ghosts);
   assert_non_null(v->cell_ghosts);
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     v->point_ghosts[i] = random_below(random, one_in) ? STRATUS_GHOST_DUPLICATE : STRATUS_GHOST_HIDDEN_POINT;
     v->cell_ghosts[i] = random_below(random, one_in) ? STRATUS_GHOST_DUPLICATE : STRATUS_GHOST_HIDDEN_CELL;
   }
@@ -142,15 +142,15 @@ static inline stratus_occupancy* make_occupancy(
   assert_int_equal(stratus_allocate_zero(context, (size_t)count, 1, &memory), STRATUS_OK);
   o->occupied = memory;
   const int64_t single = random_below(random, count);
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     o->occupied[b] = fill == 0 ? 0 : fill == 1 ? 1 : fill == 2 ? b == single : random_below(random, fill) == 0;
     if (o->occupied[b]) {
       const int64_t at[3] = { b % nx, b / nx % ny, b / nx / ny };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         o->lo[a] = o->count == 0 || at[a] < o->lo[a] ? at[a] : o->lo[a];
         o->hi[a] = at[a] >= o->hi[a] ? at[a] + 1 : o->hi[a];
       }
-      o->count++;
+      ++o->count;
     }
   }
   return o;

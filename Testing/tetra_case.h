@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Small meshes of tetrahedra at random, and the picture that the renderer is judged by, written apart from it: each ray against every cell in
- * double precision by barycentric coordinates, what it meets sorted by where it enters, each stretch in many midpoint steps. */
+ * Small meshes of tetrahedra at random, and the picture that the renderer is judged by, written apart from it: each ray against every cell
+ * in double precision by barycentric coordinates, what it meets sorted by where it enters, each stretch in many midpoint steps. */
 #ifndef STRATUS_TESTING_TETRA_CASE_H
 #define STRATUS_TESTING_TETRA_CASE_H
 
@@ -50,8 +50,8 @@ static inline double tetra_uniform(uint32_t* state, double lo, double hi)
   return lo + (hi - lo) * (double)(*state >> 8) / 16777216.0;
 }
 
-/* A cube of n^3 boxes, six cells each about the boxes' diagonals, its points moved by up to `jitter` of a box, corners of cells in any order;
- * `missing` of the cells left out; values within 0..1, those of neighbours alike. */
+/* A cube of n^3 boxes, six cells each about the boxes' diagonals, its points moved by up to `jitter` of a box, corners of cells in any
+ * order; `missing` of the cells left out; values within 0..1, those of neighbours alike. */
 static inline void tetra_create(tetra_case* c, int n, double jitter, double missing, uint32_t seed)
 {
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
@@ -132,19 +132,22 @@ static inline int tetra_stop(void** state)
 static inline void tetra_look(stratus_context* context, tetra_case* c, int n, int view, int parallel)
 {
   const double bounds[6] = { 0, n, 0, n, 0, n };
-  assert_int_equal(
-    stratus_scene_camera(context, bounds, 2, view, parallel, (double)TETRA_WIDTH / TETRA_HEIGHT, &c->camera), STRATUS_OK);
+  assert_int_equal(stratus_scene_camera(context, bounds, 2, view, parallel, (double)TETRA_WIDTH / TETRA_HEIGHT, &c->camera), STRATUS_OK);
 }
 
 static inline void tetra_draw(stratus_context* context, const tetra_case* c, tetra_picture* p)
 {
   stratus_tetra_caster* caster = NULL;
   memset(p, 0x5a, sizeof *p);
-  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = p->rgba, .depth = p->depth, .rgba8 = p->rgba8,
-    .samples = p->samples, .opaque_depth = c->opaque_depth };
+  const stratus_image image = { .width = TETRA_WIDTH,
+    .height = TETRA_HEIGHT,
+    .rgba = p->rgba,
+    .depth = p->depth,
+    .rgba8 = p->rgba8,
+    .samples = p->samples,
+    .opaque_depth = c->opaque_depth };
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
-  const stratus_status status =
-    stratus_tetra_caster_render(caster, &c->mesh, &c->transfer, &c->camera, &c->options, &image, &p->report);
+  const stratus_status status = stratus_tetra_caster_render(caster, &c->mesh, &c->transfer, &c->camera, &c->options, &image, &p->report);
   if (status != STRATUS_OK) {
     print_error("%s\n", stratus_context_message(context));
   }
@@ -190,8 +193,8 @@ static inline double tetra_volume(const double a[3], const double b[3], const do
 }
 
 /* What of the ray lies within the cell: each barycentric coordinate is linear along it. */
-static inline int tetra_meet(const tetra_case* c, int64_t cell, const double origin[3], const double along[3], double from, double to,
-  tetra_stretch* stretch)
+static inline int tetra_meet(
+  const tetra_case* c, int64_t cell, const double origin[3], const double along[3], double from, double to, tetra_stretch* stretch)
 {
   const int32_t* v = c->mesh.vertices + 4 * cell;
   const double* m = c->mesh.matrix;
@@ -210,8 +213,8 @@ static inline int tetra_meet(const tetra_case* c, int64_t cell, const double ori
   if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
     return 0;
   }
-  /* the ray from where it comes nearest to the cell, and a second point of it, as far away as the cell: another scale would drown the cell's in
-   * rounding */
+  /* the ray from where it comes nearest to the cell, and a second point of it, as far away as the cell: another scale would drown the
+   * cell's in rounding */
   double reach = 0.0, nearest = 0.0, square = 0.0;
   for (int a = 0; a < 3; ++a) {
     nearest += 0.25 * (p[0][a] + p[1][a] + p[2][a] + p[3][a]) * along[a];

@@ -34,9 +34,9 @@ static inline void set_add(voxel_set* set, int64_t x, int64_t y, int64_t z)
 /* All of [x0, x1) x [y0, y1) x [z0, z1). */
 static inline void set_add_box(voxel_set* set, int64_t x0, int64_t x1, int64_t y0, int64_t y1, int64_t z0, int64_t z1)
 {
-  for (int64_t z = z0; z < z1; z++) {
-    for (int64_t y = y0; y < y1; y++) {
-      for (int64_t x = x0; x < x1; x++) {
+  for (int64_t z = z0; z < z1; ++z) {
+    for (int64_t y = y0; y < y1; ++y) {
+      for (int64_t x = x0; x < x1; ++x) {
         set_add(set, x, y, z);
       }
     }
@@ -45,7 +45,7 @@ static inline void set_add_box(voxel_set* set, int64_t x0, int64_t x1, int64_t y
 
 static inline void set_add_noise(voxel_set* set, int64_t count, uint32_t* random)
 {
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     const int64_t x = random_below(random, set->dimensions[0]), y = random_below(random, set->dimensions[1]);
     set_add(set, x, y, random_below(random, set->dimensions[2]));
   }
@@ -54,9 +54,9 @@ static inline void set_add_noise(voxel_set* set, int64_t count, uint32_t* random
 /* Voxels whose distance to (c, c, c) lies within half a voxel of the radius. */
 static inline void set_add_shell(voxel_set* set, int c, int radius)
 {
-  for (int z = -radius - 1; z <= radius + 1; z++) {
-    for (int y = -radius - 1; y <= radius + 1; y++) {
-      for (int x = -radius - 1; x <= radius + 1; x++) {
+  for (int z = -radius - 1; z <= radius + 1; ++z) {
+    for (int y = -radius - 1; y <= radius + 1; ++y) {
+      for (int x = -radius - 1; x <= radius + 1; ++x) {
         if (fabs(sqrt((double)(x * x + y * y + z * z)) - radius) < 0.5) {
           set_add(set, c + x, c + y, c + z);
         }
@@ -77,14 +77,14 @@ static inline stratus_voxels* make_voxels(stratus_context* context, const voxel_
 /* The voxels in the order of bricks, ascending, and of bits in them: as an exact density numbers them. at: voxels->count triples. */
 static inline void list_voxels(const stratus_voxels* voxels, int32_t (*at)[3])
 {
-  for (int64_t b = 0; b < voxels->brick_count; b++) {
+  for (int64_t b = 0; b < voxels->brick_count; ++b) {
     const stratus_brick* brick = voxels->bricks + b;
-    for (int bit = 0; bit < 64; bit++) {
+    for (int bit = 0; bit < 64; ++bit) {
       if (brick->mask >> bit & 1) {
         (*at)[0] = 4 * brick->at[0] + bit % 4;
         (*at)[1] = 4 * brick->at[1] + bit / 4 % 4;
         (*at)[2] = 4 * brick->at[2] + bit / 16;
-        at++;
+        ++at;
       }
     }
   }

@@ -3,7 +3,8 @@
  *
  * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept, their search is not:
  * halving needs no division and ends after the same number of steps in every lane.
- * Neighbouring cells have the very same bits where a ray passes from one to the other, so that a root there is found in one of them, once. */
+ * Neighbouring cells have the very same bits where a ray passes from one to the other, so that a root there is found in one of them, once.
+ */
 #ifndef STRATUS_CELL_CUBIC_H
 #define STRATUS_CELL_CUBIC_H
 
@@ -13,7 +14,8 @@
 /* After so many halvings what is left is taken as straight. */
 #define CUBIC_HALVINGS 12
 
-/* The field at w in 0..1 is k[0] + k[1] w + k[2] w^2 + k[3] w^3. It is monotone between cut[i] and cut[i + 1], where it is value[i] and [i + 1]. */
+/* The field at w in 0..1 is k[0] + k[1] w + k[2] w^2 + k[3] w^3. It is monotone between cut[i] and cut[i + 1], where it is value[i] and [i
+ * + 1]. */
 typedef struct stratus_cubic {
   vfloat k[4];
   vfloat cut[4], value[4];
@@ -50,7 +52,8 @@ INLINE void cubic_coefficients(const vfloat v[8], const vfloat e[3], const vfloa
   for (int z = 0; z < 2; ++z) {
     const vfloat *low = v + 4 * z, *high = low + 2;
     const vfloat rise = low[1] - low[0], base = v_fma(e[0], rise, low[0]), slope = rise * d[0];
-    const vfloat high_rise = high[1] - high[0], up = v_fma(e[0], high_rise, high[0]) - base, steeper = v_fma(high_rise, d[0], v_set(0.0f) - slope);
+    const vfloat high_rise = high[1] - high[0], up = v_fma(e[0], high_rise, high[0]) - base,
+                 steeper = v_fma(high_rise, d[0], v_set(0.0f) - slope);
     q[z][0] = v_fma(e[1], up, base);
     q[z][1] = v_fma(d[1], up, v_fma(e[1], steeper, slope));
     q[z][2] = d[1] * steeper;
@@ -94,8 +97,8 @@ INLINE void cubic_of_cell(const vfloat v[8], const vfloat e[3], const vfloat f[3
   }
 }
 
-/* Where the cubic passes `level` in its piece number `piece`; `below`: the piece begins below the level. It passes it, or the answer is somewhere in
- * the piece. */
+/* Where the cubic passes `level` in its piece number `piece`; `below`: the piece begins below the level. It passes it, or the answer is
+ * somewhere in the piece. */
 INLINE vfloat cubic_root(const stratus_cubic* c, int piece, vfloat level, vmask below)
 {
   vfloat lo = c->cut[piece], hi = c->cut[piece + 1];

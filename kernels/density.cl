@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Density of bricks of voxels: the sums of Core/density_rows.c, whole numbers, so that their order does not matter and the host's are met to the
- * bit. Bricks are in ascending order of (z, y, x); a row of neighbours is found by halving. */
+ * Density of bricks of voxels: the sums of Core/density_rows.c, whole numbers, so that their order does not matter and the host's are met
+ * to the bit. Bricks are in ascending order of (z, y, x); a row of neighbours is found by halving. */
 #ifndef GROUP
 #define GROUP 64 /* items to a brick: one a voxel */
 #endif
@@ -14,15 +14,9 @@ typedef struct row {
   int offset, table;
 } row;
 
-static ulong place(long x, long y, long z)
-{
-  return (ulong)(z + 8) << 40 | (ulong)(y + 8) << 20 | (ulong)(x + 8);
-}
+static ulong place(long x, long y, long z) { return (ulong)(z + 8) << 40 | (ulong)(y + 8) << 20 | (ulong)(x + 8); }
 
-static ulong place_of(__global const brick* bricks, ulong b)
-{
-  return place(bricks[b].x, bricks[b].y, bricks[b].z);
-}
+static ulong place_of(__global const brick* bricks, ulong b) { return place(bricks[b].x, bricks[b].y, bricks[b].z); }
 
 static ulong first_brick(__global const brick* bricks, ulong count, ulong key)
 {
@@ -38,20 +32,21 @@ static ulong first_brick(__global const brick* bricks, ulong count, ulong key)
   return low;
 }
 
-/* The rows of bits in reach of brick b: bit x of rows[z*side + y]. Each of the group's items fills the sixteen rows of some rows of bricks. */
+/* The rows of bits in reach of brick b: bit x of rows[z*side + y]. Each of the group's items fills the sixteen rows of some rows of bricks.
+ */
 static void gather(__global const brick* bricks, ulong count, ulong b, int reach, __local ulong* rows)
 {
   const int n = 2 * reach + 1, side = 4 * n;
   for (int i = (int)get_local_id(0); i < n * n; i += GROUP) {
     const int dy = i % n, dz = i / n;
     __local ulong* own = rows + dz * 4 * side + dy * 4;
-    for (int r = 0; r < 16; r++) {
+    for (int r = 0; r < 16; ++r) {
       own[(r >> 2) * side + (r & 3)] = 0;
     }
     const ulong first = place((long)bricks[b].x - reach, (long)bricks[b].y + dy - reach, (long)bricks[b].z + dz - reach);
-    for (ulong j = first_brick(bricks, count, first); j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; j++) {
+    for (ulong j = first_brick(bricks, count, first); j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; ++j) {
       const int shift = 4 * ((int)bricks[j].x - (int)bricks[b].x + reach);
-      for (int r = 0; r < 16; r++) {
+      for (int r = 0; r < 16; ++r) {
         own[(r >> 2) * side + (r & 3)] |= (bricks[j].mask >> (4 * r) & 15) << shift;
       }
     }
@@ -75,7 +70,7 @@ __kernel void exact(__global const brick* bricks, ulong count, __global const ul
   const int shift = 4 * reach + (bit & 3) - radius;
   const ulong window = (1UL << (2 * radius + 1)) - 1, piece = (1UL << width) - 1;
   ulong sum = 0;
-  for (int r = 0; r < row_count; r++) {
+  for (int r = 0; r < row_count; ++r) {
     int at = offsets[r].table;
     for (ulong bits = own[offsets[r].offset] >> shift & window; bits; bits >>= width) {
       sum += table[at + (int)(bits & piece)];
@@ -94,11 +89,11 @@ __kernel void binned(__global const brick* bricks, ulong count, int reach, __glo
   }
   const int n = reach + 1;
   ulong sum = 0;
-  for (int dz = -reach; dz <= reach; dz++) {
-    for (int dy = -reach; dy <= reach; dy++) {
+  for (int dz = -reach; dz <= reach; ++dz) {
+    for (int dy = -reach; dy <= reach; ++dy) {
       __global const uint* weights = table + ((int)abs(dz) * n + (int)abs(dy)) * n;
       const ulong first = place((long)bricks[b].x - reach, (long)bricks[b].y + dy, (long)bricks[b].z + dz);
-      for (ulong j = first_brick(bricks, count, first); j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; j++) {
+      for (ulong j = first_brick(bricks, count, first); j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; ++j) {
         sum += (ulong)bricks[j].count * weights[abs((int)bricks[j].x - (int)bricks[b].x)];
       }
     }

@@ -35,12 +35,12 @@ __kernel void columns(__global const ulong* bits, long nx, long ny, long nz, lon
   __global value* to = field + z * ny * nx + x;
   const value none = FAR_LINE;
   value d = none;
-  for (long y = 0; y < ny; y++) {
+  for (long y = 0; y < ny; ++y) {
     const int inside = (int)(column[y * words] >> (x & 63) & 1);
     d = y > 0 ? step_on(d, inside, is_signed) : inside ? (is_signed ? -none : 0) : none;
     to[y * nx] = d;
   }
-  for (long y = ny - 1; y >= 0; y--) {
+  for (long y = ny - 1; y >= 0; --y) {
     const int inside = (int)(column[y * words] >> (x & 63) & 1);
     d = y < ny - 1 ? step_on(d, inside, is_signed) : inside ? (is_signed ? -none : 0) : none;
     const value up = to[y * nx], least = min(up < 0 ? -up : up, d < 0 ? -d : d);
@@ -59,7 +59,7 @@ __kernel void search(__global const value* from, long nx, long ny, long nz, int 
   const int inside = from[here] < 0;
   value best = inside ? -from[here] : from[here];
   /* What is of the other kind is what is looked for: 0 away from itself. */
-  for (long n = 1; n * n < (long)best && (n <= at[axis] || n <= last - at[axis]); n++) {
+  for (long n = 1; n * n < (long)best && (n <= at[axis] || n <= last - at[axis]); ++n) {
     value nearest = FAR;
     if (n <= at[axis]) {
       const value other = from[here - n * step];

@@ -17,7 +17,7 @@ __kernel void sum_x(__global const uchar* occupied, long nx, long ny, long nz, _
   __global uint* sum = sums + (K * (ny + 1) + J) * (nx + 1);
   uint running = 0;
   sum[0] = 0;
-  for (long i = 0; i < nx; i++) {
+  for (long i = 0; i < nx; ++i) {
     running += J > 0 && K > 0 ? occupied[((K - 1) * ny + J - 1) * nx + i] : 0;
     sum[i + 1] = running;
   }
@@ -31,7 +31,7 @@ __kernel void sum_axis(__global uint* sums, long n0, long step0, long n1, long s
     return;
   }
   __global uint* sum = sums + a * step0 + b * step1;
-  for (long i = 1; i < length; i++) {
+  for (long i = 1; i < length; ++i) {
     sum[i * step] += sum[(i - 1) * step];
   }
 }
@@ -49,7 +49,7 @@ static uint count_box(__global const uint* sums, long nx, long ny, const long lo
 static int found(__global const uint* sums, const long n[3], const long at[3], const int side[3], long distance, int target)
 {
   long lo[3], hi[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     lo[a] = side[a] > 0 ? at[a] : max(at[a] - distance, 0L);
     hi[a] = (side[a] < 0 ? at[a] : min(at[a] + distance, n[a] - 1)) + 1;
   }
@@ -102,7 +102,7 @@ __kernel void paper_axis(__global const uchar* from, long nx, long ny, long nz, 
   const long step = axis == 0 ? 1 : axis == 1 ? nx : nx * ny, n = axis == 0 ? nx : axis == 1 ? ny : nz;
   const long b = (at[2] * ny + at[1]) * nx + at[0];
   int nearest = from[b];
-  for (int k = 1; k < nearest; k++) {
+  for (int k = 1; k < nearest; ++k) {
     if (at[axis] >= k) {
       nearest = min(nearest, max(k, (int)from[b - k * step]));
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which side of a tetrahedron's faces is seen, once for host and device: doubles in one order of operations and never contracted, so the same
- * bits either way. Points are as Core/visibility_signs.c sees them. */
+ * Which side of a tetrahedron's faces is seen, once for host and device: doubles in one order of operations and never contracted, so the
+ * same bits either way. Points are as Core/visibility_signs.c sees them. */
 #ifndef STRATUS_FACE_SIGNS_H
 #define STRATUS_FACE_SIGNS_H
 
@@ -39,9 +39,6 @@ static inline void face_determinants(face_point p0, face_point p1, face_point p2
 }
 
 /* 0: exact arithmetic has to tell. */
-static inline int face_sign(double det)
-{
-  return (det > FACE_SIGNS_ERROR_BOUND) - (det < -FACE_SIGNS_ERROR_BOUND);
-}
+static inline int face_sign(double det) { return (det > FACE_SIGNS_ERROR_BOUND) - (det < -FACE_SIGNS_ERROR_BOUND); }
 
 #endif

@@ -60,7 +60,8 @@ __kernel void first_hit(__constant stratus_hit_arguments* a, __global const ucha
     hit_step(a, entries, rows, masks, &k, STRATUS_OCTANTS, STRATUS_ENTRY_BYTES, STRATUS_CELL_LOG2);
   }
   int state[STRATUS_WIDTH], visited[STRATUS_WIDTH];
-  vi_store(state, vi_select(k.hit, vi_set(STRATUS_HIT_VOXEL), vi_select(k.doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_set(STRATUS_HIT_NONE))));
+  vi_store(
+    state, vi_select(k.hit, vi_set(STRATUS_HIT_VOXEL), vi_select(k.doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_set(STRATUS_HIT_NONE))));
   vi_store(visited, k.visited);
   for (int axis = 0; axis < 3; ++axis) {
     vi_store(cell[axis], k.cell[axis]);

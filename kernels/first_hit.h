@@ -2,8 +2,8 @@
  * Rays through one distance field, a packet at a time, up to the first occupied voxel. Positions are voxels: voxel i is i .. i+1.
  *
  * A ray's position is known to within `slack`. It leaps from cell to cell; where it lands it is in no doubt about its cell, unless
- * it lands near an edge of the lattice (two coordinates within slack of an integer). Only there can it miss, or wrongly meet, a voxel, and only
- * one that touches the edge. So a ray that lands near an edge with an occupied voxel about it is given up as doubtful, and its caller
+ * it lands near an edge of the lattice (two coordinates within slack of an integer). Only there can it miss, or wrongly meet, a voxel, and
+ * only one that touches the edge. So a ray that lands near an edge with an occupied voxel about it is given up as doubtful, and its caller
  * walks it again in double precision: the answer is exact, and float does nearly all of the work. */
 #ifndef STRATUS_FIRST_HIT_H
 #define STRATUS_FIRST_HIT_H
@@ -22,8 +22,8 @@ typedef struct stratus_hit_packet {
 } stratus_hit_packet;
 
 /* 1 if voxel (x,y,z) of the field is occupied; 0 beyond it. */
-INLINE int hit_occupied(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks, int x,
-  int y, int z)
+INLINE int hit_occupied(
+  CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks, int x, int y, int z)
 {
   const int i = (x >> a->cell_log2) - a->at[0], j = (y >> a->cell_log2) - a->at[1], k = (z >> a->cell_log2) - a->at[2];
   if (i < 0 || i >= a->cells[0] || j < 0 || j >= a->cells[1] || k < 0 || k >= a->cells[2]) {
@@ -63,8 +63,8 @@ INLINE int hit_doubt(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entr
   return 0;
 }
 
-/* Sets hit where a live ray's cell is an occupied voxel, else moves it on and ends it where it leaves. The last three are the arguments' own,
- * which the compiler should see as constants. */
+/* Sets hit where a live ray's cell is an occupied voxel, else moves it on and ends it where it leaves. The last three are the arguments'
+ * own, which the compiler should see as constants. */
 INLINE void hit_step(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks,
   stratus_hit_packet* k, const int octants, const int entry_bytes, const int cell_log2)
 {

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The field's gradient at a sample. Included after fetch.h, once for each STRATUS_TYPE.
  *
- * The trilinear interpolation of the eight corners' central differences, which is the central difference of the interpolated field: 32 values of
- * the 4x4x4 about the cell. A corner without a neighbour (the volume ends, or the value there is no number) takes the difference to the other one. */
+ * The trilinear interpolation of the eight corners' central differences, which is the central difference of the interpolated field: 32
+ * values of the 4x4x4 about the cell. A corner without a neighbour (the volume ends, or the value there is no number) takes the difference
+ * to the other one. */
 #ifndef STRATUS_GRADIENT_H
 #define STRATUS_GRADIENT_H
-/* Differences at `from` and `to`, which lie side by side, at t between them. lower, upper: where `before` and `after` are beyond the volume. */
+/* Differences at `from` and `to`, which lie side by side, at t between them. lower, upper: where `before` and `after` are beyond the
+ * volume. */
 INLINE vfloat gradient_between(vfloat before, vfloat from, vfloat to, vfloat after, vfloat t, vmask lower, vmask upper)
 {
   const vfloat inner = to - from, half_one = v_set(0.5f);
@@ -30,8 +32,7 @@ INLINE void fetch_two(
 }
 
 /* Where values are taken as they are: the differences at the voxel itself. */
-INLINE void voxel_gradient(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   vint at[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,8 +57,7 @@ INLINE void voxel_gradient(
 }
 
 /* g: value a voxel along each axis at index coordinates x, in the lanes of `mask`; where the mask is not set, any number. */
-INLINE void ray_gradient(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   if (a->nearest) {
     voxel_gradient(a, values, x, mask, g);
@@ -87,7 +87,8 @@ INLINE void ray_gradient(
     line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
   }
   for (int side = 0; side < 2; ++side) { /* along y at both ends of z, along z at both ends of y */
-    const vint j = vi_min(at[1] + vi_set(side), vi_set(a->dimensions[1] - 1)), k = vi_min(at[2] + vi_set(side), vi_set(a->dimensions[2] - 1));
+    const vint j = vi_min(at[1] + vi_set(side), vi_set(a->dimensions[1] - 1)),
+               k = vi_min(at[2] + vi_set(side), vi_set(a->dimensions[2] - 1));
     vfloat low[2], high[2];
     fetch_two(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
     fetch_two(a, values, at[0], after[1], k, mask, &high[0], &high[1]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A pass of jump flooding (Rong & Tan 2006): each voxel asks itself and 26 others `step` away what they know, and keeps the nearest, of equally
- * near ones the one of the smallest index: so the order of asking does not matter, and host and device agree to the bit. */
+ * A pass of jump flooding (Rong & Tan 2006): each voxel asks itself and 26 others `step` away what they know, and keeps the nearest, of
+ * equally near ones the one of the smallest index: so the order of asking does not matter, and host and device agree to the bit. */
 #include "jump_flooding.h"
 
 #ifndef WIDE
@@ -29,8 +29,8 @@ static squared_length squared_distance(uint position, const int at[3], int shift
 }
 
 /* Groups are GROUP items along x; group g leaves in sums[2 g] how many of its voxels came nearer and in sums[2 g + 1] their ratios' sum. */
-__kernel void flood(__global const uint* from, long nx, long ny, long nz, int step, int shift_y, int shift_z, __global uint* to,
-  __global uint* sums)
+__kernel void flood(
+  __global const uint* from, long nx, long ny, long nz, int step, int shift_y, int shift_z, __global uint* to, __global uint* sums)
 {
   __local uint updated[GROUP], ratios[GROUP];
   const int item = (int)get_local_id(0);
@@ -41,7 +41,7 @@ __kernel void flood(__global const uint* from, long nx, long ny, long nz, int st
     uint nearest = from[here];
     const squared_length before = squared_distance(nearest, at, shift_y, shift_z);
     squared_length now = before;
-    for (int n = 0; n < 27; n++) {
+    for (int n = 0; n < 27; ++n) {
       const long x = at[0] + (long)step * (n % 3 - 1), y = at[1] + (long)step * (n / 3 % 3 - 1), z = at[2] + (long)step * (n / 9 - 1);
       if (x < 0 || x >= nx || y < 0 || y >= ny || z < 0 || z >= nz) {
         continue;

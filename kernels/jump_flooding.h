@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Jump flooding (Rong & Tan 2006) as host and device share it, C11 and OpenCL C: how a voxel remembers the nearest effective one, and how much
- * nearer a pass brought it, from operations that both round alike. */
+ * Jump flooding (Rong & Tan 2006) as host and device share it, C11 and OpenCL C: how a voxel remembers the nearest effective one, and how
+ * much nearer a pass brought it, from operations that both round alike. */
 #ifndef STRATUS_JUMP_FLOODING_H
 #define STRATUS_JUMP_FLOODING_H
 
@@ -19,7 +19,8 @@ typedef uint32_t flood_position;
 #define FLOOD_UNKNOWN 0xffffffffu
 #define FLOOD_RATIO_ONE 65536.0f /* of the whole numbers that ratios are added up in, so that their order does not matter */
 
-/* 1/sqrt(a) for a >= 1 to some 1e-7, by Newton's steps from a guess in the exponent: a device's own root is not rounded as the host's is. */
+/* 1/sqrt(a) for a >= 1 to some 1e-7, by Newton's steps from a guess in the exponent: a device's own root is not rounded as the host's is.
+ */
 FLOOD_INLINE float flood_inverse_root(float a)
 {
   float r;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Morton codes of boxes and the hierarchy over sorted codes (Karras 2012), once for host and device: integers only, so the same tree either way.
- * A code has 63 bits, 21 an axis, of twice the box's middle (lo + hi) less the least of all boxes, shifted right until 21 bits hold it. */
+ * Morton codes of boxes and the hierarchy over sorted codes (Karras 2012), once for host and device: integers only, so the same tree either
+ * way. A code has 63 bits, 21 an axis, of twice the box's middle (lo + hi) less the least of all boxes, shifted right until 21 bits hold
+ * it. */
 #ifndef STRATUS_MORTON_H
 #define STRATUS_MORTON_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Functions of a lane that no single operation gives, out of + - * fma and bits: the same bits in every dialect, which a device's own division
- * and exponential are not. */
+ * Functions of a lane that no single operation gives, out of + - * fma and bits: the same bits in every dialect, which a device's own
+ * division and exponential are not. */
 #ifndef STRATUS_PACKET_MATH_H
 #define STRATUS_PACKET_MATH_H
 

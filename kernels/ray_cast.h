@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The march of one packet of rays through a volume, front to back, leaping over what a distance map tells to be transparent.
- * Included once for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite); RAY_NAME(x) gives each inclusion
- * its own names.
+ * Included once for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite); RAY_NAME(x) gives each
+ * inclusion its own names.
  *
- * Every structure meets the same samples: the structure only tells which segments need none, and a segment left out would have added exactly
- * zero, so the bits of the picture do not depend on it. */
+ * Every structure meets the same samples: the structure only tells which segments need none, and a segment left out would have added
+ * exactly zero, so the bits of the picture do not depend on it. */
 #ifndef RAY_NAME
 #error "RAY_NAME is not set"
 #endif
@@ -137,8 +137,8 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
   } while (m_any(need));
 }
 
-/* The next sample of every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended hangs on
- * the last sample's colour, and the next fetch need not wait for that. */
+/* The next sample of every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended
+ * hangs on the last sample's colour, and the next fetch need not wait for that. */
 INLINE stratus_sample ray_sample(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {

@@ -8,7 +8,8 @@
 
 #define STRATUS_CLIP_MAX 6
 
-/* has_hidden: what the hidden bytes hold: a mask, a byte a value, 0 where it takes the value out; then a byte a cell, 1 where that is hidden. */
+/* has_hidden: what the hidden bytes hold: a mask, a byte a value, 0 where it takes the value out; then a byte a cell, 1 where that is
+ * hidden. */
 #define HIDDEN_CELLS 1
 #define HIDDEN_BY_MASK 2
 #define HIDDEN_LABELS 4 /* the mask's bytes are labels, and hide nothing */
@@ -20,7 +21,8 @@
 #define STRATUS_RAY_EXTREME 1
 #define STRATUS_RAY_SUM 2
 #define STRATUS_RAY_SURFACE 4 /* isosurfaces */
-#define STRATUS_RAY_LOOKS 3 /* light behind light, where a sample is more than its value's colour and opacity: lit, thinned, of several components */
+/* Light behind light, where a sample is more than its value's colour and opacity: lit, thinned, of several components. */
+#define STRATUS_RAY_LOOKS 3
 
 typedef struct stratus_ray_cast_arguments {
   /* ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward */
@@ -38,8 +40,8 @@ typedef struct stratus_ray_cast_arguments {
   float last[3];        /* largest position along each axis (cell_centered clamps to it) */
   float table_scale, table_offset, table_last;
   float shown_first, shown_beyond; /* pre-integrated: entries outside [shown_first, shown_beyond) are transparent */
-  float tau_scale;   /* pre-integrated: optical depth of one unit of the sums */
-  float color_slope; /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
+  float tau_scale;                 /* pre-integrated: optical depth of one unit of the sums */
+  float color_slope;               /* pre-integrated: most that a colour changes from entry to entry, over the error allowed */
   int has_opaque;    /* pre-integrated: entries of opacity 1 are among those that show; behind the sums stands where: opaque_on_the_way() */
   float termination; /* of transparency: 1 - alpha */
   float world_step;  /* the sample distance as a float, for depth */
@@ -70,28 +72,29 @@ typedef struct stratus_ray_cast_arguments {
   float sum_scale;                   /* sums: of a sum over whole samples; 0: the mean is shown */
   int sum;                           /* 1: rays show something wherever they meet the bounds */
   int contour_count;
-  int bounds_at;                       /* extremes: where the blocks' bounds begin in the map, in 64 bytes */
-  int bounds_across, bounds_rows;      /* blocks a row, rows a slice */
-  int crop_regions;                      /* 0, or which of the 27 regions between crop_plane are shown: bit x + 3 y + 9 z, each 0..2 */
-  int jitter, seed;                      /* 1: each ray's lattice lies farther from the eye, by a part of a sample that pixel and seed decide */
+  int bounds_at;                  /* extremes: where the blocks' bounds begin in the map, in 64 bytes */
+  int bounds_across, bounds_rows; /* blocks a row, rows a slice */
+  int crop_regions;               /* 0, or which of the 27 regions between crop_plane are shown: bit x + 3 y + 9 z, each 0..2 */
+  int jitter, seed;               /* 1: each ray's lattice lies farther from the eye, by a part of a sample that pixel and seed decide */
   stratus_pair crop_plane[3][2];
   float contour[STRATUS_CONTOUR_MAX][5]; /* isosurfaces, by rising values: value, colour times opacity, opacity */
   /* looks */
   int shade, two_sided, light_count;
-  float normal[9];   /* rows: from a value's index gradient to a normal, of any length */
-  float place[9];    /* rows: from index displacements to the world's, in units of the shortest voxel edge */
-  float material[4]; /* ambient, diffuse, specular, specular power */
+  float normal[9];                      /* rows: from a value's index gradient to a normal, of any length */
+  float place[9];                       /* rows: from index displacements to the world's, in units of the shortest voxel edge */
+  float material[4];                    /* ambient, diffuse, specular, specular power */
   float light[8][3], light_color[8][3]; /* directions of length 1 to the light, or its position as `place` has it */
   int light_positional[8];
-  int components, dependent;    /* components 0 and 1: one value */
-  int component_bytes;          /* from a value to the next component's */
-  float gradient_length[3];     /* from a value's index gradient to value per mean spacing */
-  int look_first[4];            /* of each component: its table's first entry in the table of all, in floats; .. */
+  int components, dependent;                         /* components 0 and 1: one value */
+  int component_bytes;                               /* from a value to the next component's */
+  float gradient_length[3];                          /* from a value's index gradient to value per mean spacing */
+  int look_first[4];                                 /* of each component: its table's first entry in the table of all, in floats; .. */
   float look_scale[4], look_offset[4], look_last[4]; /* .. its entries, as table_scale, table_offset and table_last are component 0's; .. */
-  int factor_first[4];          /* .. its gradient opacity's first entry, likewise, -1: none; .. */
-  float factor_scale[4], factor_last[4]; /* .. and that one's entries */
+  int factor_first[4];                               /* .. its gradient opacity's first entry, likewise, -1: none; .. */
+  float factor_scale[4], factor_last[4];             /* .. and that one's entries */
   float component_weight[4];
-  int label_first, label_count; /* labels 0..label_count: where their scale, offset, last entry and first entry / 4 stand, in floats. 0: no labels */
+  int label_first,
+    label_count; /* labels 0..label_count: where their scale, offset, last entry and first entry / 4 stand, in floats. 0: no labels */
 } stratus_ray_cast_arguments;
 
 /* 4-byte scalars throughout: no padding in either language. */

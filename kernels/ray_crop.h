@@ -29,8 +29,8 @@ INLINE int crop_shows(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays
 }
 
 /* The pieces of each ray that are shown: from..to, empty ones behind. */
-INLINE void crop_pieces(
-  CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, float from[CROP_PIECES][STRATUS_WIDTH], float to[CROP_PIECES][STRATUS_WIDTH])
+INLINE void crop_pieces(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, float from[CROP_PIECES][STRATUS_WIDTH],
+  float to[CROP_PIECES][STRATUS_WIDTH])
 {
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     const float begin = rays->begin[lane], end = rays->end[lane];
@@ -75,14 +75,16 @@ INLINE void crop_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_ray
   crop_pieces(a, rays, crop->from, crop->to);
 }
 
-/* Sends the rays along their piece number `piece`, as far as they have light left. Not inlined: few frames are cropped so, and the march should be
- * compiled as if there were none. */
+/* Sends the rays along their piece number `piece`, as far as they have light left. Not inlined: few frames are cropped so, and the march
+ * should be compiled as if there were none. */
 #ifdef STRATUS_DEVICE
 static
 #else
-static __attribute__((noinline))
+static
+  __attribute__((noinline))
 #endif
-  void crop_enter(CONSTANT stratus_ray_cast_arguments* a, const stratus_crop* crop, int piece, stratus_packet* k)
+  void
+  crop_enter(CONSTANT stratus_ray_cast_arguments* a, const stratus_crop* crop, int piece, stratus_packet* k)
 {
   if (!m_any(crop->all)) {
     return;

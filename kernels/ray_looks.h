@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components. Included by
- * ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOOKS. What is looked up beyond the values is so only where something shows, and only
- * thins or colours that: a segment left out would have added exactly zero, here too. */
+ * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components.
+ * Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOOKS. What is looked up beyond the values is so only where something
+ * shows, and only thins or colours that: a segment left out would have added exactly zero, here too. */
 
 /* Few samples come this far, and the code is long: once for each type, not wherever it is called. */
 #ifdef STRATUS_DEVICE
@@ -58,8 +58,8 @@ OUTLINE vfloat component_value(
 }
 
 /* Each component a medium: their optical depths add up, and their light. */
-INLINE void add_independent(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k,
-  const stratus_sample* sample, vfloat sum[4])
+INLINE void add_independent(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
   for (int c = 0; c < a->components; ++c) {
     const vfloat value = component_value(a, k, sample, c, k->live);
@@ -70,8 +70,8 @@ INLINE void add_independent(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 }
 
 /* Colour from all components but the last, opacity from that. */
-INLINE void add_dependent(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k,
-  const stratus_sample* sample, vfloat sum[4])
+INLINE void add_dependent(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
   const int last = a->components - 1;
   vfloat value = component_value(a, k, sample, last, k->live), layer[4], color[4];

@@ -87,8 +87,8 @@ INLINE vint gather_map(GLOBAL const uchar* map, vint index, vmask mask)
 #endif
 }
 
-/* In samples, where the rays leave the cube of blocks nearer than `distance`, told a little early: by more than the roundings of the division
- * and the product can amount to. */
+/* In samples, where the rays leave the cube of blocks nearer than `distance`, told a little early: by more than the roundings of the
+ * division and the product can amount to. */
 INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const vint block[3], vint distance)
 {
   vfloat leave = v_set(1e7f);

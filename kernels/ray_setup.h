@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From pixels to rays, in double: where a packet's rays meet the bounds, on the one lattice of samples that is anchored at the eye, rebased to
- * floats at the first sample inside. */
+ * From pixels to rays, in double: where a packet's rays meet the bounds, on the one lattice of samples that is anchored at the eye, rebased
+ * to floats at the first sample inside. */
 #ifndef STRATUS_RAY_SETUP_H
 #define STRATUS_RAY_SETUP_H
 
@@ -13,7 +13,7 @@ typedef struct stratus_rays {
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
   float first[STRATUS_WIDTH];                                 /* lattice index of segment 0, for depth */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* owned part, in samples */
-  float crossing[3][2][STRATUS_WIDTH]; /* of the planes between the crop's regions, in samples */
+  float crossing[3][2][STRATUS_WIDTH];                        /* of the planes between the crop's regions, in samples */
 } stratus_rays;
 
 /* Smallest displacement a sample along an axis, voxels: keeps reciprocals finite and moves no ray by a thousandth of a voxel. */
@@ -60,9 +60,10 @@ INLINE float ray_jitter(int x, int y, int seed)
   return (float)(int)(h >> 8) * 0x1p-24f;
 }
 
-/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; w: their jitter; `part` is where they stand in the packet. */
-INLINE void ray_setup_part(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part,
-  stratus_rays* rays)
+/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; w: their jitter; `part` is where they stand in the
+ * packet. */
+INLINE void ray_setup_part(
+  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
 {
   const real zero = r_number(0.0f), half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
   const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->pixel[0])), one);

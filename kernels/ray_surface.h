@@ -25,10 +25,7 @@ typedef struct surface_walk {
   vfloat run; /* the structure need not be asked before */
 } surface_walk;
 
-INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane)
-{
-  return (v_from_int(plane) - k->p[axis]) * k->inverse[axis];
-}
+INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane) { return (v_from_int(plane) - k->p[axis]) * k->inverse[axis]; }
 
 /* The cell behind the point s of each ray. */
 INLINE void surface_cell(const stratus_packet* k, surface_walk* w)
@@ -125,8 +122,8 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 #define surface_visit RAY_NAME(surface_visit)
 
 /* Puts the surface at point s of the rays behind what they have gathered. */
-SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, stratus_packet* k,
-  vmask mask, vfloat s, vfloat layer[4])
+SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
   vfloat x[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -152,9 +149,10 @@ SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
 }
 
-/* All surfaces in the cells of the rays in `mask`, in the order that the rays meet them: piece by piece, within one by rising or falling values. */
-SURFACE_OUTLINE void surface_roots(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, stratus_packet* k,
-  const surface_walk* w, const stratus_cubic* cubic, vmask mask)
+/* All surfaces in the cells of the rays in `mask`, in the order that the rays meet them: piece by piece, within one by rising or falling
+ * values. */
+SURFACE_OUTLINE void surface_roots(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  stratus_packet* k, const surface_walk* w, const stratus_cubic* cubic, vmask mask)
 {
   for (int piece = 0; piece < 3; ++piece) {
     const vfloat from = cubic->value[piece], to = cubic->value[piece + 1];

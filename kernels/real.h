@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Double precision for the set-up of rays, REAL_WIDTH rays at once: the dialect's doubles, or, where a device has none (STRATUS_REAL_PAIR), an
- * unevaluated sum of two floats (Dekker 1971, with fma), which keeps 48 bits. Arguments come as such pairs in both, so that host and
+ * Double precision for the set-up of rays, REAL_WIDTH rays at once: the dialect's doubles, or, where a device has none (STRATUS_REAL_PAIR),
+ * an unevaluated sum of two floats (Dekker 1971, with fma), which keeps 48 bits. Arguments come as such pairs in both, so that host and
  * device start from the same numbers. */
 #ifndef STRATUS_REAL_H
 #define STRATUS_REAL_H

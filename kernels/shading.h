@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The light that falls on a sample, as VTK's volume mappers shade: ambient, diffuse by N L, specular by (N H)^power with H half way between the
- * light and the eye (Blinn 1977), N against the gradient and, where both sides are lit, turned towards the eye. */
+ * The light that falls on a sample, as VTK's volume mappers shade: ambient, diffuse by N L, specular by (N H)^power with H half way between
+ * the light and the eye (Blinn 1977), N against the gradient and, where both sides are lit, turned towards the eye. */
 #ifndef STRATUS_SHADING_H
 #define STRATUS_SHADING_H
 
@@ -21,7 +21,8 @@ INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
 INLINE vfloat v_scale3(vfloat v[3])
 {
   const vfloat largest = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));
-  const vint exponent = v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is a normal number's */
+  const vint exponent =
+    v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is a normal number's */
   const vfloat scale = v_from_bits(vi_set(0x7f000000) - exponent);
   for (int axis = 0; axis < 3; ++axis) {
     v[axis] = v[axis] * scale;
@@ -86,8 +87,8 @@ INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 
 /* Of the samples at index coordinates x with the index gradient g, on rays of index direction d: a colour C of opacity A becomes
  * C diffuse + A specular. diffuse holds the ambient light, too. */
-INLINE void ray_light(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3],
-  vfloat specular[3])
+INLINE void ray_light(
+  CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
 {
   const vfloat zero = v_set(0.0f);
   vfloat normal[3], eye[3], place[3];

@@ -8,8 +8,8 @@
 #include "tetra_gather.h"
 #include "transfer_table.h"
 
-/* Most that a stretch's length weighs, so that long ones do not overflow: 1, the least sum of a stretch that shows, over 2^16 entries and 16 pieces
- * is an optical depth of 2^20 then. */
+/* Most that a stretch's length weighs, so that long ones do not overflow: 1, the least sum of a stretch that shows, over 2^16 entries and
+ * 16 pieces is an optical depth of 2^20 then. */
 #define OPAQUE_WEIGHT 0x1p40f
 
 /* What a ray has gathered. */
@@ -98,7 +98,8 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
 }
 
-/* A stretch from `first` at place `from` to `last` at place `to` that meets nothing opaque, in pieces where averaging colours would show. */
+/* A stretch from `first` at place `from` to `last` at place `to` that meets nothing opaque, in pieces where averaging colours would show.
+ */
 INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
@@ -127,7 +128,8 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
 }
 
 /* Entry `entry` of opacity 1 behind what the rays have. */
-INLINE void tetra_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
+INLINE void tetra_end(
+  CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
 {
   vint own[4];
   gather_four_ints(sums, entry + vi_set((int)a->table.table_last + 1), mask, own);

@@ -12,10 +12,7 @@ INLINE vfloat table_place(CONSTANT stratus_ray_cast_arguments* a, vfloat value)
   return v_clamp(v_fma(value, v_set(a->table_scale), v_set(a->table_offset)), 0.0f, a->table_last);
 }
 
-INLINE vint table_entry(CONSTANT stratus_ray_cast_arguments* a, vfloat value)
-{
-  return v_to_int(table_place(a, value));
-}
+INLINE vint table_entry(CONSTANT stratus_ray_cast_arguments* a, vfloat value) { return v_to_int(table_place(a, value)); }
 
 /* Four consecutive floats (as bits) from table + 4 entry; 0 in other lanes. */
 INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
@@ -86,7 +83,8 @@ INLINE void shorten_layer(
   }
 }
 
-/* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A specular. */
+/* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A
+ * specular. */
 typedef struct stratus_look {
   vfloat factor, diffuse[3], specular[3];
 } stratus_look;
@@ -155,7 +153,8 @@ INLINE vfloat segment_pieces(CONSTANT stratus_ray_cast_arguments* a, vfloat dept
 }
 
 /* Of lanes in the mask, those whose segments show anything. */
-INLINE vmask segment_shows(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
+INLINE vmask segment_shows(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
 {
   const vint entry = table_entry(a, value), front = table_entry(a, k->front);
   return mask & v_lt(v_set(0.0f), sum_between(a, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));

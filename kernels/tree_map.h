@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree as the march asks it: what a distance map tells of a block, found through nodes and leaves. The buffer begins with ints, 8 a record
- * (tree_map.c writes them), `nodes` records of nodes, then those of leaves, then the leaves' bytes:
- *   node  first block x y z, last block x y z, first child or leaf, 1 if it is a leaf
- *   leaf  first block x y z, blocks along x, y, z, place of its bytes, 0
- * A byte is a distance map's: 1..127, the Chebyshev distance within the leaf; or 128 and more, occupied. */
+ * A tree as the march asks it: what a distance map tells of a block, found through nodes and leaves. The buffer begins with ints, 8 a
+ * record (tree_map.c writes them), `nodes` records of nodes, then those of leaves, then the leaves' bytes: node  first block x y z, last
+ * block x y z, first child or leaf, 1 if it is a leaf leaf  first block x y z, blocks along x, y, z, place of its bytes, 0 A byte is a
+ * distance map's: 1..127, the Chebyshev distance within the leaf; or 128 and more, occupied. */
 #ifndef STRATUS_TREE_MAP_H
 #define STRATUS_TREE_MAP_H
 
@@ -16,7 +15,8 @@ INLINE int tree_larger(int a, int b) { return a > b ? a : b; }
 /* Chebyshev distance from a block to a node's box, 0 inside. */
 INLINE int tree_distance(GLOBAL const int* node, int x, int y, int z)
 {
-  const int dx = tree_larger(node[0] - x, x - node[3]), dy = tree_larger(node[1] - y, y - node[4]), dz = tree_larger(node[2] - z, z - node[5]);
+  const int dx = tree_larger(node[0] - x, x - node[3]), dy = tree_larger(node[1] - y, y - node[4]),
+            dz = tree_larger(node[2] - z, z - node[5]);
   return tree_larger(tree_larger(tree_larger(dx, dy), dz), 0);
 }
 

@@ -31,8 +31,8 @@ __kernel void columns(__global const VALUE* values, bias_type bias, long nx, lon
   float least = INFINITY, most = -INFINITY;
   uchar odd = 0;
   const long y1 = min((j + 1) * size, ny - 1), z1 = min((k + 1) * size, nz - 1);
-  for (long z = k * size; z <= z1; z++) {
-    for (long y = j * size; y <= y1; y++) {
+  for (long z = k * size; z <= z1; ++z) {
+    for (long y = j * size; y <= y1; ++y) {
       const float v = FETCH(values[((z * ny + y) * nx + x) * stride]);
       if (fabs(v) <= FLT_MAX) {
         least = v < least ? v : least;
@@ -58,7 +58,7 @@ __kernel void blocks(__global const float* column_lo, __global const float* colu
   float least = INFINITY, most = -INFINITY;
   uchar odd = 0;
   const long x1 = min((i + 1) * size, nx - 1);
-  for (long x = i * size; x <= x1; x++) {
+  for (long x = i * size; x <= x1; ++x) {
     const long column = row * nx + x;
     least = column_lo[column] < least ? column_lo[column] : least;
     most = column_hi[column] > most ? column_hi[column] : most;

@@ -5,9 +5,9 @@
 #endif
 #include "face_signs.h"
 
-/* corners: where in `seen` each of a cell's points is. sides: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its faces
- * on which it lies, plus 1. results: bit f: what is behind face f comes after the cell, bit 4 + f: before it, bit 8 + f: of a neighbour nobody
- * knows. */
+/* corners: where in `seen` each of a cell's points is. sides: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its
+ * faces on which it lies, plus 1. results: bit f: what is behind face f comes after the cell, bit 4 + f: before it, bit 8 + f: of a
+ * neighbour nobody knows. */
 __kernel void signs(__global const double* seen, __global const int* corners, __global const uchar* sides, ulong count, int parallel,
   __global ushort* results)
 {
@@ -24,7 +24,7 @@ __kernel void signs(__global const double* seen, __global const int* corners, __
   double det[4];
   uint state = 0;
   face_determinants(p0, p1, p2, p3, parallel, det);
-  for (int f = 0; f < 4 && side != 0; f++) {
+  for (int f = 0; f < 4 && side != 0; ++f) {
     const int sign = face_sign(det[f]) * side;
     state |= (uint)(sign < 0) << f | (uint)(sign > 0) << (4 + f) | (uint)(sign == 0 && (sides[cell] >> f & 1)) << (8 + f);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plant of 9454 parts to walk through: plant [OUT.png [TREE.png]]. Key c switches the culler; the corner tells which, the parts drawn, frames a
-// second. TREE.png: the culler's octree from afar, with the camera's frustum in it.
+// A plant of 9454 parts to walk through: plant [OUT.png [TREE.png]]. Key c switches the culler; the corner tells which, the parts drawn,
+// frames a second. TREE.png: the culler's octree from afar, with the camera's frustum in it.
 #include <vtkStratusOctreeCuller.h>
 
 #include <vtkActor.h>
@@ -116,8 +116,8 @@ struct Plant {
   {
     char text[200];
     const double seconds = this->Renderer->GetLastRenderTimeInSeconds();
-    std::snprintf(text, sizeof text, "%s: %d of %d parts, %.1f frames/s", this->Name, this->Renderer->GetNumberOfPropsRendered(), this->Count,
-      seconds > 0.0 ? 1.0 / seconds : 0.0);
+    std::snprintf(text, sizeof text, "%s: %d of %d parts, %.1f frames/s", this->Name, this->Renderer->GetNumberOfPropsRendered(),
+      this->Count, seconds > 0.0 ? 1.0 / seconds : 0.0);
     this->Label->SetInput(text);
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A surface, filled by TetGen, a field on the tetrahedra, and its picture: shell [OUT.png]. Without a file name it opens a window to turn it in.
+// A surface, filled by TetGen, a field on the tetrahedra, and its picture: shell [OUT.png]. Without a file name it opens a window to turn
+// it in.
 #include <vtkStratusTetGenFilter.h>
 #include <vtkStratusTetrahedraMapper.h>
 

@@ -15,7 +15,8 @@ void refuse_options(const cli::options& o)
 {
   if (o.mode != STRATUS_MODE_COMPOSITE || o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest ||
     o.shade || o.audit || o.sample_distance != 0.0 || !o.crop.empty() || !o.mask.empty() || o.jitter >= 0) {
-    throw cli::usage("'" + o.source + "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, " +
+    throw cli::usage("'" + o.source +
+      "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, " +
       "crop, mask, jitter and audit are for images");
   }
 }

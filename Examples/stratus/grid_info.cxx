@@ -72,8 +72,8 @@ void print_arrays(vtkUnstructuredGrid* grid)
 }
 
 // A picture for the sake of its report, which tells what the caster found on the way.
-stratus_tetra_report draw(const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer,
-  const stratus_camera& camera, int width, int height)
+stratus_tetra_report draw(
+  const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer, const stratus_camera& camera, int width, int height)
 {
   std::vector<float> pixels(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
   stratus_image image = {};
@@ -162,7 +162,8 @@ void cli::print_grid(const options& o)
     const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);
     row("drawn",
       "'" + m.array_name + "' on " + (m.view().cell_values ? "cells" : "points") + ", " + count(report.shown_cells) + " of " +
-        count(report.cells) + " tetrahedra" + (report.shown_cells < report.cells ? ", the others hidden or with values that are not finite" : ""));
+        count(report.cells) + " tetrahedra" +
+        (report.shown_cells < report.cells ? ", the others hidden or with values that are not finite" : ""));
     row("opacity", look.origin);
     row("method", report.why + format(", at %d x %d pixels", o.width, o.height));
   } catch (const failure& reason) {

@@ -310,8 +310,8 @@ const char* name_of(stratus_type type)
 std::string describe(const stratus_volume& v)
 {
   return format("%lld x %lld x %lld %s on %s, spacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
-    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), name_of(v.type),
-    v.cell_centered ? "cells" : "points", v.spacing[0], v.spacing[1], v.spacing[2]);
+    static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), name_of(v.type), v.cell_centered ? "cells" : "points",
+    v.spacing[0], v.spacing[1], v.spacing[2]);
 }
 
 stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)

@@ -62,7 +62,8 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
 }
 
 // Which parts are shown. What it gives back holds the mask's bytes.
-std::unique_ptr<cli::input> choose_parts(cli::context& core, const cli::options& o, const stratus_volume& volume, stratus_ray_cast_options& cast)
+std::unique_ptr<cli::input> choose_parts(
+  cli::context& core, const cli::options& o, const stratus_volume& volume, stratus_ray_cast_options& cast)
 {
   cast.crop = o.crop.empty() ? 0 : 1;
   std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
@@ -73,7 +74,8 @@ std::unique_ptr<cli::input> choose_parts(cli::context& core, const cli::options&
   auto mask = std::make_unique<cli::input>(core, o.mask, "");
   const stratus_volume& bytes = mask->volume;
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
-    throw cli::failure("mask '" + o.mask + "' has " + cli::describe(bytes) + ", one uint8 for each value of " + cli::describe(volume) + " is needed");
+    throw cli::failure(
+      "mask '" + o.mask + "' has " + cli::describe(bytes) + ", one uint8 for each value of " + cli::describe(volume) + " is needed");
   }
   cast.mask = static_cast<const uint8_t*>(bytes.values);
   return mask;

@@ -203,26 +203,22 @@ stratus_sampling sampling_named(const std::string& text)
 
 // ---- the words of the command line
 
-template <std::string options::*Text>
-void keep(options& o, const std::string&, const std::string& value)
+template <std::string options::*Text> void keep(options& o, const std::string&, const std::string& value)
 {
   o.*Text = value;
 }
 
-template <double options::*Number>
-void keep_number(options& o, const std::string& word, const std::string& value)
+template <double options::*Number> void keep_number(options& o, const std::string& word, const std::string& value)
 {
   o.*Number = number(value, word);
 }
 
-template <double options::*Number>
-void keep_positive(options& o, const std::string& word, const std::string& value)
+template <double options::*Number> void keep_positive(options& o, const std::string& word, const std::string& value)
 {
   o.*Number = positive(value, word);
 }
 
-template <double options::*Bound>
-void keep_bound(options& o, const std::string& word, const std::string& value)
+template <double options::*Bound> void keep_bound(options& o, const std::string& word, const std::string& value)
 {
   o.*Bound = number(value, word);
   o.has_range = true;
@@ -304,8 +300,7 @@ constexpr struct {
 };
 
 // Of a table, nullptr where it has no such word.
-template <class Table>
-auto find_word(const Table& table, const std::string& word)
+template <class Table> auto find_word(const Table& table, const std::string& word)
 {
   const auto found = std::find_if(std::begin(table), std::end(table), [&](const auto& entry) { return word == entry.word; });
   return found == std::end(table) ? nullptr : found;

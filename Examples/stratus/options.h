@@ -29,13 +29,13 @@ struct options {
   int height = 512;
   int threads = 0;
   double read_timeout = usual_read_timeout; // seconds; 0: never
-  int depth = 3; // sort: of the K-D tree
+  int depth = 3;                            // sort: of the K-D tree
   bool parallel = false;
   bool nearest = false;
   bool shade = false;
   bool audit = false;
   bool shows_samples = false; // render: how many samples each pixel took, in place of what it shows
-  bool has_range = false; // tree: of values, lower..upper
+  bool has_range = false;     // tree: of values, lower..upper
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;

@@ -9,8 +9,9 @@
 
 namespace cli {
 
-// Bytes become a file under another name beside it, which then gets the name. What is left of it goes when the program fails, and when a signal
-// ends it. What exists and is no regular file (a pipe, a device) is written in place, and so is what a standard stream writes to (/dev/stdout).
+// Bytes become a file under another name beside it, which then gets the name. What is left of it goes when the program fails, and when a
+// signal ends it. What exists and is no regular file (a pipe, a device) is written in place, and so is what a standard stream writes to
+// (/dev/stdout).
 class output_file
 {
 public:

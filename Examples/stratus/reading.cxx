@@ -166,7 +166,8 @@ reading::reading(const std::string& path, const std::string& by) : Path(path)
   this->catch_crashes();
 }
 
-// On a stack of its own, since a crash may be for want of stack. Handlers of an OpenCL compiler in this process give way, a sanitizer's stay.
+// On a stack of its own, since a crash may be for want of stack. Handlers of an OpenCL compiler in this process give way, a sanitizer's
+// stay.
 void reading::catch_crashes()
 {
 #ifdef CATCH_CRASHES

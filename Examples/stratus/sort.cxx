@@ -15,8 +15,8 @@
 
 namespace {
 
-constexpr int views = 8;             // of record, perspective and parallel
-constexpr int rays = 64;             // a view
+constexpr int views = 8;              // of record, perspective and parallel
+constexpr int rays = 64;              // a view
 constexpr double least_length = 1e-9; // of the mesh: shorter stretches may be rounding's
 
 using point = std::array<double, 3>;
@@ -48,7 +48,8 @@ bool clip(const stratus_mesh& mesh, int64_t cell, const point& origin, const poi
   hit.low = 0.0;
   hit.high = INFINITY;
   for (int f = 0; f < 4; ++f) {
-    const point a = corner(mesh, cell, (f + 1) % 4), u = minus(corner(mesh, cell, (f + 2) % 4), a), v = minus(corner(mesh, cell, (f + 3) % 4), a);
+    const point a = corner(mesh, cell, (f + 1) % 4), u = minus(corner(mesh, cell, (f + 2) % 4), a),
+                v = minus(corner(mesh, cell, (f + 3) % 4), a);
     const point normal = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0] };
     const double inner = dot(normal, minus(corner(mesh, cell, f), a)), sign = inner > 0.0 ? 1.0 : -1.0;
     const double start = sign * dot(normal, minus(origin, a)), slope = sign * dot(normal, direction);
@@ -95,8 +96,8 @@ bool is_near(const std::array<double, 4>& ball, const point& origin, const point
 }
 
 // Pairs of cells that follow one another on rays through points of cells, and how many of them come in the other order.
-void ask_rays(const stratus_mesh& mesh, const std::vector<std::array<double, 4>>& balls, const stratus_camera& camera, const uint32_t* cells,
-  double size, int64_t& pairs, int64_t& wrong)
+void ask_rays(const stratus_mesh& mesh, const std::vector<std::array<double, 4>>& balls, const stratus_camera& camera,
+  const uint32_t* cells, double size, int64_t& pairs, int64_t& wrong)
 {
   std::mt19937 random(1);
   std::vector<int64_t> rank(static_cast<size_t>(mesh.cell_count));
@@ -166,7 +167,8 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
 {
   stratus_visibility_order* made = nullptr;
   core.check(stratus_visibility_order_create(core, &mesh, leaves, &made), "visibility order");
-  const std::unique_ptr<stratus_visibility_order, decltype(&stratus_visibility_order_destroy)> order(made, &stratus_visibility_order_destroy);
+  const std::unique_ptr<stratus_visibility_order, decltype(&stratus_visibility_order_destroy)> order(
+    made, &stratus_visibility_order_destroy);
   double bounds[6], size = 0.0, milliseconds = 0.0;
   int64_t pairs = 0, wrong = 0, cycles = 0, overlaps = 0, forced = 0, layers = 0;
   stratus_visibility_result result = {};
@@ -177,8 +179,7 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
   }
   for (int view = 0; view < 2 * views; ++view) {
     stratus_camera camera;
-    core.check(
-      stratus_scene_camera(core, bounds, o.up.empty() ? 2 : o.up[0] - 'x', view / 2, view % 2, 1.0, &camera), "camera");
+    core.check(stratus_scene_camera(core, bounds, o.up.empty() ? 2 : o.up[0] - 'x', view / 2, view % 2, 1.0, &camera), "camera");
     core.check(stratus_visibility_order_sort(order.get(), &camera, nullptr, peeling, &result), "visibility order");
     milliseconds += (result.signs_ms + result.peel_ms) / (2 * views);
     cycles += result.cycles;
@@ -226,7 +227,8 @@ void cli::print_sort(const options& o)
   pieces.cell_count = cut.cell_count;
 
   std::printf("%s\n", o.source.c_str());
-  row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(mesh.cell_count) + " tetrahedra, " + count(mesh.point_count) + " points");
+  row(
+    "grid", count(grid->GetNumberOfCells()) + " cells, " + count(mesh.cell_count) + " tetrahedra, " + count(mesh.point_count) + " points");
   row("leaves",
     count(cut.leaves.leaf_count) +
       format(", the largest with %.1f %% of the cells; %.2f %% more cells, ",

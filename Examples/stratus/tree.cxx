@@ -56,8 +56,8 @@ void print(const stratus_tree_statistics& s)
   cli::row("method", stratus_tree_method_name(s.method));
   cli::row("voxels", count(s.voxels) + " in " + count(s.bricks) + " bricks of 4^3");
   cli::row("nodes",
-    count(s.nodes) + ", " + count(s.leaves) + " leaves, " + count(s.field_leaves) + " of them distance fields over " + count(s.field_bricks) +
-      " bricks");
+    count(s.nodes) + ", " + count(s.leaves) + " leaves, " + count(s.field_leaves) + " of them distance fields over " +
+      count(s.field_bricks) + " bricks");
   cli::row("depth", std::to_string(s.depth));
   cli::row("size", cli::format("%s KiB", count(static_cast<int64_t>(s.bytes + 1023) / 1024).c_str()));
   cli::row("cost", cli::format("%.4g by the surface area heuristic", s.sah));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a data set says of itself is checked before it is believed: files bring arrays of any length, and cells that name any point. Private to
-// the modules, never installed.
+// What a data set says of itself is checked before it is believed: files bring arrays of any length, and cells that name any point. Private
+// to the modules, never installed.
 #ifndef vtkStratusArrays_h
 #define vtkStratusArrays_h
 
@@ -20,8 +20,8 @@ class vtkUnstructuredGrid;
 #define VTK_STRATUS_PRIVATE
 #endif
 
-// The flags of vtkGhostType, nullptr where there are none. False, with the reason in `error`, unless they are one unsigned char for each of the
-// `count` `things` ("points of the image").
+// The flags of vtkGhostType, nullptr where there are none. False, with the reason in `error`, unless they are one unsigned char for each of
+// the `count` `things` ("points of the image").
 VTK_STRATUS_PRIVATE bool vtkStratusFindGhosts(
   vtkDataSetAttributes* data, vtkIdType count, const char* things, vtkUnsignedCharArray*& flags, std::string& error);
 

@@ -102,7 +102,8 @@ void vtkStratusImageView::Release()
   this->Plain = nullptr;
 }
 
-bool vtkStratusImageView::Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
+bool vtkStratusImageView::Set(
+  vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
 {
   this->Volume = stratus_volume_default();
   this->Volume.cell_centered = cells ? 1 : 0;

@@ -14,7 +14,7 @@ namespace {
 constexpr int HeaderNumbers = 12; // version, nodes, leaves, frame
 constexpr int NodeNumbers = 4;    // axis, below, above, value
 constexpr vtkIdType NumbersMax = 2147483647;
-}
+} // namespace
 
 bool vtkStratusLeaves::Set(vtkUnstructuredGrid* grid)
 {

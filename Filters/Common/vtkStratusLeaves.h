@@ -15,8 +15,7 @@ constexpr const char* vtkStratusOriginalCellArray = "StratusOriginalCell"; // ce
 constexpr const char* vtkStratusPartitionArray = "StratusPartition";       // field data: version, nodes, leaves, frame, tree
 
 // The tree of a grid's arrays, both ways.
-struct vtkStratusLeaves
-{
+struct vtkStratusLeaves {
   std::vector<stratus_partition_node> Nodes;
   std::vector<int32_t> Leaf;
   stratus_leaves Leaves;

@@ -23,8 +23,7 @@ constexpr vtkIdType NumbersMax = 2147483647;
 constexpr int Types = 256;
 
 // A fan from the lowest point: both cells at a face see the same.
-template <typename Function>
-void Fan(const std::vector<vtkIdType>& face, Function&& function)
+template <typename Function> void Fan(const std::vector<vtkIdType>& face, Function&& function)
 {
   const size_t count = face.size();
   const size_t lowest = static_cast<size_t>(std::min_element(face.begin(), face.end()) - face.begin());
@@ -35,8 +34,7 @@ void Fan(const std::vector<vtkIdType>& face, Function&& function)
 
 // A face with points on its edges, in VTK's order: corners, middles of edges, its own middle. Corners are cut off, so that no triangle is
 // flat where edges are straight.
-template <typename Function>
-void DivideQuadraticFace(int type, const std::vector<vtkIdType>& p, Function&& function)
+template <typename Function> void DivideQuadraticFace(int type, const std::vector<vtkIdType>& p, Function&& function)
 {
   if (type == VTK_QUADRATIC_LINEAR_QUAD) { // its second and fourth edge have no middle
     Fan({ p[0], p[4], p[5], p[3] }, function);
@@ -66,20 +64,10 @@ std::string TellCell(vtkIdType cell, int type)
 } // namespace
 
 // What VTK knows of a type of cell, asked once.
-struct vtkStratusTetrahedra::Kind
-{
-  enum
-  {
-    Unknown,
-    Flat,
-    Linear,
-    Quadratic,
-    Polyhedron,
-    ConvexPointSet
-  } Way = Unknown;
+struct vtkStratusTetrahedra::Kind {
+  enum { Unknown, Flat, Linear, Quadratic, Polyhedron, ConvexPointSet } Way = Unknown;
   vtkIdType Points = 0;
-  struct Side
-  {
+  struct Side {
     int Type;
     Face Nodes; // anticlockwise as seen from outside
   };
@@ -156,7 +144,8 @@ void vtkStratusTetrahedra::AddPiece(vtkIdType a, vtkIdType b, vtkIdType c, vtkId
   this->Cells.push_back(cell);
 }
 
-// A fan from the cell's lowest point, which is the lowest of each face that it is on, too: those are divided as their other cell divides them.
+// A fan from the cell's lowest point, which is the lowest of each face that it is on, too: those are divided as their other cell divides
+// them.
 void vtkStratusTetrahedra::AddLinear(const std::vector<Face>& faces, vtkIdType cell)
 {
   vtkIdType apex = VTK_ID_MAX;
@@ -202,8 +191,7 @@ void vtkStratusTetrahedra::AddQuadratic(const Kind& kind, const vtkIdType* ids, 
     for (vtkIdType node : side.Nodes) {
       face.push_back(ids[node]);
     }
-    DivideQuadraticFace(
-      side.Type, face, [&](vtkIdType p, vtkIdType q, vtkIdType r) { this->AddPiece(p, r, q, apex, cell); });
+    DivideQuadraticFace(side.Type, face, [&](vtkIdType p, vtkIdType q, vtkIdType r) { this->AddPiece(p, r, q, apex, cell); });
   }
 }
 

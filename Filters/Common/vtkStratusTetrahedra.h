@@ -14,17 +14,16 @@
 class vtkAbstractArray;
 class vtkUnstructuredGrid;
 
-struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra {
   std::vector<double> Points;    // of the grid, all of them, then the middles of quadratic cells that have no point there
   std::vector<int32_t> Vertices; // four a tetrahedron
   std::vector<vtkIdType> Cells;  // the grid's cell that each is of, in rising order
   vtkIdType GridPoints = 0;
-  vtkIdType LeftOut = 0;     // cells of no volume's dimension: vertices, lines, polygons
-  bool CellByCell = true;    // each cell of the grid is one tetrahedron, under its own number
+  vtkIdType LeftOut = 0;  // cells of no volume's dimension: vertices, lines, polygons
+  bool CellByCell = true; // each cell of the grid is one tetrahedron, under its own number
 
-  // Divides linear and quadratic cells and polyhedra; neighbours are divided alike across their faces. False, and why, for others, and for numbers
-  // beyond 31 bits.
+  // Divides linear and quadratic cells and polyhedra; neighbours are divided alike across their faces. False, and why, for others, and for
+  // numbers beyond 31 bits.
   bool Set(vtkUnstructuredGrid* grid, std::string& error);
   stratus_mesh GetMesh() const;
   // "nothing to draw" in words, where a grid with cells has none with a volume.
@@ -36,8 +35,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra
 private:
   using Face = std::vector<vtkIdType>;
   struct Kind; // of cell
-  struct Middle
-  {
+  struct Middle {
     size_t Node;                        // the first of the cell's in MiddleNodes
     const std::vector<double>* Weights; // of each there
   };

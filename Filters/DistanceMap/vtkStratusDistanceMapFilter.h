@@ -4,13 +4,13 @@
  * @brief   distance in blocks from each block of an image to the nearest one that shows something
  *
  * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a vtkImageData with
- * one cell a block and the cell data "Distance" (unsigned char): 0 in occupied blocks, the Chebyshev distance in blocks elsewhere, 127 where
- * it is longer. It lies over the input; its last blocks may reach beyond it. For cell data it begins at the centre of the first cell,
+ * one cell a block and the cell data "Distance" (unsigned char): 0 in occupied blocks, the Chebyshev distance in blocks elsewhere, 127
+ * where it is longer. It lies over the input; its last blocks may reach beyond it. For cell data it begins at the centre of the first cell,
  * as interpolation does.
  *
  * A block is occupied if something of VolumeProperty's scalar opacity shows between the smallest and the largest value in it, or, without a
- * VolumeProperty, something in LowerThreshold..UpperThreshold, ends included. Values of 24 bits or fewer are compared exactly; of wider types
- * those that one float stands for are told as one. So no bound is ever rounded inward.
+ * VolumeProperty, something in LowerThreshold..UpperThreshold, ends included. Values of 24 bits or fewer are compared exactly; of wider
+ * types those that one float stands for are told as one. So no bound is ever rounded inward.
  *
  * Where the filter fails its output stays what it was.
  *

@@ -143,8 +143,8 @@ void vtkStratusHybridTreeFilter::Internals::Fill(vtkImageData* input, vtkImageDa
   hash->SetName(vtkStratusTreeHashArray);
   hash->InsertNextValue(hex);
   output->ShallowCopy(input);
-  for (vtkAbstractArray* array : { static_cast<vtkAbstractArray*>(bytes), static_cast<vtkAbstractArray*>(version),
-         static_cast<vtkAbstractArray*>(hash) }) {
+  for (vtkAbstractArray* array :
+    { static_cast<vtkAbstractArray*>(bytes), static_cast<vtkAbstractArray*>(version), static_cast<vtkAbstractArray*>(hash) }) {
     output->GetFieldData()->AddArray(array);
   }
   vtkStratusTreeBoxes(this->Tree, this->Image.GetVolume(), this->Filter->Purpose == RAY_CASTING, boxes);
@@ -271,7 +271,7 @@ void vtkStratusHybridTreeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Bandwidth: " << this->Bandwidth << "\n";
   os << indent << "ExactDensity: " << (this->ExactDensity ? "On" : "Off") << "\n";
   os << indent << "DensityPerNode: " << (this->DensityPerNode ? "On" : "Off") << "\n";
-  os << indent << "Tree: " << this->NumberOfVoxels << " voxels, " << this->NumberOfBricks << " bricks, " << this->NumberOfNodes << " nodes, "
-     << this->NumberOfLeaves << " leaves (" << this->NumberOfFieldLeaves << " of distance fields), depth " << this->Depth << ", "
-     << this->Bytes << " bytes, cost " << this->SurfaceAreaCost << ", " << this->BuildTime << " ms; " << this->GetReason() << "\n";
+  os << indent << "Tree: " << this->NumberOfVoxels << " voxels, " << this->NumberOfBricks << " bricks, " << this->NumberOfNodes
+     << " nodes, " << this->NumberOfLeaves << " leaves (" << this->NumberOfFieldLeaves << " of distance fields), depth " << this->Depth
+     << ", " << this->Bytes << " bytes, cost " << this->SurfaceAreaCost << ", " << this->BuildTime << " ms; " << this->GetReason() << "\n";
 }

@@ -3,13 +3,14 @@
  * @class   vtkStratusHybridTreeFilter
  * @brief   builds the tree that rays skip by, and lets the image carry it
  *
- * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). First output: the same image, shallow,
- * with the tree in its field data: "StratusHybridTree" (unsigned char: versioned, with a checksum), "StratusHybridTreeVersion" (int: major and
- * minor of the Stratus that wrote it) and "StratusHybridTreeHash" (string: of the values and hidden parts it was built from). VTK's
- * writers and readers keep them. A vtkStratusVolumeMapper that gets the image uses the tree where it serves, and builds its own otherwise.
+ * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). First output: the same image,
+ * shallow, with the tree in its field data: "StratusHybridTree" (unsigned char: versioned, with a checksum), "StratusHybridTreeVersion"
+ * (int: major and minor of the Stratus that wrote it) and "StratusHybridTreeHash" (string: of the values and hidden parts it was built
+ * from). VTK's writers and readers keep them. A vtkStratusVolumeMapper that gets the image uses the tree where it serves, and builds its
+ * own otherwise.
  *
- * Second output: a vtkPolyData with the box of each of the tree's nodes as one polyline in world coordinates, parents before children. Cell data
- * "Depth" (int, the root's is 0; the scalars), "Kind" (unsigned char: 0 inner node, 1 leaf of bricks, 2 leaf of a distance field) and
+ * Second output: a vtkPolyData with the box of each of the tree's nodes as one polyline in world coordinates, parents before children. Cell
+ * data "Depth" (int, the root's is 0; the scalars), "Kind" (unsigned char: 0 inner node, 1 leaf of bricks, 2 leaf of a distance field) and
  * "Count" (vtkIdType: voxels in it).
  *
  * What counts is what VolumeProperty's scalar opacity shows or, without a VolumeProperty, LowerThreshold..UpperThreshold.
@@ -59,8 +60,9 @@ public:
   enum PurposeType { RAY_CASTING, FIRST_HITS };
   //@{
   /**
-   * What the tree is for. RAY_CASTING: blocks of cells that show something between their smallest and largest value, rounded outward; serves
-   * every transfer function that shows no more. FIRST_HITS: the voxels themselves; serves those that show the same. Default RAY_CASTING.
+   * What the tree is for. RAY_CASTING: blocks of cells that show something between their smallest and largest value, rounded outward;
+   * serves every transfer function that shows no more. FIRST_HITS: the voxels themselves; serves those that show the same. Default
+   * RAY_CASTING.
    */
   vtkSetClampMacro(Purpose, int, RAY_CASTING, FIRST_HITS);
   vtkGetMacro(Purpose, int);
@@ -71,8 +73,9 @@ public:
   enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS };
   //@{
   /**
-   * How the tree is built. HYBRID (default): leaves of distance fields where voxels lie even, a hierarchy of bricks where they don't; HYBRID_PAPER:
-   * Guo et al. 2025 as written; DISTANCE and OCTANT: one field over everything; the others: hierarchies of single voxels, to compare with.
+   * How the tree is built. HYBRID (default): leaves of distance fields where voxels lie even, a hierarchy of bricks where they don't;
+   * HYBRID_PAPER: Guo et al. 2025 as written; DISTANCE and OCTANT: one field over everything; the others: hierarchies of single voxels, to
+   * compare with.
    */
   vtkSetClampMacro(Method, int, HYBRID, K_MEANS);
   vtkGetMacro(Method, int);
@@ -110,8 +113,8 @@ public:
 
   //@{
   /**
-   * Most bricks that a leaf of a distance field covers, 1..2^29, and most of them for one that holds anything, at least 1. Values out of range are an
-   * error when building. Default 33554432 and 512.
+   * Most bricks that a leaf of a distance field covers, 1..2^29, and most of them for one that holds anything, at least 1. Values out of
+   * range are an error when building. Default 33554432 and 512.
    */
   vtkSetMacro(FieldBricks, vtkIdType);
   vtkGetMacro(FieldBricks, vtkIdType);
@@ -121,8 +124,8 @@ public:
 
   //@{
   /**
-   * How much the spread of voxels may differ between the axes for a node to count as even: of the node's extent (HYBRID, default .1), and in voxels
-   * (HYBRID_PAPER, default 8). At least 0; else an error when building.
+   * How much the spread of voxels may differ between the axes for a node to count as even: of the node's extent (HYBRID, default .1), and
+   * in voxels (HYBRID_PAPER, default 8). At least 0; else an error when building.
    */
   vtkSetMacro(Uniform, double);
   vtkGetMacro(Uniform, double);
@@ -152,8 +155,8 @@ public:
 
   //@{
   /**
-   * Of the last tree built: voxels that count, bricks that hold any, nodes, leaves, leaves of distance fields, depth of the deepest leaf, bytes,
-   * cost by the surface area heuristic, milliseconds, and one sentence on what decided its shape.
+   * Of the last tree built: voxels that count, bricks that hold any, nodes, leaves, leaves of distance fields, depth of the deepest leaf,
+   * bytes, cost by the surface area heuristic, milliseconds, and one sentence on what decided its shape.
    */
   vtkGetMacro(NumberOfVoxels, vtkIdType);
   vtkGetMacro(NumberOfBricks, vtkIdType);

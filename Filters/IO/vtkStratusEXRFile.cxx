@@ -137,8 +137,8 @@ void Encoder::WriteChunk(int top, int width, const std::vector<float>& values, c
                     : exr_encoding_update(this->Context, this->Part, &chunk, &this->Pipeline));
   for (int16_t c = 0; c < this->Pipeline.channel_count; ++c) { // OpenEXR keeps them by name
     exr_coding_channel_info_t& info = this->Pipeline.channels[c];
-    const auto source = std::find_if(
-      channels.begin(), channels.end(), [&info](const vtkStratusEXRChannel& one) { return one.Name == info.channel_name; });
+    const auto source =
+      std::find_if(channels.begin(), channels.end(), [&info](const vtkStratusEXRChannel& one) { return one.Name == info.channel_name; });
     const size_t at = static_cast<size_t>(source - channels.begin()) * static_cast<size_t>(chunk.height) * static_cast<size_t>(width);
     info.encode_from_ptr = reinterpret_cast<const uint8_t*>(values.data() + at);
     info.user_data_type = EXR_PIXEL_FLOAT;

@@ -26,8 +26,7 @@ vtkStandardNewMacro(vtkStratusEXRWriter);
 
 namespace {
 // Why nothing was written; Code is of vtkErrorCode.
-struct Failure
-{
+struct Failure {
   std::string Text;
   unsigned long Code;
 };
@@ -38,8 +37,7 @@ struct Failure
 }
 
 // A float of the same value, if there is one. NaN is taken for NaN.
-template <typename T>
-bool ToFloat(T value, float& result)
+template <typename T> bool ToFloat(T value, float& result)
 {
   result = static_cast<float>(value);
   if constexpr (std::is_floating_point<T>::value) {
@@ -50,8 +48,7 @@ bool ToFloat(T value, float& result)
   }
 }
 
-template <typename T>
-void ConvertRow(const T* values, vtkIdType first, int width, int components, const std::string& what, float* row)
+template <typename T> void ConvertRow(const T* values, vtkIdType first, int width, int components, const std::string& what, float* row)
 {
   for (int x = 0; x < width; ++x) {
     const T value = values[(first + x) * components];
@@ -132,7 +129,8 @@ void Store(const std::vector<unsigned char>& bytes, const std::string& path)
   }
   if (!done || error) {
     std::remove(part.c_str());
-    Fail("can't write " + path + ": " + std::strerror(reason), reason == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError);
+    Fail("can't write " + path + ": " + std::strerror(reason),
+      reason == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError);
   }
 }
 } // namespace

@@ -3,8 +3,8 @@
  * @class   vtkStratusEXRWriter
  * @brief   writes the arrays of a picture as named float channels of an OpenEXR file
  *
- * The input is a vtkImageData of one layer, as vtkStratusVolumeMapper::GetLastImage() gives it. Each array of its point data becomes 32-bit float
- * channels, without loss (ZIP):
+ * The input is a vtkImageData of one layer, as vtkStratusVolumeMapper::GetLastImage() gives it. Each array of its point data becomes 32-bit
+ * float channels, without loss (ZIP):
  * - "RGBA" becomes R, G, B and A, as EXR has them: colours premultiplied by alpha;
  * - "Depth" becomes Z;
  * - any other array of one component keeps its name ("Samples"), of more gets a number for each: "name.0", "name.1" ...;

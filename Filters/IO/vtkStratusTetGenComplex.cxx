@@ -9,8 +9,7 @@
 
 namespace {
 // Cells of one kind; those of a vtkPolyData stand in the order of their kinds, its cell data with them.
-struct Cells
-{
+struct Cells {
   vtkSmartPointer<vtkCellArray> Polygons = vtkSmartPointer<vtkCellArray>::New();
   std::vector<vtkIdType> Facets;
   std::vector<int> Markers;
@@ -55,9 +54,8 @@ vtkSmartPointer<vtkDoubleArray> Parser::MakeArray(const char* name, int componen
 int Parser::ReadMarker()
 {
   const bool given = this->IsMarked && this->Input.HasNumber(); // a facet may leave its marker out
-  return given
-    ? static_cast<int>(this->Input.GetInteger("the marker", std::numeric_limits<int>::min(), std::numeric_limits<int>::max()))
-    : 0;
+  return given ? static_cast<int>(this->Input.GetInteger("the marker", std::numeric_limits<int>::min(), std::numeric_limits<int>::max()))
+               : 0;
 }
 
 // Corners go on in the next line where one ends. Returns the kind.

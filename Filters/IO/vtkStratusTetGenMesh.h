@@ -12,8 +12,7 @@
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenNodes
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenNodes {
   vtkIdType First = 0; // number of the first point, 0 or 1: that of all elements, too
   vtkSmartPointer<vtkPoints> Points;
   std::vector<vtkSmartPointer<vtkDoubleArray>> Attributes;
@@ -22,8 +21,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusTetGenNodes
   vtkIdType GetLast() const { return this->First + this->Points->GetNumberOfPoints() - 1; }
 };
 
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenElements
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenElements {
   int Corners = 4; // or 10
   vtkIdType Count = 0;
   vtkSmartPointer<vtkIdTypeArray> Connectivity; // in VTK's order
@@ -31,8 +29,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusTetGenElements
 };
 
 // Triangles or edges with their markers; points in the middle of second-order edges are left out.
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenPieces
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenPieces {
   vtkSmartPointer<vtkIdTypeArray> Connectivity;
   vtkSmartPointer<vtkIntArray> Markers;
 };

@@ -15,7 +15,7 @@
 
 namespace {
 const size_t ChunkBytes = size_t(1) << 20;
-const vtkIdType SmallCount = 1000000; // numbers to allocate on a file's bare word
+const vtkIdType SmallCount = 1000000;     // numbers to allocate on a file's bare word
 const size_t LineBytes = size_t(1) << 26; // no line of TetGen's is nearly so long, a binary file may be one line
 
 bool IsBlank(char c)
@@ -27,13 +27,13 @@ bool IsBlank(char c)
 std::string Shown(std::string_view token)
 {
   std::string shown(token.substr(0, 40));
-  std::replace_if(shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+    shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return shown + (token.size() > 40 ? "..." : "");
 }
 
 // from_chars takes no plus sign.
-template <typename T>
-std::errc Parse(std::string_view token, T& value)
+template <typename T> std::errc Parse(std::string_view token, T& value)
 {
   const char* end = token.data() + token.size();
   const bool plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
@@ -179,9 +179,9 @@ vtkIdType vtkStratusTetGenInput::GetInteger(const char* name, vtkIdType lower, v
   const std::string_view token = this->Next(name);
   vtkIdType value = 0;
   if (Parse(token, value) != std::errc() || value < lower || value > upper) {
-    const std::string allowed = lower == upper
-      ? std::to_string(lower)
-      : lower < upper ? "an integer from " + std::to_string(lower) + " to " + std::to_string(upper) : "none at all";
+    const std::string allowed = lower == upper ? std::to_string(lower)
+      : lower < upper                          ? "an integer from " + std::to_string(lower) + " to " + std::to_string(upper)
+                                               : "none at all";
     this->Fail(std::string(name) + " is '" + Shown(token) + "', it must be " + allowed);
   }
   return value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines of numbers, in and out: the text that all of TetGen's files are made of. Files are read and written a megabyte at a time, so that their
-// size does not matter; numbers are written with as many digits as bring back the same bits. Private to the module.
+// Lines of numbers, in and out: the text that all of TetGen's files are made of. Files are read and written a megabyte at a time, so that
+// their size does not matter; numbers are written with as many digits as bring back the same bits. Private to the module.
 #ifndef vtkStratusTetGenText_h
 #define vtkStratusTetGenText_h
 
@@ -20,8 +20,7 @@
 #endif
 
 // Thrown inside the module, caught where a reader or writer begins.
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenError
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenError {
   std::string Text;
   unsigned long Code; // of vtkErrorCode
 };
@@ -29,7 +28,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusTetGenError
 // Gets how many bytes were read or written since the last call; throws to stop.
 using vtkStratusTetGenProgress = std::function<void(std::uintmax_t)>;
 
-// A file as lines of numbers. Blank lines and what follows a '#' are passed over, as TetGen does; numbers are parted by blanks, tabs or commas.
+// A file as lines of numbers. Blank lines and what follows a '#' are passed over, as TetGen does; numbers are parted by blanks, tabs or
+// commas.
 class VTK_STRATUS_PRIVATE vtkStratusTetGenInput
 {
 public:

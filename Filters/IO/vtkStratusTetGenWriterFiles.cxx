@@ -166,7 +166,8 @@ void vtkStratusTetGenWriteNeighbors(vtkStratusTetGenOutput& output, vtkDataArray
     for (int corner = 0; corner < 4; ++corner) {
       const double neighbor = neighbors->GetComponent(cell, corner);
       if (!(neighbor >= -1.0 && neighbor < static_cast<double>(count))) {
-        Fail("cell data 'Neighbors' hold " + std::to_string(neighbor) + " for cell " + Number(cell) + ", it must be in -1.." + Number(count - 1));
+        Fail("cell data 'Neighbors' hold " + std::to_string(neighbor) + " for cell " + Number(cell) + ", it must be in -1.." +
+          Number(count - 1));
       }
       output.Put(neighbor < 0.0 ? vtkIdType(-1) : first + static_cast<vtkIdType>(neighbor));
     }
@@ -213,8 +214,7 @@ public:
   void WriteSeeds(const char* name, int components);
 
 private:
-  struct Polygon
-  {
+  struct Polygon {
     double Facet;
     vtkIdType Cell;
     vtkCellArray* Cells;
@@ -254,8 +254,7 @@ void ComplexWriter::FindFacets()
       }
     }
   }
-  std::stable_sort(
-    this->Polygons.begin(), this->Polygons.end(), [](const Polygon& a, const Polygon& b) { return a.Facet < b.Facet; });
+  std::stable_sort(this->Polygons.begin(), this->Polygons.end(), [](const Polygon& a, const Polygon& b) { return a.Facet < b.Facet; });
 }
 
 size_t ComplexWriter::FacetEnd(size_t begin) const

@@ -12,10 +12,9 @@ class vtkPointSet;
 class vtkPolyData;
 class vtkUnstructuredGrid;
 
-// What TetGen calls attributes and markers, of points or cells: "Marker", if it has one component, and the components of all other arrays of numbers,
-// save those that are no quantities (neighbors, facets, ids, ghosts).
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenColumns
-{
+// What TetGen calls attributes and markers, of points or cells: "Marker", if it has one component, and the components of all other arrays
+// of numbers, save those that are no quantities (neighbors, facets, ids, ghosts).
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenColumns {
   // what: "point data" or "cell data", for messages.
   vtkStratusTetGenColumns(vtkDataSetAttributes* data, const char* what);
   void PutAttributes(vtkStratusTetGenOutput& output, vtkIdType tuple) const;

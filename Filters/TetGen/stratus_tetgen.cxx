@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-tetgen: does TetGen's work for vtkStratusTetGenFilter in a process of its own, so that its crashes and endless runs stay here. This source
-// is under the licence above; the program built from it links TetGen and so falls under the AGPL as a whole (README.md).
+// stratus-tetgen: does TetGen's work for vtkStratusTetGenFilter in a process of its own, so that its crashes and endless runs stay here.
+// This source is under the licence above; the program built from it links TetGen and so falls under the AGPL as a whole (README.md).
 #include "tetgen_exchange.h"
 
 #include <tetgen.h>
@@ -20,8 +20,7 @@ using tetgen_exchange::Answer;
 using tetgen_exchange::Request;
 const size_t PieceBytes = size_t(1) << 30; // the most that one read or write may be asked for is a little more
 
-template <typename T>
-void Read(T* values, size_t count)
+template <typename T> void Read(T* values, size_t count)
 {
   char* begin = reinterpret_cast<char*>(values);
   for (size_t left = count * sizeof(T); left > 0;) {
@@ -34,8 +33,7 @@ void Read(T* values, size_t count)
   }
 }
 
-template <typename T>
-void Write(const T* values, size_t count)
+template <typename T> void Write(const T* values, size_t count)
 {
   const char* begin = reinterpret_cast<const char*>(values);
   for (size_t left = count * sizeof(T); left > 0;) {
@@ -57,8 +55,7 @@ void WriteHeader(const Answer& answer)
 }
 
 // TetGen frees by delete[] what it is given.
-template <typename T>
-T* ReadNew(std::int64_t count)
+template <typename T> T* ReadNew(std::int64_t count)
 {
   T* values = new T[static_cast<size_t>(count)];
   Read(values, static_cast<size_t>(count));

@@ -11,8 +11,8 @@ const std::uint64_t RequestMagic = 0x3151527447545453;
 const std::uint64_t AnswerMagic = 0x3153415447545453;
 const int AnswerDescriptor = 3;
 
-// Then come, in this order: coordinates (3 doubles a point), holes (3 doubles each), regions (5 doubles each), where each facet's corners begin
-// (facets + 1 int32), corners (int32), markers of facets (int32).
+// Then come, in this order: coordinates (3 doubles a point), holes (3 doubles each), regions (5 doubles each), where each facet's corners
+// begin (facets + 1 int32), corners (int32), markers of facets (int32).
 struct Request {
   std::uint64_t Magic;
   std::int64_t Points, Holes, Regions, Facets, Corners;
@@ -24,8 +24,9 @@ struct Request {
 };
 static_assert(sizeof(Request) == 88, "no holes in it");
 
-// Then come coordinates (3 doubles a point; those of the request first, in its order), attributes of regions (a double each tetrahedron, if there are
-// regions), tetrahedra (4 int32), triangles of the boundary (3 int32) and their markers (int32). The header is written when all else is.
+// Then come coordinates (3 doubles a point; those of the request first, in its order), attributes of regions (a double each tetrahedron, if
+// there are regions), tetrahedra (4 int32), triangles of the boundary (3 int32) and their markers (int32). The header is written when all
+// else is.
 struct Answer {
   std::uint64_t Magic;
   std::int64_t Status; // 0, or what TetGen throws

@@ -33,8 +33,8 @@ namespace {
 void CheckRange(const char* name, double value, double lower, bool included, double upper)
 {
   if (!(value > lower || (included && value == lower)) || !(value <= upper)) {
-    throw vtkStratusTetGenFailure{ std::string(name) + " is " + std::to_string(value) + ", it must be " + (included ? "at least " : "above ") +
-      std::to_string(lower) + " and at most " + std::to_string(upper) };
+    throw vtkStratusTetGenFailure{ std::string(name) + " is " + std::to_string(value) + ", it must be " +
+      (included ? "at least " : "above ") + std::to_string(lower) + " and at most " + std::to_string(upper) };
   }
 }
 } // namespace

@@ -8,12 +8,12 @@
  * out. Cell data "Marker" (integer) mark facets; field data "Holes" (3 components) and "Regions" (5: a point, an attribute, the largest
  * volume or 0) add to what AddHole() and AddRegion() say: what vtkStratusTetGenReader gives of a .smesh file.
  *
- * First output: a vtkUnstructuredGrid of linear tetrahedra, none of them inverted, with point data "vtkOriginalPointIds" (-1 for points that TetGen
- * added), and cell data "Region" (double), the attributes of regions, if there are any. Second output: the mesh's boundary and inner walls as
- * triangles over the same points, with cell data "Marker" (int; 1 where the input has none).
+ * First output: a vtkUnstructuredGrid of linear tetrahedra, none of them inverted, with point data "vtkOriginalPointIds" (-1 for points
+ * that TetGen added), and cell data "Region" (double), the attributes of regions, if there are any. Second output: the mesh's boundary and
+ * inner walls as triangles over the same points, with cell data "Marker" (int; 1 where the input has none).
  *
- * TetGen runs in a process of its own, the program stratus-tetgen: where it crashes, as it may for surfaces that cross themselves, or runs on, as it
- * may for a quality that can't be had, that is an error that says so. Outputs are empty after an error.
+ * TetGen runs in a process of its own, the program stratus-tetgen: where it crashes, as it may for surfaces that cross themselves, or runs
+ * on, as it may for a quality that can't be had, that is an error that says so. Outputs are empty after an error.
  *
  * TetGen is under the AGPL: see the module's README.
  *
@@ -47,9 +47,9 @@ public:
 
   //@{
   /**
-   * With Quality: the largest ratio of a tetrahedron's circumscribed radius to its shortest edge, above 0, and the smallest angle between two of its
-   * faces in degrees, 0..70. Default 2 and 0. Below 1.2 and above 18 TetGen may not come to an end;
-   * beside small angles of the surface itself it lets worse ones stand.
+   * With Quality: the largest ratio of a tetrahedron's circumscribed radius to its shortest edge, above 0, and the smallest angle between
+   * two of its faces in degrees, 0..70. Default 2 and 0. Below 1.2 and above 18 TetGen may not come to an end; beside small angles of the
+   * surface itself it lets worse ones stand.
    */
   vtkSetMacro(RadiusEdgeRatio, double);
   vtkGetMacro(RadiusEdgeRatio, double);
@@ -93,8 +93,8 @@ public:
 
   //@{
   /**
-   * A point in a part whose tetrahedra shall have this value of "Region" and, where it is above 0, no larger volume. Parts that no region lies in
-   * have whole values above all of these.
+   * A point in a part whose tetrahedra shall have this value of "Region" and, where it is above 0, no larger volume. Parts that no region
+   * lies in have whole values above all of these.
    */
   void AddRegion(double x, double y, double z, double attribute, double maximumVolume = 0.0);
   void RemoveAllRegions();

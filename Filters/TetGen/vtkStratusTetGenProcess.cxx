@@ -93,8 +93,7 @@ Child::~Child()
 {
   if (!this->Ended) {
     kill(this->Process, SIGKILL);
-    while (waitpid(this->Process, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(this->Process, nullptr, 0) < 0 && errno == EINTR) {}
   }
 }
 
@@ -124,7 +123,8 @@ void CheckEnd(const Child& child, vtkStratusTetGenSpool& answer, vtkStratusTetGe
   said = said.empty() ? "" : "; it said: " + said;
   if (child.IsStatusKnown() && WIFSIGNALED(child.GetStatus())) {
     const int signal = WTERMSIG(child.GetStatus());
-    Fail("TetGen crashed (signal " + std::to_string(signal) + ", " + strsignal(signal) + "): the surface may cross itself or not be closed" + said);
+    Fail("TetGen crashed (signal " + std::to_string(signal) + ", " + strsignal(signal) +
+      "): the surface may cross itself or not be closed" + said);
   }
   if (complete && header.Status != 0) {
     Fail(Meaning(header.Status) + said);
@@ -199,7 +199,8 @@ std::string vtkStratusTetGenSpool::ReadText(size_t most)
   std::vector<char> text(most);
   const ssize_t got = read(this->Descriptor, text.data(), most);
   std::string shown(text.data(), got > 0 ? static_cast<size_t>(got) : 0);
-  std::replace_if(shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
+  std::replace_if(
+    shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
   shown.resize(shown.find_last_not_of(' ') + 1);
   return shown;
 }

@@ -12,8 +12,7 @@
 #define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
 
 // Thrown inside the module, caught by the filter.
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenFailure
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenFailure {
   std::string Text;
 };
 

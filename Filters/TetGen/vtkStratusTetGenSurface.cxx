@@ -35,8 +35,7 @@ std::string Number(vtkIdType value)
 }
 
 // Appends the tuples of a field-data array, all finite.
-template <size_t N>
-void AddSeeds(vtkPolyData* surface, const char* name, std::vector<std::array<double, N>>& seeds)
+template <size_t N> void AddSeeds(vtkPolyData* surface, const char* name, std::vector<std::array<double, N>>& seeds)
 {
   vtkDataArray* array = surface->GetFieldData()->GetArray(name);
   if (array && array->GetNumberOfComponents() != static_cast<int>(N)) {
@@ -70,7 +69,8 @@ std::int32_t MarkerOf(vtkPolyData* surface, vtkIdType cell)
 }
 } // namespace
 
-// Points that are used, in the input's order, those in one place as one: TetGen takes two there ill. ours: our number of each point of the input.
+// Points that are used, in the input's order, those in one place as one: TetGen takes two there ill. ours: our number of each point of the
+// input.
 void vtkStratusTetGenSurface::SetPoints(vtkPolyData* surface, std::vector<vtkIdType>& ours)
 {
   using Place = std::pair<std::array<double, 3>, vtkIdType>;
@@ -149,7 +149,8 @@ void vtkStratusTetGenSurface::Set(vtkPolyData* surface)
   std::vector<vtkIdType> ours;
   this->SetPoints(surface, ours);
   if (static_cast<vtkIdType>(this->OriginalPoints.size()) > MostNumbers / 3) {
-    Fail("the surface has " + Number(static_cast<vtkIdType>(this->OriginalPoints.size())) + " points, TetGen takes up to " + Number(MostNumbers / 3));
+    Fail("the surface has " + Number(static_cast<vtkIdType>(this->OriginalPoints.size())) + " points, TetGen takes up to " +
+      Number(MostNumbers / 3));
   }
   this->Begins.assign(1, 0);
   vtkIdType cell = surface->GetNumberOfVerts() + surface->GetNumberOfLines();
@@ -184,7 +185,8 @@ void vtkStratusTetGenSurface::Write(tetgen_exchange::Request header, vtkStratusT
   write(this->Coordinates);
   write(this->Holes);
   std::vector<std::array<double, 5>> numbered = this->Regions;
-  for (size_t region = 0; region < numbered.size(); ++region) { // TetGen cuts attributes to integers, so it gets numbers and we put them back
+  for (size_t region = 0; region < numbered.size();
+       ++region) { // TetGen cuts attributes to integers, so it gets numbers and we put them back
     numbered[region][3] = static_cast<double>(region + 1);
   }
   write(numbered);

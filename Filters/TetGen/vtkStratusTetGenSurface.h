@@ -13,8 +13,7 @@
 class vtkPolyData;
 class vtkUnstructuredGrid;
 
-struct VTK_STRATUS_PRIVATE vtkStratusTetGenSurface
-{
+struct VTK_STRATUS_PRIVATE vtkStratusTetGenSurface {
   std::vector<double> Coordinates;
   std::vector<vtkIdType> OriginalPoints; // of the input, one for each of ours
   std::vector<std::int32_t> Begins, Corners, Markers;

@@ -64,8 +64,7 @@ bool IsLeftOut(vtkDataSetAttributes* attributes, vtkAbstractArray* array)
   return array == attributes->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS);
 }
 
-void InterpolatePoints(
-  vtkPointData* from, const vtkStratusTetrahedra& tetrahedra, const stratus_partition_result& cut, vtkPointData* to)
+void InterpolatePoints(vtkPointData* from, const vtkStratusTetrahedra& tetrahedra, const stratus_partition_result& cut, vtkPointData* to)
 {
   const auto old_points = static_cast<vtkIdType>(cut.old_points);
   const auto points = static_cast<vtkIdType>(cut.point_count);
@@ -81,7 +80,8 @@ void InterpolatePoints(
     result->SetNumberOfTuples(points);
     tetrahedra.CopyPointValues(array, result);
     auto* ghosts = vtkUnsignedCharArray::SafeDownCast(result);
-    const bool flags = ghosts && ghosts == result && std::string(array->GetName() ? array->GetName() : "") == vtkDataSetAttributes::GhostArrayName();
+    const bool flags =
+      ghosts && ghosts == result && std::string(array->GetName() ? array->GetName() : "") == vtkDataSetAttributes::GhostArrayName();
     for (vtkIdType i = old_points; i < points; ++i) {
       const vtkIdType p = cut.ends[2 * (i - old_points)], q = cut.ends[2 * (i - old_points) + 1];
       if (flags) { // what both ends are
@@ -159,7 +159,7 @@ void SetGeometry(const stratus_partition_result& cut, vtkUnstructuredGrid* outpu
   cells->SetData(4, vertices);
   output->SetCells(VTK_TETRA, cells);
 }
-}
+} // namespace
 
 vtkStratusPartitionFilter::vtkStratusPartitionFilter() : Growth(std::numeric_limits<double>::infinity()), Internal(new Internals(this)) {}
 

@@ -3,9 +3,9 @@
  * @class   vtkStratusPartitionFilter
  * @brief   an unstructured grid cut into the leaves of a K-D tree
  *
- * Input: a vtkUnstructuredGrid. Its cells are divided into tetrahedra that meet face to face (linear and quadratic cells and polyhedra; vertices,
- * lines and polygons are dropped, cells of higher order refused), and those are cut by planes, so that each lies in one leaf: Li et al. 2012.
- * Pieces meet in the same points, across leaves, too, and fill what they were cut from.
+ * Input: a vtkUnstructuredGrid. Its cells are divided into tetrahedra that meet face to face (linear and quadratic cells and polyhedra;
+ * vertices, lines and polygons are dropped, cells of higher order refused), and those are cut by planes, so that each lies in one leaf: Li
+ * et al. 2012. Pieces meet in the same points, across leaves, too, and fill what they were cut from.
  *
  * Output: tetrahedra, leaf by leaf. Points keep their numbers; the middles of quadratic cells that have no point there (all but tetrahedra,
  * triquadratic hexahedra and pyramids) and points on cut edges follow; point data are interpolated, cell data
@@ -32,8 +32,8 @@ public:
   enum RuleType { MEDIAN, PAPER };
   //@{
   /**
-   * MEDIAN: of the planes through points between the 40 % and the 60 % quantile the one that adds fewest cells. PAPER: of evenly spaced planes
-   * the one that adds fewest among those that Growth and Imbalance admit. Default MEDIAN.
+   * MEDIAN: of the planes through points between the 40 % and the 60 % quantile the one that adds fewest cells. PAPER: of evenly spaced
+   * planes the one that adds fewest among those that Growth and Imbalance admit. Default MEDIAN.
    */
   vtkSetClampMacro(Rule, int, MEDIAN, PAPER);
   vtkGetMacro(Rule, int);

@@ -39,8 +39,8 @@ public:
   enum PeelingType { NEAREST, LAYERS };
   //@{
   /**
-   * NEAREST: of the cells that nothing hides any more one of the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it; gaps may then
-   * be crossed in the wrong order. Default NEAREST.
+   * NEAREST: of the cells that nothing hides any more one of the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it;
+   * gaps may then be crossed in the wrong order. Default NEAREST.
    */
   vtkSetClampMacro(Peeling, int, NEAREST, LAYERS);
   vtkGetMacro(Peeling, int);
@@ -56,9 +56,9 @@ public:
 
   //@{
   /**
-   * Of the last traversal: leaves; rings of cells that hide one another, each broken once; those of them that lead across gaps, as where cells
-   * overlap; cells that came before some that hide them, as rings were too many; layers (peeling in layers); milliseconds that neighbours took,
-   * once, and signs and peeling, each time.
+   * Of the last traversal: leaves; rings of cells that hide one another, each broken once; those of them that lead across gaps, as where
+   * cells overlap; cells that came before some that hide them, as rings were too many; layers (peeling in layers); milliseconds that
+   * neighbours took, once, and signs and peeling, each time.
    */
   vtkGetMacro(NumberOfLeaves, int);
   vtkGetMacro(NumberOfCycles, vtkIdType);

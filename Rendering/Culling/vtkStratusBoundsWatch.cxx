@@ -12,8 +12,7 @@
 #include <typeinfo>
 
 namespace {
-template <class T>
-std::type_index TypeOf(const T& object)
+template <class T> std::type_index TypeOf(const T& object)
 {
   return std::type_index(typeid(object));
 }
@@ -24,7 +23,8 @@ bool Among(const std::vector<std::type_index>& types, std::type_index type)
 }
 } // namespace
 
-// By exact type: a class that derives from these may compute its bounds from anything. New() gives what the object factory puts in their place.
+// By exact type: a class that derives from these may compute its bounds from anything. New() gives what the object factory puts in their
+// place.
 vtkStratusBoundsWatch::vtkStratusBoundsWatch()
 {
   vtkNew<vtkActor> actor;
@@ -75,8 +75,8 @@ void vtkStratusBoundsWatch::Resolve(vtkProp* prop, State& state)
   state.Newest = this->Newest(*state.Mapper);
 }
 
-// Those that are gone are forgotten here, in an order that matters to nobody: whoever held one has been modified when it let go of it, and is
-// resolved anew before it is followed.
+// Those that are gone are forgotten here, in an order that matters to nobody: whoever held one has been modified when it let go of it, and
+// is resolved anew before it is followed.
 void vtkStratusBoundsWatch::Sweep()
 {
   for (auto entry = this->Producers.begin(); entry != this->Producers.end();) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a prop's bounds may have changed, without asking for them: asking updates the pipeline behind a mapper and walks its cells, which is
-// what culling costs. Private to the module, never installed.
+// Whether a prop's bounds may have changed, without asking for them: asking updates the pipeline behind a mapper and walks its cells, which
+// is what culling costs. Private to the module, never installed.
 #ifndef vtkStratusBoundsWatch_h
 #define vtkStratusBoundsWatch_h
 
@@ -25,7 +25,8 @@ class VTK_STRATUS_PRIVATE vtkStratusBoundsWatch
 public:
   vtkStratusBoundsWatch();
 
-  // An algorithm, and the newest modification of all that it is fed by. Several mappers may share what is behind them: it is read once a look.
+  // An algorithm, and the newest modification of all that it is fed by. Several mappers may share what is behind them: it is read once a
+  // look.
   struct Producer {
     vtkWeakPointer<vtkAlgorithm> Algorithm;
     bool Mapper = false; // its data count, too: they may be edited in place

@@ -118,8 +118,8 @@ stratus_status vtkStratusCulledList::Look(vtkProp** props, int count, vtkStratus
   return status;
 }
 
-// Lists differ little from frame to frame: what they begin and end with alike is left alone. A prop at the address of one that is gone is not alike,
-// since pointers to what is gone are NULL.
+// Lists differ little from frame to frame: what they begin and end with alike is left alone. A prop at the address of one that is gone is
+// not alike, since pointers to what is gone are NULL.
 stratus_status vtkStratusCulledList::Match(vtkProp** props, size_t count, vtkStratusBoundsWatch& watch)
 {
   const size_t before = this->Order.size(), shorter = std::min(before, count);
@@ -136,8 +136,7 @@ stratus_status vtkStratusCulledList::Match(vtkProp** props, size_t count, vtkStr
   return this->Replace(props, first, before - last, count - last, watch);
 }
 
-stratus_status vtkStratusCulledList::Replace(
-  vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch)
+stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch)
 {
   std::unordered_map<vtkProp*, uint32_t> known;
   std::vector<uint32_t> gone, ids(newEnd - first);

@@ -65,12 +65,12 @@ private:
   stratus_octree* Octree = nullptr;
   stratus_octree_view* View = nullptr;
   size_t Asked = 0;
-  std::vector<uint32_t> Order;     // ids, as the renderer lists their props
-  std::vector<uint32_t> Positions; // by id
-  std::vector<Slot> Slots;         // by id
+  std::vector<uint32_t> Order;            // ids, as the renderer lists their props
+  std::vector<uint32_t> Positions;        // by id
+  std::vector<Slot> Slots;                // by id
   std::vector<uint64_t> Seen, SeenBefore; // a bit an id: whose time is not 0
-  std::vector<uint64_t> Marks;     // a bit a position: what the octree calls visible
-  std::vector<uint32_t> Ranks;     // by position, where marked: which of the visible
+  std::vector<uint64_t> Marks;            // a bit a position: what the octree calls visible
+  std::vector<uint32_t> Ranks;            // by position, where marked: which of the visible
   std::vector<Entry> Kept;
   std::vector<vtkProp*> Rest;
 };

@@ -26,8 +26,8 @@ double Milliseconds()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Clip coordinates are x, y, z within -w..w; with a margin, x and y within that much more. Unit normals, since coverage measures distances. The
-// camera's composite matrix, and so its GetFrustumPlanes(), leaves stereo out: an eye's view is the product of what is drawn with.
+// Clip coordinates are x, y, z within -w..w; with a margin, x and y within that much more. Unit normals, since coverage measures distances.
+// The camera's composite matrix, and so its GetFrustumPlanes(), leaves stereo out: an eye's view is the product of what is drawn with.
 void GetFrustum(vtkRenderer* renderer, double margin, stratus_frustum& frustum)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -146,8 +146,8 @@ public:
     return served.Doubtful != age;
   }
 
-  stratus_status Cull(vtkStratusOctreeCuller* self, vtkRenderer* renderer, const stratus_frustum& frustum, vtkProp** propList, int& listLength,
-    bool initialized, double& total);
+  stratus_status Cull(vtkStratusOctreeCuller* self, vtkRenderer* renderer, const stratus_frustum& frustum, vtkProp** propList,
+    int& listLength, bool initialized, double& total);
 
   stratus_context* Context = nullptr;
   int Threads = 0;
@@ -208,8 +208,8 @@ void vtkStratusOctreeCuller::Uninstall(vtkRenderer* renderer)
   }
 }
 
-stratus_status vtkStratusOctreeCuller::Internals::Cull(vtkStratusOctreeCuller* self, vtkRenderer* renderer,
-  const stratus_frustum& frustum, vtkProp** propList, int& listLength, bool initialized, double& total)
+stratus_status vtkStratusOctreeCuller::Internals::Cull(vtkStratusOctreeCuller* self, vtkRenderer* renderer, const stratus_frustum& frustum,
+  vtkProp** propList, int& listLength, bool initialized, double& total)
 {
   Internals::Served& served = this->Of(renderer);
   stratus_octree_options options = stratus_octree_options_default();
@@ -250,7 +250,8 @@ double vtkStratusOctreeCuller::Cull(vtkRenderer* renderer, vtkProp** propList, i
   GetFrustum(renderer, this->Margin, frustum);
   stratus_status status = this->Internal->OpenContext(this->NumberOfThreads);
   this->NumberOfProps = listLength;
-  if (status == STRATUS_OK && (!this->Internal->KnowsView(renderer) || stratus_frustum_check(this->Internal->Context, &frustum) != STRATUS_OK)) {
+  if (status == STRATUS_OK &&
+    (!this->Internal->KnowsView(renderer) || stratus_frustum_check(this->Internal->Context, &frustum) != STRATUS_OK)) {
     total = KeepAll(propList, listLength, before);
   } else if (status == STRATUS_OK) {
     status = this->Internal->Cull(this, renderer, frustum, propList, listLength, before, total);

@@ -3,15 +3,15 @@
  * @class   vtkStratusOctreeCuller
  * @brief   leaves out what the camera does not see, by an octree of the props' bounds
  *
- * Takes the place of the vtkFrustumCoverageCuller that each renderer has, and keeps what that one does: render times by coverage, the order, the
- * total; that one asks every prop for its bounds in every frame. This one keeps the bounds in an octree that is split where the frustum's border
- * runs (Li & Huang 2024), and asks an actor only after something that its bounds come from was modified: the actor, its mapper, the data, or any
- * algorithm upstream. That is known of vtkActor with a vtkPolyDataMapper or a vtkDataSetMapper, not of classes that derive from them; all other
- * props (volumes, assemblies, followers ...) are asked in every frame. So a prop that was added, moved, hidden, removed or fed anew is right in
- * the next frame, seen or not.
+ * Takes the place of the vtkFrustumCoverageCuller that each renderer has, and keeps what that one does: render times by coverage, the
+ * order, the total; that one asks every prop for its bounds in every frame. This one keeps the bounds in an octree that is split where the
+ * frustum's border runs (Li & Huang 2024), and asks an actor only after something that its bounds come from was modified: the actor, its
+ * mapper, the data, or any algorithm upstream. That is known of vtkActor with a vtkPolyDataMapper or a vtkDataSetMapper, not of classes
+ * that derive from them; all other props (volumes, assemblies, followers ...) are asked in every frame. So a prop that was added, moved,
+ * hidden, removed or fed anew is right in the next frame, seen or not.
  *
- * A prop is kept if its box reaches into each of the six half-spaces of the camera, the window taken Margin pixels wider. Props without bounds and
- * those with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
+ * A prop is kept if its box reaches into each of the six half-spaces of the camera, the window taken Margin pixels wider. Props without
+ * bounds and those with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
  *
  *     vtkStratusOctreeCuller::Install(renderer);
  *
@@ -36,8 +36,8 @@ public:
 
   //@{
   /**
-   * Install puts a culler in place of the renderer's vtkFrustumCoverageCuller, takes over its coverages and order, and returns it; the renderer
-   * owns it. Where one is, it is returned. Uninstall goes the way back. Other cullers stay.
+   * Install puts a culler in place of the renderer's vtkFrustumCoverageCuller, takes over its coverages and order, and returns it; the
+   * renderer owns it. Where one is, it is returned. Uninstall goes the way back. Other cullers stay.
    */
   static vtkStratusOctreeCuller* Install(vtkRenderer* renderer);
   static void Uninstall(vtkRenderer* renderer);
@@ -45,8 +45,8 @@ public:
 
   //@{
   /**
-   * The promise that this culler's Modified() is called whenever bounds may have changed; they are asked for then, and of props that are new in the
-   * list. Props added, removed, shown or hidden need no call. Default off.
+   * The promise that this culler's Modified() is called whenever bounds may have changed; they are asked for then, and of props that are
+   * new in the list. Props added, removed, shown or hidden need no call. Default off.
    */
   vtkSetMacro(StaticProps, bool);
   vtkGetMacro(StaticProps, bool);
@@ -55,8 +55,8 @@ public:
 
   //@{
   /**
-   * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside. Coverage
-   * is a share of the wider window. Default 8.
+   * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside.
+   * Coverage is a share of the wider window. Default 8.
    */
   vtkSetClampMacro(Margin, double, 0.0, 1000.0);
   vtkGetMacro(Margin, double);
@@ -64,7 +64,8 @@ public:
 
   //@{
   /**
-   * Props that cover less of the window than the first are left out, those that cover more than the second get all their time, 0..1. Default 0 and 1.
+   * Props that cover less of the window than the first are left out, those that cover more than the second get all their time, 0..1.
+   * Default 0 and 1.
    */
   vtkSetClampMacro(MinimumCoverage, double, 0.0, 1.0);
   vtkGetMacro(MinimumCoverage, double);
@@ -75,7 +76,8 @@ public:
   enum SortingStyleType { SORT_NONE, SORT_FRONT_TO_BACK, SORT_BACK_TO_FRONT };
   //@{
   /**
-   * Order of what is left, by the distance of the bounds' centre from the near plane, as vtkFrustumCoverageCuller's. Default the renderer's.
+   * Order of what is left, by the distance of the bounds' centre from the near plane, as vtkFrustumCoverageCuller's. Default the
+   * renderer's.
    */
   vtkSetClampMacro(SortingStyle, int, SORT_NONE, SORT_BACK_TO_FRONT);
   vtkGetMacro(SortingStyle, int);
@@ -97,8 +99,8 @@ public:
   enum StopRuleType { STOP_PIXELS, STOP_MANHATTAN, STOP_EUCLID, STOP_STATIC };
   //@{
   /**
-   * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor S) < 1
-   * as in the paper or in straight lines, or all, at once. What is seen depends on none of it.
+   * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor
+   * S) < 1 as in the paper or in straight lines, or all, at once. What is seen depends on none of it.
    */
   vtkSetClampMacro(StopRule, int, STOP_PIXELS, STOP_STATIC);
   vtkGetMacro(StopRule, int);
@@ -156,9 +158,10 @@ public:
   //@}
 
   /**
-   * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int, the
-   * root's is 0; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split" (unsigned char) and
-   * "Objects" (vtkIdType: props in its own list). False, and the output as it was, for a renderer that this culler has not served.
+   * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int,
+   * the root's is 0; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split"
+   * (unsigned char) and "Objects" (vtkIdType: props in its own list). False, and the output as it was, for a renderer that this culler has
+   * not served.
    */
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 

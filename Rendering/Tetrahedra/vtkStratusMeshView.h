@@ -22,8 +22,8 @@
 class VTK_STRATUS_PRIVATE vtkStratusMeshView
 {
 public:
-  // False, with the reason in `error`, where the core can't take the grid or the array. matrix: of the prop, or nullptr. Copies what has to be copied
-  // when it changes only.
+  // False, with the reason in `error`, where the core can't take the grid or the array. matrix: of the prop, or nullptr. Copies what has to
+  // be copied when it changes only.
   bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
   const stratus_mesh& GetMesh() const { return this->Mesh; }
   // Of the grid's partition, nullptr if it carries none; or none any more, once the core has refused it: then the points were moved.

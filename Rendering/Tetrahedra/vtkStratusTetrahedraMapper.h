@@ -6,14 +6,14 @@
  * Takes the place of vtkProjectedTetrahedraMapper and of vtkUnstructuredGridVolumeRayCastMapper: a vtkUnstructuredGrid and the vtkVolume's
  * vtkVolumeProperty go in, the picture is composited with the opaque geometry of the scene.
  *
- * Supported: linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
- * cells. All but linear tetrahedra are divided into such, neighbours alike across their faces, so that the field is linear in each part;
- * vertices, lines and polygons are ignored and counted, a grid that has nothing else is an error. Point and cell scalars of one component and
- * any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite and maximum
- * intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not finite (whole
- * cells with one are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that cross the near plane
- * are cut there. All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps,
- * clipping planes) is refused by an error, and nothing is drawn.
+ * Supported: linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and
+ * flat cells. All but linear tetrahedra are divided into such, neighbours alike across their faces, so that the field is linear in each
+ * part; vertices, lines and polygons are ignored and counted, a grid that has nothing else is an error. Point and cell scalars of one
+ * component and any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite
+ * and maximum intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not
+ * finite (whole cells with one are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that
+ * cross the near plane are cut there. All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer
+ * functions, label maps, clipping planes) is refused by an error, and nothing is drawn.
  *
  * What is built is kept: a new view of the same grid rebuilds nothing, a new transfer function a table only.
  *
@@ -46,9 +46,9 @@ public:
 
   //@{
   /**
-   * How a picture is drawn: rays march from cell to cell; cells that can show something are sorted and projected into tiles of pixels (on the
-   * host only); or auto, whichever should cost less by counts of cells, pixels and segments in view. A camera that stands still never changes the
-   * choice, and both give the same picture but for the rounding of floats: below .01 of 255 on the mean. Default AUTO_METHOD.
+   * How a picture is drawn: rays march from cell to cell; cells that can show something are sorted and projected into tiles of pixels (on
+   * the host only); or auto, whichever should cost less by counts of cells, pixels and segments in view. A camera that stands still never
+   * changes the choice, and both give the same picture but for the rounding of floats: below .01 of 255 on the mean. Default AUTO_METHOD.
    */
   enum MethodType { AUTO_METHOD, MARCH_METHOD, PROJECT_METHOD };
   vtkSetClampMacro(Method, int, AUTO_METHOD, PROJECT_METHOD);
@@ -70,8 +70,8 @@ public:
   //@{
   /**
    * Where rays march: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name; the
-   * picture is the same. One that does not exist is an error with the list of those that do, and the device stays what it was. A mesh that a
-   * device can't hold is drawn on the host. Default "auto".
+   * picture is the same. One that does not exist is an error with the list of those that do, and the device stays what it was. A mesh that
+   * a device can't hold is drawn on the host. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
@@ -91,8 +91,8 @@ public:
 
   //@{
   /**
-   * Of the last picture: tetrahedra that the cells were divided into; cells ignored: vertices, lines and polygons; tetrahedra left out though no
-   * ghost or blanking array hides them, of values that are not finite or that name a point more than once.
+   * Of the last picture: tetrahedra that the cells were divided into; cells ignored: vertices, lines and polygons; tetrahedra left out
+   * though no ghost or blanking array hides them, of values that are not finite or that name a point more than once.
    */
   vtkIdType GetNumberOfTetrahedra();
   vtkIdType GetNumberOfIgnoredCells();
@@ -101,8 +101,9 @@ public:
 
   //@{
   /**
-   * Of the last picture: march or project, and why; milliseconds of the projection: order of cells, their outlines and tiles, pixels (0 where rays
-   * marched); cells that it saw; pixels whose cells had come in a wrong order (across gaps, in cycles) and were drawn again, nearest first.
+   * Of the last picture: march or project, and why; milliseconds of the projection: order of cells, their outlines and tiles, pixels (0
+   * where rays marched); cells that it saw; pixels whose cells had come in a wrong order (across gaps, in cycles) and were drawn again,
+   * nearest first.
    */
   const char* GetMethodUsedAsString();
   const char* GetMethodReason();
@@ -114,8 +115,8 @@ public:
   //@}
 
   /**
-   * Of the last picture: leaves that were sorted in parallel for the projection: those of vtkStratusPartitionFilter, if the input carries its
-   * arrays and its points are still where they were, else 1. 0 where rays marched or nothing showed.
+   * Of the last picture: leaves that were sorted in parallel for the projection: those of vtkStratusPartitionFilter, if the input carries
+   * its arrays and its points are still where they were, else 1. 0 where rays marched or nothing showed.
    */
   vtkIdType GetNumberOfLeaves();
 

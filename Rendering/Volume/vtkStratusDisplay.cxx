@@ -83,8 +83,8 @@ void vtkStratusDisplay::CopyPixels(
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-// Where nothing is behind the picture, its bytes are those of the frame buffer. Software OpenGL takes about as long to draw them as we to cast
-// the rays of a small scene; a copy costs a tenth.
+// Where nothing is behind the picture, its bytes are those of the frame buffer. Software OpenGL takes about as long to draw them as we to
+// cast the rays of a small scene; a copy costs a tenth.
 bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
@@ -110,8 +110,8 @@ bool vtkStratusDisplay::WriteInPlace(
   return true;
 }
 
-// Software OpenGL rounds three times when it blends, which costs up to 1.3 of 255; a copy of what is behind lets the shader round once. Where
-// several samples a pixel or a render pass lie between us and the frame buffer, its own blending has to do.
+// Software OpenGL rounds three times when it blends, which costs up to 1.3 of 255; a copy of what is behind lets the shader round once.
+// Where several samples a pixel or a render pass lie between us and the frame buffer, its own blending has to do.
 bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part)
 {
   if (renderer->GetPass() || window->GetRenderFramebuffer()->GetMultiSamples() > 0) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lays a float picture over what the window shows, texel on pixel. Private to the module.
 //
-// VTK's vtkRayCastImageDisplayHelper does the same for bytes, through texture coordinates that shrink the picture by a pixel, and rounds before
-// it blends. Here the picture is rounded once: after the blend, or, with nothing behind, before the upload.
+// VTK's vtkRayCastImageDisplayHelper does the same for bytes, through texture coordinates that shrink the picture by a pixel, and rounds
+// before it blends. Here the picture is rounded once: after the blend, or, with nothing behind, before the upload.
 #ifndef vtkStratusDisplay_h
 #define vtkStratusDisplay_h
 
@@ -28,8 +28,9 @@ public:
     int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
     float Scale = 1.0f;
     float Bias = 0.0f;
-    const float* Depth = nullptr; // of the window, to be written where alpha is, or, FIRST, to be laid between peels by; or nullptr: none is
-    bool Alone = false;           // nothing has been drawn before: the bytes are what the window has to hold
+    const float* Depth =
+      nullptr;          // of the window, to be written where alpha is, or, FIRST, to be laid between peels by; or nullptr: none is
+    bool Alone = false; // nothing has been drawn before: the bytes are what the window has to hold
   };
 
   vtkStratusDisplay();
@@ -72,7 +73,7 @@ private:
   vtkOpenGLRenderWindow* Window = nullptr;              // that the textures belong to
   vtkStratusPeels Peels;
   vtkStratusPeels::Draw Stage = vtkStratusPeels::NONE;
-  vtkStratusPeels::Picture Peeled;    // what is drawn between peels in this frame; without textures: nothing
+  vtkStratusPeels::Picture Peeled;     // what is drawn between peels in this frame; without textures: nothing
   const vtkProp* PeeledProp = nullptr; // whose it is: props may share a mapper; only compared
 };
 

@@ -105,8 +105,8 @@ vtkStratusPeels::Draw vtkStratusPeels::Begin(vtkProp* prop, vtkAbstractMapper* m
   return Declares(this->Shader, FrontOfPeels) || Declares(this->Shader, RestOfPeels) ? LATER : FIRST;
 }
 
-// The pass would blend a frame's volumes by their maximum. Laid one over the other they need what the one before has left in its buffers: its
-// code lays what it gets from castRay() under the colours of a texture, which is a copy of the buffer itself here.
+// The pass would blend a frame's volumes by their maximum. Laid one over the other they need what the one before has left in its buffers:
+// its code lays what it gets from castRay() under the colours of a texture, which is a copy of the buffer itself here.
 bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2])
 {
   const unsigned int width = static_cast<unsigned int>(size[0]), height = static_cast<unsigned int>(size[1]);

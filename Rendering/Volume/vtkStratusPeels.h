@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lays a picture between the translucent surfaces of a renderer that peels them (UseDepthPeelingForVolumes). Private to the modules.
 //
-// vtkDualDepthPeelingPass draws volumes several times a frame, each time between other surfaces, into frame buffers of its own: what is behind
-// all of them, what is before, then from the outside in. It lends a volume's shader the code that finds those depths and calls castRay() for
-// what lies between two of them. Here castRay() gives the whole picture where its first depth lies between the two, and nothing elsewhere: so
-// each pixel is drawn once a frame, before or behind each surface by its depth.
+// vtkDualDepthPeelingPass draws volumes several times a frame, each time between other surfaces, into frame buffers of its own: what is
+// behind all of them, what is before, then from the outside in. It lends a volume's shader the code that finds those depths and calls
+// castRay() for what lies between two of them. Here castRay() gives the whole picture where its first depth lies between the two, and
+// nothing elsewhere: so each pixel is drawn once a frame, before or behind each surface by its depth.
 #ifndef vtkStratusPeels_h
 #define vtkStratusPeels_h
 
@@ -38,8 +38,8 @@ public:
     float Scale = 1.0f, Bias = 0.0f;
   };
 
-  // As long as it lives the window's own frame buffer is drawn into, not the pass's. Where the window has several samples a pixel the pass of
-  // VTK 9.1 gets no depths of opaque surfaces from it, and takes all for hidden.
+  // As long as it lives the window's own frame buffer is drawn into, not the pass's. Where the window has several samples a pixel the pass
+  // of VTK 9.1 gets no depths of opaque surfaces from it, and takes all for hidden.
   class Outside
   {
   public:
@@ -59,8 +59,8 @@ public:
   vtkStratusPeels(const vtkStratusPeels&) = delete;
   void operator=(const vtkStratusPeels&) = delete;
 
-  // Whether a pass draws the prop between peels at the moment, and which of its draws in this frame: all show the picture of the first. OUTSIDE: the
-  // first, where the pass would lose it; see Outside.
+  // Whether a pass draws the prop between peels at the moment, and which of its draws in this frame: all show the picture of the first.
+  // OUTSIDE: the first, where the pass would lose it; see Outside.
   enum Draw { NONE, FIRST, LATER, OUTSIDE };
   Draw Begin(vtkProp* prop, vtkAbstractMapper* mapper);
   // After Begin(). False where the shader does not compile.

@@ -16,8 +16,8 @@
 #include <limits>
 
 namespace {
-// A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then go to
-// the world: inverting the composite matrix would cost digits far from the origin.
+// A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then
+// go to the world: inverting the composite matrix would cost digits far from the origin.
 struct ViewRays {
   double Eye[3], Forward[3], Right[3], Up[3], Near, Far;
 };

@@ -29,8 +29,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // False where the camera is degenerate.
   bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
-  // What else the renderer draws: something that may have written depth before, or anything beside the prop. endsNoRay: of another prop, that
-  // it writes no depth.
+  // What else the renderer draws: something that may have written depth before, or anything beside the prop. endsNoRay: of another prop,
+  // that it writes no depth.
   struct Others {
     bool Geometry = false;
     bool Any = false;

@@ -19,9 +19,10 @@
  * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn; the module's README has a table of it. Picking
  * by hardware finds the volume where it shows.
  *
- * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There the
- * property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a cone below 90
- * degrees is refused), and the mapper's bounds reach half a voxel farther, for a voxel of point data is a cube about its point.
+ * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There
+ * the property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a
+ * cone below 90 degrees is refused), and the mapper's bounds reach half a voxel farther, for a voxel of point data is a cube about its
+ * point.
  *
  * An image that comes with a tree (vtkStratusHybridTreeFilter) has it used where it serves.
  *
@@ -33,7 +34,7 @@
 #define vtkStratusVolumeMapper_h
 
 #include "StratusRenderingVolumeModule.h" // For export macro
-#include "vtkSmartPointer.h" // For MaskInput
+#include "vtkSmartPointer.h"              // For MaskInput
 #include "vtkVolumeMapper.h"
 
 #include <memory> // For std::unique_ptr
@@ -90,8 +91,8 @@ public:
 
   //@{
   /**
-   * Frames a second from which AutoAdjustSampleDistances is at work, 1e-10..1e10. Default 1: a still picture of VTK's interactor (rate 0.0001)
-   * is exact, one that moves (rate 15) is adjusted.
+   * Frames a second from which AutoAdjustSampleDistances is at work, 1e-10..1e10. Default 1: a still picture of VTK's interactor (rate
+   * 0.0001) is exact, one that moves (rate 15) is adjusted.
    */
   vtkSetClampMacro(InteractiveUpdateRate, double, 1.0e-10, 1.0e10);
   vtkGetMacro(InteractiveUpdateRate, double);
@@ -129,8 +130,8 @@ public:
   enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE, HYBRID_STRUCTURE };
   //@{
   /**
-   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, eight of them by the ray's octant, or a hybrid tree. No
-   * choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
+   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, eight of them by the ray's octant, or a hybrid
+   * tree. No choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
    */
   vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, HYBRID_STRUCTURE);
   vtkGetMacro(Structure, int);
@@ -157,11 +158,7 @@ public:
   const char* GetSamplingAsString();
   //@}
 
-  enum
-  {
-    BinaryMaskType = 0,
-    LabelMapMaskType
-  };
+  enum { BinaryMaskType = 0, LabelMapMaskType };
   //@{
   /**
    * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the
@@ -302,9 +299,9 @@ public:
   /**
    * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4
    * components, premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
-   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with CountSamples,
-   * whatever it is now. A coarse picture is repeated pixel by pixel. nullptr before the first picture, and after one that was refused or
-   * aborted. Copied on each call; it is the mapper's, and the next call overwrites it.
+   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with
+   * CountSamples, whatever it is now. A coarse picture is repeated pixel by pixel. nullptr before the first picture, and after one that was
+   * refused or aborted. Copied on each call; it is the mapper's, and the next call overwrites it.
    */
   vtkImageData* GetLastImage();
 

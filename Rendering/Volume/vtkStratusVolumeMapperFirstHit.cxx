@@ -78,7 +78,8 @@ void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
     return;
   }
   int cells = 0;
-  if (!vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells) || cells) {
+  if (!vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells) ||
+    cells) {
     return;
   }
   const double* direction = image->GetDirectionMatrix()->GetData();

@@ -134,7 +134,8 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   this->Transfers.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Functions.resize(this->Transfers.size());
   if (components > 1 && !composite) {
-    error = "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
+    error =
+      "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
     return false;
   }
   for (int c = 0; c < media; ++c) {
@@ -236,11 +237,12 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
   if (!bytes || bytes->GetNumberOfComponents() != 1) {
     error = "MaskInput has no point scalars of one unsigned char each";
   } else if (dimensions[0] != wanted[0] || dimensions[1] != wanted[1] || dimensions[2] != wanted[2]) {
-    error = "MaskInput has " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
-      " points, the input " + std::to_string(wanted[0]) + " x " + std::to_string(wanted[1]) + " x " + std::to_string(wanted[2]) + " values";
+    error = "MaskInput has " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " +
+      std::to_string(dimensions[2]) + " points, the input " + std::to_string(wanted[0]) + " x " + std::to_string(wanted[1]) + " x " +
+      std::to_string(wanted[2]) + " values";
   } else if (bytes->GetNumberOfTuples() < mask->GetNumberOfPoints()) {
-    error = "MaskInput's array has " + std::to_string(bytes->GetNumberOfTuples()) + " values for " + std::to_string(mask->GetNumberOfPoints()) +
-      " points";
+    error = "MaskInput's array has " + std::to_string(bytes->GetNumberOfTuples()) + " values for " +
+      std::to_string(mask->GetNumberOfPoints()) + " points";
   } else {
     options.label_count = this->HasLabels() ? HighestLabel(property) : 0;
     options.mask = this->HasLabels() && options.label_count == 0 ? nullptr : bytes->GetPointer(0);
@@ -250,7 +252,8 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
 }
 
 // What means and isosurfaces are told beside the transfer function.
-bool vtkStratusVolumeMapper::Internals::SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+bool vtkStratusVolumeMapper::Internals::SetContours(
+  vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   if (options.mode == STRATUS_MODE_AVERAGE) {
     std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);

@@ -83,7 +83,7 @@ private:
   bool HasSamples = false; // the picture was drawn with CountSamples
   std::vector<float> Rgba, Depth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
-  std::vector<uint32_t> Samples; // empty: not counted
+  std::vector<uint32_t> Samples;             // empty: not counted
   vtkSmartPointer<vtkAbstractArray> Offered; // the tree that the caster was last given ..
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;

@@ -82,7 +82,8 @@ vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRende
 }
 
 // Bytes are enough where black is behind: nothing is left to round after them. Cast() fills in the rest.
-vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
+vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
+  vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
 {
   vtkStratusDisplay::Pixels pixels;
   pixels.Scale = 1.0f / this->Mapper->FinalColorWindow;

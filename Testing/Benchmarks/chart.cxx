@@ -60,8 +60,8 @@ void decades(std::vector<double> values, double& low, double& high)
 }
 
 // titles: of the axes x and y.
-void add_chart(vtkContextScene* all, const std::string& title, const std::vector<chart_mark>& marks, const char* const titles[2],
-  int column, int line)
+void add_chart(
+  vtkContextScene* all, const std::string& title, const std::vector<chart_mark>& marks, const char* const titles[2], int column, int line)
 {
   vtkNew<vtkChartXY> chart;
   std::vector<double> times;

@@ -262,13 +262,10 @@ timed time_method(stratus_context* context, const stratus_voxels* voxels, const 
   return t;
 }
 
-class runner {
+class runner
+{
 public:
-  runner(const options& o)
-    : o_(o)
-    , host_(open_context("host", o.threads))
-  {
-  }
+  runner(const options& o) : o_(o), host_(open_context("host", o.threads)) {}
 
   void run_case(const distance_case& c)
   {
@@ -335,8 +332,8 @@ private:
     rows_.push_back({ scene, name, "max_error", "voxel", j.max_error });
     rows_.push_back({ scene, name, "rms_error", "voxel", j.rms_error });
     std::fprintf(stderr, "  %-22s build %8.2f ms, with floats %8.2f ms, processor %8.2f ms, ", name.c_str(), build_ms, array_ms, cpu_ms);
-    std::fprintf(stderr, "wrong %8.4f %%, unfilled %8.4f %%, max %7.3f, rms %9.6f\n", j.wrong_percent, j.unfilled_percent, j.max_error,
-      j.rms_error);
+    std::fprintf(
+      stderr, "wrong %8.4f %%, unfilled %8.4f %%, max %7.3f, rms %9.6f\n", j.wrong_percent, j.unfilled_percent, j.max_error, j.rms_error);
   }
 
   const options& o_;

@@ -22,8 +22,8 @@ std::vector<std::string> distance_case_names();
 distance_case make_distance_case(const std::string& name, int64_t size); // throws failure
 
 // ---- distance_itk.cxx
-// itk::SignedMaurerDistanceMapImageFilter, distances and not their squares, negative inside, on `threads` threads. Returns the milliseconds of
-// Update(), and the distances if `distances` is not null.
+// itk::SignedMaurerDistanceMapImageFilter, distances and not their squares, negative inside, on `threads` threads. Returns the milliseconds
+// of Update(), and the distances if `distances` is not null.
 double run_itk(const distance_case& c, int threads, std::vector<float>* distances);
 // The voxels that it measures from, inside and outside: effective ones with one of the 26 neighbours that is not.
 std::vector<uint8_t> itk_contour(const distance_case& c);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Embree 3 on voxels as user geometry: a box a voxel, or a box a brick of 4^3 voxels whose bit mask is walked. The callbacks do no more than
-// they must: reciprocals of the direction come with the ray, and only the distance and the primitive are written.
+// Embree 3 on voxels as user geometry: a box a voxel, or a box a brick of 4^3 voxels whose bit mask is walked. The callbacks do no more
+// than they must: reciprocals of the direction come with the ray, and only the distance and the primitive are written.
 #include "tree_methods.h"
 
 #include <embree3/rtcore.h>

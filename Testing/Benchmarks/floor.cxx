@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least that any ray caster of this kind has to do: the samples with alpha > 0 on the 1-voxel lattice until a ray is opaque, at the rate of
-// the tightest loop.
+// The least that any ray caster of this kind has to do: the samples with alpha > 0 on the 1-voxel lattice until a ray is opaque, at the
+// rate of the tightest loop.
 #include "bench.h"
 #include "rate.h"
 

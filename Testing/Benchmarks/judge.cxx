@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of all pictures of a scene against the double reference, whose step is halved until it agrees with itself 10 dB beyond the best figure
-// printed; and the pixels that a structure changed.
+// Errors of all pictures of a scene against the double reference, whose step is halved until it agrees with itself 10 dB beyond the best
+// figure printed; and the pixels that a structure changed.
 #include "bench.h"
 #include "reference.h"
 

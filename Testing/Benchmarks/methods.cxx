@@ -139,7 +139,8 @@ void check_method(const std::string& name)
   static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
   if (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others)) {
     throw failure("unknown method '" + name +
-      "'; known: stratus:none|block|distance|octant|hybrid|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, "
+      "'; known: stratus:none|block|distance|octant|hybrid|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, "
+      "vtk:gpu, "
       "openvdb, floor");
   }
 }

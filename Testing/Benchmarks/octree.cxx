@@ -214,8 +214,7 @@ std::vector<std::string> parts_of(const std::string& text)
 void check(options& o, const std::vector<std::string>& sweep)
 {
   if (o.scenes.empty()) {
-    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000", "actors-1000", "actors-9454", "actors-100000",
-      "paper" };
+    o.scenes = { "boxes-1000", "boxes-9454", "boxes-100000", "boxes-1000000", "actors-1000", "actors-9454", "actors-100000", "paper" };
   }
   if (o.methods.empty()) {
     o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:256",

@@ -178,8 +178,8 @@ void run_actors(stratus_context* context, const std::string& scene, const std::v
       add("visible", c.visible, "1");
       add("false_keeps", falsely, "%");
       add("wrong_culls", static_cast<double>(c.judged.wrong_culls), "1");
-      std::fprintf(stderr, "  %-26s cull %.3f worst %.2f ms, frame %.2f ms, visible %.0f, false %.2f %%, wrong %zu\n", method.c_str(), median(c.ms),
-        worst, frame, c.visible, falsely, c.judged.wrong_culls);
+      std::fprintf(stderr, "  %-26s cull %.3f worst %.2f ms, frame %.2f ms, visible %.0f, false %.2f %%, wrong %zu\n", method.c_str(),
+        median(c.ms), worst, frame, c.visible, falsely, c.judged.wrong_culls);
     }
   }
 }

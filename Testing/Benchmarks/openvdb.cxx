@@ -246,7 +246,8 @@ void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   }
   const int* size = renderer->GetSize();
   this->In->cast(view_of(renderer), size[0], size[1]);
-  // Texel on pixel: vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, for which OpenVDB is not to blame. Nothing is behind.
+  // Texel on pixel: vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, for which OpenVDB is not to blame. Nothing is
+  // behind.
   auto* target = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   vtkOpenGLState* state = target->GetState();
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);

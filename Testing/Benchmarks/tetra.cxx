@@ -76,7 +76,8 @@ void check(options& o)
   o.meshes = o.meshes.empty() ? std::vector<std::string>{ "bluntfin", "post", "holes", "wavelet" } : o.meshes;
   o.functions = o.functions.empty() ? tetra_functions() : o.functions;
   if (o.methods.empty()) { // of devices only where asked for
-    std::copy_if(known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
+    std::copy_if(
+      known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
   }
   for (const std::string& method : o.methods) {
     if (!has(known, method)) {
@@ -109,7 +110,8 @@ options parse(int argc, char* argv[])
       throw failure(word + " is unknown or lacks its value; --help tells more");
     }
     const std::string value = argv[++i];
-    std::map<std::string, std::vector<std::string>*> lists = { { "--mesh", &o.meshes }, { "--function", &o.functions }, { "--method", &o.methods } };
+    std::map<std::string, std::vector<std::string>*> lists = { { "--mesh", &o.meshes }, { "--function", &o.functions },
+      { "--method", &o.methods } };
     std::map<std::string, int*> numbers = { { "--size", &o.size }, { "--repeats", &o.repeats }, { "--rays", &o.rays } };
     std::map<std::string, std::string*> files = { { "--csv", &o.csv }, { "--chart", &o.chart }, { "--cache", &o.cache },
       { "--reference-cache", &o.reference_cache }, { "--pictures", &o.pictures } };
@@ -161,12 +163,14 @@ void add_more(const std::string& scene, const std::string& method, const sorter_
 }
 
 // Over black, as the window shows it.
-void write_picture(const std::string& folder, const std::string& scene, const std::string& method, const std::vector<uint8_t>& rgba, int size)
+void write_picture(
+  const std::string& folder, const std::string& scene, const std::string& method, const std::vector<uint8_t>& rgba, int size)
 {
   vtkNew<vtkImageData> image;
   vtkNew<vtkPNGWriter> writer;
   std::string name = scene + '-' + method + ".png";
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '/' || c == ':'; }, '-');
+  std::replace_if(
+    name.begin(), name.end(), [](char c) { return c == '/' || c == ':'; }, '-');
   image->SetDimensions(size, size, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   auto* bytes = static_cast<uint8_t*>(image->GetScalarPointer());
@@ -183,7 +187,8 @@ void write_picture(const std::string& folder, const std::string& scene, const st
   }
 }
 
-void write_pictures(const options& o, const std::string& scene, const std::vector<frame_result>& results, const std::vector<float>& reference)
+void write_pictures(
+  const options& o, const std::string& scene, const std::vector<frame_result>& results, const std::vector<float>& reference)
 {
   std::vector<uint8_t> bytes(reference.size());
   std::transform(reference.begin(), reference.end(), bytes.begin(), [](float x) { return static_cast<uint8_t>(255.0f * x + 0.5f); });
@@ -234,8 +239,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
   for (size_t f = 0; f < o.functions.size(); ++f) {
     const std::string scene = mesh.name + '/' + o.functions[f];
     std::fprintf(stderr, "%s\n", scene.c_str());
-    const std::vector<frame_result> results =
-      run_mappers(context, mesh, tetra_transfer(mesh, o.functions[f]), mappers, o.size, o.repeats);
+    const std::vector<frame_result> results = run_mappers(context, mesh, tetra_transfer(mesh, o.functions[f]), mappers, o.size, o.repeats);
     if (o.error && !o.pictures.empty()) {
       write_pictures(o, scene, results, t.pictures[0][f]);
     }
@@ -281,8 +285,8 @@ std::vector<row> kept_rows(const std::string& path, const std::vector<row>& rows
 
 void print(const std::vector<row>& rows)
 {
-  static const char* const metrics[] = { "frame_ms", "rmse255", "rmse255_8bit", "sort_ms", "sort_1thread_ms", "build_ms", "wrong_visible_pairs",
-    "cycles", "layers", "cells", "peak_bytes_per_cell", "bytes_per_cell" };
+  static const char* const metrics[] = { "frame_ms", "rmse255", "rmse255_8bit", "sort_ms", "sort_1thread_ms", "build_ms",
+    "wrong_visible_pairs", "cycles", "layers", "cells", "peak_bytes_per_cell", "bytes_per_cell" };
   std::map<std::string, double> values;
   std::vector<std::pair<std::string, std::string>> lines;
   for (const row& r : rows) {

@@ -25,8 +25,8 @@ struct tetra_mesh {
   double bounds[6];
   stratus_mesh view() const;
 };
-// bluntfin, post (of ../shared/data), holes, wavelet, or a file. cache: a folder that keeps what TetGen made, or empty. False, and why on the
-// standard error, where a mesh of record cannot be had here.
+// bluntfin, post (of ../shared/data), holes, wavelet, or a file. cache: a folder that keeps what TetGen made, or empty. False, and why on
+// the standard error, where a mesh of record cannot be had here.
 bool make_tetra_mesh(stratus_context* context, const std::string& source, const std::string& cache, tetra_mesh& mesh);
 // ramp, peaks, opaque over the mesh's values.
 const std::vector<std::string>& tetra_functions();
@@ -43,11 +43,12 @@ struct stretch {
 };
 struct ray_of_pixel {
   int pixel;
-  double length; // of the direction, world
+  double length;                  // of the direction, world
   std::vector<stretch> stretches; // front to back, by their middles
 };
 // All rays of a picture of size x size, pixel centres or, scattered, a place in each pixel; from several threads at once.
-void visit_rays(const stratus_mesh& mesh, const stratus_camera& camera, int size, bool scattered, const std::function<void(ray_of_pixel&)>& visit);
+void visit_rays(
+  const stratus_mesh& mesh, const stratus_camera& camera, int size, bool scattered, const std::function<void(ray_of_pixel&)>& visit);
 
 // ---- tetra_judge.cxx
 
@@ -55,10 +56,10 @@ struct tetra_picture {
   std::vector<float> rgba;
   std::vector<uint8_t> bytes;
 };
-// Pictures of all functions from one camera, in double precision; cache: a folder, or empty. agreement: root mean square of 255 by which steps of
-// four times the length differ, for each function, or NULL.
-std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions, const stratus_camera& camera,
-  int size, const std::string& cache, std::vector<double>* agreement);
+// Pictures of all functions from one camera, in double precision; cache: a folder, or empty. agreement: root mean square of 255 by which
+// steps of four times the length differ, for each function, or NULL.
+std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions,
+  const stratus_camera& camera, int size, const std::string& cache, std::vector<double>* agreement);
 // Sums of squares and counts over pixels that either shows.
 struct tetra_error {
   double squares = 0.0, count = 0.0;

@@ -123,9 +123,9 @@ mapper_pointer make_mapper(const tetra_mesh& mesh, const recipe& r)
   return make_stratus(mesh, r.method, r.device);
 }
 
-// VTK's mappers of tetrahedra take opacity for attenuation, where those of images, and ours, take it for what a unit distance absorbs. A function
-// that means the same to them: opacity -ln(1 - opacity), as far as their 1 reaches by a shorter unit distance. Colours get the same points, for the
-// ray caster knows no others.
+// VTK's mappers of tetrahedra take opacity for attenuation, where those of images, and ours, take it for what a unit distance absorbs. A
+// function that means the same to them: opacity -ln(1 - opacity), as far as their 1 reaches by a shorter unit distance. Colours get the
+// same points, for the ray caster knows no others.
 transfer as_attenuation(const transfer& t)
 {
   constexpr int parts = 24; // of each stretch, whose curve is drawn in lines

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures in double precision from the stretches of rays in cells, and how far others are from them. Each stretch is split where the transfer
-// function bends and then into steps of little optical depth, each integrated by Gauss' three points; nothing comes from a table.
+// Pictures in double precision from the stretches of rays in cells, and how far others are from them. Each stretch is split where the
+// transfer function bends and then into steps of little optical depth, each integrated by Gauss' three points; nothing comes from a table.
 #include "tetra_bench.h"
 
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr double opaque_enough = 1e-9; // of the light left
 
 // The function between two of its points, both linear there.
 struct piece {
-  double from, to;                      // of the field
-  double opacity, opacity_rise;         // at x: opacity + opacity_rise (x - from)
+  double from, to;              // of the field
+  double opacity, opacity_rise; // at x: opacity + opacity_rise (x - from)
   double color[3], color_rise[3];
 };
 
@@ -100,7 +100,8 @@ private:
     const auto count = static_cast<int>(this->Pieces.size());
     int at = static_cast<int>(std::upper_bound(this->Pieces.begin(), this->Pieces.end(), rises ? low : high,
                                 [](double x, const piece& p) { return x < p.from; }) -
-               this->Pieces.begin()) - 1;
+               this->Pieces.begin()) -
+      1;
     for (int done = 0; done < count && at >= 0 && at < count; ++done, at += rises ? 1 : -1) {
       const piece& p = this->Pieces[static_cast<size_t>(at)];
       const double from = std::max(low, p.from), to = std::min(high, p.to);
@@ -124,9 +125,8 @@ private:
     const double depth = gauss(p, first, last, length, tint);
     const int steps = depth > this->Step ? static_cast<int>(std::ceil(std::min(depth / this->Step, 1e6))) : 1;
     for (int i = 0; i < steps && left >= opaque_enough; ++i) {
-      const double d = steps == 1
-        ? depth
-        : gauss(p, first + (last - first) * i / steps, first + (last - first) * (i + 1) / steps, length / steps, tint);
+      const double d =
+        steps == 1 ? depth : gauss(p, first + (last - first) * i / steps, first + (last - first) * (i + 1) / steps, length / steps, tint);
       if (d > 0.0) {
         const double alpha = -std::expm1(-d), nearer = d * d * (d / 24.0 - 1.0 / 12.0); // what is in front counts for more
         for (int c = 0; c < 3; ++c) {
@@ -190,8 +190,8 @@ std::string path_of(const tetra_mesh& mesh, const transfer& t, const stratus_cam
 }
 } // namespace
 
-std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions, const stratus_camera& camera,
-  int size, const std::string& cache, std::vector<double>* agreement)
+std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions,
+  const stratus_camera& camera, int size, const std::string& cache, std::vector<double>* agreement)
 {
   const size_t values = 4 * static_cast<size_t>(size) * static_cast<size_t>(size);
   std::vector<std::vector<float>> pictures(functions.size(), std::vector<float>(values)), coarse;

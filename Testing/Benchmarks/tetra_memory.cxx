@@ -40,8 +40,7 @@ void* counted_context::allocate(void* user, size_t bytes)
   }
   *static_cast<size_t*>(memory) = bytes;
   const size_t live = self->Live += bytes;
-  for (size_t peak = self->Peak; peak < live && !self->Peak.compare_exchange_weak(peak, live);) {
-  }
+  for (size_t peak = self->Peak; peak < live && !self->Peak.compare_exchange_weak(peak, live);) {}
   return static_cast<char*>(memory) + header;
 }
 

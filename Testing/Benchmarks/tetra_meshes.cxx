@@ -213,11 +213,13 @@ const std::vector<std::string>& tetra_functions()
 transfer tetra_transfer(const tetra_mesh& mesh, const std::string& function)
 {
   static const double peaks[11][5] = { { 0, .2, .2, 1, 0 }, { .10, .1, .6, 1, .03 }, { .18, .1, 1, .8, .02 }, { .22, .2, 1, .4, .95 },
-    { .26, .4, 1, .2, .02 }, { .5, 1, 1, 0, .05 }, { .56, 1, .8, 0, .02 }, { .60, 1, .6, 0, .95 }, { .64, 1, .4, 0, .02 }, { .85, 1, .2, 0, .1 },
-    { 1, 1, 0, .2, .6 } };
+    { .26, .4, 1, .2, .02 }, { .5, 1, 1, 0, .05 }, { .56, 1, .8, 0, .02 }, { .60, 1, .6, 0, .95 }, { .64, 1, .4, 0, .02 },
+    { .85, 1, .2, 0, .1 }, { 1, 1, 0, .2, .6 } };
   std::vector<float> sorted = mesh.values;
   std::sort(sorted.begin(), sorted.end());
-  const auto quantile = [&](double part) { return static_cast<double>(sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1))]); };
+  const auto quantile = [&](double part) {
+    return static_cast<double>(sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1))]);
+  };
   const double* b = mesh.bounds;
   const double radius = 0.5 * std::hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
   transfer t;

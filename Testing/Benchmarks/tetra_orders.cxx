@@ -129,8 +129,7 @@ public:
   {
     if (this->Recipe.depth < 0) {
       this->Camera->SetPosition(camera.eye);
-      this->Camera->SetFocalPoint(
-        camera.eye[0] + camera.forward[0], camera.eye[1] + camera.forward[1], camera.eye[2] + camera.forward[2]);
+      this->Camera->SetFocalPoint(camera.eye[0] + camera.forward[0], camera.eye[1] + camera.forward[1], camera.eye[2] + camera.forward[2]);
       this->Camera->SetParallelProjection(camera.parallel);
       this->Cells.clear();
       const double start = now_ms();
@@ -169,7 +168,8 @@ private:
     for (vtkIdTypeArray* ids = this->Vtk->GetNextCells(); ids; ids = this->Vtk->GetNextCells()) {
       if (cells) {
         const vtkIdType* first = ids->GetPointer(0);
-        std::transform(first, first + ids->GetNumberOfTuples(), std::back_inserter(*cells), [](vtkIdType id) { return static_cast<uint32_t>(id); });
+        std::transform(
+          first, first + ids->GetNumberOfTuples(), std::back_inserter(*cells), [](vtkIdType id) { return static_cast<uint32_t>(id); });
       }
     }
   }
@@ -232,8 +232,8 @@ std::vector<uint32_t> ranks_of(const sorter& s, const std::vector<uint32_t>& cel
   return ranks;
 }
 
-void judge_orders(const tetra_mesh& mesh, const std::vector<stratus_camera>& cameras, int rays, std::vector<std::unique_ptr<sorter>>& sorters,
-  std::vector<tally>& tallies)
+void judge_orders(const tetra_mesh& mesh, const std::vector<stratus_camera>& cameras, int rays,
+  std::vector<std::unique_ptr<sorter>>& sorters, std::vector<tally>& tallies)
 {
   const stratus_mesh whole = mesh.view();
   for (const stratus_camera& camera : cameras) {
@@ -258,8 +258,8 @@ void judge_orders(const tetra_mesh& mesh, const std::vector<stratus_camera>& cam
   }
 }
 
-void time_orders(stratus_context* context, const tetra_mesh& mesh, int rounds, std::vector<std::unique_ptr<sorter>>& sorters,
-  std::vector<tally>& tallies)
+void time_orders(
+  stratus_context* context, const tetra_mesh& mesh, int rounds, std::vector<std::unique_ptr<sorter>>& sorters, std::vector<tally>& tallies)
 {
   for (int round = 0; round < rounds; ++round) {
     for (int view = 0; view < views; ++view) {

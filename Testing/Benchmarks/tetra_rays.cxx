@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cells a ray meets, and where: every cell against the rays of the pixels that its corners span, by the planes of its faces, in double
-// precision. No neighbours, no order and no line of the core's: what the core's pictures and orders are judged by.
+// Which cells a ray meets, and where: every cell against the rays of the pixels that its corners span, by the planes of its faces, in
+// double precision. No neighbours, no order and no line of the core's: what the core's pictures and orders are judged by.
 #include "tetra_bench.h"
 
 #include <algorithm>
@@ -250,18 +250,20 @@ void visit_tile(const std::vector<prepared>& cells, const stratus_camera& camera
     ray.stretches.clear();
     for (const prepared& p : cells) {
       stretch hit;
-      if (px >= p.box[0] && px <= p.box[1] && py >= p.box[2] && py <= p.box[3] && meet(p, origin, direction, camera.near_k, camera.far_k, hit)) {
+      if (px >= p.box[0] && px <= p.box[1] && py >= p.box[2] && py <= p.box[3] &&
+        meet(p, origin, direction, camera.near_k, camera.far_k, hit)) {
         ray.stretches.push_back(hit);
       }
     }
-    std::sort(ray.stretches.begin(), ray.stretches.end(),
-      [](const stretch& p, const stretch& q) { return p.low + p.high < q.low + q.high; });
+    std::sort(
+      ray.stretches.begin(), ray.stretches.end(), [](const stretch& p, const stretch& q) { return p.low + p.high < q.low + q.high; });
     visit(ray);
   }
 }
 } // namespace
 
-void visit_rays(const stratus_mesh& mesh, const stratus_camera& camera, int size, bool scattered, const std::function<void(ray_of_pixel&)>& visit)
+void visit_rays(
+  const stratus_mesh& mesh, const stratus_camera& camera, int size, bool scattered, const std::function<void(ray_of_pixel&)>& visit)
 {
   const vector3 eye = of(camera.eye);
   const picture_plane plane(camera, size);

@@ -28,7 +28,8 @@ struct tree_numbers {
   double bytes = -1.0, nodes = -1.0, depth = -1.0, sah = -1.0; // -1: not told
 };
 
-// One method on one set. build() makes everything anew from the list with 2 threads; trace() runs on one thread what prepare() has laid out.
+// One method on one set. build() makes everything anew from the list with 2 threads; trace() runs on one thread what prepare() has laid
+// out.
 class first_hits
 {
 public:

@@ -14,8 +14,7 @@
 #include <cstdlib>
 
 namespace {
-struct Picture
-{
+struct Picture {
   int Width = 0, Height = 0;
   std::vector<float> Rgb; // rows from the top down
 };
@@ -35,7 +34,8 @@ bool ReadPng(const std::string& path, Picture& picture)
   for (int y = picture.Height - 1; y >= 0; --y) {
     for (int x = 0; x < picture.Width; ++x) {
       const auto* pixel = static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0));
-      std::transform(pixel, pixel + 3, std::back_inserter(picture.Rgb), [](unsigned char byte) { return static_cast<float>(byte) / 255.0f; });
+      std::transform(
+        pixel, pixel + 3, std::back_inserter(picture.Rgb), [](unsigned char byte) { return static_cast<float>(byte) / 255.0f; });
     }
   }
   return true;
@@ -96,7 +96,7 @@ int main(int argc, char** argv)
   size_t pixels = 0;
   const double decibels = Compare(a, b, largest, pixels);
   const double least = argc > 3 ? std::atof(argv[3]) : -static_cast<double>(INFINITY);
-  std::printf("%.2f dB over %zu of %d pixels, largest difference %.2f of 255; at least %.2f dB wanted\n", decibels, pixels, a.Width * a.Height,
-    255.0 * largest, least);
+  std::printf("%.2f dB over %zu of %d pixels, largest difference %.2f of 255; at least %.2f dB wanted\n", decibels, pixels,
+    a.Width * a.Height, 255.0 * largest, least);
   return pixels > 0 && decibels >= least ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * To be preloaded: the signal of the number in RAISE_IN_FSYNC comes while a file is on its way to the disk, that in RAISE_IN_OPEN when a temporary
- * file is about to be made. */
+ * To be preloaded: the signal of the number in RAISE_IN_FSYNC comes while a file is on its way to the disk, that in RAISE_IN_OPEN when a
+ * temporary file is about to be made. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <signal.h>

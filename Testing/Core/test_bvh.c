@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What holds of every bounding volume hierarchy, whatever its shape: it is sound, within its bounds, the same at any number of threads, and made
- * whole or not at all. Shapes themselves are test_bvh_shapes.c's. */
+ * What holds of every bounding volume hierarchy, whatever its shape: it is sound, within its bounds, the same at any number of threads, and
+ * made whole or not at all. Shapes themselves are test_bvh_shapes.c's. */
 #include "boxes.h"
 #include "faulty_allocator.h"
 
@@ -15,7 +15,7 @@ static int log2_up(uint32_t n)
 {
   int log = 0;
   while ((uint64_t)1 << log < n) {
-    log++;
+    ++log;
   }
   return log;
 }
@@ -27,7 +27,7 @@ static void check_bounds(const stratus_bvh* bvh, uint32_t count, int leaf_boxes,
   uint32_t* boxes = calloc(bvh->node_count, sizeof *boxes);
   assert_non_null(depth);
   assert_non_null(boxes);
-  for (uint32_t i = 0; i < bvh->node_count; i++) {
+  for (uint32_t i = 0; i < bvh->node_count; ++i) {
     const stratus_tree_node* node = bvh->nodes + i;
     if (stratus_tree_node_kind(node) == STRATUS_NODE_INNER) {
       depth[node->first] = depth[node->first + 1] = depth[i] + 1;
@@ -51,8 +51,8 @@ static void check_bounds(const stratus_bvh* bvh, uint32_t count, int leaf_boxes,
 
 static void check_one(stratus_context* context, stratus_tree_method method, const stratus_box* boxes, uint32_t count)
 {
-  for (size_t l = 0; l < sizeof leaf_sizes / sizeof *leaf_sizes; l++) {
-    for (size_t d = 0; d < sizeof depths / sizeof *depths; d++) {
+  for (size_t l = 0; l < sizeof leaf_sizes / sizeof *leaf_sizes; ++l) {
+    for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
       stratus_bvh bvh = make_bvh(context, method, boxes, count, leaf_sizes[l], depths[d]);
       if (stratus_bvh_check(context, &bvh, boxes, count) != STRATUS_OK) {
         fail_msg("method %d, %u boxes, leaf_boxes %d: %s", (int)method, count, leaf_sizes[l], stratus_context_message(context));
@@ -73,10 +73,10 @@ static void every_method_is_sound_on_every_set(void** state)
   stratus_context* context = make_context("host", 2);
   uint32_t random = 1;
   (void)state;
-  for (int set = 0; set < BOX_SETS; set++) {
-    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+  for (int set = 0; set < BOX_SETS; ++set) {
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
       stratus_box* boxes = make_boxes((box_set)set, counts[c], &random);
-      for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+      for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
         check_one(context, (stratus_tree_method)method, boxes, counts[c]);
       }
       free(boxes);
@@ -90,9 +90,9 @@ static void every_count_up_to_300_is_sound(void** state)
   stratus_context* context = make_context("host", 2);
   uint32_t random = 2;
   (void)state;
-  for (uint32_t count = 1; count <= 300; count++) {
+  for (uint32_t count = 1; count <= 300; ++count) {
     stratus_box* boxes = make_boxes(count % 2 ? BOXES_RANDOM : BOXES_UNIT, count, &random);
-    for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+    for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
       stratus_bvh bvh = make_bvh(context, (stratus_tree_method)method, boxes, count, 1 + (int)(count % 5), 64);
       assert_int_equal(stratus_bvh_check(context, &bvh, boxes, count), STRATUS_OK);
       stratus_bvh_release(context, &bvh);
@@ -112,16 +112,16 @@ static void threads_do_not_change_the_tree(void** state)
   stratus_context* contexts[] = { make_context("host", 1), make_context("host", 2), make_context("host", 5) };
   uint32_t random = 3;
   (void)state;
-  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     const uint32_t count = cases[c].count;
     stratus_box* boxes = make_boxes(cases[c].set, count, &random);
-    for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+    for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
       if (count > 10000 && (method == STRATUS_TREE_AC || method == STRATUS_TREE_DPC)) {
         continue; /* made for fewer, and without a part that fewer would not see */
       }
       stratus_bvh first = make_bvh(contexts[0], (stratus_tree_method)method, boxes, count, 2, 20);
       assert_int_equal(stratus_bvh_check(contexts[0], &first, boxes, count), STRATUS_OK);
-      for (size_t t = 1; t < sizeof contexts / sizeof *contexts; t++) {
+      for (size_t t = 1; t < sizeof contexts / sizeof *contexts; ++t) {
         stratus_bvh bvh = make_bvh(contexts[t], (stratus_tree_method)method, boxes, count, 2, 20);
         assert_same_bvh(&first, &bvh, count);
         stratus_bvh_release(contexts[t], &bvh);
@@ -130,7 +130,7 @@ static void threads_do_not_change_the_tree(void** state)
     }
     free(boxes);
   }
-  for (size_t t = 0; t < sizeof contexts / sizeof *contexts; t++) {
+  for (size_t t = 0; t < sizeof contexts / sizeof *contexts; ++t) {
     stratus_context_destroy(contexts[t]);
   }
 }
@@ -143,7 +143,7 @@ static void the_check_sees_damage(void** state)
   stratus_box* boxes = make_boxes(BOXES_RANDOM, 50, &random);
   stratus_bvh bvh = make_bvh(context, STRATUS_TREE_SAH, boxes, 50, 1, 64);
   (void)state;
-  for (uint32_t i = 1; i < bvh.node_count; i++) {
+  for (uint32_t i = 1; i < bvh.node_count; ++i) {
     *(stratus_tree_node_kind(bvh.nodes + i) == STRATUS_NODE_INNER ? &inner : &leaf) = i;
   }
   assert_true(inner && leaf);
@@ -200,10 +200,10 @@ static void bad_input_is_refused(void** state)
     { STRATUS_TREE_SAH, 0, 64 }, { STRATUS_TREE_SAH, 65, 64 }, { STRATUS_TREE_SAH, 1, 0 }, { STRATUS_TREE_SAH, 1, 65 } };
   static const char* const words[] = { "method 0", "method 3", "method 11", "leaf_boxes 0", "leaf_boxes 65", "max_depth 0",
     "max_depth 65" };
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
     REFUSED(stratus_bvh_create(context, boxes, 4, bad + i, &bvh), words[i]);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const stratus_box before = boxes[2];
     boxes[2].hi[a] = boxes[2].lo[a];
     REFUSED(stratus_bvh_create(context, boxes, 4, &good, &bvh), "box 2");
@@ -226,11 +226,11 @@ static void the_greatest_coordinates_are_borne(void** state)
   stratus_context* context = make_context("host", 2);
   stratus_box boxes[20];
   (void)state;
-  for (int i = 0; i < 20; i++) {
+  for (int i = 0; i < 20; ++i) {
     boxes[i] = unit_box(i & 1 ? most - 1 - i : -most + i, i & 2 ? most - 1 : -most, i & 4 ? most - 1 : -most);
   }
   boxes[7] = (stratus_box){ { -most, -most, -most }, { most, most, most } };
-  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
     check_one(context, (stratus_tree_method)method, boxes, 20);
   }
   stratus_context_destroy(context);
@@ -241,7 +241,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
   uint32_t random = 5;
   stratus_box* boxes = make_boxes(BOXES_DOUBLING, 300, &random);
   (void)state;
-  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
     faulty_allocator allocator = { 0 };
     stratus_context_options context_options = faulty_options(&allocator, "host");
     const stratus_bvh_options options = { (stratus_tree_method)method, 2, 8 };
@@ -252,7 +252,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
     memset(&bvh, 0x55, sizeof bvh);
     const stratus_bvh untouched = bvh;
     int64_t n = 1;
-    for (; n < REQUESTS_MAX; n++) {
+    for (; n < REQUESTS_MAX; ++n) {
       allocator.fail_at = allocator.calls + n;
       const stratus_status status = stratus_bvh_create(context, boxes, 300, &options, &bvh);
       allocator.fail_at = 0;
@@ -266,7 +266,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
     }
     assert_in_range(n, 10, REQUESTS_MAX - 1);
     assert_same_bvh(&right, &bvh, 300);
-    for (int64_t at = 1; at <= 3; at++) {
+    for (int64_t at = 1; at <= 3; ++at) {
       allocator.fail_at = allocator.calls + at;
       assert_int_equal(stratus_bvh_check(context, &bvh, boxes, 300), STRATUS_OUT_OF_MEMORY);
     }
@@ -297,7 +297,7 @@ static void a_build_can_be_cancelled(void** state)
   options.progress = cancel_at;
   options.progress_user = &left;
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  for (int calls = 1; calls <= 2; calls++) {
+  for (int calls = 1; calls <= 2; ++calls) {
     const stratus_bvh_options how = { STRATUS_TREE_PLOC, 1, 64 };
     stratus_bvh bvh;
     left = calls;

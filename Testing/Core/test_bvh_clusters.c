@@ -22,7 +22,7 @@ typedef struct slow_peaks {
 static uint64_t distance(const stratus_box* a, const stratus_box* b)
 {
   uint64_t sum = 0;
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; ++axis) {
     const int64_t d = (int64_t)stratus_box_middle(a, axis) - stratus_box_middle(b, axis);
     sum += (uint64_t)(d * d);
   }
@@ -40,8 +40,8 @@ static uint64_t slow_cutoff(const stratus_bvh_build* build, const slow_peaks* p)
 {
   static uint64_t all[PLACES_MAX * PLACES_MAX];
   size_t count = 0;
-  for (uint32_t i = 0; i < p->count; i++) {
-    for (uint32_t j = 0; j < p->count; j++) {
+  for (uint32_t i = 0; i < p->count; ++i) {
+    for (uint32_t j = 0; j < p->count; ++j) {
       if (i != j) {
         all[count++] = distance(build->boxes + p->first[i], build->boxes + p->first[j]);
       }
@@ -59,16 +59,16 @@ static bool is_denser(const slow_peaks* p, uint32_t a, uint32_t b)
 static void find_peaks(const stratus_bvh_build* build, slow_peaks* p)
 {
   const uint64_t cutoff = slow_cutoff(build, p);
-  for (uint32_t i = 0; i < p->count; i++) {
+  for (uint32_t i = 0; i < p->count; ++i) {
     p->density[i] = 0;
-    for (uint32_t b = 0; b < build->count; b++) {
+    for (uint32_t b = 0; b < build->count; ++b) {
       p->density[i] += distance(build->boxes + p->first[i], build->boxes + b) <= cutoff;
     }
   }
-  for (uint32_t i = 0; i < p->count; i++) {
+  for (uint32_t i = 0; i < p->count; ++i) {
     uint64_t least = UINT64_MAX;
     p->denser[i] = i;
-    for (uint32_t j = 0; j < p->count; j++) {
+    for (uint32_t j = 0; j < p->count; ++j) {
       const uint64_t d = distance(build->boxes + p->first[i], build->boxes + p->first[j]);
       if (is_denser(p, j, i) && (d < least || (d == least && (i ^ j) < (i ^ p->denser[i])))) {
         least = d;
@@ -91,16 +91,16 @@ static void find_slow_clusters(slow_peaks* p, uint32_t wanted)
   bool chosen[PLACES_MAX] = { false };
   double least = INFINITY;
   uint32_t last = 0;
-  for (uint32_t c = 0; c < wanted && c < p->count; c++) {
+  for (uint32_t c = 0; c < wanted && c < p->count; ++c) {
     uint32_t best = PLACES_MAX;
-    for (uint32_t i = 0; i < p->count; i++) {
+    for (uint32_t i = 0; i < p->count; ++i) {
       best = !chosen[i] && (best == PLACES_MAX || p->gamma[i] >= p->gamma[best]) ? i : best;
     }
     chosen[best] = true;
     least = p->gamma[best];
     last = best;
   }
-  for (uint32_t i = 0; i < p->count; i++) {
+  for (uint32_t i = 0; i < p->count; ++i) {
     p->cluster[i] = centre_of(p, i, least, last);
   }
 }
@@ -116,19 +116,19 @@ static void density_peaks_are_those_of_all_pairs(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int repeat = 0; repeat < 40; repeat++) {
+  for (int repeat = 0; repeat < 40; ++repeat) {
     const uint32_t places = 2 + (uint32_t)random_below(&random, PLACES_MAX - 1);
     stratus_box* at = make_boxes(repeat % 2 ? BOXES_UNEVEN : BOXES_UNIT, places, &random);
     stratus_box boxes[BOXES_MAX];
     uint32_t cluster[BOXES_MAX], number[PLACES_MAX], clusters = 0, seen = 0, place = 0, count = 0;
-    for (uint32_t i = 0; i < places; i++) {
-      for (int64_t copies = 1 + random_below(&random, 8); copies > 0; copies--) {
+    for (uint32_t i = 0; i < places; ++i) {
+      for (int64_t copies = 1 + random_below(&random, 8); copies > 0; --copies) {
         boxes[count++] = at[i];
       }
     }
     stratus_bvh_build build = sort_boxes(boxes, count);
     slow_peaks p = { .count = 0 };
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; ++i) {
       if (i == 0 || build.codes[i] != build.codes[i - 1]) {
         p.first[p.count++] = i;
       }
@@ -138,10 +138,10 @@ static void density_peaks_are_those_of_all_pairs(void** state)
     }
     find_slow_clusters(&p, count / 64 > 2 ? count / 64 : 2);
     assert_int_equal(stratus_bvh_density_clusters(&build, cluster, &clusters), STRATUS_OK);
-    for (uint32_t i = 0; i < p.count; i++) {
+    for (uint32_t i = 0; i < p.count; ++i) {
       number[i] = UINT32_MAX;
     }
-    for (uint32_t i = 0; i < count; i++) { /* the same partition, numbered in order */
+    for (uint32_t i = 0; i < count; ++i) { /* the same partition, numbered in order */
       place += place + 1 < p.count && i == p.first[place + 1];
       uint32_t* n = number + p.cluster[place];
       *n = *n == UINT32_MAX ? seen++ : *n;
@@ -165,13 +165,13 @@ static void clouds_are_kept_apart(void** state)
   stratus_box boxes[1250];
   uint32_t random = 2, count = 0;
   (void)state;
-  for (int cloud = 0; cloud < 3; cloud++) {
-    for (uint32_t i = 0; i < counts[cloud]; i++) {
+  for (int cloud = 0; cloud < 3; ++cloud) {
+    for (uint32_t i = 0; i < counts[cloud]; ++i) {
       const int32_t* m = middle[cloud];
       boxes[count++] = unit_box(m[0] + random_below(&random, 20), m[1] + random_below(&random, 20), m[2] + random_below(&random, 20));
     }
   }
-  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
     stratus_bvh bvh = make_bvh(context, (stratus_tree_method)method, boxes, count, 1, 64);
     uint32_t* held = calloc(bvh.node_count, sizeof *held);
     int found = 0;
@@ -179,7 +179,7 @@ static void clouds_are_kept_apart(void** state)
     for (uint32_t i = bvh.node_count; i-- > 0;) {
       const stratus_tree_node* n = bvh.nodes + i;
       held[i] = stratus_tree_node_kind(n) == STRATUS_NODE_INNER ? held[n->first] + held[n->first + 1] : stratus_tree_node_count(n);
-      for (int cloud = 0; cloud < 3; cloud++) {
+      for (int cloud = 0; cloud < 3; ++cloud) {
         found += held[i] == counts[cloud] && n->lo[0] >= middle[cloud][0] && n->hi[0] <= middle[cloud][0] + 20;
       }
     }
@@ -211,7 +211,7 @@ static void trees_cost_little_more_than_the_sweeps(void** state)
   static const char* const names[] = { "17K", "24K", "30K", "35K" };
   static const char* const methods[] = { "sah", "sweep", "lbvh", "ploc", "ac", "dpc", "kmeans" };
   (void)state;
-  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+  for (size_t n = 0; n < sizeof names / sizeof *names; ++n) {
     int64_t dimensions[3];
     int32_t* positions = NULL;
     size_t count = 0;
@@ -219,10 +219,10 @@ static void trees_cost_little_more_than_the_sweeps(void** state)
     assert_int_equal(stratus_voxel_scene_create(context, names[n], dimensions, &positions, &count), STRATUS_OK);
     stratus_box* boxes = malloc(count * sizeof *boxes);
     assert_non_null(boxes);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
       boxes[i] = unit_box(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     }
-    for (int order = 0; order < 7; order++) {
+    for (int order = 0; order < 7; ++order) {
       const int method = order == 0 ? STRATUS_TREE_SWEEP : order == 1 ? STRATUS_TREE_SAH : STRATUS_TREE_SAH + order;
       stratus_bvh bvh = make_bvh(context, (stratus_tree_method)method, boxes, (uint32_t)count, 1, 64);
       stratus_bvh four = make_bvh(context, (stratus_tree_method)method, boxes, (uint32_t)count, 4, 64);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The shape of each bounding volume hierarchy, against the slow and obvious way to it on few boxes; and what trees cost on the sets of record.
- * A shape is the set of its inner nodes, each as a mask of the boxes under it. */
+ * The shape of each bounding volume hierarchy, against the slow and obvious way to it on few boxes; and what trees cost on the sets of
+ * record. A shape is the set of its inner nodes, each as a mask of the boxes under it. */
 #include "boxes.h"
 
 #include <stdio.h>
@@ -25,7 +25,7 @@ static void assert_same_shape(shape* a, shape* b)
   assert_int_equal(a->count, b->count);
   qsort(a->masks, (size_t)a->count, sizeof *a->masks, compare_masks);
   qsort(b->masks, (size_t)b->count, sizeof *b->masks, compare_masks);
-  for (int i = 0; i < a->count; i++) {
+  for (int i = 0; i < a->count; ++i) {
     assert_true(a->masks[i] == b->masks[i]);
   }
 }
@@ -93,7 +93,7 @@ static shape greedy_shape(const stratus_box* boxes, uint32_t count, stratus_bvh_
   bool live[BOXES_MAX];
   shape s = { .count = 0 };
   *ties = 0;
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     box[i] = boxes[i];
     mask[i] = (uint64_t)1 << i;
     live[i] = true;
@@ -101,8 +101,8 @@ static shape greedy_shape(const stratus_box* boxes, uint32_t count, stratus_bvh_
   while ((uint32_t)s.count < count - 1) {
     uint32_t low = 0, high = 0;
     double least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
-      for (uint32_t j = i + 1; live[i] && j < count; j++) {
+    for (uint32_t i = 0; i < count; ++i) {
+      for (uint32_t j = i + 1; live[i] && j < count; ++j) {
         if (live[j]) {
           const double distance = measured(box + i, box + j, measure);
           *ties += distance == least;
@@ -127,11 +127,11 @@ static void agglomerative_clustering_is_the_greedy_one(void** state)
   uint32_t random = 1;
   int ties = 0, all_ties = 0;
   (void)state;
-  for (int repeat = 0; repeat < 40; repeat++) {
-    for (int set = 0; set < BOX_SETS; set++) {
+  for (int repeat = 0; repeat < 40; ++repeat) {
+    for (int set = 0; set < BOX_SETS; ++set) {
       const uint32_t count = (uint32_t)random_below(&random, BOXES_MAX - 1) + 2;
       stratus_box* boxes = make_boxes((box_set)set, count, &random);
-      for (int measure = STRATUS_BVH_SURFACE; measure <= STRATUS_BVH_EDGES; measure++) {
+      for (int measure = STRATUS_BVH_SURFACE; measure <= STRATUS_BVH_EDGES; ++measure) {
         stratus_bvh_pair pairs[BOXES_MAX];
         uint32_t root = 0;
         shape s = { .count = 0 }, greedy = greedy_shape(boxes, count, (stratus_bvh_measure)measure, &ties);
@@ -151,7 +151,7 @@ static void few_boxes_make_the_greedy_tree_by_ploc_and_k_means(void** state)
   uint32_t random = 2;
   int ties = 0;
   (void)state;
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     const uint32_t count = (uint32_t)random_below(&random, 16) + 2; /* all within PLOC's radius; eight are k-means' one cluster each */
     stratus_box* boxes = make_boxes(BOXES_RANDOM, count, &random);
     shape greedy = greedy_shape(boxes, count, STRATUS_BVH_SURFACE, &ties);
@@ -172,10 +172,10 @@ static void few_boxes_make_the_greedy_tree_by_ploc_and_k_means(void** state)
 static uint64_t slow_code(const stratus_box* boxes, uint32_t count, uint32_t i)
 {
   int64_t least[3], extent = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     int64_t most = INT64_MIN;
     least[a] = INT64_MAX;
-    for (uint32_t b = 0; b < count; b++) {
+    for (uint32_t b = 0; b < count; ++b) {
       const int64_t middle = (int64_t)boxes[b].lo[a] + boxes[b].hi[a];
       least[a] = middle < least[a] ? middle : least[a];
       most = middle > most ? middle : most;
@@ -184,12 +184,12 @@ static uint64_t slow_code(const stratus_box* boxes, uint32_t count, uint32_t i)
   }
   int shift = 0;
   while (extent >> shift >= 1 << 21) {
-    shift++;
+    ++shift;
   }
   uint64_t code = 0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t place = ((int64_t)boxes[i].lo[a] + boxes[i].hi[a] - least[a]) >> shift;
-    for (int bit = 0; bit < 21; bit++) {
+    for (int bit = 0; bit < 21; ++bit) {
       code |= (uint64_t)(place >> bit & 1) << (3 * bit + a);
     }
   }
@@ -206,11 +206,11 @@ static uint64_t part_slowly(const stratus_bvh_build* build, uint32_t begin, uint
   int bit = 63;
 #define KEY(rank) (equal ? (uint64_t)(rank) : build->codes[rank])
   while (KEY(begin) >> bit == KEY(end - 1) >> bit) {
-    bit--;
+    --bit;
   }
   uint32_t middle = begin;
   while (!(KEY(middle) >> bit & 1)) {
-    middle++;
+    ++middle;
   }
 #undef KEY
   const uint64_t mask = part_slowly(build, begin, middle, s) | part_slowly(build, middle, end, s);
@@ -222,12 +222,12 @@ static void lbvh_parts_at_the_highest_bit(void** state)
 {
   uint32_t random = 3;
   (void)state;
-  for (int repeat = 0; repeat < 40; repeat++) {
-    for (int set = 0; set < BOX_SETS; set++) {
+  for (int repeat = 0; repeat < 40; ++repeat) {
+    for (int set = 0; set < BOX_SETS; ++set) {
       const uint32_t count = (uint32_t)random_below(&random, BOXES_MAX - 1) + 2;
       stratus_box* boxes = make_boxes((box_set)set, count, &random);
       stratus_bvh_build build = sorted(boxes, count);
-      for (uint32_t i = 0; i < count; i++) {
+      for (uint32_t i = 0; i < count; ++i) {
         assert_true(build.codes[i] == slow_code(boxes, count, build.number[i]));
         assert_memory_equal(build.boxes + i, boxes + build.number[i], sizeof *boxes);
         assert_true(
@@ -248,10 +248,10 @@ static double cost_of(const stratus_box* boxes, uint32_t count, uint64_t mask)
 {
   stratus_box all = stratus_box_none();
   int n = 0;
-  for (uint32_t i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; ++i) {
     if (mask >> i & 1) {
       stratus_box_add(&all, boxes + i);
-      n++;
+      ++n;
     }
   }
   return stratus_box_area(&all) * n;
@@ -261,10 +261,10 @@ static double cost_of(const stratus_box* boxes, uint32_t count, uint64_t mask)
 static double least_cost(const stratus_box* boxes, uint32_t count, uint64_t mask)
 {
   double least = INFINITY;
-  for (int axis = 0; axis < 3; axis++) {
-    for (uint32_t at = 0; at < count; at++) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (uint32_t at = 0; at < count; ++at) {
       uint64_t left = 0;
-      for (uint32_t i = 0; i < count; i++) {
+      for (uint32_t i = 0; i < count; ++i) {
         left |= (uint64_t)(stratus_box_middle(boxes + i, axis) < stratus_box_middle(boxes + at, axis)) << i;
       }
       left &= mask;
@@ -280,7 +280,7 @@ static double least_cost(const stratus_box* boxes, uint32_t count, uint64_t mask
 static void check_splits(stratus_tree_method method, const stratus_box* boxes, uint32_t count, bool exact)
 {
   stratus_bvh bvh = make_bvh(context, method, boxes, count, 1, 64);
-  for (uint32_t i = 0; i < bvh.node_count; i++) {
+  for (uint32_t i = 0; i < bvh.node_count; ++i) {
     const stratus_tree_node* node = bvh.nodes + i;
     shape unused = { .count = 0 };
     if (stratus_tree_node_kind(node) == STRATUS_NODE_INNER) {
@@ -297,8 +297,8 @@ static void every_split_by_surface_area_is_the_best(void** state)
 {
   uint32_t random = 4;
   (void)state;
-  for (int repeat = 0; repeat < 40; repeat++) {
-    for (int set = 0; set < BOX_SETS; set++) {
+  for (int repeat = 0; repeat < 40; ++repeat) {
+    for (int set = 0; set < BOX_SETS; ++set) {
       const uint32_t count = (uint32_t)random_below(&random, 30) + 2;
       stratus_box* boxes = make_boxes((box_set)set, count, &random);
       check_splits(STRATUS_TREE_SWEEP, boxes, count, false);
@@ -308,7 +308,7 @@ static void every_split_by_surface_area_is_the_best(void** state)
       free(boxes);
     }
     stratus_box distinct[24];
-    for (int i = 0; i < 24; i++) { /* no two middles agree along an axis */
+    for (int i = 0; i < 24; ++i) { /* no two middles agree along an axis */
       distinct[i] = unit_box(5 * i + random_below(&random, 5), 7 * ((i * 7) % 24) + random_below(&random, 7), 3 * ((i * 11) % 24));
     }
     check_splits(STRATUS_TREE_SWEEP, distinct, 24, true);

@@ -20,15 +20,15 @@ static void axes_are_orthogonal_and_as_long_as_the_window(void** state)
   uint32_t random = 1;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     double eye[3], focal[3], up[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       eye[a] = (double)random_below(&random, 2000) - 1000.0;
       focal[a] = (double)random_below(&random, 2000) - 1000.5;
       up[a] = (double)random_below(&random, 200) - 100.25;
     }
     const double aspect = 0.1 + (double)random_below(&random, 40) / 10.0, size = 1.0 + (double)random_below(&random, 170);
-    for (int parallel = 0; parallel < 2; parallel++) {
+    for (int parallel = 0; parallel < 2; ++parallel) {
       stratus_camera camera;
       const double half = parallel ? size : tan(size * 3.14159265358979323846 / 360.0);
       assert_int_equal(parallel ? stratus_camera_parallel(context, eye, focal, up, size, aspect, &camera)
@@ -67,7 +67,7 @@ static void far_and_tiny_scenes_are_aimed_at(void** state)
   static const double scales[] = { 1e-300, 1e-6, 6e6, 1e300 };
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (size_t s = 0; s < sizeof scales / sizeof *scales; s++) {
+  for (size_t s = 0; s < sizeof scales / sizeof *scales; ++s) {
     stratus_camera camera;
     const double eye[3] = { 0, 0, scales[s] }, focal[3] = { 0, scales[s], 0 }, up[3] = { 0, 0, scales[s] };
     assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 30.0, 1.0, &camera), STRATUS_OK);
@@ -87,11 +87,11 @@ static void what_is_no_camera_is_refused_with_the_value(void** state)
   stratus_camera camera = untouched;
   static const double angles[] = { 0.0, -1.0, 180.0, 200.0, NAN, INFINITY };
   static const double scales[] = { 0.0, -1.0, NAN, INFINITY };
-  for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+  for (size_t i = 0; i < sizeof angles / sizeof *angles; ++i) {
     assert_int_equal(stratus_camera_perspective(context, eye, focal, up, angles[i], 1.0, &camera), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "view_angle"));
   }
-  for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+  for (size_t i = 0; i < sizeof scales / sizeof *scales; ++i) {
     assert_int_equal(stratus_camera_parallel(context, eye, focal, up, scales[i], 1.0, &camera), STRATUS_INVALID_ARGUMENT);
     assert_int_equal(stratus_camera_parallel(context, eye, focal, up, 1.0, scales[i], &camera), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "aspect"));

@@ -16,7 +16,7 @@ typedef struct points {
 static int64_t neighbours(const points* p, int i, int32_t eps)
 {
   int64_t count = 0;
-  for (int j = 0; j < p->count; j++) {
+  for (int j = 0; j < p->count; ++j) {
     count += abs(p->at[j] - p->at[i]) <= eps;
   }
   return count;
@@ -31,7 +31,7 @@ static void expand(points* p, int i, int name, int32_t eps)
   queue[tail++] = i;
   while (head < tail) {
     const int at = queue[head++];
-    for (int j = 0; j < p->count && p->core[at]; j++) {
+    for (int j = 0; j < p->count && p->core[at]; ++j) {
       if (p->cluster[j] == 0 && abs(p->at[j] - p->at[at]) <= eps) {
         p->cluster[j] = name;
         queue[tail++] = j;
@@ -43,17 +43,17 @@ static void expand(points* p, int i, int name, int32_t eps)
 static void cluster_plainly(points* p, const int64_t* counts, int32_t n, int32_t eps, int64_t min_points)
 {
   p->count = p->clusters = 0;
-  for (int32_t i = 0; i < n; i++) {
-    for (int64_t c = 0; c < counts[i]; c++) {
+  for (int32_t i = 0; i < n; ++i) {
+    for (int64_t c = 0; c < counts[i]; ++c) {
       assert_true(p->count < POINTS_MAX);
       p->at[p->count] = i;
       p->cluster[p->count++] = 0;
     }
   }
-  for (int i = 0; i < p->count; i++) {
+  for (int i = 0; i < p->count; ++i) {
     p->core[i] = neighbours(p, i, eps) >= min_points;
   }
-  for (int i = 0; i < p->count; i++) {
+  for (int i = 0; i < p->count; ++i) {
     if (p->core[i] && p->cluster[i] == 0) {
       expand(p, i, ++p->clusters, eps);
     }
@@ -64,13 +64,13 @@ static void check_counts(const int64_t* counts, int32_t n, int32_t eps, int64_t 
 {
   static points p;
   cluster_plainly(&p, counts, n, eps, min_points);
-  for (int32_t peak = -1; peak <= n; peak++) {
+  for (int32_t peak = -1; peak <= n; ++peak) {
     int32_t lo = -7, hi = -7, clusters = -7, first = peak, last = peak - 1, cores = 0;
     int name = 0;
-    for (int i = 0; i < p.count; i++) {
+    for (int i = 0; i < p.count; ++i) {
       name = p.at[i] == peak ? p.cluster[i] : name;
     }
-    for (int i = 0; i < p.count && name; i++) {
+    for (int i = 0; i < p.count && name; ++i) {
       if (p.cluster[i] == name) {
         first = p.at[i] < first ? p.at[i] : first;
         last = p.at[i] > last ? p.at[i] : last;
@@ -90,10 +90,10 @@ static void clusters_are_the_textbooks(void** state)
   uint32_t random = 1;
   int64_t counts[60];
   (void)state;
-  for (int repeat = 0; repeat < 3000; repeat++) {
+  for (int repeat = 0; repeat < 3000; ++repeat) {
     const int32_t n = 1 + (int32_t)random_below(&random, 60);
     const int64_t most = 1 + random_below(&random, 6), one_in = 1 + random_below(&random, 4);
-    for (int32_t i = 0; i < n; i++) {
+    for (int32_t i = 0; i < n; ++i) {
       counts[i] = random_below(&random, one_in) ? 0 : random_below(&random, most + 1);
     }
     check_counts(counts, n, 1 + (int32_t)random_below(&random, 6), 1 + random_below(&random, 3 * most + 2));

@@ -16,17 +16,17 @@ static double plain_bandwidth(const stratus_voxels* voxels)
   static double distance[VOXEL_SET_MAX];
   const double n = (double)voxels->count;
   double mean[3] = { 0, 0, 0 }, average = 0.0, variance = 0.0;
-  for (int64_t v = 0; v < voxels->count; v++) {
-    for (int a = 0; a < 3; a++) {
+  for (int64_t v = 0; v < voxels->count; ++v) {
+    for (int a = 0; a < 3; ++a) {
       mean[a] += at[v][a] / n;
     }
   }
-  for (int64_t v = 0; v < voxels->count; v++) {
+  for (int64_t v = 0; v < voxels->count; ++v) {
     const double x = at[v][0] - mean[0], y = at[v][1] - mean[1], z = at[v][2] - mean[2];
     distance[v] = sqrt(x * x + y * y + z * z);
     average += distance[v] / n;
   }
-  for (int64_t v = 0; v < voxels->count; v++) {
+  for (int64_t v = 0; v < voxels->count; ++v) {
     variance += (distance[v] - average) * (distance[v] - average) / n;
   }
   qsort(distance, (size_t)voxels->count, sizeof *distance, compare_doubles);
@@ -34,8 +34,8 @@ static double plain_bandwidth(const stratus_voxels* voxels)
   return 0.9 * fmin(sqrt(variance), sqrt(1.0 / log(2.0)) * median) * pow(n, -0.2);
 }
 
-/* 1e-9 of the box's length: distances are rounded at 1e-16 of it, their deviation's square root at 1e-8 of small deviations, and the median is
- * bracketed to 2^-36 of the largest squared distance. */
+/* 1e-9 of the box's length: distances are rounded at 1e-16 of it, their deviation's square root at 1e-8 of small deviations, and the median
+ * is bracketed to 2^-36 of the largest squared distance. */
 static void check_bandwidth(const stratus_voxels* voxels, double length)
 {
   double bandwidth = -1, raw = -1, again = -1;
@@ -50,7 +50,7 @@ static void bandwidth_is_that_of_equations_3_and_4(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     stratus_voxels* voxels = random_set(&random, repeat % 10 ? 40 : 9000, 1500);
     check_bandwidth(voxels, repeat % 10 ? 40.0 : 9000.0);
     stratus_voxels_destroy(voxels);
@@ -63,7 +63,7 @@ static void bandwidth_takes_the_median_where_it_is_less(void** state)
   (void)state;
   set_begin(&set, 300, 300, 300);
   set_add_box(&set, 148, 153, 148, 153, 148, 153);
-  for (int i = 0; i < 8; i++) {
+  for (int i = 0; i < 8; ++i) {
     set_add(&set, i & 1 ? 299 : 0, i & 2 ? 299 : 0, i & 4 ? 299 : 0);
   }
   stratus_voxels* voxels = make_voxels(context, &set);
@@ -79,9 +79,9 @@ static void bandwidth_of_nothing_one_two_and_a_shell_is_1(void** state)
 {
   double bandwidth = -1, raw = -1;
   (void)state;
-  for (int count = 0; count < 3; count++) {
+  for (int count = 0; count < 3; ++count) {
     set_begin(&set, 50, 50, 50);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
       set_add(&set, 10 + 30 * i, 7, 3);
     }
     stratus_voxels* voxels = make_voxels(context, &set);
@@ -106,19 +106,19 @@ static void density_and_derivatives_at_points_are_plain_sums(void** state)
 {
   uint32_t random = 2;
   (void)state;
-  for (int repeat = 0; repeat < 3000; repeat++) {
+  for (int repeat = 0; repeat < 3000; ++repeat) {
     stratus_voxels* voxels = random_set(&random, 24, 60);
     const double h = random_bandwidth(&random);
     const double unit = 105.0 / (32.0 * PI) / (h * h * h);
     double p[3], density, first[3], second[3], alone;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       p[a] = repeat % 2 ? (double)(random_below(&random, 60) - 15) / 2.0 : (double)random_below(&random, 40000) / 1000.0 - 8.0;
     }
     int edge;
     const plain expected = sum_plainly(voxels, h, p, &edge);
     assert_int_equal(stratus_density_at(context, voxels, h, p, &density, first, second), STRATUS_OK);
     assert_near(density, expected.density, 1e-13 * unit);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       assert_near(first[a], expected.first[a], 1e-12 * unit / h);
       if (!edge) {
         assert_near(second[a], expected.second[a], 1e-12 * unit / (h * h));
@@ -136,19 +136,19 @@ static void derivatives_are_those_of_the_density(void** state)
   uint32_t random = 3;
   int compared = 0;
   (void)state;
-  for (int repeat = 0; repeat < 400; repeat++) {
+  for (int repeat = 0; repeat < 400; ++repeat) {
     stratus_voxels* voxels = random_set(&random, 12, 60);
     const double h = 2.0 + (double)random_below(&random, 300) / 100.0, step = 1e-4 * h, unit = 105.0 / (32.0 * PI) / (h * h * h);
     double p[3], at_p, first[3], second[3];
     int edge = 0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       p[a] = (double)random_below(&random, 12000) / 1000.0;
     }
-    for (int64_t v = 0; v < voxels->count; v++) {
+    for (int64_t v = 0; v < voxels->count; ++v) {
       edge |= fabs(sqrt(pow(p[0] - at[v][0], 2) + pow(p[1] - at[v][1], 2) + pow(p[2] - at[v][2], 2)) - h) < 4 * step;
     }
     assert_int_equal(stratus_density_at(context, voxels, h, p, &at_p, first, second), STRATUS_OK);
-    for (int a = 0; a < 3 && !edge; a++) {
+    for (int a = 0; a < 3 && !edge; ++a) {
       double before[3] = { p[0], p[1], p[2] }, behind[3] = { p[0], p[1], p[2] }, low, high, low_first[3], high_first[3];
       before[a] -= step;
       behind[a] += step;
@@ -157,7 +157,7 @@ static void derivatives_are_those_of_the_density(void** state)
       /* The third derivative is at most 24 of these units, so the error at most 4 step^2: 4e-8; differences round at 1e-12. */
       assert_near((high - low) / (2 * step), first[a], 1e-7 * unit / h);
       assert_near((high_first[a] - low_first[a]) / (2 * step), second[a], 1e-6 * unit / (h * h));
-      compared++;
+      ++compared;
     }
     stratus_voxels_destroy(voxels);
   }
@@ -174,12 +174,12 @@ static void density_integrates_to_one(void** state)
   stratus_voxels* voxels = make_voxels(context, &set);
   double sum = 0.0;
   const double h = 2.0, step = 0.1;
-  for (int k = 0; k < 80; k++) {
-    for (int j = 0; j < 80; j++) {
-      for (int i = 0; i < 80; i++) {
+  for (int k = 0; k < 80; ++k) {
+    for (int j = 0; j < 80; ++j) {
+      for (int i = 0; i < 80; ++i) {
         double density;
-        assert_int_equal(
-          stratus_density_at(context, voxels, h, (const double[3]){ i * step - 2.95, j * step - 2.95, k * step - 2.95 }, &density, NULL, NULL),
+        assert_int_equal(stratus_density_at(context, voxels, h, (const double[3]){ i * step - 2.95, j * step - 2.95, k * step - 2.95 },
+                           &density, NULL, NULL),
           STRATUS_OK);
         sum += density * step * step * step;
       }
@@ -204,7 +204,7 @@ static void bad_arguments_are_refused_with_their_value(void** state)
   assert_int_equal(stratus_density_at(context, voxels, 1.0, NULL, &value, NULL, NULL), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_density_at(context, voxels, 1.0, point, NULL, NULL, NULL), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_density_at(context, voxels, 1.0, nowhere, &value, NULL, NULL), STRATUS_INVALID_ARGUMENT);
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     assert_int_equal(stratus_density_at(context, voxels, bad[i], point, &value, NULL, NULL), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "1e-6..1e9"));
   }

@@ -19,11 +19,11 @@ static void exact_field_is_the_density_at_each_voxel(void** state)
 {
   uint32_t random = 4;
   (void)state;
-  for (int repeat = 0; repeat < 300; repeat++) {
+  for (int repeat = 0; repeat < 300; ++repeat) {
     stratus_voxels* voxels = random_set(&random, repeat % 3 ? 30 : 200, FEW);
     const double h = random_bandwidth(&random);
     stratus_density* density = make_density(voxels, h, 1);
-    for (int64_t v = 0; v < voxels->count; v++) {
+    for (int64_t v = 0; v < voxels->count; ++v) {
       int edge;
       const double p[3] = { at[v][0], at[v][1], at[v][2] };
       const double expected = sum_plainly(voxels, h, p, &edge).density;
@@ -41,7 +41,7 @@ static void binned_field_errs_no_more_than_it_says(void** state)
 {
   uint32_t random = 5;
   (void)state;
-  for (int repeat = 0; repeat < 300; repeat++) {
+  for (int repeat = 0; repeat < 300; ++repeat) {
     stratus_voxels* voxels = random_set(&random, repeat % 3 ? 40 : 300, FEW);
     const double h = random_bandwidth(&random), unit = 105.0 / (32.0 * PI) / (h * h * h * (double)voxels->count);
     stratus_density* density = make_density(voxels, h, 0);
@@ -50,12 +50,12 @@ static void binned_field_errs_no_more_than_it_says(void** state)
       edge_length *= 2.0;
     }
     const double each = fmin(1.0, h > 30.0 ? 1.54 * 0.87 * edge_length * 2.0 / h : 4.72 / h);
-    for (int64_t b = 0; b < voxels->brick_count; b++) {
+    for (int64_t b = 0; b < voxels->brick_count; ++b) {
       int edge;
       const double p[3] = { 4 * voxels->bricks[b].at[0] + 1.5, 4 * voxels->bricks[b].at[1] + 1.5, 4 * voxels->bricks[b].at[2] + 1.5 };
       const double reach = h + (h > 30.0 ? 2.0 * 0.87 * edge_length : 2.6 + 2.6);
       int64_t near = 0;
-      for (int64_t v = 0; v < voxels->count; v++) {
+      for (int64_t v = 0; v < voxels->count; ++v) {
         near += pow(p[0] - at[v][0], 2) + pow(p[1] - at[v][1], 2) + pow(p[2] - at[v][2], 2) < reach * reach;
       }
       assert_near(density->of[b], sum_plainly(voxels, h, p, &edge).density, unit * (double)near * (each + 1e-6));
@@ -73,7 +73,7 @@ static void binned_field_of_full_bricks_is_exact(void** state)
   set_add_box(&set, 4, 32, 8, 24, 4, 36);
   stratus_voxels* voxels = make_voxels(context, &set);
   list_voxels(voxels, at);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     stratus_density* density = make_density(voxels, some[i], 0);
     for (int64_t b = 0; b < voxels->brick_count; b += 7) {
       int edge;
@@ -96,7 +96,7 @@ static void fields_have_the_same_bits_at_any_thread_count(void** state)
   set_add_box(&set, 50, 70, 40, 60, 100, 120);
   stratus_voxels* voxels = make_voxels(context, &set);
   assert_true(voxels->brick_count > 4096);
-  for (int i = 0; i < 8; i++) {
+  for (int i = 0; i < 8; ++i) {
     stratus_density* one = make_density(voxels, some[i / 2], i % 2);
     double bandwidth, again;
     assert_int_equal(stratus_density_bandwidth(context, voxels, &bandwidth, NULL), STRATUS_OK);
@@ -126,11 +126,11 @@ static void peak_is_the_densest_voxel_and_of_equals_the_first(void** state)
 {
   uint32_t random = 7;
   (void)state;
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     stratus_voxels* voxels = random_set(&random, 30, FEW);
     stratus_density* density = make_density(voxels, 1.0 + (double)random_below(&random, 4), 1);
     int64_t best = 0;
-    for (int64_t v = 1; v < voxels->count; v++) {
+    for (int64_t v = 1; v < voxels->count; ++v) {
       if (density->of[v] > density->of[best] || (density->of[v] >= density->of[best] && before(at[v], at[best]))) {
         best = v;
       }
@@ -147,7 +147,7 @@ static void peak_is_the_densest_voxel_and_of_equals_the_first(void** state)
     stratus_density_peak(density, voxels->bricks, NULL, voxels->brick_count, peak);
     assert_int_equal(stratus_voxels_get(voxels, peak[0], peak[1], peak[2]), 1);
     float most = 0.0f, own = -1.0f;
-    for (int64_t b = 0; b < voxels->brick_count; b++) {
+    for (int64_t b = 0; b < voxels->brick_count; ++b) {
       const uint16_t* place = voxels->bricks[b].at;
       most = fmaxf(most, density->of[b]);
       own = place[0] == peak[0] / 4 && place[1] == peak[1] / 4 && place[2] == peak[2] / 4 ? density->of[b] : own;
@@ -187,15 +187,15 @@ static plane_sums at_plane(const stratus_voxels* voxels, double h, const int32_t
 {
   plane_sums sums = { 0.0, 0.0, 0 };
   const double unit = 105.0 / (32.0 * PI) / ((double)voxels->count * h * h * h);
-  for (int64_t i = 0; i < (whole ? voxels->brick_count : voxels->count); i++) {
+  for (int64_t i = 0; i < (whole ? voxels->brick_count : voxels->count); ++i) {
     double d[3], u = 0.0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       d[a] = (a == axis ? plane - 0.5 : peak[a]) - (whole ? 4 * voxels->bricks[i].at[a] + 1.5 : at[i][a]);
       u += d[a] * d[a] / (h * h);
     }
     if (u < 1.0) {
       const double weight = whole ? voxels->bricks[i].count : 1.0;
-      sums.near++;
+      ++sums.near;
       sums.first += -4.0 * unit * weight * d[axis] / (h * h) * (1.0 - u);
       sums.second += -4.0 * unit * weight / (h * h) * (1.0 - u - 2.0 * d[axis] * d[axis] / (h * h));
     }
@@ -203,8 +203,8 @@ static plane_sums at_plane(const stratus_voxels* voxels, double h, const int32_t
   return sums;
 }
 
-static void check_side(const stratus_voxels* voxels, double h, const int32_t peak[3], int axis, int side, int whole,
-  const stratus_density_borders* borders)
+static void check_side(
+  const stratus_voxels* voxels, double h, const int32_t peak[3], int axis, int side, int whole, const stratus_density_borders* borders)
 {
   const int step = side ? 1 : -1, lo = (int)voxels->lo[axis], hi = (int)voxels->hi[axis];
   int position = peak[axis] + side;
@@ -233,12 +233,12 @@ static void borders_are_where_the_plain_second_derivative_turns(void** state)
   uint32_t random = 8;
   int found = 0;
   (void)state;
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     stratus_voxels* voxels = random_set(&random, 40, FEW);
     const double h = some[repeat % 6];
     const int exact = repeat / 6 % 2, whole = !exact && h > 16.0;
     int32_t lo[3], hi[3], peak[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       lo[a] = (int32_t)voxels->lo[a];
       hi[a] = (int32_t)voxels->hi[a];
     }
@@ -247,7 +247,7 @@ static void borders_are_where_the_plain_second_derivative_turns(void** state)
     stratus_density_borders borders;
     assert_int_equal(
       stratus_density_find_borders(context, voxels->bricks, NULL, voxels->brick_count, h, exact, peak, lo, hi, &borders), STRATUS_OK);
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; ++i) {
       check_side(voxels, h, peak, i / 2, i % 2, whole, &borders);
       found += borders.fall[i / 2][i % 2] > 0.0;
     }
@@ -267,7 +267,8 @@ static void a_slab_ends_where_its_density_falls(void** state)
   stratus_voxels* voxels = make_voxels(context, &set);
   stratus_density_borders borders;
   const int32_t peak[3] = { 12, 10, 10 }, lo[3] = { 0, 0, 0 }, hi[3] = { 60, 20, 20 };
-  assert_int_equal(stratus_density_find_borders(context, voxels->bricks, NULL, voxels->brick_count, 3.7, 1, peak, lo, hi, &borders), STRATUS_OK);
+  assert_int_equal(
+    stratus_density_find_borders(context, voxels->bricks, NULL, voxels->brick_count, 3.7, 1, peak, lo, hi, &borders), STRATUS_OK);
   assert_in_range(borders.position[0][0], 3, 5);
   assert_in_range(borders.position[0][1], 19, 21);
   assert_true(borders.fall[0][0] > 0.0 && borders.fall[0][1] > 0.0);

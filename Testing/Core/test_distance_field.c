@@ -17,7 +17,7 @@ static void check_exact(const test_set* s, const stratus_field* field)
   if (stratus_field_rgba(field, s->voxels, rgba) != STRATUS_OK) {
     fail_msg("%s", stratus_context_message(field->context));
   }
-  for (int64_t v = 0; v < total; v++) {
+  for (int64_t v = 0; v < total; ++v) {
     int64_t nearest;
     const double expected = expected_distance(s, v, field->is_signed, brute_squared(s, v, field->is_signed, &nearest));
     const double got = distance_at(field, v);
@@ -26,7 +26,7 @@ static void check_exact(const test_set* s, const stratus_field* field)
         (int)v, (int)nx, (int)ny, (int)s->n[2], got, (double)distances[v], (double)rgba[4 * v + 3], expected);
     }
     const float at[3] = { (float)(nearest % nx), (float)(nearest / nx % ny), (float)(nearest / (nx * ny)) };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       if (rgba[4 * v + a] != (nearest < 0 ? -1.0f : at[a])) {
         fail_msg("voxel %d of %dx%dx%d, signed %d: nearest %g, %g, %g, not voxel %d", (int)v, (int)nx, (int)ny, (int)s->n[2],
           field->is_signed, (double)rgba[4 * v], (double)rgba[4 * v + 1], (double)rgba[4 * v + 2], (int)nearest);
@@ -39,8 +39,8 @@ static void check_exact(const test_set* s, const stratus_field* field)
 
 static void check_methods(stratus_context* context, const test_set* s)
 {
-  for (size_t m = 0; m < 3; m++) {
-    for (int is_signed = 0; is_signed < 2; is_signed++) {
+  for (size_t m = 0; m < 3; ++m) {
+    for (int is_signed = 0; is_signed < 2; ++is_signed) {
       stratus_field* field = make_field(context, s, exact_methods[m], is_signed, NULL);
       check_exact(s, field);
       stratus_field_destroy(field);
@@ -54,11 +54,11 @@ static void exact_equals_brute_force_on_small_grids_with_every_instruction_set(v
   (void)state;
   stratus_context* context = make_context("host", 1); /* thousands of tiny fields: threads would spend them waiting for each other */
   const int best = context->isa;
-  for (int grid = 0; grid < 120; grid++) {
+  for (int grid = 0; grid < 120; ++grid) {
     context->isa = grid % 3 < best ? grid % 3 : best;
     const int64_t fill = grid < 30 ? grid / 3 % 3 : 1 + random_below(&random, 80);
-    test_set s = make_random_set(
-      context, 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9), fill, &random);
+    test_set s =
+      make_random_set(context, 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9), fill, &random);
     check_methods(context, &s);
     free_set(&s);
   }
@@ -72,7 +72,7 @@ static void rows_and_columns_longer_than_a_register_keep_their_ends(void** state
   (void)state;
   stratus_context* context = make_context("host", 1);
   const int best = context->isa;
-  for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
+  for (size_t g = 0; g < sizeof grids / sizeof *grids; ++g) {
     for (int64_t fill = 2; fill < 2000; fill *= 6) {
       context->isa = (int)((size_t)fill + g) % (best + 1);
       test_set s = make_random_set(context, grids[g][0], grids[g][1], grids[g][2], fill, &random);
@@ -91,12 +91,12 @@ static void check_single(stratus_context* context, int64_t nx, int64_t ny, int64
   memset(s.effective, !kind, (size_t)total);
   s.effective[seed] = (uint8_t)kind;
   take_set(context, &s);
-  for (size_t m = 0; m < 3; m++) {
+  for (size_t m = 0; m < 3; ++m) {
     if (exact_methods[m] == STRATUS_FIELD_ZIGZAG && total > 200000) {
       continue; /* quadratic */
     }
     stratus_field* field = make_field(context, &s, exact_methods[m], 1, NULL);
-    for (int64_t v = 0; v < total; v++) {
+    for (int64_t v = 0; v < total; ++v) {
       const int64_t x = v % nx - seed % nx, y = v / nx % ny - seed / nx % ny, z = v / (nx * ny) - seed / (nx * ny);
       const double away = v == seed ? 1.0 : sqrt((double)(x * x + y * y + z * z));
       if (distance_at(field, v) != (s.effective[v] ? -away : away)) {
@@ -114,9 +114,9 @@ static void distances_that_16_bits_do_not_hold_come_out_right(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   const int best = context->isa;
-  for (int isa = 0; isa <= best; isa++) {
+  for (int isa = 0; isa <= best; ++isa) {
     context->isa = isa;
-    for (int kind = 0; kind < 2; kind++) { /* a lone hole: only the try with 16 bits finds that they do not do */
+    for (int kind = 0; kind < 2; ++kind) { /* a lone hole: only the try with 16 bits finds that they do not do */
       check_single(context, 177, 3, 2, 0, kind);
       check_single(context, 176, 2, 3, 0, kind);
       check_single(context, 2, 178, 3, 5, kind);
@@ -156,11 +156,11 @@ static void zigzag_and_envelope_agree_on_larger_grids(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   const int best = context->isa;
-  for (size_t g = 0; g < 3; g++) {
+  for (size_t g = 0; g < 3; ++g) {
     for (int64_t fill = 2; fill < 3000000; fill *= 30) {
       context->isa = (int)(g + (size_t)fill / 7) % (best + 1);
       test_set s = make_random_set(context, grids[g][0], grids[g][1], grids[g][2], fill, &random);
-      for (int is_signed = 0; is_signed < 2; is_signed++) {
+      for (int is_signed = 0; is_signed < 2; ++is_signed) {
         stratus_field *a = make_field(context, &s, STRATUS_FIELD_ZIGZAG, is_signed, NULL), *b;
         for (size_t m = 0; m < 3; m += 2) {
           b = make_field(context, &s, exact_methods[m], is_signed, NULL);
@@ -184,14 +184,14 @@ static void threads_do_not_show_in_any_method(void** state)
   (void)state;
   stratus_context *one = make_context("host", 1), *many = make_context("host", 7);
   test_set s = make_random_set(one, 50, 41, 33, 400, &random);
-  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; method++) {
-    for (int is_signed = 0; is_signed < 2; is_signed++) {
+  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
+    for (int is_signed = 0; is_signed < 2; ++is_signed) {
       stratus_field_report told[2] = { { .passes = 0 }, { .passes = 0 } };
       stratus_field* a = make_field(one, &s, (stratus_field_method)method, is_signed, &told[0]);
       stratus_field* b = make_field(many, &s, (stratus_field_method)method, is_signed, &told[1]);
       told[0].build_ms = told[1].build_ms = 0.0;
       assert_memory_equal(&told[0], &told[1], sizeof told[0]);
-      for (int64_t v = 0; v < set_voxels(&s); v++) {
+      for (int64_t v = 0; v < set_voxels(&s); ++v) {
         assert_true(distance_at(a, v) == distance_at(b, v));
       }
       if (a->nearest) {
@@ -262,9 +262,9 @@ static void a_caller_that_says_stop_gets_nothing_and_loses_nothing(void** state)
   test_set s = make_random_set(context, 9, 8, 7, 30, &random);
   stratus_field_options field_options = stratus_field_options_default();
   stratus_field* field = NULL;
-  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; method++) {
+  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
     field_options.method = (stratus_field_method)method;
-    for (int let = 0; let < 2; let++) {
+    for (int let = 0; let < 2; ++let) {
       calls = let;
       assert_int_equal(stratus_field_create(context, s.voxels, &field_options, &field, NULL), STRATUS_CANCELLED);
       assert_null(field);

@@ -11,9 +11,9 @@ static int64_t larger(int64_t a, int64_t b)
 static int nearest(const stratus_occupancy* o, int target, const int sides[3], int64_t i, int64_t j, int64_t k)
 {
   int64_t best = 127;
-  for (int64_t z = 0; z < o->blocks[2]; z++) {
-    for (int64_t y = 0; y < o->blocks[1]; y++) {
-      for (int64_t x = 0; x < o->blocks[0]; x++) {
+  for (int64_t z = 0; z < o->blocks[2]; ++z) {
+    for (int64_t y = 0; y < o->blocks[1]; ++y) {
+      for (int64_t x = 0; x < o->blocks[0]; ++x) {
         const int64_t d[3] = { x - i, y - j, z - k };
         if (stratus_occupancy_get(o, x, y, z) != target || d[0] * sides[0] < 0 || d[1] * sides[1] < 0 || d[2] * sides[2] < 0) {
           continue;
@@ -48,10 +48,10 @@ static void check_map(const stratus_occupancy* o, const stratus_distance_map* ma
   assert_int_equal(map->map_bytes, map->pitch * (size_t)(o->blocks[1] * o->blocks[2]));
   assert_int_equal(map->bytes_size, (size_t)octants * map->map_bytes + 64);
   assert_int_equal(stratus_distance_map_bytes(map), map->bytes_size);
-  for (int octant = 0; octant < octants; octant++) {
-    for (int64_t k = 0; k < o->blocks[2]; k++) {
-      for (int64_t j = 0; j < o->blocks[1]; j++) {
-        for (int64_t i = 0; i < o->blocks[0]; i++) {
+  for (int octant = 0; octant < octants; ++octant) {
+    for (int64_t k = 0; k < o->blocks[2]; ++k) {
+      for (int64_t j = 0; j < o->blocks[1]; ++j) {
+        for (int64_t i = 0; i < o->blocks[0]; ++i) {
           const int expected = expected_byte(o, map->kind, octant, i, j, k);
           const size_t at = (size_t)octant * map->map_bytes + (size_t)(k * o->blocks[1] + j) * map->pitch + (size_t)i;
           if (map->bytes[at] != expected) {
@@ -68,7 +68,7 @@ static void check_map(const stratus_occupancy* o, const stratus_distance_map* ma
 static void check_kinds(stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
 {
   stratus_occupancy* o = make_occupancy(context, nx, ny, nz, fill, random);
-  for (int kind = STRATUS_DISTANCE_BLOCK; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+  for (int kind = STRATUS_DISTANCE_BLOCK; kind <= STRATUS_DISTANCE_OCTANT; ++kind) {
     stratus_distance_map* map = NULL;
     assert_int_equal(stratus_distance_map_create(context, o, (stratus_distance_kind)kind, &map), STRATUS_OK);
     check_map(o, map);
@@ -81,9 +81,9 @@ static void every_kind_equals_brute_force_on_small_grids(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int threads = 1; threads <= 3; threads++) {
+  for (int threads = 1; threads <= 3; ++threads) {
     stratus_context* context = make_context("host", threads);
-    for (int grid = 0; grid < 120; grid++) {
+    for (int grid = 0; grid < 120; ++grid) {
       const int64_t nx = 1 + random_below(&random, 9), ny = 1 + random_below(&random, 9), nz = 1 + random_below(&random, 9);
       check_kinds(context, nx, ny, nz, grid < 6 ? grid % 3 : random_below(&random, 60), &random);
     }
@@ -97,9 +97,9 @@ static void rows_longer_than_the_pitch_keep_their_ends(void** state)
   uint32_t random = 2;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
     static const int64_t fills[] = { 0, 1, 2, 3, 40, 400 };
-    for (size_t f = 0; f < sizeof fills / sizeof *fills; f++) {
+    for (size_t f = 0; f < sizeof fills / sizeof *fills; ++f) {
       check_kinds(context, sizes[s][0], sizes[s][1], sizes[s][2], fills[f], &random);
     }
   }
@@ -112,8 +112,8 @@ static void distances_beyond_127_are_told_as_127(void** state)
   uint32_t random = 3;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
-    for (int repeat = 0; repeat < 4; repeat++) {
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
+    for (int repeat = 0; repeat < 4; ++repeat) {
       check_kinds(context, sizes[s][0], sizes[s][1], sizes[s][2], 2, &random);
     }
   }
@@ -127,7 +127,7 @@ static void a_deep_block_of_occupied_ones_knows_its_depth(void** state)
   stratus_context* context = make_context("host", 2);
   stratus_occupancy* o = make_occupancy(context, 11, 11, 11, 1, &random);
   o->occupied[0] = 0; /* the only empty block: its distance is everyone's depth */
-  o->count--;
+  --o->count;
   stratus_distance_map* map = NULL;
   assert_int_equal(stratus_distance_map_create(context, o, STRATUS_DISTANCE_FULL, &map), STRATUS_OK);
   assert_int_equal(map->bytes[(10 * 11 + 10) * 64 + 10], 128 + 10);
@@ -146,7 +146,7 @@ static void a_solid_box_knows_its_depth_from_every_side(void** state)
   for (int64_t place = 0; place < 729; place += 7) {
     const int64_t lo[3] = { place % 3, place / 3 % 3, place / 9 % 3 }, hi[3] = { 8 - place / 27 % 3, 8 - place / 81 % 3, 8 - place / 243 };
     stratus_occupancy* o = make_occupancy(context, 8, 8, 8, 0, &random);
-    for (int64_t b = 0; b < 512; b++) {
+    for (int64_t b = 0; b < 512; ++b) {
       const int64_t at[3] = { b % 8, b / 8 % 8, b / 64 };
       o->occupied[b] = at[0] >= lo[0] && at[0] < hi[0] && at[1] >= lo[1] && at[1] < hi[1] && at[2] >= lo[2] && at[2] < hi[2];
       o->count += o->occupied[b];
@@ -154,7 +154,7 @@ static void a_solid_box_knows_its_depth_from_every_side(void** state)
     memcpy(o->lo, lo, sizeof lo);
     memcpy(o->hi, hi, sizeof hi);
     stratus_distance_map* map = NULL;
-    for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+    for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; ++kind) {
       assert_int_equal(stratus_distance_map_create(context, o, (stratus_distance_kind)kind, &map), STRATUS_OK);
       check_map(o, map);
       stratus_distance_map_destroy(map);
@@ -189,7 +189,7 @@ static void threads_do_not_show_in_the_bytes(void** state)
   (void)state;
   stratus_context *one = make_context("host", 1), *many = make_context("host", 7);
   stratus_occupancy* o = make_occupancy(one, 40, 30, 20, 300, &random);
-  for (int kind = STRATUS_DISTANCE_BLOCK; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+  for (int kind = STRATUS_DISTANCE_BLOCK; kind <= STRATUS_DISTANCE_OCTANT; ++kind) {
     stratus_distance_map *a = NULL, *b = NULL;
     assert_int_equal(stratus_distance_map_create(one, o, (stratus_distance_kind)kind, &a), STRATUS_OK);
     assert_int_equal(stratus_distance_map_create(many, o, (stratus_distance_kind)kind, &b), STRATUS_OK);

@@ -26,7 +26,7 @@ static void check_tree(stratus_context* context, const stratus_voxels* voxels, s
   options.leaf_voxels = 1 + (int)(next_random(random) % 3);
   options.field_emptiness = 1.0 + (double)(next_random(random) % 5); /* so that small sets are split, too */
   stratus_voxels_dimensions(voxels, dimensions);
-  for (int i = 0; i < RAYS; i++) {
+  for (int i = 0; i < RAYS; ++i) {
     rays[i] = random_ray(dimensions, random);
   }
   if (stratus_tree_create(context, voxels, &options, &tree) != STRATUS_OK) {
@@ -43,16 +43,16 @@ static void every_tree_hits_what_the_walk_hits(void** state)
 {
   (void)state;
   uint32_t random = 1;
-  for (int isa = 0; isa <= 2; isa++) {
+  for (int isa = 0; isa <= 2; ++isa) {
     stratus_context* context = open_context(isa, 1 + isa % 2);
-    for (int round = 0; round < 30; round++) {
+    for (int round = 0; round < 30; ++round) {
       int64_t dimensions[3];
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 3 == 0 ? 9 : 70));
       }
       const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.003 : unit_random(&random);
       stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 4 == 3 ? 6 : 0, &random);
-      for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+      for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
         const bool slow = method >= STRATUS_TREE_AC && stratus_voxels_count(voxels) > 5000;
         if (!slow) {
           check_tree(context, voxels, (stratus_tree_method)method, &random);
@@ -70,8 +70,8 @@ static void long_rows_and_both_entry_sizes_hit_right(void** state)
   uint32_t random = 5;
   stratus_context* context = open_context(2, 2);
   static const int64_t sizes[3][3] = { { 70000, 3, 2 }, { 3, 5000, 3 }, { 2, 2, 9000 } };
-  for (int s = 0; s < 3; s++) {
-    for (int dense = 0; dense < 2; dense++) { /* few voxels: entries of two bytes, many: of three */
+  for (int s = 0; s < 3; ++s) {
+    for (int dense = 0; dense < 2; ++dense) { /* few voxels: entries of two bytes, many: of three */
       stratus_voxels* voxels = random_voxels(context, sizes[s], dense ? 0.02 : 0.0005, 0, &random);
       check_tree(context, voxels, STRATUS_TREE_OCTANT, &random);
       if (s > 0) {
@@ -91,10 +91,10 @@ static void bits_do_not_depend_on_threads(void** state)
   static stratus_ray rays[COUNT];
   static stratus_hit hits[2][COUNT];
   const int64_t dimensions[3] = { 60, 50, 70 };
-  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
     size_t size[2];
     void* bytes[2];
-    for (int threads = 1; threads <= 2; threads++) {
+    for (int threads = 1; threads <= 2; ++threads) {
       uint32_t random = 9;
       stratus_context* context = open_context(2, threads);
       stratus_voxels* voxels = random_voxels(context, dimensions, 0.01, 0, &random);
@@ -102,7 +102,7 @@ static void bits_do_not_depend_on_threads(void** state)
       stratus_tree* tree = NULL;
       options.method = (stratus_tree_method)method;
       options.field_emptiness = 2.0;
-      for (int i = 0; i < COUNT; i++) {
+      for (int i = 0; i < COUNT; ++i) {
         rays[i] = random_ray(dimensions, &random);
       }
       assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
@@ -116,7 +116,7 @@ static void bits_do_not_depend_on_threads(void** state)
     }
     assert_int_equal(size[0], size[1]);
     assert_memory_equal(bytes[0], bytes[1], size[0]);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
       assert_true(hits[0][i].t == hits[1][i].t && hits[0][i].face == hits[1][i].face && hits[0][i].visited == hits[1][i].visited);
       assert_memory_equal(hits[0][i].voxel, hits[1][i].voxel, sizeof hits[0][i].voxel);
     }
@@ -140,7 +140,7 @@ static void one_voxel_is_hit_where_it_is(double offset, double spacing, double f
   volume.dimensions[0] = 5;
   volume.dimensions[1] = 6;
   volume.dimensions[2] = 7;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     volume.origin[a] = offset * (a + 1);
     volume.spacing[a] = spacing * (a + 1);
   }
@@ -148,17 +148,17 @@ static void one_voxel_is_hit_where_it_is(double offset, double spacing, double f
   criterion.lower = 5;
   assert_int_equal(stratus_voxels_create(context, &volume, &criterion, &voxels), STRATUS_OK);
   assert_int_equal(stratus_voxels_count(voxels), 1);
-  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
     stratus_tree_options options = stratus_tree_options_default();
     options.method = (stratus_tree_method)method;
     assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
-    for (int axis = 0; axis < 3; axis++) {
-      for (int side = 0; side < 2; side++) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) {
         const int index[3] = { 4, 2, 3 };
         stratus_ray ray = { .t_max = INFINITY };
         stratus_hit hit;
         double center[3], half = spacing * (axis + 1) * 0.5;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           center[a] = (volume.origin[a] + volume.spacing[a] * index[a]) * (a == 0 ? -1.0 : 1.0);
           ray.origin[a] = center[a] + spacing * (a + 1) * 0.21;
         }
@@ -203,7 +203,7 @@ static void no_voxel_no_hit(void** state)
   const int64_t dimensions[3] = { 8, 8, 8 };
   stratus_voxels* voxels = NULL;
   assert_int_equal(stratus_voxels_create_list(context, dimensions, NULL, 0, &voxels), STRATUS_OK);
-  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
     stratus_tree_options options = stratus_tree_options_default();
     stratus_tree_statistics statistics;
     stratus_tree* tree = NULL;
@@ -230,15 +230,15 @@ static void rays_that_are_none_are_refused(void** state)
   const int64_t dimensions[3] = { 12, 12, 12 };
   stratus_voxels* voxels = random_voxels(context, dimensions, 0.1, 0, &random);
   static const int methods[2] = { STRATUS_TREE_OCTANT, STRATUS_TREE_SAH };
-  for (int m = 0; m < 2; m++) {
+  for (int m = 0; m < 2; ++m) {
     stratus_tree_options options = stratus_tree_options_default();
     stratus_tree* tree = NULL;
     options.method = (stratus_tree_method)methods[m];
     assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
-    for (int wrong = 0; wrong < 7; wrong++) {
+    for (int wrong = 0; wrong < 7; ++wrong) {
       stratus_ray rays[40];
       stratus_hit hits[40];
-      for (int i = 0; i < 40; i++) {
+      for (int i = 0; i < 40; ++i) {
         rays[i] = random_ray(dimensions, &random);
       }
       stratus_ray* ray = &rays[17];

@@ -61,11 +61,8 @@ static void bytes_and_window_tell_the_same_picture(void** state)
   c.options.mode = STRATUS_MODE_FIRST_HIT;
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   memset(bytes, 7, sizeof bytes);
-  const stratus_image image = {
-    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = first.rgba, .rgba8 = bytes
-  };
-  assert_int_equal(
-    stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, &first.report), STRATUS_OK);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = first.rgba, .rgba8 = bytes };
+  assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, &first.report), STRATUS_OK);
   assert_true(case_lit(&first) > 100);
   const int* window = first.report.window;
   for (int at = 0; at < CASE_PIXELS; ++at) {
@@ -359,8 +356,9 @@ static void memory_that_runs_out_is_an_error_and_no_more(void** state)
   stratus_criterion criterion = stratus_criterion_default();
   criterion.transfer = &c.transfer;
   void* bytes = tree_bytes(context, &c, &criterion, 0, &size);
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = second.rgba, .depth = second.depth,
-    .samples = second.samples };
+  const stratus_image image = {
+    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = second.rgba, .depth = second.depth, .samples = second.samples
+  };
   for (int offered = 0; offered < 2; ++offered) {
     stratus_status status = STRATUS_OUT_OF_MEMORY;
     int64_t n = 1;

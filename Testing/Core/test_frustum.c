@@ -15,10 +15,10 @@ static void planes_hold_what_the_camera_s_rays_reach(void** state)
   (void)state;
   stratus_context* context = make_context("host", 1);
   int inside = 0, outside = 0;
-  for (int repeat = 0; repeat < 2000; repeat++) {
+  for (int repeat = 0; repeat < 2000; ++repeat) {
     stratus_camera camera = { .parallel = repeat % 2, .far_k = repeat % 3 ? 3.0 : INFINITY };
     camera.near_k = camera.parallel && repeat % 5 == 0 ? -INFINITY : 0.5;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       camera.eye[a] = random_unit(&random) - 0.5;
       camera.forward[a] = random_unit(&random) - 0.5 + (a == 0);
       camera.right[a] = 0.3 * random_unit(&random) + (a == 1);
@@ -26,11 +26,11 @@ static void planes_hold_what_the_camera_s_rays_reach(void** state)
     }
     stratus_frustum frustum;
     assert_int_equal(stratus_frustum_from_camera(context, &camera, &frustum), STRATUS_OK);
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 20; ++i) {
       const double u = 3.0 * random_unit(&random) - 1.5, v = 3.0 * random_unit(&random) - 1.5, k = 5.0 * random_unit(&random) - 1.0;
       const double least = fmin(fmin(1.0 - fabs(u), 1.0 - fabs(v)), fmin(k - camera.near_k, camera.far_k - k));
       double point[3];
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         const double across = u * camera.right[a] + v * camera.up[a];
         point[a] = camera.eye[a] + (camera.parallel ? across + k * camera.forward[a] : k * (camera.forward[a] + across));
       }
@@ -52,13 +52,13 @@ static void a_box_that_is_seen_is_never_told_as_outside(void** state)
   int met = 0, kept = 0, kept_exact = 0;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int repeat = 0; repeat < 600; repeat++) {
+  for (int repeat = 0; repeat < 600; ++repeat) {
     const double scale = scales[repeat % 3];
     double inside[3], bounds[6];
     const stratus_frustum frustum = random_frustum(context, &random, scale, inside);
-    for (int i = 0; i < 50; i++) {
+    for (int i = 0; i < 50; ++i) {
       random_bounds(&random, scale, bounds);
-      for (int a = 0; a < 3 && i % 3 == 0; a++) { /* larger ones, for the corners */
+      for (int a = 0; a < 3 && i % 3 == 0; ++a) { /* larger ones, for the corners */
         bounds[2 * a + 1] += scale * random_unit(&random);
       }
       const stratus_side plain = stratus_frustum_side(&frustum, bounds, 0), exact = stratus_frustum_side(&frustum, bounds, 1);
@@ -92,7 +92,7 @@ static void planes_that_are_none_or_let_nothing_through(void** state)
   assert_int_equal(stratus_frustum_side(&frustum, bounds, 0), STRATUS_SIDE_OUTSIDE);
   /* Coefficients far from 1 mean the same plane. */
   static const double lengths[] = { 1e-300, 1e-20, 1.0, 1e20, 1e300 };
-  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; ++i) {
     const stratus_frustum scaled = { .planes = { { lengths[i], 0, 0, -0.5 * lengths[i] } } };
     const double right[6] = { 0.75, 1, 0, 1, 0, 1 }, left[6] = { 0, 0.25, 0, 1, 0, 1 };
     assert_int_equal(stratus_frustum_side(&scaled, right, 0), STRATUS_SIDE_INSIDE);
@@ -108,7 +108,7 @@ static void a_frustum_of_no_volume_sees_what_touches_it(void** state)
   const stratus_frustum flat = { .planes = {
                                    { 1, 0, 0, 0 }, { -1, 0, 0, 0 }, { 0, 1, 0, 1 }, { 0, -1, 0, 1 }, { 0, 0, 1, 1 }, { 0, 0, -1, 1 } } };
   const double through[6] = { -1, 1, 0, 1, 0, 1 }, touching[6] = { 0, 1, 0, 1, 0, 1 }, beside[6] = { 1e-9, 1, 0, 1, 0, 1 };
-  for (int exact = 0; exact < 2; exact++) {
+  for (int exact = 0; exact < 2; ++exact) {
     assert_int_equal(stratus_frustum_side(&flat, through, exact), STRATUS_SIDE_CROSSING);
     assert_int_equal(stratus_frustum_side(&flat, touching, exact), STRATUS_SIDE_CROSSING);
     assert_int_equal(stratus_frustum_side(&flat, beside, exact), STRATUS_SIDE_OUTSIDE);
@@ -129,7 +129,7 @@ static void what_is_no_frustum_is_refused_with_the_value(void** state)
   bad[3].near_k = -1.0;
   bad[4].eye[2] = INFINITY;
   memcpy(bad[5].up, good.right, sizeof good.right);
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 6; ++i) {
     assert_int_equal(stratus_frustum_from_camera(context, &bad[i], &frustum), STRATUS_INVALID_ARGUMENT);
     assert_true(strlen(stratus_context_message(context)) > 0);
   }

@@ -24,9 +24,9 @@ static void random_set(uint32_t* random)
 {
   set_begin(&set, 1 + random_below(random, 120), 1 + random_below(random, 120), 1 + random_below(random, 120));
   set_add_noise(&set, random_below(random, 1200), random);
-  for (int64_t boxes = random_below(random, 4); boxes > 0; boxes--) {
+  for (int64_t boxes = random_below(random, 4); boxes > 0; --boxes) {
     int64_t lo[3], hi[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       lo[a] = random_below(random, set.dimensions[a]);
       hi[a] = lo[a] + 1 + random_below(random, 14);
       hi[a] = hi[a] < set.dimensions[a] ? hi[a] : set.dimensions[a];
@@ -40,7 +40,7 @@ static void every_brick_is_in_one_leaf_of_a_tight_box(void** state)
   uint32_t random = 1;
   int64_t splits[4] = { 0, 0, 0, 0 }, fields = 0, leaves = 0;
   (void)state;
-  for (int repeat = 0; repeat < 400; repeat++) {
+  for (int repeat = 0; repeat < 400; ++repeat) {
     random_set(&random);
     stratus_voxels* voxels = make_voxels(context, &set);
     const stratus_tree_options options = random_options(repeat % 3 ? STRATUS_TREE_HYBRID : STRATUS_TREE_HYBRID_PAPER, &random);
@@ -54,7 +54,7 @@ static void every_brick_is_in_one_leaf_of_a_tight_box(void** state)
     free_shape(context, &s);
     stratus_voxels_destroy(voxels);
   }
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     assert_true(splits[i] > 20); /* every kind was tried */
   }
   assert_true(fields > 100 && leaves > 100);
@@ -64,7 +64,7 @@ static void the_shape_is_the_same_at_any_thread_count(void** state)
 {
   uint32_t random = 2;
   (void)state;
-  for (int repeat = 0; repeat < 6; repeat++) {
+  for (int repeat = 0; repeat < 6; ++repeat) {
     set_begin(&set, 256, 128, 256);
     set_add_noise(&set, 6000, &random);
     set_add_box(&set, 20, 40, 30, 50, 200, 220);
@@ -119,10 +119,10 @@ static void a_cluster_in_thin_noise_gets_a_field_of_its_own(void** state)
   assert_true(s.statistics.dbscan_splits + s.statistics.density_splits > 0);
   assert_true(s.statistics.bandwidth >= 1.0);
   int found = 0;
-  for (uint32_t n = 0; n < s.shape.node_count; n++) {
+  for (uint32_t n = 0; n < s.shape.node_count; ++n) {
     const stratus_tree_node* node = s.shape.nodes + n;
     if (stratus_tree_node_kind(node) == STRATUS_NODE_FIELD && stratus_tree_node_count(node) >= 512) {
-      found++;
+      ++found;
       assert_true(node->lo[0] <= 100 && node->hi[0] >= 130 && node->lo[1] <= 800 && node->hi[1] >= 830); /* uncut */
       assert_true((double)(node->hi[0] - node->lo[0]) * (node->hi[1] - node->lo[1]) * (node->hi[2] - node->lo[2]) < 0x1p30 / 100);
     }
@@ -132,8 +132,8 @@ static void a_cluster_in_thin_noise_gets_a_field_of_its_own(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* The paper's way on the same: a cut at the cluster's border, a field on the peak's side, and on the other leaves of bricks. Its test, in voxels,
- * then passes at once, whatever noise the field still holds. */
+/* The paper's way on the same: a cut at the cluster's border, a field on the peak's side, and on the other leaves of bricks. Its test, in
+ * voxels, then passes at once, whatever noise the field still holds. */
 static void the_papers_field_is_on_the_peaks_side(void** state)
 {
   uint32_t random = 4;
@@ -181,7 +181,7 @@ static void a_given_bandwidth_is_the_one_used(void** state)
   set_begin(&set, 100, 100, 100);
   set_add_noise(&set, 3000, &random);
   stratus_voxels* voxels = make_voxels(context, &set);
-  for (int way = 0; way < 4; way++) {
+  for (int way = 0; way < 4; ++way) {
     stratus_tree_options options = hybrid_options(STRATUS_TREE_HYBRID);
     options.field_emptiness = 2.0;
     options.uniform = 0.0;

@@ -13,8 +13,8 @@ static int sign_of(wide_integer x)
 static int integer_orientation(int64_t p[4][3], int64_t direction[3])
 {
   wide_integer m[3][3];
-  for (int r = 0; r < 3; r++) {
-    for (int a = 0; a < 3; a++) {
+  for (int r = 0; r < 3; ++r) {
+    for (int a = 0; a < 3; ++a) {
       m[r][a] = direction && r == 2 ? direction[a] : p[r + 1][a] - p[0][a];
     }
   }
@@ -29,17 +29,17 @@ static void orientation_is_that_of_integers(void** state)
   uint32_t random = 1;
   int seen[3] = { 0 }, seen_along[3] = { 0 };
   (void)state;
-  for (int repeat = 0; repeat < 200000; repeat++) {
+  for (int repeat = 0; repeat < 200000; ++repeat) {
     int64_t p[4][3], bits = 2 + repeat % 38;
     double q[4][3], away[3];
     const int64_t offset = repeat % 3 == 0 ? INT64_C(1) << 44 : 0; /* far away, as UTM coordinates are */
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
       const int64_t number = (int64_t)(((uint64_t)mesh_random(&random) << 24 | mesh_random(&random)) & ((UINT64_C(1) << bits) - 1));
       p[i / 3][i % 3] = number;
     }
     const int64_t s = mesh_random(&random) % 4, t = mesh_random(&random) % 4;
     int64_t direction[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       direction[a] = s * (p[1][a] - p[0][a]) + t * (p[2][a] - p[0][a]) + (int64_t)(mesh_random(&random) % 3) - 1;
       p[3][a] = repeat % 2 ? p[0][a] + direction[a] : p[3][a];
       p[0][a] += offset;
@@ -47,7 +47,7 @@ static void orientation_is_that_of_integers(void** state)
       p[2][a] += offset;
       p[3][a] += offset;
     }
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
       q[i / 3][i % 3] = ldexp((double)p[i / 3][i % 3], exponents[repeat % 4]);
       away[i % 3] = ldexp((double)direction[i % 3], exponents[(repeat + 1) % 4]);
     }
@@ -55,10 +55,10 @@ static void orientation_is_that_of_integers(void** state)
     assert_int_equal(stratus_orientation(q[0], q[1], q[2], q[3]), expected);
     assert_int_equal(stratus_orientation(q[1], q[0], q[2], q[3]), -expected);
     assert_int_equal(stratus_orientation_along(q[0], q[1], q[2], away), along);
-    seen[expected + 1]++;
-    seen_along[along + 1]++;
+    ++seen[expected + 1];
+    ++seen_along[along + 1];
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     assert_true(seen[i] > 1000 && seen_along[i] > 1000);
   }
 }
@@ -70,25 +70,25 @@ static void orientation_along_an_axis_is_that_of_integers(void** state)
   uint32_t random = 7;
   int seen[3] = { 0 };
   (void)state;
-  for (int repeat = 0; repeat < 100000; repeat++) {
+  for (int repeat = 0; repeat < 100000; ++repeat) {
     int64_t p[4][3] = { { 0 } }, direction[3] = { 0, 0, 0 };
     double q[3][3], away[3];
     const int bits = 2 + repeat % 40, times = 1 + (int)(mesh_random(&random) % 15);
     direction[repeat % 3] = repeat % 2 ? 3 : -1;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       const int64_t mask = (INT64_C(1) << bits) - 1, step = ((int64_t)mesh_random(&random) << 24 | mesh_random(&random)) & mask;
       p[0][a] = ((int64_t)mesh_random(&random) << 24 | mesh_random(&random)) & mask;
       p[1][a] = p[0][a] + step;
       p[2][a] = p[0][a] + times * step + (int64_t)(mesh_random(&random) % 3) - 1;
     }
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 9; ++i) {
       q[i / 3][i % 3] = ldexp((double)p[i / 3][i % 3], exponents[repeat % 4]);
       away[i % 3] = ldexp((double)direction[i % 3], exponents[(repeat + 1) % 4]);
     }
     const int expected = integer_orientation(p, direction);
     assert_int_equal(stratus_orientation_along(q[0], q[1], q[2], away), expected);
     assert_int_equal(stratus_orientation_along(q[0], q[2], q[1], away), -expected);
-    seen[expected + 1]++;
+    ++seen[expected + 1];
   }
   assert_true(seen[0] > 1000 && seen[1] > 1000 && seen[2] > 1000);
 }
@@ -118,18 +118,18 @@ static bool is_collapsed(const int32_t* v)
 static void assert_neighbours(const mesh_case* mesh, const stratus_adjacency* adjacency)
 {
   int64_t border = 0, broken = 0, folded = 0;
-  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * mesh->cell_count; ++i) {
     const int32_t* v = mesh->vertices + 4 * (i / 4);
     int32_t p[3], q[3];
     int owners = 1, other_side = 0;
     int64_t other = -1;
     const int side = stratus_face_points(v, (int)(i % 4), p) * adjacency->orientation[i / 4];
-    for (int64_t j = 0; j < 4 * mesh->cell_count && !is_collapsed(v); j++) {
+    for (int64_t j = 0; j < 4 * mesh->cell_count && !is_collapsed(v); ++j) {
       const int32_t* w = mesh->vertices + 4 * (j / 4);
       if (i != j && !is_collapsed(w)) {
         const int sign = stratus_face_points(w, (int)(j % 4), q) * adjacency->orientation[j / 4];
         if (same_points(p, q)) {
-          owners++;
+          ++owners;
           other = j / 4;
           other_side = sign;
         }
@@ -152,13 +152,13 @@ static void neighbours_of_random_cells_are_those_of_all_pairs(void** state)
   uint32_t random = 3;
   int64_t broken = 0, folded = 0, flat = 0, inner = 0;
   (void)state;
-  for (int repeat = 0; repeat < 300; repeat++) {
+  for (int repeat = 0; repeat < 300; ++repeat) {
     stratus_context* context = mesh_context(1 + repeat % 4);
     mesh_case mesh = mesh_case_allocate(4 + repeat % 12, mesh_random(&random) % 40);
-    for (int64_t i = 0; i < 3 * mesh.point_count; i++) {
+    for (int64_t i = 0; i < 3 * mesh.point_count; ++i) {
       mesh.points[i] = mesh_random(&random) % 4;
     }
-    for (int64_t i = 0; i < 4 * mesh.cell_count; i++) {
+    for (int64_t i = 0; i < 4 * mesh.cell_count; ++i) {
       mesh.vertices[i] = (int32_t)(mesh_random(&random) % mesh.point_count);
     }
     const stratus_mesh view = mesh_case_view(&mesh);
@@ -199,7 +199,7 @@ static void a_grid_has_the_border_of_its_box(void** state)
       memcpy(first, adjacency->neighbours, bytes);
     }
     assert_memory_equal(first, adjacency->neighbours, bytes);
-    for (int64_t i = 0; i < 4 * mesh.cell_count; i++) {
+    for (int64_t i = 0; i < 4 * mesh.cell_count; ++i) {
       const int32_t j = adjacency->neighbours[i];
       const int32_t* back = adjacency->neighbours + 4 * (int64_t)(j < 0 ? 0 : j);
       assert_true(j < 0 || back[0] == i / 4 || back[1] == i / 4 || back[2] == i / 4 || back[3] == i / 4);
@@ -225,7 +225,7 @@ static void a_view_that_is_wrong_is_refused_with_its_value(void** state)
   assert_int_equal(stratus_mesh_check(context, &right), STRATUS_OK);
   assert_int_equal(stratus_mesh_check(context, NULL), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_mesh_check(NULL, &right), STRATUS_INVALID_ARGUMENT);
-  for (int wrong = 0; wrong < 11; wrong++) {
+  for (int wrong = 0; wrong < 11; ++wrong) {
     static const char* says[] = { "points", "vertices", "point_count -1", "cell_count 1073741824", "point 2", "vertex 4", "vertex -1",
       "matrix", "singular", "value_stride 0", "cell_values 2" };
     stratus_mesh mesh = right;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The meshes of record: the lattice fills its cube and meets face to face, the plate's surface is closed and encloses what it should, and both
- * are what figures were measured on. */
+ * The meshes of record: the lattice fills its cube and meets face to face, the plate's surface is closed and encloses what it should, and
+ * both are what figures were measured on. */
 #include "faulty_allocator.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static stratus_context* host(void)
 static double volume(const double* a, const double* b, const double* c, const double* d)
 {
   double u[3], v[3], w[3];
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     u[i] = b[i] - a[i];
     v[i] = c[i] - a[i];
     w[i] = d[i] - a[i];
@@ -39,7 +39,7 @@ static double volume(const double* a, const double* b, const double* c, const do
 static double turn(const double* a, const double* b, const double* c, const double* d)
 {
   double first[3], second[3];
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     first[i] = (b[j] - a[j]) * (c[k] - b[k]) - (b[k] - a[k]) * (c[j] - b[j]);
     second[i] = (c[j] - b[j]) * (d[k] - c[k]) - (c[k] - b[k]) * (d[j] - c[j]);
@@ -59,12 +59,12 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
   assert_int_equal(mesh->cell_count, 998250);
   assert_int_equal(mesh->point_count, 56 * 56 * 56);
   assert_true(scene->quads == NULL && scene->quad_count == 0 && scene->maximum_volume == 0.0);
-  for (int64_t c = 0; c < mesh->cell_count; c++) {
+  for (int64_t c = 0; c < mesh->cell_count; ++c) {
     const int32_t* v = mesh->vertices + 4 * c;
     const double size = volume(mesh->points + 3 * v[0], mesh->points + 3 * v[1], mesh->points + 3 * v[2], mesh->points + 3 * v[3]);
     assert_true(fabs(size) == 1.0 / 6.0);
   }
-  for (int64_t i = 0; i < mesh->point_count; i++) {
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
     const double value = (double)((const float*)mesh->values)[i];
     assert_true(value == (double)(float)stratus_mesh_scene_value("wavelet", mesh->points + 3 * i));
     low = fmin(low, value);
@@ -93,7 +93,8 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
   stratus_context_destroy(context);
 }
 
-/* Each edge runs once each way, the quads are planar, and what they enclose is the plate less its holes, which are polygons of 32 corners. */
+/* Each edge runs once each way, the quads are planar, and what they enclose is the plate less its holes, which are polygons of 32 corners.
+ */
 static void test_holes_are_a_closed_surface(void** state)
 {
   (void)state;
@@ -106,27 +107,27 @@ static void test_holes_are_a_closed_surface(void** state)
   assert_non_null(edges);
   assert_int_equal(scene->mesh.cell_count, 0);
   assert_true(scene->quad_count == 2464 && scene->maximum_volume > 0.0);
-  for (int64_t q = 0; q < scene->quad_count; q++) {
+  for (int64_t q = 0; q < scene->quad_count; ++q) {
     const int32_t* v = scene->quads + 4 * q;
     const double* p[4];
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
       assert_true(v[i] >= 0 && v[i] < points);
       assert_int_equal(edges[v[i] * points + v[(i + 1) % 4]]++, 0);
       p[i] = scene->mesh.points + 3 * v[i];
     }
     const double zero[3] = { 0, 0, 0 };
     assert_true(fabs(volume(p[0], p[1], p[2], p[3])) < 1e-15);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
       assert_true(turn(p[i], p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]) > 0.0); /* convex */
     }
     enclosed += volume(zero, p[0], p[1], p[2]) + volume(zero, p[0], p[2], p[3]);
   }
-  for (int64_t e = 0; e < points * points; e++) {
+  for (int64_t e = 0; e < points * points; ++e) {
     assert_int_equal(edges[e], edges[e % points * points + e / points]);
   }
   const double hole = 16.0 * .3 * .3 * sin(3.14159265358979323846 / 16.0);
   assert_true(fabs(enclosed - .4 * 24.0 * (1.0 - hole)) < 1e-12);
-  for (int64_t i = 0; i < points; i++) {
+  for (int64_t i = 0; i < points; ++i) {
     const double value = stratus_mesh_scene_value("holes", scene->mesh.points + 3 * i);
     assert_true(value >= 0.0 && value < 4.0);
   }
@@ -160,9 +161,9 @@ static void test_names_and_refusals(void** state)
 static void test_out_of_memory_is_an_error_without_a_leak(void** state)
 {
   (void)state;
-  for (int index = 0; index < stratus_mesh_scene_count(); index++) {
+  for (int index = 0; index < stratus_mesh_scene_count(); ++index) {
     int refused = 0;
-    for (int64_t fail_at = 1;; fail_at++) {
+    for (int64_t fail_at = 1;; ++fail_at) {
       faulty_allocator allocator = { 0 };
       const stratus_context_options options = faulty_options(&allocator, "host");
       stratus_context* context = NULL;

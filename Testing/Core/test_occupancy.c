@@ -25,7 +25,7 @@ static void random_ranges(stratus_context* context, const int64_t n[3], stratus_
   assert_non_null(r->lo);
   assert_non_null(r->hi);
   assert_non_null(r->gaps);
-  for (int64_t b = 0; b < count; b++) {
+  for (int64_t b = 0; b < count; ++b) {
     const float x = (float)random_below(random, 1001) / 1000.0f, y = x + (float)random_below(random, 50) / 1000.0f;
     const int none = random_below(random, 20) == 0;
     r->lo[b] = none ? INFINITY : x;
@@ -45,7 +45,7 @@ static void free_ranges(stratus_value_range* r)
 static void approach_threshold(const stratus_table* table, stratus_value_range* r, uint32_t* random)
 {
   const float threshold = ((float)table->next_shown[0] - table->offset) / table->scale;
-  for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; b++) {
+  for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; ++b) {
     if (random_below(random, 2)) {
       r->lo[b] = 0.0f;
       r->hi[b] = threshold * (1.0f + (float)(random_below(random, 41) - 20) * 1.5e-7f);
@@ -62,13 +62,13 @@ static void check_build(stratus_context* context, const stratus_value_range* r, 
   stratus_occupancy_blocks(o, blocks, &size);
   assert_memory_equal(blocks, r->blocks, sizeof blocks);
   assert_int_equal(size, r->block_size);
-  for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; b++) {
+  for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
     const int64_t at[3] = { b % blocks[0], b / blocks[0] % blocks[1], b / blocks[0] / blocks[1] };
     const int gap = table->sums && table->shown && r->gaps[b];
     const int expected = gap || (r->lo[b] <= r->hi[b] && stratus_table_shows(table, r->lo[b], r->hi[b]));
     assert_int_equal(o->occupied[b], expected);
     assert_int_equal(stratus_occupancy_get(o, at[0], at[1], at[2]), expected);
-    for (int a = 0; expected && a < 3; a++) {
+    for (int a = 0; expected && a < 3; ++a) {
       low[a] = count == 0 || at[a] < low[a] ? at[a] : low[a];
       high[a] = at[a] >= high[a] ? at[a] + 1 : high[a];
     }
@@ -88,14 +88,14 @@ static void blocks_are_occupied_exactly_where_the_table_shows(void** state)
   static const int64_t sizes[][3] = { { 1, 1, 1 }, { 7, 3, 2 }, { 300, 2, 3 }, { 256, 1, 2 }, { 3, 257, 1 } };
   uint32_t random = 1;
   (void)state;
-  for (int threads = 1; threads <= 3; threads++) {
+  for (int threads = 1; threads <= 3; ++threads) {
     stratus_context* context = make_context("host", threads);
-    for (size_t f = 0; f < sizeof opacities / sizeof *opacities; f++) {
+    for (size_t f = 0; f < sizeof opacities / sizeof *opacities; ++f) {
       const stratus_transfer transfer = transfer_of(opacities[f], 4);
-      for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; sampling++) {
+      for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
         stratus_table* table = NULL;
         assert_int_equal(stratus_table_create(context, &transfer, 0.0, 0.0f, 1.0f, (stratus_sampling)sampling, 1.0, &table), STRATUS_OK);
-        for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+        for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
           stratus_value_range r;
           random_ranges(context, sizes[s], &r, &random);
           if (table->shown) {
@@ -122,19 +122,19 @@ static void a_peak_between_two_voxel_values_is_occupied(void** state)
   stratus_volume v = stratus_volume_default();
   v.values = values;
   v.dimensions[0] = v.dimensions[1] = v.dimensions[2] = 9;
-  for (int plane = 0; plane < 9; plane++) { /* where along x the ones begin */
-    for (int i = 0; i < 729; i++) {
+  for (int plane = 0; plane < 9; ++plane) { /* where along x the ones begin */
+    for (int i = 0; i < 729; ++i) {
       values[i] = i % 9 >= plane ? 1.0f : 0.0f;
     }
     for (int size = 2; size <= 4; size *= 2) {
-      for (int sampling = STRATUS_SAMPLING_AUTO; sampling <= STRATUS_SAMPLING_PREINTEGRATED; sampling++) {
+      for (int sampling = STRATUS_SAMPLING_AUTO; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
         stratus_value_range* r = NULL;
         stratus_occupancy* o = NULL;
         int64_t n[3];
         assert_int_equal(stratus_value_range_create(context, &v, size, &r), STRATUS_OK);
         assert_int_equal(stratus_occupancy_create(context, r, &transfer, (stratus_sampling)sampling, &o), STRATUS_OK);
         stratus_occupancy_blocks(o, n, NULL);
-        for (int64_t i = 0; i < n[0]; i++) {
+        for (int64_t i = 0; i < n[0]; ++i) {
           /* The cell that rises from 0 to 1 is plane-1, and only the block that owns it holds both values. */
           assert_int_equal(stratus_occupancy_get(o, i, 0, 0), plane > 0 && (plane - 1) / size == i);
         }
@@ -224,9 +224,9 @@ static bool exact_range(const stratus_volume* v, int size, double bias, const in
   const int64_t* n = v->dimensions;
   range[0] = (long double)INFINITY;
   range[1] = -(long double)INFINITY;
-  for (int64_t k = at[2] * size; k <= (at[2] + 1) * size && k < n[2]; k++) {
-    for (int64_t j = at[1] * size; j <= (at[1] + 1) * size && j < n[1]; j++) {
-      for (int64_t i = at[0] * size; i <= (at[0] + 1) * size && i < n[0]; i++) {
+  for (int64_t k = at[2] * size; k <= (at[2] + 1) * size && k < n[2]; ++k) {
+    for (int64_t j = at[1] * size; j <= (at[1] + 1) * size && j < n[1]; ++j) {
+      for (int64_t i = at[0] * size; i <= (at[0] + 1) * size && i < n[0]; ++i) {
         const int64_t voxel = (k * n[1] + j) * n[0] + i;
         const long double value = exact_value(v, voxel);
         if (isfinite(stratus_volume_fetch(v, bias, (size_t)voxel))) {
@@ -251,7 +251,7 @@ static int64_t check_between(stratus_context* context, const stratus_volume* v, 
   stratus_occupancy* o = NULL;
   int64_t count = 0, rounded = 0;
   assert_int_equal(stratus_occupancy_create_between(context, r, lower, upper, &o), STRATUS_OK);
-  for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; b++) {
+  for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; ++b) {
     const int64_t at[3] = { b % r->blocks[0], b / r->blocks[0] % r->blocks[1], b / r->blocks[0] / r->blocks[1] };
     long double range[2];
     const bool any = exact_range(v, r->block_size, r->bias, at, range);
@@ -262,7 +262,7 @@ static int64_t check_between(stratus_context* context, const stratus_volume* v, 
         fail_msg("type %d, block %d of values %.20Lg..%.20Lg, interval %.17g..%.17g: occupied is %d", (int)v->type, (int)b, range[0],
           range[1], lower, upper, (int)occupied);
       }
-      rounded++;
+      ++rounded;
     }
     count += occupied;
   }
@@ -277,12 +277,12 @@ static void no_label_of_any_type_is_missed_or_taken_for_another(void** state)
   uint32_t random = 5;
   (void)state;
   stratus_context* context = make_context("host", 3);
-  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     for (int size = 2; size <= 8; size *= 2) {
       test_volume v = make_volume((stratus_type)type, 17, 9, 12, 1 + type % 2, &random);
       const int64_t count = 17 * 9 * 12;
       const size_t bytes = stratus_type_size((stratus_type)type);
-      for (int64_t i = 0; i < count; i++) { /* one label a block's width, so that blocks of one label are many */
+      for (int64_t i = 0; i < count; ++i) { /* one label a block's width, so that blocks of one label are many */
         const int label = (int)((i % 17 / size + i / 17 % 9 / size * 3 + i / 17 / 9 / size * 5) % LABELS);
         const double number = label;
         const float single = (float)label;
@@ -296,11 +296,11 @@ static void no_label_of_any_type_is_missed_or_taken_for_another(void** state)
       }
       stratus_value_range* r = NULL;
       assert_int_equal(stratus_value_range_create(context, &v.view, size, &r), STRATUS_OK);
-      for (int k = -1; k <= LABELS; k++) {
+      for (int k = -1; k <= LABELS; ++k) {
         stratus_occupancy* o = NULL;
         const double ends[][2] = { { k, k }, { k - 0.25, k + 0.25 }, { k + 0.25, k + 0.75 }, { k, INFINITY }, { -INFINITY, k },
           { nextafter(k, INFINITY), k + 0.5 }, { k - 0.5, nextafter(k, -INFINITY) } };
-        for (size_t e = 0; e < sizeof ends / sizeof *ends; e++) {
+        for (size_t e = 0; e < sizeof ends / sizeof *ends; ++e) {
           const int64_t rounded = check_between(context, &v.view, r, ends[e][0], ends[e][1]);
           assert_true(e >= 5 || rounded == 0);
         }
@@ -321,7 +321,7 @@ static void blocks_are_between_the_ends_exactly_where_their_values_are(void** st
   int64_t rounded = 0;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     const stratus_type type = (stratus_type)(repeat % 10);
     test_volume v = make_volume(type, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       1 + random_below(&random, 2), &random);
@@ -329,9 +329,9 @@ static void blocks_are_between_the_ends_exactly_where_their_values_are(void** st
     spoil(&v, 1 + random_below(&random, 60), &random);
     stratus_value_range* r = NULL;
     assert_int_equal(stratus_value_range_create(context, &v.view, 1 << (1 + repeat / 10 % 3), &r), STRATUS_OK);
-    for (int interval = 0; interval < 40; interval++) {
+    for (int interval = 0; interval < 40; ++interval) {
       double ends[2];
-      for (int e = 0; e < 2; e++) { /* values of the volume, and the doubles about them */
+      for (int e = 0; e < 2; ++e) { /* values of the volume, and the doubles about them */
         const double value = (double)exact_value(&v.view, random_below(&random, n[0] * n[1] * n[2]));
         const int64_t way = random_below(&random, 6);
         ends[e] = isnan(value) || way == 0 ? (e ? (double)INFINITY : -(double)INFINITY)
@@ -361,7 +361,7 @@ static void reversed_and_unknown_ends_are_refused(void** state)
   stratus_value_range r;
   stratus_occupancy* o = NULL;
   random_ranges(context, (const int64_t[]){ 2, 2, 2 }, &r, &random);
-  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+  for (size_t i = 0; i < sizeof ends / sizeof *ends; ++i) {
     assert_int_equal(stratus_occupancy_create_between(context, &r, ends[i][0], ends[i][1], &o), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), isnan(ends[i][0]) || isnan(ends[i][1]) ? "nan" : "lower end"));
   }

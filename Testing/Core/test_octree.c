@@ -8,7 +8,7 @@
 static double (*make_boxes(size_t count, double scale, uint32_t seed))[6]
 {
   double(*boxes)[6] = malloc(count * sizeof *boxes);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     random_bounds(&seed, scale, boxes[i]);
   }
   return boxes;
@@ -49,7 +49,7 @@ static void every_tree_shows_what_the_linear_list_shows(void** state)
   static const double scales[] = { 1.0, 1e-6, 1e8 };
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     const double scale = scales[variant % 3];
     const stratus_octree_options options = options_of(variant);
     stratus_octree_options list = options;
@@ -64,7 +64,7 @@ static void every_tree_shows_what_the_linear_list_shows(void** state)
     uint32_t random = (uint32_t)variant;
     size_t seen = 0;
     uint64_t splits = 0;
-    for (int frame = 0; frame < 30; frame++) {
+    for (int frame = 0; frame < 30; ++frame) {
       double inside[3];
       const stratus_frustum frustum = random_frustum(context, &random, scale, inside);
       const stratus_octree_cull_options exact = { .exact = frame % 2 };
@@ -78,7 +78,7 @@ static void every_tree_shows_what_the_linear_list_shows(void** state)
       }
       uint32_t *x = sorted_ids(&a), *y = sorted_ids(&b);
       size_t i = 0, j = 0;
-      for (uint32_t id = 0; id < OBJECTS; id++) {
+      for (uint32_t id = 0; id < OBJECTS; ++id) {
         const bool kept = i < a.count && x[i] == id, listed = j < b.count && y[j] == id;
         const bool meets = box_meets_frustum(&frustum, boxes[id], inside, 0.0);
         i += kept;
@@ -116,11 +116,11 @@ static void turned_boxes_are_tested_as_they_are(void** state)
   stratus_octree *tree = make_tree(context, &options), *linear = make_tree(context, &list), *about = make_tree(context, &options);
   double(*boxes)[12] = malloc(COUNT * sizeof *boxes);
   uint32_t *ids = malloc(COUNT * sizeof *ids), random = 7;
-  for (int i = 0; i < COUNT; i++) {
+  for (int i = 0; i < COUNT; ++i) {
     /* Long and thin, along a diagonal, where their bounds are most of them empty. */
     const double s = 0.01 + 0.2 * random_unit(&random), c = 0.7071067811865476;
     const double turned[9] = { s * c, s * c, 0, -0.01 * c, 0.01 * c, 0, 0, 0, 0.01 };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       boxes[i][a] = random_unit(&random);
     }
     memcpy(boxes[i] + 3, turned, sizeof turned);
@@ -132,7 +132,7 @@ static void turned_boxes_are_tested_as_they_are(void** state)
   }
   stratus_octree_view *view = make_view(tree), *all = make_view(linear), *outer = make_view(about);
   size_t fewer = 0;
-  for (int frame = 0; frame < 40; frame++) {
+  for (int frame = 0; frame < 40; ++frame) {
     const stratus_frustum frustum = random_frustum(context, &random, 1.0, NULL);
     const stratus_octree_cull_options exact = { .exact = frame % 2 };
     stratus_octree_visible a, b, c;
@@ -142,10 +142,10 @@ static void turned_boxes_are_tested_as_they_are(void** state)
     assert_same_visible(&a, &b);
     fewer += c.count - a.count;
     uint32_t* x = sorted_ids(&a);
-    for (uint32_t id = 0; id < COUNT; id++) {
-      for (int i = 0; i < 5; i++) {
+    for (uint32_t id = 0; id < COUNT; ++id) {
+      for (int i = 0; i < 5; ++i) {
         double point[6];
-        for (int a3 = 0; a3 < 3; a3++) {
+        for (int a3 = 0; a3 < 3; ++a3) {
           point[2 * a3] = point[2 * a3 + 1] = boxes[id][a3] + (0.5 * i - 1.0) * boxes[id][3 + a3];
         }
         if (reach_of(&frustum, point) > 1e-12L) {
@@ -184,7 +184,7 @@ static void threads_change_no_bit_of_the_list(void** state)
     stratus_octree_view* view = make_view(tree);
     stratus_octree_visible visible;
     const stratus_octree_cull_options options = { .coverage = 1 };
-    for (int frame = 0; frame < 12; frame++) {
+    for (int frame = 0; frame < 12; ++frame) {
       const stratus_frustum frustum = random_frustum(context, &random, 1.0, NULL);
       assert_int_equal(stratus_octree_cull(view, &frustum, &options, &visible), STRATUS_OK);
     }
@@ -222,14 +222,14 @@ static void views_share_a_tree(void** state)
   assert_int_equal(stratus_octree_insert(linear, boxes[0], OBJECTS, ids), STRATUS_OK);
   stratus_octree_view* views[2] = { make_view(tree), make_view(tree) };
   stratus_octree_view* all = make_view(linear);
-  for (int frame = 0; frame < 20; frame++) {
+  for (int frame = 0; frame < 20; ++frame) {
     stratus_frustum frusta[2];
     stratus_octree_visible visible[2], right;
-    for (int v = 0; v < 2; v++) {
+    for (int v = 0; v < 2; ++v) {
       frusta[v] = random_frustum(context, &random, 1.0, NULL);
       assert_int_equal(stratus_octree_cull(views[v], &frusta[v], NULL, &visible[v]), STRATUS_OK);
     }
-    for (int v = 0; v < 2; v++) {
+    for (int v = 0; v < 2; ++v) {
       assert_int_equal(stratus_octree_cull(all, &frusta[v], NULL, &right), STRATUS_OK);
       assert_same_visible(&visible[v], &right);
     }
@@ -281,7 +281,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_octree_node* nodes = malloc(full.nodes * sizeof *nodes);
   assert_int_equal(stratus_octree_nodes(tree, &close, nodes), STRATUS_OK);
   size_t held = 0;
-  for (size_t i = 0; i < adaptive.nodes; i++) {
+  for (size_t i = 0; i < adaptive.nodes; ++i) {
     held += nodes[i].objects;
     /* Only what the border crossed was split. */
     assert_true(!nodes[i].split || nodes[i].side == STRATUS_SIDE_CROSSING);
@@ -289,7 +289,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   assert_int_equal(held, OBJECTS);
   assert_memory_equal(nodes[0].bounds, adaptive.root, sizeof adaptive.root);
   uint64_t collapses = 0;
-  for (int frame = 0; frame < 64; frame++) {
+  for (int frame = 0; frame < 64; ++frame) {
     assert_int_equal(stratus_octree_cull(view, &away, NULL, &visible), STRATUS_OK);
     assert_int_equal(visible.count, 0);
     collapses += visible.collapses;
@@ -313,7 +313,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
 static void what_is_wholly_in_sight_needs_no_tree(void** state)
 {
   (void)state;
-  for (int touching = 0; touching < 2; touching++) {
+  for (int touching = 0; touching < 2; ++touching) {
     stratus_context* context = make_context("host", 1);
     stratus_octree_options options = stratus_octree_options_default();
     options.placement = touching ? STRATUS_OCTREE_TOUCHING : STRATUS_OCTREE_ENCLOSING;
@@ -356,10 +356,11 @@ static void a_view_of_nothing_sees_nothing(void** state)
 {
   (void)state;
   const double behind[12] = { -2, -1, -1, 1, -1, 1, -9, -8, 0, 1, 0, 1 };
-  const stratus_frustum frustum = { .planes = { { 1, 0, 0, 0 }, { 1, 0, 0, 5 }, { 0, 1, 0, 9 }, { 0, -1, 0, 9 }, { 0, 0, 1, 9 }, { 0, 0, -1, 9 } } };
+  const stratus_frustum frustum = { .planes = {
+                                      { 1, 0, 0, 0 }, { 1, 0, 0, 5 }, { 0, 1, 0, 9 }, { 0, -1, 0, 9 }, { 0, 0, 1, 9 }, { 0, 0, -1, 9 } } };
   const stratus_octree_cull_options measured = { .coverage = 1 };
   stratus_context* context = make_context("host", 1);
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     const stratus_octree_options options = options_of(variant);
     stratus_octree* tree = make_tree(context, &options);
     stratus_octree_view* view = make_view(tree);
@@ -404,7 +405,7 @@ static void coverage_is_the_window_s_share(void** state)
   assert_int_equal(stratus_octree_cull(view, &frustum, &options, &visible), STRATUS_OK);
   assert_int_equal(visible.count, 3);
   static const float coverage[] = { 0.25f, 0.125f, 1.0f }, depth[] = { 4.0f, 5.0f, 0.0f };
-  for (size_t i = 0; i < 3; i++) {
+  for (size_t i = 0; i < 3; ++i) {
     /* Floats of numbers of order one. */
     assert_true(fabsf(visible.coverage[i] - coverage[visible.ids[i]]) < 1e-6f);
     assert_true(fabsf(visible.depth[i] - depth[visible.ids[i]]) < 1e-5f);

@@ -20,7 +20,7 @@ static void random_box(uint32_t* random, double bounds[6])
 {
   random_bounds(random, 1.0, bounds);
   const int64_t odd = random_below(random, 200);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (odd == 0) { /* everywhere */
       bounds[2 * a] = -INFINITY;
       bounds[2 * a + 1] = a == 1 ? NAN : INFINITY;
@@ -72,7 +72,7 @@ static void assert_shows(stratus_octree_view* view, const mirror* m, stratus_con
   assert_int_equal(stratus_octree_cull(view, &frustum, &options, &visible), STRATUS_OK);
   uint32_t* ids = sorted_ids(&visible);
   size_t next = 0;
-  for (uint32_t id = 0; id < 8192; id++) {
+  for (uint32_t id = 0; id < 8192; ++id) {
     const bool kept = next < visible.count && ids[next] == id;
     next += kept;
     const bool right = m->used[id] && stratus_frustum_side(&frustum, m->bounds[id], touching) != STRATUS_SIDE_OUTSIDE;
@@ -91,8 +91,8 @@ static void run_history(stratus_octree_options options, uint32_t seed, int round
   stratus_octree_view* view = NULL;
   assert_int_equal(stratus_octree_create(context, &options, &tree), STRATUS_OK);
   assert_int_equal(stratus_octree_view_create(tree, &view), STRATUS_OK);
-  for (int round = 0; round < rounds; round++) {
-    for (int i = 0; i < CHANGES; i++) {
+  for (int round = 0; round < rounds; ++round) {
+    for (int i = 0; i < CHANGES; ++i) {
       change(tree, &m, &seed);
     }
     assert_int_equal(stratus_octree_count(tree), m.count);
@@ -142,7 +142,7 @@ static void changes_of_a_touching_tree(void** state)
 static double distance_of(const double bounds[6], const double point[3])
 {
   double sum = 0.0;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double away = fmax(fmax(bounds[2 * a] - point[a], point[a] - bounds[2 * a + 1]), 0.0);
     sum += away * away;
   }
@@ -153,7 +153,7 @@ static double distance_of(const double bounds[6], const double point[3])
 static bool ray_meets(const double bounds[6], const double origin[3], const double direction[3], double t_max)
 {
   long double from = 0.0L, to = t_max;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const long double s = ((long double)bounds[2 * a] - origin[a]) / direction[a],
                       t = ((long double)bounds[2 * a + 1] - origin[a]) / direction[a];
     from = fmaxl(from, fminl(s, t));
@@ -167,7 +167,7 @@ static void queries_find_what_loops_find(void** state)
   enum { COUNT = 5000 };
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int placement = 0; placement < 2; placement++) {
+  for (int placement = 0; placement < 2; ++placement) {
     stratus_octree_options options = small_leaves((stratus_octree_placement)placement, STRATUS_OCTREE_STOP_PIXELS);
     stratus_octree* tree = NULL;
     static double boxes[COUNT][6];
@@ -176,16 +176,16 @@ static void queries_find_what_loops_find(void** state)
     uint32_t random = 17;
     size_t found = 0;
     assert_int_equal(stratus_octree_create(context, &options, &tree), STRATUS_OK);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
       random_bounds(&random, 1.0, boxes[i]);
       boxes[i][0] += 1e3; /* away from 0 */
       boxes[i][1] += 1e3;
     }
     assert_int_equal(stratus_octree_insert(tree, boxes[0], COUNT, ids), STRATUS_OK);
-    for (int repeat = 0; repeat < 60; repeat++) {
+    for (int repeat = 0; repeat < 60; ++repeat) {
       double point[3], direction[3], bounds[6];
       size_t count = 0, right = 0;
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         point[a] = 2.0 * random_unit(&random) - 0.5 + (a == 0 ? 1e3 : 0.0);
         direction[a] = random_unit(&random) - 0.5;
         bounds[2 * a] = point[a];
@@ -193,31 +193,31 @@ static void queries_find_what_loops_find(void** state)
       }
       const double radius = 0.3 * random_unit(&random), t_max = repeat % 2 ? INFINITY : 1.0;
       assert_int_equal(stratus_octree_query_sphere(tree, point, radius, ids, COUNT, &count), STRATUS_OK);
-      for (uint32_t i = 0; i < COUNT; i++) {
+      for (uint32_t i = 0; i < COUNT; ++i) {
         if (distance_of(boxes[i], point) <= radius) {
           assert_true(right < count && ids[right] == i);
-          right++;
+          ++right;
         }
       }
       assert_int_equal(right, count);
       found += count;
       right = 0;
       assert_int_equal(stratus_octree_query_box(tree, bounds, ids, COUNT, &count), STRATUS_OK);
-      for (uint32_t i = 0; i < COUNT; i++) {
+      for (uint32_t i = 0; i < COUNT; ++i) {
         if (boxes[i][0] <= bounds[1] && bounds[0] <= boxes[i][1] && boxes[i][2] <= bounds[3] && bounds[2] <= boxes[i][3] &&
           boxes[i][4] <= bounds[5] && bounds[4] <= boxes[i][5]) {
           assert_true(right < count && ids[right] == i);
-          right++;
+          ++right;
         }
       }
       assert_int_equal(right, count);
       right = 0;
       assert_int_equal(stratus_octree_query_ray(tree, point, direction, t_max, ids, values, COUNT, &count), STRATUS_OK);
-      for (uint32_t i = 0; i < COUNT; i++) {
+      for (uint32_t i = 0; i < COUNT; ++i) {
         right += ray_meets(boxes[i], point, direction, t_max);
       }
       assert_int_equal(right, count); /* no ray of these grazes an edge within rounding */
-      for (size_t i = 0; i < count; i++) {
+      for (size_t i = 0; i < count; ++i) {
         assert_true(ray_meets(boxes[ids[i]], point, direction, t_max));
         assert_true(i == 0 || values[i - 1] < values[i] || (values[i - 1] == values[i] && ids[i - 1] < ids[i]));
       }
@@ -226,12 +226,12 @@ static void queries_find_what_loops_find(void** state)
       assert_int_equal(stratus_octree_query_nearest(tree, point, k, ids, values, &count), STRATUS_OK);
       assert_int_equal(count, k);
       size_t nearer = 0;
-      for (uint32_t i = 0; k > 0 && i < COUNT; i++) {
+      for (uint32_t i = 0; k > 0 && i < COUNT; ++i) {
         const double distance = distance_of(boxes[i], point);
         nearer += distance < values[k - 1] || (distance == values[k - 1] && i <= ids[k - 1]);
       }
       assert_int_equal(nearer, k);
-      for (size_t i = 0; i < k; i++) {
+      for (size_t i = 0; i < k; ++i) {
         assert_true(values[i] == distance_of(boxes[ids[i]], point));
         assert_true(i == 0 || values[i - 1] < values[i] || (values[i - 1] == values[i] && ids[i - 1] < ids[i]));
       }

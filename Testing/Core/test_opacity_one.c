@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Opacity 1 lets nothing through however short the way, by both sampling rules, in volumes and in meshes, on host and device; and what is below 1,
- * however little, stays translucent by as much as it should. */
+ * Opacity 1 lets nothing through however short the way, by both sampling rules, in volumes and in meshes, on host and device; and what is
+ * below 1, however little, stays translucent by as much as it should. */
 #include "../tetra_case.h"
 
 #define SIDE 24

@@ -10,12 +10,12 @@ static void assert_box_conforms(stratus_context* context, const stratus_partitio
   stratus_adjacency* adjacency = NULL;
   assert_int_equal(stratus_adjacency_create(context, &view, &adjacency), STRATUS_OK);
   assert_int_equal(adjacency->broken_faces + adjacency->folded_faces + adjacency->flat, 0);
-  for (int64_t i = 0; i < 4 * mesh.cell_count; i++) {
+  for (int64_t i = 0; i < 4 * mesh.cell_count; ++i) {
     if (adjacency->neighbours[i] < 0) {
       int on = 0;
-      for (int side = 0; side < 6; side++) {
+      for (int side = 0; side < 6; ++side) {
         int points = 0;
-        for (int v = 0; v < 4; v++) {
+        for (int v = 0; v < 4; ++v) {
           const double x = mesh.points[3 * (int64_t)mesh.vertices[4 * (i / 4) + v] + side / 2];
           points += v != i % 4 && fabs(x - offset - (side % 2 ? n[side / 2] : 0)) < 1e-14 * n[side / 2] + 1e-15 * fabs(offset);
         }
@@ -24,8 +24,8 @@ static void assert_box_conforms(stratus_context* context, const stratus_partitio
       assert_int_equal(on, 1);
     }
   }
-  for (int64_t i = mesh.point_count - 1; i >= cut->old_points; i--) {
-    for (int64_t j = 0; j < i; j++) {
+  for (int64_t i = mesh.point_count - 1; i >= cut->old_points; --i) {
+    for (int64_t j = 0; j < i; ++j) {
       assert_memory_not_equal(mesh.points + 3 * i, mesh.points + 3 * j, 3 * sizeof(double));
     }
   }
@@ -43,7 +43,7 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
   int64_t added = 0, leaves = 0;
   (void)state;
   stratus_context* context = mesh_context(2);
-  for (int repeat = 0; repeat < 16; repeat++) {
+  for (int repeat = 0; repeat < 16; ++repeat) {
     mesh_case mesh = mesh_grid(n, repeat % 4 == 3 ? 0.0 : 0.19, (uint32_t)repeat);
     stratus_partition_options options = stratus_partition_options_default();
     stratus_partition_result cut;
@@ -67,32 +67,32 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
   stratus_context_destroy(context);
 }
 
-/* Quadratic hexahedra as they are divided: cubes of 20 points and one in the middle, corners of faces cut off. What is not a corner is moved by
- * up to 4 roundings, as by whoever computed it. `offset` moves all. */
+/* Quadratic hexahedra as they are divided: cubes of 20 points and one in the middle, corners of faces cut off. What is not a corner is
+ * moved by up to 4 roundings, as by whoever computed it. `offset` moves all. */
 static mesh_case quadratic_cubes(const int n[3], double offset, uint32_t seed)
 {
   const int step[3] = { 1, 2 * n[0] + 1, (2 * n[0] + 1) * (2 * n[1] + 1) };
   mesh_case mesh = mesh_case_allocate((int64_t)step[2] * (2 * n[2] + 1), 36 * (int64_t)n[0] * n[1] * n[2]);
   int64_t cell = 0;
-  for (int64_t i = 0; i < mesh.point_count; i++) {
+  for (int64_t i = 0; i < mesh.point_count; ++i) {
     const int64_t at[3] = { i % step[1], i / step[1] % (2 * n[1] + 1), i / step[2] };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       const double x = offset + 0.5 * (double)at[a];
       const bool corner = at[0] % 2 + at[1] % 2 + at[2] % 2 == 0;
       mesh.points[3 * i + a] = corner ? x : x + fabs(x) * 0x1p-52 * (double)((int)(mesh_random(&seed) % 9) - 4);
     }
   }
-  for (int cube = 0; cube < n[0] * n[1] * n[2]; cube++) {
+  for (int cube = 0; cube < n[0] * n[1] * n[2]; ++cube) {
     const int at[3] = { cube % n[0], cube / n[0] % n[1], cube / n[0] / n[1] };
     const int middle = (2 * at[0] + 1) * step[0] + (2 * at[1] + 1) * step[1] + (2 * at[2] + 1) * step[2];
-    for (int side = 0; side < 6; side++) {
+    for (int side = 0; side < 6; ++side) {
       const int u = step[(side / 2 + 1) % 3], v = step[(side / 2 + 2) % 3];
       const int face = middle + (side % 2 ? step[side / 2] : -step[side / 2]);
       const int round[8] = { face - u - v, face - v, face + u - v, face + u, face + u + v, face + v, face - u + v, face - u };
       const int triangles[6][3] = { { 7, 0, 1 }, { 1, 2, 3 }, { 3, 4, 5 }, { 5, 6, 7 }, { 1, 3, 7 }, { 3, 5, 7 } };
-      for (int t = 0; t < 6; t++, cell++) { /* both cubes at a face start round it from the same corner */
+      for (int t = 0; t < 6; ++t, ++cell) { /* both cubes at a face start round it from the same corner */
         mesh.vertices[4 * cell] = middle;
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; ++i) {
           mesh.vertices[4 * cell + 1 + i] = round[triangles[t][side % 2 ? i : 2 - i]];
         }
       }
@@ -109,7 +109,7 @@ static void what_is_within_rounding_of_a_plane_lies_on_it(void** state)
   int whole = 0, cut_too = 0;
   (void)state;
   stratus_context* context = mesh_context(1);
-  for (int repeat = 0; repeat < 24; repeat++) {
+  for (int repeat = 0; repeat < 24; ++repeat) {
     const double offset = offsets[repeat / 8];
     mesh_case mesh = quadratic_cubes(n, offset, (uint32_t)repeat + 1);
     stratus_partition_options options = stratus_partition_options_default();
@@ -147,7 +147,7 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   static const int32_t vertices[8] = { 0, 1, 2, 3, 2, 2, 2, 2 };
   (void)state;
   stratus_context* context = mesh_context(1);
-  for (int cells = 0; cells <= 2; cells++) {
+  for (int cells = 0; cells <= 2; ++cells) {
     stratus_mesh mesh = stratus_mesh_default();
     stratus_partition* partition = NULL;
     stratus_partition_result cut;
@@ -176,21 +176,21 @@ static void leaves_without_cells_take_part(void** state)
   options.imbalance = INFINITY;
   options.depth = 7;
   options.leaf_cells = 1;
-  for (int round = 0; round < 600; round++) {
+  for (int round = 0; round < 600; ++round) {
     mesh_case mesh = mesh_case_allocate(13, 13);
     stratus_partition_result cut;
     options.rule = round % 2 ? STRATUS_PARTITION_PAPER : STRATUS_PARTITION_MEDIAN;
-    for (int i = 0; i < 39; i++) {
+    for (int i = 0; i < 39; ++i) {
       mesh.points[i] = (double)(mesh_random(&random) % 4);
     }
-    for (int i = 0; i < 52; i++) {
+    for (int i = 0; i < 52; ++i) {
       mesh.vertices[i] = (int32_t)(mesh_random(&random) % 13);
     }
     stratus_partition* partition = make_partition(context, &mesh, &options);
     stratus_partition_get(partition, &cut);
-    for (int32_t leaf = 0; leaf < cut.leaves.leaf_count; leaf++) {
+    for (int32_t leaf = 0; leaf < cut.leaves.leaf_count; ++leaf) {
       int64_t cells = 0;
-      for (int64_t c = 0; c < cut.cell_count; c++) {
+      for (int64_t c = 0; c < cut.cell_count; ++c) {
         cells += cut.leaves.leaf[c] == leaf;
       }
       empty += cells == 0;
@@ -212,7 +212,7 @@ static void options_out_of_range_are_refused_with_their_values(void** state)
   stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   const stratus_mesh view = mesh_case_view(&mesh);
-  for (int wrong = 0; wrong < 10; wrong++) {
+  for (int wrong = 0; wrong < 10; ++wrong) {
     stratus_partition_options options = stratus_partition_options_default();
     stratus_partition* partition = NULL;
     options.rule = wrong == 0 ? (stratus_partition_rule)2 : STRATUS_PARTITION_MEDIAN;

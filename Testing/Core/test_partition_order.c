@@ -12,7 +12,7 @@ static void orders_by_leaves_are_right_from_everywhere(void** state)
   stratus_partition_options options = stratus_partition_options_default();
   options.leaf_cells = 20;
   uint32_t* first = NULL;
-  for (int threads = 1; threads <= 3; threads++) {
+  for (int threads = 1; threads <= 3; ++threads) {
     stratus_context* context = mesh_context(threads);
     stratus_partition* partition = make_partition(context, &mesh, &options);
     stratus_partition_result cut;
@@ -20,12 +20,12 @@ static void orders_by_leaves_are_right_from_everywhere(void** state)
     assert_int_equal(cut.leaves.leaf_count, 8);
     mesh_case pieces = mesh_of(&cut);
     const stratus_mesh view = mesh_case_view(&pieces);
-    for (size_t i = 0; i < 2 * sizeof eyes / sizeof *eyes; i++) {
+    for (size_t i = 0; i < 2 * sizeof eyes / sizeof *eyes; ++i) {
       stratus_visibility_order* order = NULL;
       stratus_visibility_result result;
       stratus_camera camera = { .parallel = i % 2 };
       int64_t pairs = 0;
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         camera.eye[a] = eyes[i / 2][a];
         camera.forward[a] = 2.5 - camera.eye[a];
       }
@@ -53,7 +53,7 @@ static void orders_by_leaves_are_right_from_everywhere(void** state)
 static double mean_step(const double* points, const int32_t* vertices, int64_t cells)
 {
   double sum = 0.0;
-  for (int64_t i = 0; i + 1 < cells; i++) {
+  for (int64_t i = 0; i + 1 < cells; ++i) {
     const double *p = points + 3 * (int64_t)vertices[4 * i], *q = p + 3 * ((int64_t)vertices[4 * i + 4] - vertices[4 * i]);
     sum += fabs(p[0] - q[0]) + fabs(p[1] - q[1]) + fabs(p[2] - q[2]);
   }
@@ -67,8 +67,8 @@ static void scattered_cells_are_listed_where_they_are(void** state)
   (void)state;
   stratus_context* context = mesh_context(2);
   stratus_partition_options options = stratus_partition_options_default();
-  for (int depth = 0; depth < 2; depth++) {
-    for (int scattered = 0; scattered < 2; scattered++) {
+  for (int depth = 0; depth < 2; ++depth) {
+    for (int scattered = 0; scattered < 2; ++scattered) {
       mesh_case mesh = mesh_grid(n, 0.1, 1);
       if (scattered) {
         mesh_shuffle(&mesh, 3);
@@ -82,7 +82,7 @@ static void scattered_cells_are_listed_where_they_are(void** state)
       if (scattered) {
         assert_true(mean_step(mesh.points, mesh.vertices, mesh.cell_count) > 15.0);
       }
-      for (int64_t i = 1; i < cut.cell_count && !scattered; i++) {
+      for (int64_t i = 1; i < cut.cell_count && !scattered; ++i) {
         assert_true(cut.leaves.leaf[i] != cut.leaves.leaf[i - 1] || cut.cells[i] >= cut.cells[i - 1] || cut.cut_cells > 0);
       }
       stratus_partition_destroy(partition);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where a partition cuts: between cells where it can, by the plane that a loop over all candidates finds, across axes that suit the mesh. */
+ * Where a partition cuts: between cells where it can, by the plane that a loop over all candidates finds, across axes that suit the mesh.
+ */
 #include "partition_case.h"
 
 /* Grid planes that are there to be found. */
@@ -9,7 +10,7 @@ static void a_grid_is_cut_between_its_cells(void** state)
   (void)state;
   stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
-  for (int64_t i = 0; i < mesh.point_count; i++) { /* bent, so that planes are left across x alone */
+  for (int64_t i = 0; i < mesh.point_count; ++i) { /* bent, so that planes are left across x alone */
     double* p = mesh.points + 3 * i;
     p[1] += 0.3 * sin(p[0] + 0.7 * p[2]);
     p[2] += 0.3 * sin(1.3 * p[0] + p[1]);
@@ -36,7 +37,7 @@ static void the_paper_s_plane_is_the_best_of_all_that_are_admissible(void** stat
   int none = 0, found = 0;
   (void)state;
   stratus_context* context = mesh_context(1);
-  for (int repeat = 0; repeat < 12; repeat++) {
+  for (int repeat = 0; repeat < 12; ++repeat) {
     mesh_case mesh = mesh_grid(n, 0.19, (uint32_t)repeat);
     stratus_partition_options options = stratus_partition_options_default();
     options.rule = STRATUS_PARTITION_PAPER;
@@ -46,13 +47,13 @@ static void the_paper_s_plane_is_the_best_of_all_that_are_admissible(void** stat
     options.imbalance = 0.2 + 0.1 * (repeat % 5);
     options.leaf_cells = 1;
     double least = INFINITY;
-    for (int i = 0; i < 3 * options.planes; i++) {
+    for (int i = 0; i < 3 * options.planes; ++i) {
       const int axis = i / options.planes;
       const double part = (i % options.planes + 1) / (options.planes + 1.0), x = 0.0 * (1.0 - part) + n[axis] * part;
       int64_t below = 0, above = 0, cells = 0;
-      for (int64_t c = 0; c < mesh.cell_count; c++) {
+      for (int64_t c = 0; c < mesh.cell_count; ++c) {
         int l = 0, h = 0;
-        for (int v = 0; v < 4; v++) {
+        for (int v = 0; v < 4; ++v) {
           const double y = mesh.points[3 * (int64_t)mesh.vertices[4 * c + v] + axis];
           l += y < x;
           h += y > x;
@@ -73,11 +74,11 @@ static void the_paper_s_plane_is_the_best_of_all_that_are_admissible(void** stat
     if (isinf(least)) {
       assert_int_equal(cut.leaves.leaf_count, 1);
       assert_int_equal(cut.cell_count, mesh.cell_count);
-      none++;
+      ++none;
     } else {
       assert_int_equal(cut.leaves.leaf_count, 2);
       assert_int_equal(cut.cell_count - mesh.cell_count, (int64_t)(least * (double)mesh.cell_count + 0.5));
-      found++;
+      ++found;
     }
     stratus_partition_destroy(partition);
     mesh_case_free(&mesh);
@@ -92,7 +93,7 @@ static void a_mesh_that_stands_askew_is_turned_before_it_is_cut(void** state)
   (void)state;
   stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
-  for (int64_t i = 0; i < mesh.point_count; i++) { /* no plane across x, y or z passes between cells */
+  for (int64_t i = 0; i < mesh.point_count; ++i) { /* no plane across x, y or z passes between cells */
     double* p = mesh.points + 3 * i;
     const double x = p[0], y = p[1], z = p[2];
     p[0] = 0.8 * x + 0.6 * y;
@@ -129,7 +130,7 @@ static void a_mesh_that_stands_askew_is_turned_before_it_is_cut(void** state)
   stratus_visibility_order* order = NULL;
   stratus_visibility_result result;
   assert_int_equal(stratus_visibility_order_create(context, &view, &cut.leaves, &order), STRATUS_OK);
-  for (int i = 0; i < 8; i++) {
+  for (int i = 0; i < 8; ++i) {
     const stratus_camera camera = { .eye = { i % 2 ? 30 : -20, i / 2 % 2 ? 25 : -30, i / 4 ? 40 : -10 }, .forward = { 1, 0, 0 } };
     int64_t pairs = 0;
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);

@@ -307,7 +307,8 @@ static void depth_is_where_the_picture_begins(void** state)
     for (int i = 0; i < CASE_PIXELS; ++i) {
       assert_int_equal(isfinite(drawn.depth[i]), drawn.rgba[4 * i + 3] > 0.0f);
       if (isfinite(drawn.depth[i])) {
-        /* Never before the first opacity by more than the segment that holds it. A ray that only grazes it between two samples sees it later. */
+        /* Never before the first opacity by more than the segment that holds it. A ray that only grazes it between two samples sees it
+         * later. */
         assert_true(drawn.depth[i] >= depth[i] - 0.26f);
         late += drawn.depth[i] > depth[i] + 0.5f;
         ++compared;

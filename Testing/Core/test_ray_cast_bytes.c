@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The picture in bytes is the float picture rounded, on host and device and in every pixel; and nothing shows outside the reported window. */
+ * The picture in bytes is the float picture rounded, on host and device and in every pixel; and nothing shows outside the reported window.
+ */
 #include "../picture_case.h"
 
 static picture shown;

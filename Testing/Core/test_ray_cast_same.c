@@ -52,7 +52,8 @@ static void structures_change_no_bit(void** state)
 }
 
 /* A tree of the cells that the transfer function shows, in many leaves, boxes of hierarchies that overlap among them. */
-static void offer_tree(stratus_context* context, stratus_ray_caster* caster, const picture_case* c, stratus_tree_method method, int emptiness)
+static void offer_tree(
+  stratus_context* context, stratus_ray_caster* caster, const picture_case* c, stratus_tree_method method, int emptiness)
 {
   stratus_criterion criterion = stratus_criterion_default();
   stratus_tree_options options = stratus_tree_options_default();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Gradient opacity and volumes of several components, independent and dependent, against the double reference; every structure to the bit; each
- * function and weight by its effect; what is refused. */
+ * Gradient opacity and volumes of several components, independent and dependent, against the double reference; every structure to the bit;
+ * each function and weight by its effect; what is refused. */
 #include "../picture_case.h"
 
 #include "Core/internal.h"
@@ -54,7 +54,8 @@ static stratus_status draw_status(stratus_context* context, const many* m, pictu
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   memset(&p->report, 0, sizeof p->report);
   stratus_status status = stratus_ray_caster_render(caster, &m->c.volume, m->transfers, &m->c.camera, &m->c.options, &image, &p->report);
-  for (int again = 0; status == STRATUS_OK && again < 2; ++again) { /* once rays have read enough, values are kept as floats: the same bits */
+  for (int again = 0; status == STRATUS_OK && again < 2;
+       ++again) { /* once rays have read enough, values are kept as floats: the same bits */
     static picture kept;
     const stratus_image next = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = kept.rgba, .depth = kept.depth };
     status = stratus_ray_caster_render(caster, &m->c.volume, m->transfers, &m->c.camera, &m->c.options, &next, NULL);

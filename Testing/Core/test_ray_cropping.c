@@ -38,8 +38,8 @@ static void expect_same(const char* what)
 {
   int differing = 0;
   for (int i = 0; i < CASE_PIXELS; ++i) {
-    differing +=
-      memcmp(drawn.rgba + 4 * i, other.rgba + 4 * i, 4 * sizeof(float)) != 0 || memcmp(drawn.depth + i, other.depth + i, sizeof(float)) != 0;
+    differing += memcmp(drawn.rgba + 4 * i, other.rgba + 4 * i, 4 * sizeof(float)) != 0 ||
+      memcmp(drawn.depth + i, other.depth + i, sizeof(float)) != 0;
   }
   if (differing) {
     print_error("%s: %d of %d pixels differ\n", what, differing, CASE_PIXELS);
@@ -60,7 +60,8 @@ static void crop_between(picture_case* c, uint32_t regions)
 /* Each of the 27 alone, and the sets that VTK has names for. */
 static void each_region_is_where_it_should_be(void** state)
 {
-  static const uint32_t named[] = { 0x2000u, 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfeba, 0x5140145u }; /* subvolume, its complement, .. */
+  static const uint32_t named[] = { 0x2000u, 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfeba,
+    0x5140145u }; /* subvolume, its complement, .. */
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 61u);
   set_contours(&c);
@@ -98,8 +99,8 @@ static void regions_in_every_mode(void** state)
   }
 }
 
-/* A ray that passes from one region that is shown to another is not cut there: two regions that make up a box draw what the box does, up to the
- * rounding of the planes' places. */
+/* A ray that passes from one region that is shown to another is not cut there: two regions that make up a box draw what the box does, up to
+ * the rounding of the planes' places. */
 static void regions_side_by_side_are_one(void** state)
 {
   picture_case c;
@@ -139,8 +140,8 @@ static void masks_take_values_out(void** state)
     c.options.mask = mask;
     c.options.mode = modes[mode % MODES];
     c.options.sample_distance = 0.1;
-    c.options.interpolation = mode >= MODES && modes[mode % MODES] != STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_NEAREST
-                                                                                            : STRATUS_INTERPOLATION_LINEAR;
+    c.options.interpolation =
+      mode >= MODES && modes[mode % MODES] != STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
     c.volume.cell_centered = mode == 3;
     const double db = compare(*state, &c, c.options.interpolation == STRATUS_INTERPOLATION_NEAREST ? "masked, nearest" : "masked");
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);

@@ -5,8 +5,8 @@
 
 #include "Core/internal.h"
 
-/* dB against the reference at a quarter of a voxel. What is left is the sampling's own error, as without light: light multiplies colours that are
- * sampled at the same places, so the bound is that of the unlit pictures. */
+/* dB against the reference at a quarter of a voxel. What is left is the sampling's own error, as without light: light multiplies colours
+ * that are sampled at the same places, so the bound is that of the unlit pictures. */
 #define MIDPOINT_DB 58.0
 
 static picture drawn;
@@ -168,7 +168,7 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   c.options.shading.ambient = 1.0;
   c.options.shading.diffuse = 0.0;
   assert_true(fabs(light_of(context, &c) - plain) < 1e-5 * plain); /* ambient light alone shows the colours as they are */
-  for (int i = 0; i < CASE_PIXELS; ++i) { /* light changes no opacity, no depth and no count */
+  for (int i = 0; i < CASE_PIXELS; ++i) {                          /* light changes no opacity, no depth and no count */
     assert_true(drawn.rgba[4 * i + 3] == other.rgba[4 * i + 3]);
     assert_true(drawn.depth[i] == other.depth[i] && drawn.samples[i] == other.samples[i]);
   }
@@ -200,7 +200,8 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   stratus_context_destroy(context);
 }
 
-/* A fill value takes no part in the picture, and neither does the range that it makes: what lies away from it is lit and thinned as before. */
+/* A fill value takes no part in the picture, and neither does the range that it makes: what lies away from it is lit and thinned as before.
+ */
 static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** state)
 {
   (void)state;

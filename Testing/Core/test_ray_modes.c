@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maxima, minima, means, sums and isosurfaces against a double reference, and against themselves: no structure, thread count or instruction set may
- * change a bit.
+ * Maxima, minima, means, sums and isosurfaces against a double reference, and against themselves: no structure, thread count or instruction
+ * set may change a bit.
  *
- * Samples lie a tenth of a voxel apart here, so that what is left against the reference is a second-order error: of the extremes some curvature
- * times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of the
- * peaked functions below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a surface
- * it may meet it in one and not in the other. */
+ * Samples lie a tenth of a voxel apart here, so that what is left against the reference is a second-order error: of the extremes some
+ * curvature times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of
+ * the peaked functions below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a
+ * surface it may meet it in one and not in the other. */
 #include "internal.h"
 
 #include "../picture_case.h"
@@ -209,7 +209,8 @@ static void no_ray_slips_between_cells(void** state)
     draw_expected(&c);
     double error;
     const int missed = compare_surfaces(&drawn, &error);
-    print_message("             view %d: %d of %d pixels differ, the others' depth by %.2g voxels at most\n", view, missed, case_lit(&drawn), error);
+    print_message(
+      "             view %d: %d of %d pixels differ, the others' depth by %.2g voxels at most\n", view, missed, case_lit(&drawn), error);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     assert_int_equal(missed, 0);
     assert_true(error < 1e-4);
@@ -417,12 +418,12 @@ static void what_no_mode_can_draw_is_refused(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(extremes_and_sums_of_every_type), cmocka_unit_test(extremes_and_sums_from_everywhere),
-    cmocka_unit_test(the_depth_of_a_maximum_is_where_it_is), cmocka_unit_test(a_sum_is_grey_and_covers_the_volume),
-    cmocka_unit_test(isosurfaces_are_where_the_field_is_the_contour), cmocka_unit_test(no_ray_slips_between_cells),
-    cmocka_unit_test(surfaces_are_lit_by_the_gradient),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(extremes_and_sums_of_every_type),
+    cmocka_unit_test(extremes_and_sums_from_everywhere), cmocka_unit_test(the_depth_of_a_maximum_is_where_it_is),
+    cmocka_unit_test(a_sum_is_grey_and_covers_the_volume), cmocka_unit_test(isosurfaces_are_where_the_field_is_the_contour),
+    cmocka_unit_test(no_ray_slips_between_cells), cmocka_unit_test(surfaces_are_lit_by_the_gradient),
     cmocka_unit_test(structures_change_no_bit), cmocka_unit_test(extremes_pass_blocks_that_hold_nothing_better),
-    cmocka_unit_test(threads_and_instructions_change_no_bit),
-    cmocka_unit_test(a_caster_changes_its_mode), cmocka_unit_test(what_no_mode_can_draw_is_refused) };
+    cmocka_unit_test(threads_and_instructions_change_no_bit), cmocka_unit_test(a_caster_changes_its_mode),
+    cmocka_unit_test(what_no_mode_can_draw_is_refused) };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

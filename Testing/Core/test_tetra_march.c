@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra against the double-precision reference, from outside and inside, through hollows, cut by planes and opaque things. */
+ * Pictures of tetrahedra against the double-precision reference, from outside and inside, through hollows, cut by planes and opaque things.
+ */
 #include "tetra_case.h"
 
 #include <float.h>
@@ -145,8 +146,8 @@ static void the_maximum(void** state)
 
 static void matrices_and_far_away_places(void** state)
 {
-  static const double matrices[3][12] = { { -1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0 }, { 0.6, 0.5, 0, 0.3, -0.4, 0.8, 0.2, 0.7, 0, 0.1, 0.7, 0.4 },
-    { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
+  static const double matrices[3][12] = { { -1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0 },
+    { 0.6, 0.5, 0, 0.3, -0.4, 0.8, 0.2, 0.7, 0, 0.1, 0.7, 0.4 }, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
   for (int i = 0; i < 5; ++i) {
     tetra_case c;
     tetra_create(&c, 3, 0.2, 0.2, 10);
@@ -188,8 +189,8 @@ static void assert_all_in_range(void)
   }
 }
 
-/* Beside others that are drawn: cells that name a point twice, thrice, four times, of points in one place or one plane under numbers of their own,
- * of values that are no floats. */
+/* Beside others that are drawn: cells that name a point twice, thrice, four times, of points in one place or one plane under numbers of
+ * their own, of values that are no floats. */
 static void cells_without_volume_show_nothing_and_are_told(void** state)
 {
   for (uint32_t seed = 0; seed < 24; ++seed) {
@@ -232,8 +233,8 @@ static void cells_without_volume_show_nothing_and_are_told(void** state)
   }
 }
 
-/* Optical depths in the thousands of millions are opaque; what has the unit distance's size looks as it does at size 1. Lengths beyond what floats
- * hold are refused, and the caster goes on. */
+/* Optical depths in the thousands of millions are opaque; what has the unit distance's size looks as it does at size 1. Lengths beyond what
+ * floats hold are refused, and the caster goes on. */
 static void lengths_of_any_size_are_drawn_or_refused(void** state)
 {
   static const double scales[] = { 1e-310, 1e-200, 1e-30, 1e-25, 1e-10, 1e10, 1e20, 1e25, 1e30, 1e31, 1e100, 1e200, 1e290 };
@@ -315,8 +316,7 @@ static void depths_beyond_doubles_are_refused(void** state)
   c.mesh.vertices = (const int32_t[]){ 0, 1, 2, 3 };
   c.mesh.cell_count = 1;
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  assert_int_equal(
-    stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(*state), "mesh reaches inf"));
   stratus_tetra_caster_destroy(caster);
   tetra_destroy(&c);

@@ -86,8 +86,9 @@ static void from_a_caster_that_drew_before(void** state)
   (void)state;
   tetra_create(&c, 3, 0.2, 0.2, 2);
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
-  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = one.rgba, .depth = one.depth, .rgba8 = one.rgba8,
-    .samples = one.samples };
+  const stratus_image image = {
+    .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = one.rgba, .depth = one.depth, .rgba8 = one.rgba8, .samples = one.samples
+  };
   static const uint64_t meshes[] = { 1, 1, 1, 1, 2, 2 }, tables[] = { 1, 1, 2, 3, 4, 4 };
   for (int step = 0; step < 6; ++step) {
     tetra_look(context, &c, 3, step, step & 1);
@@ -101,8 +102,7 @@ static void from_a_caster_that_drew_before(void** state)
     } else if (step == 5) {
       c.mesh.matrix[3] = 0.5; /* geometry is the frame's */
     }
-    assert_int_equal(
-      stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &one.report), STRATUS_OK);
+    assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &one.report), STRATUS_OK);
     assert_int_equal(one.report.mesh_builds, meshes[step]);
     assert_int_equal(one.report.table_builds, tables[step]);
     tetra_draw(context, &c, &other);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra beside the march and the double-precision reference: where no order of cells is right, with leaves, behind what is
- * opaque; and which of the two methods a view is drawn by. What both must do alike is in test_tetra_march*.c, which run once with each. */
+ * Projection of tetrahedra beside the march and the double-precision reference: where no order of cells is right, with leaves, behind what
+ * is opaque; and which of the two methods a view is drawn by. What both must do alike is in test_tetra_march*.c, which run once with each.
+ */
 #include "tetra_case.h"
 
 /* Half of the bar of record for functions with peaks, for these are smoother. */
@@ -88,9 +89,9 @@ static void random_axes(uint32_t* s, double axes[3][3])
   }
 }
 
-/* From inside or near or far away, right and up at any angle with each other and with forward, which has any length: parallel, window planes that
- * lean over thousands of the mesh's widths; perspective, up to 60 degrees off, for what leans more has less depth than floats can tell. Every
- * other one cuts the mesh by a near plane, a far one, or by both and by what is opaque between them. */
+/* From inside or near or far away, right and up at any angle with each other and with forward, which has any length: parallel, window
+ * planes that lean over thousands of the mesh's widths; perspective, up to 60 degrees off, for what leans more has less depth than floats
+ * can tell. Every other one cuts the mesh by a near plane, a far one, or by both and by what is opaque between them. */
 static void look_at_random(tetra_case* c, int n, int parallel, uint32_t seed)
 {
   static float opaque[TETRA_PIXELS];
@@ -159,7 +160,8 @@ static void any_camera_sees_the_same_by_both_ways(void** state)
   }
 }
 
-/* Copies of a mesh that overlap it, moved a little each: no order of whole cells is right, and a ray has more pieces than are sorted at once. */
+/* Copies of a mesh that overlap it, moved a little each: no order of whole cells is right, and a ray has more pieces than are sorted at
+ * once. */
 static void cells_that_overlap_are_drawn_again(void** state)
 {
   enum { N = 8, COPIES = 3 };
@@ -256,8 +258,8 @@ static void leaves_change_nothing_but_roundings(void** state)
   tetra_destroy(&c);
 }
 
-/* Many cells, small on the screen, that all show: rays pass them for less. One value in a thousand shows: only those cells need be drawn. A camera
- * that stands still sees one method. */
+/* Many cells, small on the screen, that all show: rays pass them for less. One value in a thousand shows: only those cells need be drawn. A
+ * camera that stands still sees one method. */
 static void auto_chooses_by_what_shows(void** state)
 {
   tetra_case c;

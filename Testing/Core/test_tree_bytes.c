@@ -39,7 +39,7 @@ static void what_is_saved_comes_back(void** state)
   (void)state;
   uint32_t random = 2;
   stratus_context* context = open_context();
-  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
     stratus_voxels* voxels;
     stratus_tree *tree = make_tree(context, (stratus_tree_method)method, &random, &voxels), *back = NULL;
     size_t size, again;
@@ -73,7 +73,7 @@ static void a_tree_of_no_voxel_comes_back_and_nothing_hits_it(void** state)
   stratus_context* context = open_context();
   stratus_voxels* voxels = NULL;
   assert_int_equal(stratus_voxels_create_list(context, dimensions, nowhere, 0, &voxels), STRATUS_OK);
-  for (int method = 0; method < STRATUS_TREE_METHODS; method++) {
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
     stratus_tree_options options = stratus_tree_options_default();
     stratus_tree *tree = NULL, *back = NULL, *damaged = NULL;
     size_t size, again;
@@ -87,16 +87,16 @@ static void a_tree_of_no_voxel_comes_back_and_nothing_hits_it(void** state)
     assert_int_equal(size, again);
     assert_memory_equal(bytes, copy, size);
     assert_int_equal(stratus_tree_check(context, back, voxels), STRATUS_OK);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; ++i) {
       const stratus_ray ray = random_ray(dimensions, &random);
       stratus_hit hit = { .t = 0 };
       assert_int_equal(stratus_tree_first_hit(context, back, &ray, 1, &hit), STRATUS_OK);
       assert_true(isinf(hit.t) && hit.voxel[0] == -1 && hit.face == -1);
     }
-    for (size_t cut = 0; cut < size; cut++) {
+    for (size_t cut = 0; cut < size; ++cut) {
       assert_int_equal(stratus_tree_load(context, bytes, cut, &damaged), STRATUS_INVALID_ARGUMENT);
     }
-    for (size_t at = 0; at < size; at++) {
+    for (size_t at = 0; at < size; ++at) {
       bytes[at] ^= 0x10;
       assert_int_equal(stratus_tree_load(context, bytes, size, &damaged), STRATUS_INVALID_ARGUMENT);
       bytes[at] ^= 0x10;
@@ -149,7 +149,7 @@ static void forged_trees_do_no_harm(void** state)
   uint32_t random = 6;
   stratus_context* context = open_context();
   int refused = 0;
-  for (int round = 0; round < 600; round++) {
+  for (int round = 0; round < 600; ++round) {
     static const int methods[4] = { STRATUS_TREE_OCTANT, STRATUS_TREE_DISTANCE, STRATUS_TREE_SAH, STRATUS_TREE_LBVH };
     stratus_voxels* voxels;
     stratus_tree *tree = make_tree(context, (stratus_tree_method)methods[round % 4], &random, &voxels), *back = NULL;
@@ -167,7 +167,7 @@ static void forged_trees_do_no_harm(void** state)
     size_t size;
     void* bytes = save(tree, &size);
     if (stratus_tree_load(context, bytes, size, &back) == STRATUS_OK) {
-      for (int i = 0; i < 100; i++) {
+      for (int i = 0; i < 100; ++i) {
         const stratus_ray ray = random_ray(dimensions, &random);
         stratus_hit hit;
         assert_int_equal(stratus_tree_first_hit(context, back, &ray, 1, &hit), STRATUS_OK);
@@ -175,7 +175,7 @@ static void forged_trees_do_no_harm(void** state)
       stratus_tree_check(context, back, voxels); /* finds it, or the change was none that matters */
       stratus_tree_destroy(back);
     } else {
-      refused++;
+      ++refused;
     }
     free(bytes);
     stratus_tree_destroy(tree);
@@ -206,8 +206,9 @@ static void forged_places_and_intervals_are_refused(void** state)
   stratus_tree_destroy(tree);
   stratus_voxels_destroy(voxels);
   tree = make_tree(context, STRATUS_TREE_OCTANT, &random, &voxels);
-  static const double intervals[4][2][2] = { { { NAN, 1 }, { 2, 3 } }, { { 2, 1 }, { 3, 4 } }, { { 0, 2 }, { 1, 3 } }, { { 5, 6 }, { 1, 2 } } };
-  for (int i = 0; i < 4; i++) {
+  static const double intervals[4][2][2] = { { { NAN, 1 }, { 2, 3 } }, { { 2, 1 }, { 3, 4 } }, { { 0, 2 }, { 1, 3 } },
+    { { 5, 6 }, { 1, 2 } } };
+  for (int i = 0; i < 4; ++i) {
     tree->origin.intervals = 2;
     memcpy(tree->origin.interval, intervals[i], sizeof intervals[i]);
     assert_int_equal(save_and_load(context, tree, &back), STRATUS_INVALID_ARGUMENT);
@@ -227,7 +228,7 @@ static void forged_places_and_intervals_are_refused(void** state)
 static stratus_volume small_volume(float values[6 * 6 * 6])
 {
   stratus_volume volume = stratus_volume_default();
-  for (int i = 0; i < 216; i++) {
+  for (int i = 0; i < 216; ++i) {
     values[i] = (float)(i % 37);
   }
   volume.values = values;
@@ -250,7 +251,7 @@ static void a_tree_covers_only_what_it_was_made_of(void** state)
   narrower.upper = 25;
   wider.lower = 10;
   wider.upper = 30;
-  for (int cells = 0; cells < 2; cells++) {
+  for (int cells = 0; cells < 2; ++cells) {
     stratus_voxels* voxels = NULL;
     stratus_tree* tree = NULL;
     int covers = -1;

@@ -6,13 +6,13 @@
 static int hidden_in(const stratus_volume* v, const uint8_t* hidden, const int64_t lo[3], const int64_t hi[3])
 {
   int64_t n[3], last[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     n[a] = v->cell_centered || v->dimensions[a] == 1 ? v->dimensions[a] : v->dimensions[a] - 1;
     last[a] = v->cell_centered || v->dimensions[a] == 1 ? hi[a] : hi[a] - 1;
   }
-  for (int64_t z = lo[2]; hidden && z <= last[2]; z++) {
-    for (int64_t y = lo[1]; y <= last[1]; y++) {
-      for (int64_t x = lo[0]; x <= last[0]; x++) {
+  for (int64_t z = lo[2]; hidden && z <= last[2]; ++z) {
+    for (int64_t y = lo[1]; y <= last[1]; ++y) {
+      for (int64_t x = lo[0]; x <= last[0]; ++x) {
         if (hidden[(z * n[1] + y) * n[0] + x]) {
           return 1;
         }
@@ -31,13 +31,13 @@ static expected brute_force(const stratus_volume* v, double bias, const uint8_t*
 {
   expected e = { INFINITY, -INFINITY, 0 };
   int64_t lo[3], hi[3];
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     lo[a] = block[a] * size;
     hi[a] = lo[a] + size < v->dimensions[a] ? lo[a] + size : v->dimensions[a] - 1;
   }
-  for (int64_t z = lo[2]; z <= hi[2]; z++) {
-    for (int64_t y = lo[1]; y <= hi[1]; y++) {
-      for (int64_t x = lo[0]; x <= hi[0]; x++) {
+  for (int64_t z = lo[2]; z <= hi[2]; ++z) {
+    for (int64_t y = lo[1]; y <= hi[1]; ++y) {
+      for (int64_t x = lo[0]; x <= hi[0]; ++x) {
         const float value = stratus_volume_fetch(v, bias, (size_t)((z * v->dimensions[1] + y) * v->dimensions[0] + x));
         e.gaps |= !isfinite(value);
         e.lo = isfinite(value) && value < e.lo ? value : e.lo;
@@ -76,11 +76,11 @@ static void check_volume(stratus_context* context, const stratus_volume* v, int 
   assert_int_equal(stratus_volume_hidden_cells(context, v, &hidden), STRATUS_OK);
   stratus_value_range_blocks(ranges, blocks, &block_size);
   assert_int_equal(block_size, size);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const int64_t cells = v->dimensions[a] - 1;
     assert_int_equal(blocks[a], cells ? (cells + size - 1) / size : 1);
   }
-  for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; b++) {
+  for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
     check_block(v, ranges, hidden, (const int64_t[3]){ b % blocks[0], b / blocks[0] % blocks[1], b / blocks[0] / blocks[1] });
     lo = fminf(lo, ranges->lo[b]);
     hi = fmaxf(hi, ranges->hi[b]);
@@ -98,9 +98,9 @@ static void every_type_and_block_size_equals_brute_force(void** state)
   uint32_t random = 1;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     for (int size = 2; size <= 32; size *= 2) {
-      for (int repeat = 0; repeat < 12; repeat++) {
+      for (int repeat = 0; repeat < 12; ++repeat) {
         test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
           1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
         check_volume(context, &v.view, size);
@@ -119,7 +119,7 @@ static void values_that_are_not_finite_are_skipped_and_flagged(void** state)
   uint32_t random = 2;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     test_volume v = make_volume(repeat & 1 ? STRATUS_FLOAT32 : STRATUS_FLOAT64, 1 + random_below(&random, 20), 1 + random_below(&random, 9),
       1 + random_below(&random, 9), 1 + random_below(&random, 2), &random);
     spoil(&v, 1 + random_below(&random, 40), &random);
@@ -134,7 +134,7 @@ static void a_volume_without_a_finite_value_has_no_range(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   float values[27];
-  for (int i = 0; i < 27; i++) {
+  for (int i = 0; i < 27; ++i) {
     values[i] = i % 3 ? NAN : INFINITY;
   }
   stratus_volume v = stratus_volume_default();
@@ -149,7 +149,7 @@ static void hidden_points_and_cells_are_flagged(void** state)
   uint32_t random = 3;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int repeat = 0; repeat < 200; repeat++) {
+  for (int repeat = 0; repeat < 200; ++repeat) {
     test_volume v =
       make_volume(STRATUS_UINT8, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1, &random);
     add_ghosts(&v, repeat & 1, 1 + random_below(&random, 60), &random);
@@ -201,7 +201,7 @@ static void wrong_arguments_are_refused_and_cancelling_stops(void** state)
   stratus_volume v = stratus_volume_default();
   assert_int_equal(stratus_value_range_create(context, &v, 4, &ranges), STRATUS_INVALID_ARGUMENT);
   v.values = &value;
-  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
     assert_int_equal(stratus_value_range_create(context, &v, sizes[i], &ranges), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "2, 4, 8, 16 or 32"));
   }

@@ -13,29 +13,30 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
   double bounds[6], radius = 0.0;
   stratus_camera camera = { .parallel = view % 4 == 0, .far_k = INFINITY };
   mesh_bounds(mesh, bounds);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     radius = fmax(radius, bounds[2 * a + 1] - bounds[2 * a]);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     camera.forward[a] = directions[view / 4][a];
     camera.eye[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]) - distance[view % 4] * radius * camera.forward[a];
   }
   return camera;
 }
 
-/* What finds a cell's gates names the first in each block of cells, whichever leaf that is in; and once all cells have come, no way out is left. */
+/* What finds a cell's gates names the first in each block of cells, whichever leaf that is in; and once all cells have come, no way out is
+ * left. */
 static void assert_gates_are_found_and_passed(const stratus_visibility_order* order)
 {
   const int64_t gaps = order->gap_begin[order->leaf_count];
-  for (int64_t block = 0; block <= order->cell_count / STRATUS_GAP_BLOCK; block++) {
+  for (int64_t block = 0; block <= order->cell_count / STRATUS_GAP_BLOCK; ++block) {
     int64_t first = 0;
     while (first < gaps && order->gap_faces[first] / 4 < block * STRATUS_GAP_BLOCK) {
-      first++;
+      ++first;
     }
     assert_int_equal(order->gap_at[block], first);
   }
   int64_t nodes = 0, ways_in = 0, ways_out = 0;
-  for (int64_t g = 0; g < gaps; g++) {
+  for (int64_t g = 0; g < gaps; ++g) {
     ways_in += order->gates[g].facing < 0;
     ways_out += order->gates[g].facing > 0;
   }
@@ -45,10 +46,10 @@ static void assert_gates_are_found_and_passed(const stratus_visibility_order* or
   for (int64_t level = gaps; level > 1; nodes += level) {
     level = (level + STRATUS_GATE_CHILDREN - 1) / STRATUS_GATE_CHILDREN;
   }
-  for (int64_t g = 0; g < gaps; g++) {
+  for (int64_t g = 0; g < gaps; ++g) {
     assert_true(order->gates[g].facing <= 0 || order->gates[g].passed);
   }
-  for (int64_t n = 0; n < nodes; n++) {
+  for (int64_t n = 0; n < nodes; ++n) {
     assert_int_equal(order->gate_nodes[n].left, 0);
   }
 }
@@ -72,7 +73,7 @@ static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratu
   view = mesh_case_view(&pieces);
   assert_int_equal(stratus_visibility_order_create(context, &view, &cut.leaves, &order), STRATUS_OK);
   int64_t pairs = 0, wrong = 0;
-  for (int v = 0; v < 24; v++) {
+  for (int v = 0; v < 24; ++v) {
     const stratus_camera camera = camera_of(&pieces, v);
     stratus_visibility_result result;
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, peeling, &result), STRATUS_OK);
@@ -120,7 +121,7 @@ static void long_cells_hide_short_ones_behind_a_gap(void** state)
   mesh = mesh_join(mesh, block(4, 9, 9, (const double[3]){ 4.1, 0, 0 }, (const double[3]){ 6, 9, 9 }, 0.19, 2));
   mesh = mesh_join(mesh, block(2, 1, 3, (const double[3]){ 6.02, 1, -2 }, (const double[3]){ 7, 11, 9 }, 0.1, 3));
   mesh_shuffle(&mesh, 5);
-  for (int depth = 0; depth < 3; depth++) {
+  for (int depth = 0; depth < 3; ++depth) {
     assert_int_equal(wrong_pairs(&mesh, 1 + depth, depth, STRATUS_PEELING_NEAREST), 0);
   }
   mesh_case_free(&mesh);
@@ -130,7 +131,7 @@ static void long_cells_hide_short_ones_behind_a_gap(void** state)
 static mesh_case nested(void)
 {
   mesh_case mesh = block(2, 2, 2, (const double[3]){ -1, -1, -1 }, (const double[3]){ 1, 1, 1 }, 0.15, 1);
-  for (int shell = 1; shell <= 2; shell++) {
+  for (int shell = 1; shell <= 2; ++shell) {
     const double in = shell == 1 ? 1.1 : 2.1, out = in + 0.9;
     const int n = shell == 1 ? 6 : 3;
     for (int side = -1; side <= 1; side += 2) {
@@ -159,7 +160,7 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
   static const double corners[4][3] = { { -3.0, 0.8, -1.2 }, { -3.0, 1.4, -1.2 }, { 3.0, 1.1, 1.0 }, { 3.0, 1.1, 1.4 } };
   (void)state;
   mesh_case mesh = mesh_case_allocate(12, 3);
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 12; ++i) {
     const double angle = i / 4 * 2.0943951023931953, *p = corners[i % 4];
     mesh.points[3 * i] = p[0] * cos(angle) - p[1] * sin(angle);
     mesh.points[3 * i + 1] = p[0] * sin(angle) + p[1] * cos(angle);
@@ -167,7 +168,7 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
     mesh.vertices[i] = i;
   }
   uint32_t first[3];
-  for (int threads = 1; threads <= 3; threads++) {
+  for (int threads = 1; threads <= 3; ++threads) {
     stratus_context* context = mesh_context(threads);
     const stratus_mesh view = mesh_case_view(&mesh);
     const stratus_camera camera = { .eye = { 0.0, 0.0, 40.0 }, .forward = { 0, 0, -1 } };
@@ -190,20 +191,21 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
   mesh_case_free(&mesh);
 }
 
-/* Cells at random in a box, all over one another; a third of them flat: with two points in one place, or all in a plane, or a point named twice. */
+/* Cells at random in a box, all over one another; a third of them flat: with two points in one place, or all in a plane, or a point named
+ * twice. */
 static mesh_case soup(int64_t cells, bool flat)
 {
   uint32_t seed = (uint32_t)cells;
   mesh_case mesh = mesh_case_allocate(4 * cells, cells);
-  for (int64_t i = 0; i < 12 * cells; i++) {
+  for (int64_t i = 0; i < 12 * cells; ++i) {
     mesh.points[i] = 4.0 * mesh_random_unit(&seed);
   }
-  for (int64_t i = 0; i < 4 * cells; i++) {
+  for (int64_t i = 0; i < 4 * cells; ++i) {
     mesh.vertices[i] = (int32_t)i;
   }
   for (int64_t i = 0; i < cells && flat; i += 3) {
     double* p = mesh.points + 12 * i;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       p[9 + a] = i % 2 ? p[a] : p[a] + p[3 + a] - p[6 + a]; /* the fourth in the first's place, or a parallelogram */
     }
     mesh.vertices[4 * i + 3] -= i % 4 == 0 ? 2 : 0; /* or a point named twice */
@@ -211,18 +213,18 @@ static mesh_case soup(int64_t cells, bool flat)
   return mesh;
 }
 
-/* No order is right. One is given, the same by any number of threads, for some tests a cell (thousands, and more the more cells there are, if rings
- * are followed as long as there are any), and it is told that cells overlap. */
+/* No order is right. One is given, the same by any number of threads, for some tests a cell (thousands, and more the more cells there are,
+ * if rings are followed as long as there are any), and it is told that cells overlap. */
 static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
 {
   (void)state;
-  for (int flat = 0; flat < 2; flat++) {
-    for (int size = 0; size < 2; size++) {
+  for (int flat = 0; flat < 2; ++flat) {
+    for (int size = 0; size < 2; ++size) {
       mesh_case mesh = soup(size ? 8000 : 2000, flat != 0);
       uint32_t* first = malloc((size_t)mesh.cell_count * sizeof *first);
       uint8_t* came = calloc((size_t)mesh.cell_count, 1);
       assert_true(first && came);
-      for (int threads = 1; threads <= 2; threads++) {
+      for (int threads = 1; threads <= 2; ++threads) {
         stratus_context* context = mesh_context(threads);
         const stratus_mesh view = mesh_case_view(&mesh);
         const stratus_camera camera = { .eye = { 12, 9, 7 }, .forward = { -10, -7, -5 } };
@@ -242,7 +244,7 @@ static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
         stratus_visibility_order_destroy(order);
         stratus_context_destroy(context);
       }
-      for (int64_t i = 0; i < mesh.cell_count; i++) {
+      for (int64_t i = 0; i < mesh.cell_count; ++i) {
         assert_int_equal(came[first[i]]++, 0);
       }
       free(first);
@@ -258,15 +260,15 @@ static void shuffle_points(mesh_case* mesh, uint32_t seed)
   int32_t* at = malloc((size_t)mesh->point_count * sizeof *at);
   double* points = malloc((size_t)mesh->point_count * 3 * sizeof *points);
   assert_true(at && points);
-  for (int64_t i = 0; i < mesh->point_count; i++) {
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
     const int64_t j = (int64_t)(mesh_random(&seed) % (uint32_t)(i + 1));
     at[i] = at[j];
     at[j] = (int32_t)i;
   }
-  for (int64_t i = 0; i < mesh->point_count; i++) {
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
     memcpy(points + 3 * (int64_t)at[i], mesh->points + 3 * i, 3 * sizeof *points);
   }
-  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * mesh->cell_count; ++i) {
     mesh->vertices[i] = at[mesh->vertices[i]];
   }
   free(mesh->points);
@@ -286,12 +288,12 @@ static void scattered_cells_and_points_come_in_order(void** state)
   const stratus_mesh view = mesh_case_view(&mesh);
   int32_t* leaf = malloc((size_t)mesh.cell_count * sizeof *leaf);
   assert_non_null(leaf);
-  for (int64_t i = 0; i < mesh.cell_count; i++) {
+  for (int64_t i = 0; i < mesh.cell_count; ++i) {
     leaf[i] = mesh.points[3 * (int64_t)mesh.vertices[4 * i]] >= 3.05;
   }
   const stratus_partition_node nodes[3] = { { 0, 1, 2, 0, 3.02 }, { -1, 0, 0, 0, 0 }, { -1, 1, 0, 0, 0 } };
   const stratus_leaves leaves = { nodes, 3, 2, leaf, { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
-  for (int leaf_count = 1; leaf_count <= 2; leaf_count++) {
+  for (int leaf_count = 1; leaf_count <= 2; ++leaf_count) {
     stratus_visibility_order* order = NULL;
     int64_t pairs = 0;
     assert_int_equal(stratus_visibility_order_create(context, &view, leaf_count == 2 ? &leaves : NULL, &order), STRATUS_OK);
@@ -318,7 +320,7 @@ static void only_faces_that_look_at_others_are_gaps(void** state)
   (void)state;
   stratus_context* context = mesh_context(2);
   mesh_case mesh = block(4, 4, 4, (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 }, 0.0, 1);
-  for (int blocks = 1; blocks <= 2; blocks++) {
+  for (int blocks = 1; blocks <= 2; ++blocks) {
     const stratus_mesh view = mesh_case_view(&mesh);
     stratus_visibility_order* order = NULL;
     assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);

@@ -21,10 +21,10 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
   double bounds[6], radius = 0.0;
   stratus_camera camera = { .parallel = view % 4 == 0, .far_k = INFINITY };
   mesh_bounds(mesh, bounds);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     radius = fmax(radius, bounds[2 * a + 1] - bounds[2 * a]);
   }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     static const double distance[4] = { 3.0, 3.0, 0.8, 0.01 };
     camera.forward[a] = directions[view / 4][a];
     camera.eye[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]) - distance[view % 4] * radius * camera.forward[a];
@@ -38,7 +38,7 @@ static stratus_visibility_result assert_order_is_right(stratus_context* context,
   stratus_visibility_order* order = make_order(context, mesh);
   stratus_visibility_result result = { 0 };
   int64_t pairs = 0;
-  for (int view = 0; view < 24; view++) {
+  for (int view = 0; view < 24; ++view) {
     const stratus_camera camera = camera_of(mesh, view);
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, peeling, &result), STRATUS_OK);
     assert_int_equal(result.count, mesh->cell_count);
@@ -56,7 +56,7 @@ static void a_convex_mesh_is_in_order_from_everywhere(void** state)
   static const double scales[][3] = { { 1, 1, 1 }, { 1e-6, 1e-6, 1e-6 }, { 1, 1, 1e-5 }, { 1, 1, 1 } };
   static const double offsets[][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, { 6e6, -5e6, 100 } };
   (void)state;
-  for (int i = 0; i < 8; i++) {
+  for (int i = 0; i < 8; ++i) {
     stratus_context* context = mesh_context(1 + i % 3);
     mesh_case mesh = mesh_grid(n, i % 2 ? 0.0 : 0.19, 7);
     mesh_move(&mesh, scales[i / 2], offsets[i / 2]);
@@ -79,8 +79,8 @@ static void an_eye_on_points_and_planes_of_the_mesh_sees_the_right_order(void** 
   stratus_context* context = mesh_context(2);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
   stratus_visibility_order* order = make_order(context, &mesh);
-  for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
-    for (int peeling = 0; peeling < 2; peeling++) {
+  for (size_t i = 0; i < sizeof eyes / sizeof *eyes; ++i) {
+    for (int peeling = 0; peeling < 2; ++peeling) {
       stratus_camera camera = { .forward = { 1, 0, 0 } };
       stratus_visibility_result result;
       int64_t pairs = 0;
@@ -104,7 +104,7 @@ static void flat_cells_pass_on_who_hides_whom(void** state)
   (void)state;
   stratus_context* context = mesh_context(2);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
-  for (int64_t i = 0; i < mesh.point_count; i++) {
+  for (int64_t i = 0; i < mesh.point_count; ++i) {
     double* x = mesh.points + 3 * i;
     *x -= (*x >= 3.0) + (*x >= 6.0);
   }
@@ -137,10 +137,10 @@ static int64_t broken_relations(const mesh_case* mesh, const stratus_camera* cam
   int64_t* rank = malloc((size_t)mesh->cell_count * sizeof *rank);
   int64_t broken = 0;
   assert_non_null(rank);
-  for (int64_t i = 0; i < mesh->cell_count; i++) {
+  for (int64_t i = 0; i < mesh->cell_count; ++i) {
     rank[cells[i]] = i;
   }
-  for (int64_t i = 0; i < 16 * mesh->cell_count * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 16 * mesh->cell_count * mesh->cell_count; ++i) {
     const int64_t p = i / 16 / mesh->cell_count, q = i / 16 % mesh->cell_count;
     const int f = (int)(i / 4 % 4), g = (int)(i % 4);
     int32_t a[3], b[3];
@@ -162,10 +162,10 @@ static int64_t broken_relations(const mesh_case* mesh, const stratus_camera* cam
 static mesh_case iris(int count)
 {
   mesh_case mesh = mesh_case_allocate(3 * count, 3 * count);
-  for (int b = 0; b < count; b++) {
+  for (int b = 0; b < count; ++b) {
     const double angle = 6.283185307179586 * b / count, lean = angle + 1.2 * 6.283185307179586 / count;
     const double radius[3] = { 1.0, 3.0, 2.0 }, height[3] = { 0.0, 0.0, 1.0 };
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
       double* p = mesh.points + 3 * (3 * b + i);
       p[0] = radius[i] * cos(i < 2 ? angle : lean);
       p[1] = radius[i] * sin(i < 2 ? angle : lean);
@@ -183,11 +183,11 @@ static void a_ring_of_cells_loses_one_relation(void** state)
   (void)state;
   stratus_context* context = mesh_context(1);
   int64_t found = 0;
-  for (int count = 3; count <= 12; count++) {
+  for (int count = 3; count <= 12; ++count) {
     mesh_case mesh = iris(count);
     stratus_visibility_order* order = make_order(context, &mesh);
     for (int side = -1; side <= 1; side += 2) {
-      for (int peeling = 0; peeling < 2; peeling++) {
+      for (int peeling = 0; peeling < 2; ++peeling) {
         const stratus_camera camera = { .eye = { 0.01, 0.02, 30.0 * side }, .forward = { 0, 0, -side } };
         stratus_visibility_result result;
         assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, (stratus_peeling)peeling, &result), STRATUS_OK);
@@ -206,7 +206,7 @@ static void a_ring_of_cells_loses_one_relation(void** state)
 static mesh_case iris_stack(int count)
 {
   mesh_case mesh = iris(5);
-  for (int i = 1; i < count; i++) {
+  for (int i = 1; i < count; ++i) {
     static const double one[3] = { 1, 1, 1 };
     mesh_case other = iris(3 + i % 6);
     mesh_move(&other, one, (const double[3]){ 0, 0, 1.5 * i });
@@ -222,7 +222,7 @@ static void many_rings_lose_one_relation_each(void** state)
   (void)state;
   mesh_case mesh = iris_stack(30);
   uint32_t* first = NULL;
-  for (int threads = 1; threads <= 4; threads++) {
+  for (int threads = 1; threads <= 4; ++threads) {
     stratus_context* context = mesh_context(threads);
     stratus_visibility_order* order = make_order(context, &mesh);
     const stratus_camera camera = { .eye = { 0.01, 0.02, 90.0 }, .forward = { 0, 0, -1 } };
@@ -244,25 +244,25 @@ static void assert_each_cell_comes_once(const stratus_visibility_result* result)
 {
   uint8_t* seen = calloc((size_t)result->count, 1);
   assert_non_null(seen);
-  for (int64_t i = 0; i < result->count; i++) {
+  for (int64_t i = 0; i < result->count; ++i) {
     assert_true(result->cells[i] < result->count && !seen[result->cells[i]]);
     seen[result->cells[i]] = 1;
   }
   free(seen);
 }
 
-/* With no patience for any ring the order is still one, and tells what it broke: nearest first cuts rings where it meets them, layers let the
- * rest come by distance. It is made anew for every view then. */
+/* With no patience for any ring the order is still one, and tells what it broke: nearest first cuts rings where it meets them, layers let
+ * the rest come by distance. It is made anew for every view then. */
 static void rings_that_take_too_long_are_cut_anywhere(void** state)
 {
   (void)state;
   mesh_case mesh = iris_stack(30);
   uint32_t* first[2] = { NULL, NULL };
-  for (int threads = 1; threads <= 3; threads++) {
+  for (int threads = 1; threads <= 3; ++threads) {
     stratus_context* context = mesh_context(threads);
     stratus_visibility_order* order = make_order(context, &mesh);
     order->steps_per_cell = -1;
-    for (int peeling = 0; peeling < 2; peeling++) {
+    for (int peeling = 0; peeling < 2; ++peeling) {
       stratus_camera camera = { .eye = { 0.01, 0.02, 90.0 }, .forward = { 0, 0, -1 }, .parallel = 1 };
       stratus_visibility_result result;
       assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, (stratus_peeling)peeling, &result), STRATUS_OK);
@@ -293,7 +293,7 @@ static void a_folded_cell_spoils_only_its_neighbours(void** state)
   mesh_case mesh = mesh_grid(n, 0.1, 3);
   mesh.points[3 * (3 + 7 * (3 + 7 * 3))] += 1.6; /* a point through its neighbours */
   stratus_visibility_order* order = make_order(context, &mesh);
-  for (int view = 0; view < 24; view++) {
+  for (int view = 0; view < 24; ++view) {
     const stratus_camera camera = camera_of(&mesh, view);
     stratus_visibility_result result;
     int64_t pairs = 0;
@@ -315,11 +315,11 @@ static void a_mirrored_and_sheared_mesh_is_seen_in_its_own_coordinates(void** st
   (void)state;
   stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.15, 3), world = mesh_grid(n, 0.15, 3);
-  for (int64_t i = 0; i < world.point_count; i++) {
+  for (int64_t i = 0; i < world.point_count; ++i) {
     stratus_matrix_point(matrix, mesh.points + 3 * i, world.points + 3 * i);
   }
   stratus_visibility_order* order = make_order(context, &mesh);
-  for (int view = 0; view < 24; view++) {
+  for (int view = 0; view < 24; ++view) {
     const stratus_camera camera = camera_of(&world, view);
     stratus_visibility_result result;
     int64_t pairs = 0;
@@ -369,7 +369,7 @@ static void nothing_and_one_cell_have_orders(void** state)
   (void)state;
   stratus_context* context = mesh_context(2);
   const stratus_camera camera = { .eye = { 3, 3, 3 }, .forward = { -1, -1, -1 } };
-  for (int kind = 0; kind < 3; kind++) { /* no points, no cells, one */
+  for (int kind = 0; kind < 3; ++kind) { /* no points, no cells, one */
     stratus_mesh mesh = stratus_mesh_default();
     stratus_visibility_order* order = NULL;
     stratus_visibility_result result;
@@ -378,7 +378,7 @@ static void nothing_and_one_cell_have_orders(void** state)
     mesh.point_count = kind > 0 ? 4 : 0;
     mesh.cell_count = kind > 1;
     assert_int_equal(stratus_visibility_order_create(context, &mesh, NULL, &order), STRATUS_OK);
-    for (int peeling = 0; peeling < 2; peeling++) {
+    for (int peeling = 0; peeling < 2; ++peeling) {
       assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, (stratus_peeling)peeling, &result), STRATUS_OK);
       assert_int_equal(result.count, kind > 1);
       assert_true(kind < 2 || result.cells[0] == 0);
@@ -410,7 +410,7 @@ static void wrong_views_and_leaves_are_refused(void** state)
   stratus_visibility_order_destroy(order);
 
   int32_t leaf[12];
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 12; ++i) {
     leaf[i] = i >= 6;
   }
   stratus_partition_node nodes[3] = { { 0, 1, 2, 0, 1.0 }, { -1, 0, 0, 0, 0 }, { -1, 1, 0, 0, 0 } };
@@ -419,7 +419,7 @@ static void wrong_views_and_leaves_are_refused(void** state)
   assert_int_equal(stratus_visibility_order_create(context, &view, &leaves, &order), STRATUS_OK);
   stratus_visibility_order_destroy(order);
   order = NULL;
-  for (int wrong = 0; wrong < 9; wrong++) {
+  for (int wrong = 0; wrong < 9; ++wrong) {
     stratus_partition_node kept[3];
     memcpy(kept, nodes, sizeof kept);
     stratus_leaves other = leaves;

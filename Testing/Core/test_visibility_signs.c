@@ -25,21 +25,23 @@ static void every_instruction_set_finds_the_same_signs(void** state)
     skip();
   }
   stratus_context* context = mesh_context(2);
-  for (int kind = 0; kind < 12; kind++) {
+  for (int kind = 0; kind < 12; ++kind) {
     mesh_case mesh = mesh_grid(n, kind % 3 ? 0.19 : 0.0, (uint32_t)kind);
     if (kind % 2) {
       mesh_shuffle(&mesh, (uint32_t)kind);
     }
     mesh.cell_count -= kind;
     stratus_visibility_order* order = make_order(context, &mesh, NULL);
-    const stratus_view view = { .parallel = kind / 2 % 2, .direction = { 1, kind % 4 == 3 ? 0.0 : 0.25, 0 }, .eye = { 9, 2, kind % 3 ? 1.5 : 1.0 } };
+    const stratus_view view = {
+      .parallel = kind / 2 % 2, .direction = { 1, kind % 4 == 3 ? 0.0 : 0.25, 0 }, .eye = { 9, 2, kind % 3 ? 1.5 : 1.0 }
+    };
     const size_t bytes = (size_t)order->cell_count * sizeof *order->state;
     void* expected = malloc(bytes);
     assert_non_null(expected);
     context->isa = best;
     exact += stratus_order_find_signs(order, &view);
     memcpy(expected, order->state, bytes);
-    for (int isa = 0; isa < best; isa++) {
+    for (int isa = 0; isa < best; ++isa) {
       memset(order->state, 0x55, bytes);
       context->isa = isa;
       (void)stratus_order_find_signs(order, &view);
@@ -67,7 +69,7 @@ static void an_order_stands_as_long_as_its_signs(void** state)
   static const int n[3] = { 4, 4, 4 };
   (void)state;
   stratus_context* context = mesh_context(1);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     const bool gap = i & 1;
     const stratus_peeling peeling = i & 2 ? STRATUS_PEELING_NEAREST : STRATUS_PEELING_LAYERS;
     const bool exact = !gap || peeling == STRATUS_PEELING_NEAREST; /* layers cross gaps as it comes */

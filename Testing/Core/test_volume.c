@@ -22,7 +22,7 @@ static stratus_volume skewed(const void* values)
   const double direction[9] = { c, -s, 0, s, c, 0, 0, 0, 1 };
   memcpy(v.matrix, matrix, sizeof matrix);
   memcpy(v.direction, direction, sizeof direction);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v.origin[a] = 10.0 * (a + 1);
     v.spacing[a] = 0.5 * (a + 1);
   }
@@ -33,7 +33,7 @@ static void voxels_lie_where_direction_and_matrix_put_them(void** state)
 {
   (void)state;
   const float values[27] = { 0 };
-  for (int cells = 0; cells < 2; cells++) {
+  for (int cells = 0; cells < 2; ++cells) {
     stratus_volume v = skewed(values);
     v.cell_centered = cells;
     double m[16], world[3];
@@ -41,15 +41,15 @@ static void voxels_lie_where_direction_and_matrix_put_them(void** state)
     const double index[3] = { 2, -1, 5 };
     stratus_matrix_point(m, index, world);
     double scaled[3], local[4] = { 0, 0, 0, 1 };
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       scaled[a] = v.spacing[a] * (index[a] + (cells ? 0.5 : 0.0));
     }
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
       local[r] = v.origin[r] + v.direction[3 * r] * scaled[0] + v.direction[3 * r + 1] * scaled[1] + v.direction[3 * r + 2] * scaled[2];
     }
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
       double expected = 0.0;
-      for (int i = 0; i < 4; i++) {
+      for (int i = 0; i < 4; ++i) {
         expected += v.matrix[4 * r + i] * local[i];
       }
       assert_true(fabs(world[r] - expected) < 1e-12); /* a few ULP of numbers up to 150 */
@@ -62,9 +62,9 @@ static void the_inverse_leads_back(void** state)
   (void)state;
   const float values[27] = { 0 };
   stratus_volume v = skewed(values);
-  for (int tiny = 0; tiny < 2; tiny++) {
+  for (int tiny = 0; tiny < 2; ++tiny) {
     double m[16], inverse[16], world[3], back[3];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       v.spacing[a] *= tiny ? 1e-120 : 1.0; /* whose cube underflows */
       v.origin[a] = tiny ? 0.0 : v.origin[a];
     }
@@ -76,7 +76,7 @@ static void the_inverse_leads_back(void** state)
     const double index[3] = { 1.25, 0.5, 1.75 };
     stratus_matrix_point(m, index, world);
     stratus_matrix_point(inverse, world, back);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       assert_true(fabs(back[a] - index[a]) < 1e-12); /* positions near 100 of spacing 1, an ULP of 1.4e-14, times a condition of 10 */
     }
   }
@@ -96,7 +96,7 @@ static void bounds_hold_points_and_whole_cells(void** state)
   v.dimensions[0] = 4;
   v.dimensions[1] = 3;
   v.dimensions[2] = 2;
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v.origin[a] = 1.0;
     v.spacing[a] = 2.0;
   }
@@ -129,8 +129,8 @@ static void every_type_is_fetched_as_it_is(void** state)
     v.values = values;                                                                                                                     \
     v.type = tag;                                                                                                                          \
     const double bias = stratus_volume_bias(&v);                                                                                           \
-    const double least = fabs((double)(b)) < fabs((double)(a)) ? (double)(b) : (double)(a);                                                 \
-    assert_true(bias == (stratus_type_is_wide(tag) ? least : 0.0));                                                                  \
+    const double least = fabs((double)(b)) < fabs((double)(a)) ? (double)(b) : (double)(a);                                                \
+    assert_true(bias == (stratus_type_is_wide(tag) ? least : 0.0));                                                                        \
     assert_true(stratus_volume_fetch(&v, bias, 0) == (float)((double)(a)-bias));                                                           \
     assert_true(stratus_volume_fetch(&v, bias, 1) == (float)((double)(b)-bias));                                                           \
     assert_int_equal(stratus_type_size(tag), sizeof(TYPE));                                                                                \
@@ -161,7 +161,7 @@ static void hidden_points_hide_every_cell_they_touch(void** state)
   uint32_t random = 3;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int repeat = 0; repeat < 60; repeat++) {
+  for (int repeat = 0; repeat < 60; ++repeat) {
     test_volume t =
       make_volume(STRATUS_UINT8, 1 + random_below(&random, 6), 1 + random_below(&random, 6), 1 + random_below(&random, 6), 1, &random);
     add_ghosts(&t, repeat & 1, 1 + random_below(&random, 20), &random);
@@ -169,16 +169,16 @@ static void hidden_points_hide_every_cell_they_touch(void** state)
     int64_t n[3], c[3];
     uint8_t* hidden = NULL;
     bool any = false;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       n[a] = t.view.cell_centered || p[a] == 1 ? p[a] : p[a] - 1;
     }
     assert_int_equal(stratus_volume_hidden_cells(context, &t.view, &hidden), STRATUS_OK);
-    for (c[2] = 0; c[2] < n[2]; c[2]++) {
-      for (c[1] = 0; c[1] < n[1]; c[1]++) {
-        for (c[0] = 0; c[0] < n[0]; c[0]++) {
+    for (c[2] = 0; c[2] < n[2]; ++c[2]) {
+      for (c[1] = 0; c[1] < n[1]; ++c[1]) {
+        for (c[0] = 0; c[0] < n[0]; ++c[0]) {
           const int64_t cell = (c[2] * n[1] + c[1]) * n[0] + c[0];
           bool expected = t.cell_ghosts[cell] & STRATUS_GHOST_HIDDEN_CELL;
-          for (int corner = 0; corner < 8 && !t.view.cell_centered; corner++) {
+          for (int corner = 0; corner < 8 && !t.view.cell_centered; ++corner) {
             const int64_t x = c[0] + (corner & 1), y = c[1] + (corner >> 1 & 1), z = c[2] + (corner >> 2);
             expected |= x < p[0] && y < p[1] && z < p[2] && t.point_ghosts[(z * p[1] + y) * p[0] + x] & STRATUS_GHOST_HIDDEN_POINT;
           }
@@ -209,7 +209,7 @@ static void the_owned_box_leaves_out_another_pieces_cells(void** state)
   assert_memory_equal(lo, ((const int64_t[]){ 0, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 4, 3, 2 }), sizeof hi);
   v.cell_ghosts = cells;
-  for (int c = 0; c < 4 * 3 * 2; c++) {
+  for (int c = 0; c < 4 * 3 * 2; ++c) {
     cells[c] = c % 4 < 1 || c / 12 == 1 ? STRATUS_GHOST_DUPLICATE : 0;
   }
   stratus_volume_owned(&v, lo, hi);
@@ -222,7 +222,7 @@ static void the_owned_box_leaves_out_another_pieces_cells(void** state)
   /* Points alone: the first two layers along x are another's, the layer between them and ours is shared. */
   v.cell_ghosts = NULL;
   v.point_ghosts = points;
-  for (int p = 0; p < 60; p++) {
+  for (int p = 0; p < 60; ++p) {
     points[p] = p % 5 < 2 ? STRATUS_GHOST_DUPLICATE : 0;
   }
   stratus_volume_owned(&v, lo, hi);
@@ -241,7 +241,7 @@ static void the_default_is_a_unit_grid(void** state)
   v.values = &value;
   assert_int_equal(stratus_volume_check(context, &v), STRATUS_OK);
   stratus_volume_index_to_world(&v, m);
-  for (int i = 0; i < 16; i++) {
+  for (int i = 0; i < 16; ++i) {
     assert_true(m[i] == (i % 5 == 0 ? 1.0 : 0.0));
   }
   stratus_context_destroy(context);
@@ -293,13 +293,13 @@ static void what_is_no_volume_is_refused_with_the_value(void** state)
   v = good;
   v.type = (stratus_type)10;
   refuse(context, &v, STRATUS_INVALID_ARGUMENT, "10");
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     v = good;
     v.dimensions[a] = 0;
     refuse(context, &v, STRATUS_INVALID_ARGUMENT, "0, must be at least 1");
     v.dimensions[a] = -7;
     refuse(context, &v, STRATUS_INVALID_ARGUMENT, "-7");
-    for (size_t s = 0; s < sizeof spacings / sizeof *spacings; s++) {
+    for (size_t s = 0; s < sizeof spacings / sizeof *spacings; ++s) {
       v = good;
       v.spacing[a] = spacings[s];
       refuse(context, &v, STRATUS_INVALID_ARGUMENT, "spacing");
@@ -357,7 +357,7 @@ static void read_everything(stratus_context* context, stratus_ray_caster* caster
   transfer.color = color;
   transfer.color_count = 1;
   assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 30, 1, &camera), STRATUS_OK);
-  for (int setting = 0; setting < 12; setting++) {
+  for (int setting = 0; setting < 12; ++setting) {
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     options.structure = (stratus_structure)(setting % 6);
     options.interpolation = (stratus_interpolation)(setting / 6);
@@ -381,20 +381,20 @@ static void nothing_behind_values_and_flags_is_read(void** state)
   stratus_context* context = make_context("host", 1);
   stratus_ray_caster* caster = NULL;
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
-  for (int shape = 0; shape < 27 * 2 * 4; shape++) {
+  for (int shape = 0; shape < 27 * 2 * 4; ++shape) {
     stratus_volume v = stratus_volume_default();
     size_t points = 1, cells = 1, sizes[3];
     void *wholes[3], *buffers[3];
     v.type = types[shape / 54];
     v.cell_centered = shape / 27 % 2;
-    for (int a = 0, digit = shape % 27; a < 3; a++, digit /= 3) {
+    for (int a = 0, digit = shape % 27; a < 3; ++a, digit /= 3) {
       const int64_t n = lengths[digit % 3];
       v.dimensions[a] = n;
       points *= (size_t)n;
       cells *= (size_t)(v.cell_centered || n == 1 ? n : n - 1);
     }
     const size_t bytes[3] = { points * stratus_type_size(v.type), points, cells };
-    for (int b = 0; b < 3; b++) {
+    for (int b = 0; b < 3; ++b) {
       buffers[b] = guarded(bytes[b], &wholes[b], &sizes[b]);
       memset(buffers[b], b == 0 ? 30 : 0, bytes[b]);
     }
@@ -410,7 +410,7 @@ static void nothing_behind_values_and_flags_is_read(void** state)
     assert_non_null(hidden);
     assert_int_equal(hidden[cells - 1], 1);
     stratus_release(context, hidden);
-    for (int b = 0; b < 3; b++) {
+    for (int b = 0; b < 3; ++b) {
       munmap(wholes[b], sizes[b]);
     }
   }

@@ -8,7 +8,7 @@
 /* FNV-1a. */
 static uint64_t checksum(const void* memory, size_t bytes, uint64_t sum)
 {
-  for (size_t i = 0; i < bytes; i++) {
+  for (size_t i = 0; i < bytes; ++i) {
     sum = (sum ^ ((const uint8_t*)memory)[i]) * UINT64_C(0x100000001b3);
   }
   return sum;
@@ -23,9 +23,9 @@ static uint64_t rays_checksum(stratus_context* context, const stratus_voxels* vo
   uint64_t sum = CHECKSUM_START;
   assert_non_null(rays);
   assert_int_equal(stratus_voxel_scene_rays(context, voxels, kind, rays), STRATUS_OK);
-  for (int r = 0; r < RAYS; r++) {
+  for (int r = 0; r < RAYS; ++r) {
     float numbers[6];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       numbers[a] = (float)rays[r].origin[a];
       numbers[3 + a] = (float)rays[r].direction[a];
       assert_true((double)numbers[a] == rays[r].origin[a] && (double)numbers[3 + a] == rays[r].direction[a]);
@@ -48,10 +48,10 @@ static double deviation(const int64_t n[3], const int32_t* positions, size_t cou
   double sum = 0.0, squares = 0.0;
   int64_t blocks = 0;
   assert_non_null(voxels);
-  for (size_t v = 0; v < count; v++) {
+  for (size_t v = 0; v < count; ++v) {
     voxels[(positions[3 * v + 2] / 8 * by + positions[3 * v + 1] / 8) * bx + positions[3 * v] / 8]++;
   }
-  for (int64_t b = 0; b < bx * by * bz; b++) {
+  for (int64_t b = 0; b < bx * by * bz; ++b) {
     sum += voxels[b] / 512.0;
     squares += voxels[b] / 512.0 * (voxels[b] / 512.0);
     blocks += voxels[b] > 0;
@@ -84,7 +84,7 @@ static void sets_and_rays_are_those_of_record(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   assert_int_equal(stratus_voxel_scene_count(), sizeof record / sizeof *record);
-  for (size_t s = 0; s < sizeof record / sizeof *record; s++) {
+  for (size_t s = 0; s < sizeof record / sizeof *record; ++s) {
     int64_t n[3];
     int32_t* positions = NULL;
     size_t count = 0;

@@ -17,12 +17,12 @@ static void make_set(stratus_context* context, int64_t nx, int64_t ny, int64_t n
   s->n[1] = ny;
   s->n[2] = nz;
   s->count = 0;
-  for (int64_t v = 0; v < nx * ny * nz; v++) {
+  for (int64_t v = 0; v < nx * ny * nz; ++v) {
     if (one_in && random_below(random, one_in) == 0) {
       s->positions[3 * s->count] = (int32_t)(v % nx);
       s->positions[3 * s->count + 1] = (int32_t)(v / nx % ny);
       s->positions[3 * s->count + 2] = (int32_t)(v / nx / ny);
-      s->count++;
+      ++s->count;
     }
   }
   assert_int_equal(stratus_voxels_create_list(context, s->n, s->positions, s->count, &s->voxels), STRATUS_OK);
@@ -43,7 +43,7 @@ static bool before(event a, event b)
 static bool enters(const double o[3], const double d[3], double t_min, double t_max, const int32_t voxel[3], event* entry)
 {
   event in = { t_min, 3 }, out = { INFINITY, 4 };
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     if (d[a] == 0.0) {
       if (!(floor(o[a]) == (double)voxel[a])) {
         return false;
@@ -63,7 +63,7 @@ static stratus_hit brute_force(const test_set* s, const double o[3], const doubl
 {
   stratus_hit hit = { .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1 };
   event nearest = { INFINITY, 9 };
-  for (size_t v = 0; v < s->count; v++) {
+  for (size_t v = 0; v < s->count; ++v) {
     event entry;
     if (enters(o, d, t_min, t_max, s->positions + 3 * v, &entry) && before(entry, nearest)) {
       nearest = entry;
@@ -80,7 +80,7 @@ static stratus_ray make_ray(const test_set* s, int exact, uint32_t* random)
 {
   stratus_ray r = { .t_max = INFINITY };
   do {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       if (exact) {
         r.origin[a] = (double)(random_below(random, 4 * s->n[a] + 16) - 8) / 4.0;
         r.direction[a] = (double)(random_below(random, 5) - 2);
@@ -113,11 +113,11 @@ static void every_hit_is_the_nearest_of_all_voxels(void** state)
   (void)state;
   stratus_context* context = make_context("host", 1);
   int64_t hits = 0, inside = 0;
-  for (int pass = 0; pass < 25; pass++) {
+  for (int pass = 0; pass < 25; ++pass) {
     const int64_t* n = sizes[pass % 5];
     test_set s;
     make_set(context, n[0], n[1], n[2], fills[pass / 5], &random, &s);
-    for (int r = 0; r < 4000; r++) {
+    for (int r = 0; r < 4000; ++r) {
       const stratus_ray ray = make_ray(&s, r % 4 != 0, &random);
       const stratus_hit expected = brute_force(&s, ray.origin, ray.direction, ray.t_min, ray.t_max);
       stratus_hit hit;
@@ -160,7 +160,7 @@ static void ties_are_settled_as_written_down(void** state)
   stratus_context* context = make_context("host", 1);
   stratus_voxels* voxels = NULL;
   assert_int_equal(stratus_voxels_create_list(context, n, positions, 2, &voxels), STRATUS_OK);
-  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     stratus_ray ray = { .t_max = INFINITY };
     stratus_hit hit;
     memcpy(ray.origin, cases[c].origin, sizeof ray.origin);
@@ -187,7 +187,7 @@ static void mirrors_shears_and_scales_change_the_world_only(void** state)
   uint32_t random = 5;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (size_t m = 0; m < sizeof matrices / sizeof *matrices; m++) {
+  for (size_t m = 0; m < sizeof matrices / sizeof *matrices; ++m) {
     uint8_t values[6 * 5 * 7];
     test_set s;
     make_set(context, 6, 5, 7, 4, &random, &s);
@@ -195,7 +195,7 @@ static void mirrors_shears_and_scales_change_the_world_only(void** state)
     stratus_volume v = stratus_volume_default();
     stratus_criterion criterion = stratus_criterion_default();
     memset(values, 0, sizeof values);
-    for (size_t p = 0; p < s.count; p++) {
+    for (size_t p = 0; p < s.count; ++p) {
       values[(s.positions[3 * p + 2] * 5 + s.positions[3 * p + 1]) * 6 + s.positions[3 * p]] = 1;
     }
     v.values = values;
@@ -205,7 +205,7 @@ static void mirrors_shears_and_scales_change_the_world_only(void** state)
     memcpy(v.matrix, matrices[m], sizeof v.matrix);
     criterion.lower = 1.0;
     assert_int_equal(stratus_voxels_create(context, &v, &criterion, &voxels), STRATUS_OK);
-    for (int r = 0; r < 2000; r++) {
+    for (int r = 0; r < 2000; ++r) {
       const stratus_ray local = make_ray(&s, 1, &random);
       stratus_ray ray = local;
       stratus_hit hit;
@@ -218,15 +218,15 @@ static void mirrors_shears_and_scales_change_the_world_only(void** state)
         continue;
       }
       double length = 0.0, along = 0.0;
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         length += (double)hit.normal[a] * (double)hit.normal[a];
         along += (double)hit.normal[a] * ray.direction[a];
       }
       assert_float_equal(length, 1.0, 1e-6); /* floats */
       assert_true(along < 0.0);
-      for (int edge = 0; hit.face >= 0 && edge < 3; edge++) { /* right angles with both edges of the face */
+      for (int edge = 0; hit.face >= 0 && edge < 3; ++edge) { /* right angles with both edges of the face */
         double across = 0.0;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           across += (double)hit.normal[a] * matrices[m][4 * a + edge];
         }
         assert_true(edge == hit.face / 2 || fabs(across) < 1e-6);
@@ -257,11 +257,11 @@ static void far_away_rays_still_hit_what_they_aim_at(void** state)
   criterion.lower = 0.5;
   stratus_voxels* voxels = NULL;
   assert_int_equal(stratus_voxels_create(context, &v, &criterion, &voxels), STRATUS_OK);
-  for (int r = 0; r < 1000; r++) {
+  for (int r = 0; r < 1000; ++r) {
     const double target[3] = { 4.5e5 + 5.0, 6e6 + 4.0, 1e3 + 3.0 };
     stratus_ray ray = { .t_max = INFINITY };
     stratus_hit hit;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       ray.direction[a] = (double)(random_below(&random, 2000001) - 1000000) + 0.5;
       ray.origin[a] = target[a] - ray.direction[a];
     }
@@ -283,7 +283,7 @@ static void extreme_rays_end(void** state)
   static const int32_t positions[] = { 0, 0, 0, (1 << 18) - 1, 2, 0 };
   static const stratus_ray rays[] = {
     { { -1e300, .5, .5 }, { 1e300, 0, 0 }, 0, INFINITY }, /* crosses all planes at once, as far as doubles tell */
-    { { -1, .5, .5 }, { 1e-290, 0, 0 }, 0, INFINITY }, /* the shortest */
+    { { -1, .5, .5 }, { 1e-290, 0, 0 }, 0, INFINITY },    /* the shortest */
     { { -1, .5, .5 }, { 1, 5e-324, 0 }, 0, INFINITY },
     { { 1e18, 1e18, 1e18 }, { -1, -1, -1 }, 0, INFINITY },
     { { -1, .5, .5 }, { 1, 0, 0 }, 1e308, INFINITY },
@@ -297,7 +297,7 @@ static void extreme_rays_end(void** state)
   assert_int_equal(stratus_voxels_create_list(context, n, positions, 2, &voxels), STRATUS_OK);
   assert_int_equal(stratus_voxels_first_hit(context, voxels, rays, 7, hits), STRATUS_OK);
   assert_int_equal(hits[2].voxel[0], 0);
-  for (int r = 4; r < 7; r++) {
+  for (int r = 4; r < 7; ++r) {
     assert_int_equal(hits[r].voxel[0], -1);
     assert_true(isinf(hits[r].t));
   }
@@ -314,7 +314,7 @@ static void rays_that_are_none_are_refused_by_their_index(void** state)
   stratus_voxels* voxels = NULL;
   stratus_hit hits[3];
   assert_int_equal(stratus_voxels_create_list(context, n, position, 1, &voxels), STRATUS_OK);
-  for (int bad = 0; bad < 10; bad++) {
+  for (int bad = 0; bad < 10; ++bad) {
     const stratus_ray good = { { -1, 1.5, 1.5 }, { 1, 0, 0 }, 0, INFINITY };
     stratus_ray rays[3] = { good, good, good };
     switch (bad) {

@@ -31,7 +31,7 @@ static bool transfer_shows(const stratus_transfer* t, double x)
   }
   size_t last = 0;
   while (last + 1 < n && p[2 * last + 2] <= x) {
-    last++;
+    ++last;
   }
   return p[2 * last + 1] > 0.0 || (x > p[2 * last] && p[2 * last + 3] > 0.0);
 }
@@ -53,7 +53,7 @@ static bool is_effective(const stratus_volume* v, const stratus_criterion* c, in
 static void check_consistent(const stratus_voxels* s)
 {
   int64_t count = 0, lo[3] = { 0 }, hi[3] = { 0 }, low[3], high[3];
-  for (int64_t b = 0; b < s->brick_count; b++) {
+  for (int64_t b = 0; b < s->brick_count; ++b) {
     const stratus_brick* k = s->bricks + b;
     assert_true(k->mask != 0 && k->count == __builtin_popcountll(k->mask));
     if (b > 0) {
@@ -61,15 +61,15 @@ static void check_consistent(const stratus_voxels* s)
       assert_true(((uint64_t)p->at[2] << 32 | (uint64_t)p->at[1] << 16 | p->at[0]) <
         ((uint64_t)k->at[2] << 32 | (uint64_t)k->at[1] << 16 | k->at[0]));
     }
-    for (int bit = 0; bit < 64; bit++) {
+    for (int bit = 0; bit < 64; ++bit) {
       if (k->mask >> bit & 1) {
         const int64_t at[3] = { 4 * k->at[0] + (bit & 3), 4 * k->at[1] + (bit >> 2 & 3), 4 * k->at[2] + (bit >> 4) };
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
           lo[a] = count == 0 || at[a] < lo[a] ? at[a] : lo[a];
           hi[a] = at[a] >= hi[a] ? at[a] + 1 : hi[a];
         }
         assert_int_equal(stratus_voxels_get(s, at[0], at[1], at[2]), 1);
-        count++;
+        ++count;
       }
     }
   }
@@ -84,13 +84,13 @@ static void check_volume(stratus_context* const contexts[3], const stratus_volum
   stratus_voxels* s[3] = { NULL, NULL, NULL };
   const int64_t* n = v->dimensions;
   int64_t dimensions[3], count = 0;
-  for (int t = 0; t < 3; t++) {
+  for (int t = 0; t < 3; ++t) {
     assert_int_equal(stratus_voxels_create(contexts[t], v, criterion, &s[t]), STRATUS_OK);
     assert_int_equal(s[t]->brick_count, s[0]->brick_count);
     assert_memory_equal(s[t]->bricks, s[0]->bricks, (size_t)s[0]->brick_count * sizeof *s[0]->bricks);
     assert_memory_equal(&s[t]->origin, &s[0]->origin, sizeof s[0]->origin);
   }
-  for (int64_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+  for (int64_t i = 0; i < n[0] * n[1] * n[2]; ++i) {
     const bool expected = is_effective(v, criterion, i);
     assert_int_equal(stratus_voxels_get(s[0], i % n[0], i / n[0] % n[1], i / n[0] / n[1]), expected);
     count += expected;
@@ -102,7 +102,7 @@ static void check_volume(stratus_context* const contexts[3], const stratus_volum
   assert_memory_equal(dimensions, n, sizeof dimensions);
   check_consistent(s[0]);
   *shown += count;
-  for (int t = 0; t < 3; t++) {
+  for (int t = 0; t < 3; ++t) {
     stratus_voxels_destroy(s[t]);
   }
 }
@@ -124,11 +124,11 @@ static int compare(const void* a, const void* b)
 /* Points at values of the volume, some twice, many without opacity. */
 static void random_points(const stratus_volume* v, size_t count, double (*points)[2], uint32_t* random)
 {
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     points[i][0] = i > 0 && random_below(random, 4) == 0 ? points[i - 1][0] : some_value(v, random);
   }
   qsort(points, count, sizeof *points, compare);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; ++i) {
     points[i][1] = random_below(random, 3) ? 0.0 : (double)(1 + random_below(random, 100)) / 100.0;
   }
 }
@@ -140,7 +140,7 @@ static void every_type_is_compared_exactly(void** state)
   int64_t shown = 0;
   (void)state;
   stratus_context* contexts[3] = { make_context("host", 1), make_context("host", 2), make_context("host", 3) };
-  for (int pass = 0; pass < 10 * 5 * 8; pass++) {
+  for (int pass = 0; pass < 10 * 5 * 8; ++pass) {
     const int64_t* n = sizes[pass / 10 % 5];
     test_volume v = make_volume((stratus_type)(pass % 10), n[0], n[1], n[2], 1 + random_below(&random, 2), &random);
     if (random_below(&random, 2)) {
@@ -148,7 +148,7 @@ static void every_type_is_compared_exactly(void** state)
     }
     if (random_below(&random, 3) == 0) {
       add_ghosts(&v, (int)random_below(&random, 2), 1 + random_below(&random, 3), &random);
-      for (int64_t i = 0; i < n[0] * n[1] * n[2]; i++) { /* most are plain */
+      for (int64_t i = 0; i < n[0] * n[1] * n[2]; ++i) { /* most are plain */
         v.point_ghosts[i] = random_below(&random, 3) ? 0 : v.point_ghosts[i];
         v.cell_ghosts[i] = random_below(&random, 3) ? 0 : v.cell_ghosts[i];
       }
@@ -168,7 +168,7 @@ static void every_type_is_compared_exactly(void** state)
     free_volume(&v);
   }
   assert_true(shown > 50000);
-  for (int t = 0; t < 3; t++) {
+  for (int t = 0; t < 3; ++t) {
     stratus_context_destroy(contexts[t]);
   }
 }
@@ -202,7 +202,7 @@ static void ends_of_intervals_are_in_and_feet_of_ramps_are_out(void** state)
   };
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     const stratus_transfer transfer = transfer_of(cases[i].points, cases[i].count, cases[i].clamp);
     const stratus_criterion c = { .transfer = cases[i].points ? &transfer : NULL, .lower = .25, .upper = .75 };
     stratus_volume v = stratus_volume_default();
@@ -222,11 +222,11 @@ static void a_list_makes_the_set_of_its_positions(void** state)
     { 1000, 1, 300000 - 1 } };
   uint32_t random = 2;
   (void)state;
-  for (int pass = 0; pass < 60; pass++) {
+  for (int pass = 0; pass < 60; ++pass) {
     int64_t n[3] = { sizes[pass % 6][0], sizes[pass % 6][1], sizes[pass % 6][2] < 1 << 18 ? sizes[pass % 6][2] : 1 << 18 };
     const size_t count = (size_t)random_below(&random, 400);
     int32_t positions[3 * 400];
-    for (size_t i = 0; i < 3 * count; i++) {
+    for (size_t i = 0; i < 3 * count; ++i) {
       positions[i] = (int32_t)(random_below(&random, 1 << 24) % n[i % 3]);
       if (i >= 30 && random_below(&random, 3)) { /* near another, or the very same */
         const int64_t near = positions[i - 30] + random_below(&random, 3) - 1;
@@ -234,16 +234,16 @@ static void a_list_makes_the_set_of_its_positions(void** state)
       }
     }
     stratus_voxels* s[2] = { NULL, NULL };
-    for (int t = 0; t < 2; t++) {
+    for (int t = 0; t < 2; ++t) {
       stratus_context* context = make_context("host", 1 + 2 * t);
       assert_int_equal(stratus_voxels_create_list(context, n, positions, count, &s[t]), STRATUS_OK);
       check_consistent(s[t]);
       int64_t distinct = 0;
-      for (size_t i = 0; i < count; i++) {
+      for (size_t i = 0; i < count; ++i) {
         const int32_t* p = positions + 3 * i;
         size_t first = 0;
         while (memcmp(positions + 3 * first, p, 3 * sizeof *p) != 0) {
-          first++;
+          ++first;
         }
         distinct += first == i;
         assert_int_equal(stratus_voxels_get(s[t], p[0], p[1], p[2]), 1);
@@ -270,7 +270,7 @@ static void smooth_values(test_volume* v, uint32_t* random)
 {
   const int64_t* n = v->view.dimensions;
   const double x0 = (double)random_below(random, 100) / 10.0, y0 = (double)random_below(random, 100) / 10.0;
-  for (int64_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+  for (int64_t i = 0; i < n[0] * n[1] * n[2]; ++i) {
     const double f = sin((double)(i % n[0]) * .23 + x0) + cos((double)(i / n[0] % n[1]) * .31 + y0) + sin((double)(i / n[0] / n[1]) * .2);
     ((float*)v->values)[i] = f > 0.5 ? (float)(f - 0.5) : 0.0f;
   }
@@ -282,7 +282,7 @@ static void blocks_that_either_sampling_shows_are_there_and_few_others(void** st
   int64_t occupied = 0, extra = 0, empty = 0;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int pass = 0; pass < 40; pass++) {
+  for (int pass = 0; pass < 40; ++pass) {
     test_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
     double points[8][2] = { { 0.0, 0.0 } };
     smooth_values(&v, &random);
@@ -291,7 +291,7 @@ static void blocks_that_either_sampling_shows_are_there_and_few_others(void** st
     }
     random_points(&v.view, 5, points + 1, &random);
     points[0][0] = -1.0;
-    for (int p = 1; p < 6; p++) {
+    for (int p = 1; p < 6; ++p) {
       points[p][1] = points[p][0] > 0.0 ? points[p][1] : 0.0;
     }
     const stratus_transfer transfer = transfer_of(points[0], 6, 1);
@@ -302,18 +302,18 @@ static void blocks_that_either_sampling_shows_are_there_and_few_others(void** st
     int64_t blocks[3], dimensions[3];
     assert_int_equal(stratus_voxels_create_cells(context, &v.view, &c, &s), STRATUS_OK);
     assert_int_equal(stratus_value_range_create(context, &v.view, 4, &ranges), STRATUS_OK);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; ++i) {
       assert_int_equal(
         stratus_occupancy_create(context, ranges, &transfer, i ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT, &o[i]),
         STRATUS_OK);
     }
     stratus_value_range_blocks(ranges, blocks, NULL);
     stratus_voxels_dimensions(s, dimensions);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
       assert_int_equal(dimensions[a], 4 * blocks[a]);
     }
     check_consistent(s);
-    for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; b++) {
+    for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
       const int64_t i = b % blocks[0], j = b / blocks[0] % blocks[1], k = b / blocks[0] / blocks[1];
       const int shown = stratus_occupancy_get(o[0], i, j, k) || stratus_occupancy_get(o[1], i, j, k);
       const int here = block_in(s, i, j, k);
@@ -339,7 +339,7 @@ static void an_interval_of_cells_keeps_each_block_whose_range_meets_it(void** st
   uint32_t random = 21;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (int type = 0; type < 10; type++) {
+  for (int type = 0; type < 10; ++type) {
     test_volume v = make_volume((stratus_type)type, 13, 9, 6, 2, &random);
     spoil(&v, 50, &random);
     stratus_value_range* ranges = NULL;
@@ -352,7 +352,7 @@ static void an_interval_of_cells_keeps_each_block_whose_range_meets_it(void** st
     assert_int_equal(stratus_value_range_create(context, &v.view, 4, &ranges), STRATUS_OK);
     stratus_value_range_blocks(ranges, blocks, NULL);
     assert_int_equal(stratus_value_range_whole(ranges, NULL, &whole_hi), STRATUS_OK);
-    for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; b++) {
+    for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
       const int64_t i = b % blocks[0], j = b / blocks[0] % blocks[1], k = b / blocks[0] / blocks[1];
       double lo, hi;
       int gaps;
@@ -380,19 +380,19 @@ static void a_set_that_covers_another_holds_all_of_it(void** state)
   stratus_context* context = make_context("host", 1);
   test_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
   smooth_values(&v, &random);
-  for (int pass = 0; pass < 300; pass++) {
+  for (int pass = 0; pass < 300; ++pass) {
     double points[2][6][2];
     stratus_transfer transfers[2];
     stratus_criterion c[2];
     stratus_voxels* s[2] = { NULL, NULL };
     random_points(&v.view, 6, points[0], &random);
     memcpy(points[1], points[0], sizeof points[0]);
-    for (int p = 0; p < 6; p++) { /* mostly a part of the first, over other points */
+    for (int p = 0; p < 6; ++p) { /* mostly a part of the first, over other points */
       points[1][p][1] = random_below(&random, 3) ? points[1][p][1] : 0.0;
       points[1][p][0] += random_below(&random, 4) ? 0.0 : 1e-5;
     }
     qsort(points[1], 6, sizeof points[1][0], compare);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; ++i) {
       transfers[i] = transfer_of(points[i][0], 6, 1);
       c[i] = (stratus_criterion){ .transfer = &transfers[i] };
       if (i == 0 && pass % 3 == 0) {
@@ -408,7 +408,7 @@ static void a_set_that_covers_another_holds_all_of_it(void** state)
     const int covers = stratus_origin_covers(&s[0]->origin, &wanted);
     covered += covers;
     refused += !covers;
-    for (int64_t b = 0; covers && b < s[1]->brick_count; b++) {
+    for (int64_t b = 0; covers && b < s[1]->brick_count; ++b) {
       assert_true(stratus_voxels_mask(s[0], s[1]->bricks[b].at[0], s[1]->bricks[b].at[1], s[1]->bricks[b].at[2]) != 0);
     }
     stratus_voxels_destroy(s[0]);
@@ -447,7 +447,7 @@ static void only_the_same_voxels_stand_in_for_first_hits(void** state)
   assert_int_equal(stratus_origin_covers(&b, &a), 0);
   const stratus_transfer transfer = transfer_of(comb[0], 200, 0);
   c.transfer = &transfer;
-  for (int i = 0; i < 200; i++) { /* 66 teeth with gaps between: more than are kept */
+  for (int i = 0; i < 200; ++i) { /* 66 teeth with gaps between: more than are kept */
     comb[i][0] = i;
     comb[i][1] = i % 3 == 1 ? 1.0 : 0.0; /* feet at 3 n and 3 n + 2, transparent between 3 n + 2 and 3 n + 3 */
   }
@@ -473,18 +473,18 @@ static void any_change_of_the_content_changes_the_hash(void** state)
   uint32_t random = 4;
   (void)state;
   stratus_context *one = make_context("host", 1), *three = make_context("host", 3);
-  for (int type = 0; type < 10; type++) {
+  for (int type = 0; type < 10; ++type) {
     test_volume v = make_volume((stratus_type)type, 7, 5, 3, 1, &random);
     test_volume strided = make_volume((stratus_type)type, 7, 5, 3, 3, &random);
     const size_t size = stratus_type_size((stratus_type)type);
     const uint64_t hash = hash_of(one, &v.view);
     uint8_t* bytes = v.values;
-    for (size_t i = 0; i < 105; i++) {
+    for (size_t i = 0; i < 105; ++i) {
       memcpy((uint8_t*)strided.values + 3 * i * size, bytes + i * size, size);
     }
     assert_true(hash_of(three, &v.view) == hash);
     assert_true(hash_of(one, &strided.view) == hash);
-    for (size_t i = 0; i < 105 * size; i++) {
+    for (size_t i = 0; i < 105 * size; ++i) {
       bytes[i] ^= 1;
       assert_true(hash_of(one, &v.view) != hash);
       bytes[i] ^= 1;
@@ -608,9 +608,9 @@ static void memory_refused_at_any_request_is_told_and_leaves_nothing(void** stat
   test_volume v = make_volume(STRATUS_FLOAT32, 9, 6, 5, 2, &random);
   const stratus_transfer transfer = transfer_of(points, 2, 1);
   const stratus_criterion c = { .transfer = &transfer };
-  for (int which = 0; which < 5; which++) {
+  for (int which = 0; which < 5; ++which) {
     int refusals = 0;
-    for (int64_t n = 1;; n++, refusals++) {
+    for (int64_t n = 1;; ++n, ++refusals) {
       faulty_allocator allocator = { 0 };
       stratus_context_options options = faulty_options(&allocator, "host");
       stratus_context* context = NULL;

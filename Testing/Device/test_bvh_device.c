@@ -25,12 +25,12 @@ static void codes_and_hierarchies_equal_the_hosts(void** state)
   static const uint32_t counts[] = { 2, 3, 63, 64, 65, 1000, 5000 };
   uint32_t random = 1;
   (void)state;
-  for (int set = 0; set < BOX_SETS; set++) {
-    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+  for (int set = 0; set < BOX_SETS; ++set) {
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
       stratus_box* boxes = make_boxes((box_set)set, counts[c], &random);
       stratus_bvh_build here = { .context = host_context, .count = counts[c] }, there = { .context = device, .count = counts[c] };
       stratus_bvh_build* both[] = { &here, &there };
-      for (int b = 0; b < 2; b++) {
+      for (int b = 0; b < 2; ++b) {
         assert_int_equal(stratus_bvh_sort_boxes(both[b], boxes), STRATUS_OK);
         both[b]->pairs = malloc((counts[c] - 1) * sizeof *both[b]->pairs);
         assert_non_null(both[b]->pairs);
@@ -41,7 +41,7 @@ static void codes_and_hierarchies_equal_the_hosts(void** state)
       assert_memory_equal(here.number, there.number, counts[c] * sizeof *here.number);
       assert_memory_equal(here.pairs, there.pairs, (counts[c] - 1) * sizeof *here.pairs);
       assert_int_equal(here.root, there.root);
-      for (int b = 0; b < 2; b++) {
+      for (int b = 0; b < 2; ++b) {
         stratus_release(both[b]->context, both[b]->boxes);
         stratus_release(both[b]->context, both[b]->number);
         stratus_release(both[b]->context, both[b]->codes);
@@ -57,7 +57,7 @@ static void trees_equal_the_hosts(void** state)
   uint32_t random = 2;
   stratus_box* boxes = make_boxes(BOXES_UNEVEN, 3000, &random);
   (void)state;
-  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; method++) {
+  for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
     stratus_bvh here = make_bvh(host_context, (stratus_tree_method)method, boxes, 3000, 2, 16);
     stratus_bvh there = make_bvh(device, (stratus_tree_method)method, boxes, 3000, 2, 16);
     assert_same_bvh(&here, &there, 3000);
@@ -76,7 +76,7 @@ static void a_lost_device_is_a_clean_error(void** state)
   stratus_bvh right = make_bvh(host_context, STRATUS_TREE_LBVH, boxes, 200, 1, 64), bvh;
   int64_t calls = 0;
   (void)state;
-  for (; calls < 100; calls++) {
+  for (; calls < 100; ++calls) {
     stratus_device_fail_after(device->device, calls, CL_OUT_OF_RESOURCES);
     memset(&bvh, 0x55, sizeof bvh);
     const stratus_bvh untouched = bvh;

@@ -16,7 +16,7 @@ static void compare_sums(const stratus_voxels* voxels, double bandwidth, int exa
   const size_t count = (size_t)voxels->brick_count;
   int64_t* start = calloc(count + 1, sizeof *start);
   assert_non_null(start);
-  for (size_t b = 0; b < count; b++) {
+  for (size_t b = 0; b < count; ++b) {
     start[b + 1] = start[b] + voxels->bricks[b].count;
   }
   const size_t values = exact ? (size_t)start[count] : count;
@@ -43,7 +43,7 @@ static void sums_of_weights_equal_the_hosts(void** state)
   static const double some[] = { 1.0, 2.0, 3.3, 4.0, 5.5, 6.2, 9.7, 20.0, 28.9 };
   uint32_t random = 1;
   (void)state;
-  for (int repeat = 0; repeat < (tiny ? 2 : 27); repeat++) {
+  for (int repeat = 0; repeat < (tiny ? 2 : 27); ++repeat) {
     set_begin(&set, 1 + random_below(&random, 40), 1 + random_below(&random, 40), 1 + random_below(&random, 40));
     set_add_noise(&set, tiny ? 20 : 1 + random_below(&random, 1500), &random);
     if (repeat % 2 && !tiny) {
@@ -67,7 +67,7 @@ static void a_gpu_is_asked_and_its_field_is_the_hosts(void** state)
   stratus_voxels* voxels = make_voxels(host_context, &set);
   const bool is_cpu = device->device->is_cpu;
   device->device->is_cpu = false;
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; ++i) {
     stratus_density *host = NULL, *filled = NULL;
     assert_int_equal(stratus_density_create(host_context, voxels->bricks, voxels->brick_count, some[i / 2], i % 2, &host), STRATUS_OK);
     assert_int_equal(stratus_density_create(device, voxels->bricks, voxels->brick_count, some[i / 2], i % 2, &filled), STRATUS_OK);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields built by an OpenCL device against the host's, to the bit. A CPU device is taken for a GPU, since the core would leave the work
- * to the host there. Run with the argument `tiny` it takes few and small grids. */
+ * Distance fields built by an OpenCL device against the host's, to the bit. A CPU device is taken for a GPU, since the core would leave the
+ * work to the host there. Run with the argument `tiny` it takes few and small grids. */
 #include "fields.h"
 
 #include "device.h"
@@ -20,7 +20,7 @@ static void compare_method(const test_set* s, stratus_field_method method, int i
   stratus_field* a = make_field(host_context, s, method, is_signed, &told[0]);
   stratus_field* b = make_field(device, s, method, is_signed, &told[1]);
   const int64_t total = set_voxels(s);
-  for (int64_t v = 0; v < total; v++) {
+  for (int64_t v = 0; v < total; ++v) {
     if (distance_at(a, v) != distance_at(b, v)) {
       fail_msg("%s signed %d, voxel %d of %dx%dx%d: %g, not %g", stratus_field_method_name(method), is_signed, (int)v, (int)s->n[0],
         (int)s->n[1], (int)s->n[2], distance_at(b, v), distance_at(a, v));
@@ -38,8 +38,8 @@ static void compare_method(const test_set* s, stratus_field_method method, int i
 
 static void compare_set(test_set* s)
 {
-  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; method++) {
-    for (int is_signed = 0; is_signed < 2; is_signed++) {
+  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
+    for (int is_signed = 0; is_signed < 2; ++is_signed) {
       compare_method(s, (stratus_field_method)method, is_signed);
     }
   }
@@ -50,7 +50,7 @@ static void every_method_equals_the_hosts(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int grid = 0; grid < (tiny ? 2 : 12); grid++) {
+  for (int grid = 0; grid < (tiny ? 2 : 12); ++grid) {
     test_set s = make_random_set(host_context, 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       grid < 3 ? grid : 1 + random_below(&random, 90), &random);
     compare_set(&s);
@@ -85,13 +85,13 @@ static void a_device_that_is_lost_is_reported_and_nothing_leaks(void** state)
   (void)state;
   test_set s = make_random_set(host_context, 6, 5, 4, 20, &random);
   const stratus_field_method methods[] = { STRATUS_FIELD_EXACT, STRATUS_FIELD_AJFA };
-  for (size_t m = 0; m < 2; m++) {
+  for (size_t m = 0; m < 2; ++m) {
     stratus_field_options options = stratus_field_options_default();
     options.method = methods[m];
     options.is_signed = 1;
     stratus_status status = STRATUS_DEVICE_ERROR;
     int64_t calls = 0;
-    for (; status != STRATUS_OK && calls < 2000; calls++) {
+    for (; status != STRATUS_OK && calls < 2000; ++calls) {
       stratus_field* field = NULL;
       stratus_device_fail_after(device->device, calls, CL_DEVICE_NOT_AVAILABLE);
       status = stratus_field_create(device, s.voxels, &options, &field, NULL);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on an OpenCL device: packets of 16, as on a CPU, and one ray a work item, as on a GPU. The same answers as the host's, to the bit. */
+ * First hits on an OpenCL device: packets of 16, as on a CPU, and one ray a work item, as on a GPU. The same answers as the host's, to the
+ * bit. */
 #include "first_hits.h"
 
 #include "device_state.h"
@@ -32,19 +33,19 @@ static void device_and_host_hit_the_same(void** state)
   static const int methods[4] = { STRATUS_TREE_HYBRID, STRATUS_TREE_OCTANT, STRATUS_TREE_DISTANCE, STRATUS_TREE_LBVH };
   const int64_t dimensions[3] = { 90, 60, 75 };
   stratus_context* host = open_context("host", false);
-  for (int as_gpu = 0; as_gpu < 2; as_gpu++) {
+  for (int as_gpu = 0; as_gpu < 2; ++as_gpu) {
     stratus_context* device = open_context("0", as_gpu);
     if (!device) {
       skip(); /* no OpenCL platform */
     }
     print_message("on %s\n", stratus_context_device(device));
-    for (int m = 0; m < 4; m++) {
+    for (int m = 0; m < 4; ++m) {
       uint32_t random = 8;
       stratus_voxels* voxels = random_voxels(host, dimensions, m == 1 ? 0.001 : 0.02, 0, &random);
       stratus_tree_options options = stratus_tree_options_default();
       stratus_tree* tree = NULL;
       options.method = (stratus_tree_method)methods[m];
-      for (int i = 0; i < count; i++) {
+      for (int i = 0; i < count; ++i) {
         rays[i] = random_ray(dimensions, &random);
       }
       assert_int_equal(stratus_tree_create(host, voxels, &options, &tree), STRATUS_OK);
@@ -52,7 +53,7 @@ static void device_and_host_hit_the_same(void** state)
       if (stratus_tree_first_hit(device, tree, rays, (size_t)count, ours) != STRATUS_OK) {
         fail_msg("%s", stratus_context_message(device));
       }
-      for (int i = 0; i < count; i++) {
+      for (int i = 0; i < count; ++i) {
         assert_true(ours[i].t == theirs[i].t && ours[i].face == theirs[i].face && ours[i].visited == theirs[i].visited);
         assert_memory_equal(ours[i].voxel, theirs[i].voxel, sizeof ours[i].voxel);
       }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly, and pixels to a few units in the
- * last place: the set-up of rays divides and takes roots in double, which a device may round otherwise, and then rounds to float. PoCL: 0. */
+ * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly, and pixels to a few units in
+ * the last place: the set-up of rays divides and takes roots in double, which a device may round otherwise, and then rounds to float. PoCL:
+ * 0. */
 #include "../picture_case.h"
 
 #define ULPS_MOST 4

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lit samples, gradient opacity and components on the OpenCL device against the host's: one source, so counters agree exactly and pixels to a few
- * units in the last place of the whole picture's colours. */
+ * Lit samples, gradient opacity and components on the OpenCL device against the host's: one source, so counters agree exactly and pixels to
+ * a few units in the last place of the whole picture's colours. */
 #include "../picture_case.h"
 
 #include "Core/internal.h"
@@ -11,7 +11,8 @@
 static picture on_host;
 static picture on_device;
 
-static void compare(stratus_context* host, stratus_context* device, const picture_case* c, const stratus_transfer* transfers, const char* what)
+static void compare(
+  stratus_context* host, stratus_context* device, const picture_case* c, const stratus_transfer* transfers, const char* what)
 {
   stratus_context* contexts[2] = { host, device };
   picture* pictures[2] = { &on_host, &on_device };
@@ -23,7 +24,8 @@ static void compare(stratus_context* host, stratus_context* device, const pictur
     const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples };
     assert_int_equal(stratus_ray_caster_create(contexts[i], &caster), STRATUS_OK);
     stratus_ray_cast_options options = c->options;
-    for (int again = 0; again < 2; ++again) { /* with looks after without, and with values kept as floats: nothing stale stays on the device */
+    for (int again = 0; again < 2;
+         ++again) { /* with looks after without, and with values kept as floats: nothing stale stays on the device */
       options.shade = again && c->options.shade;
       assert_int_equal(stratus_ray_caster_render(caster, &c->volume, transfers, &c->camera, &options, &image, &p->report), STRATUS_OK);
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The device's maxima, minima, means, sums and isosurfaces against the host's, cropped, masked and jittered too: the traversal is one source, so the
- * counters agree exactly, and pixels to the few units in the last place that the set-up of rays may be rounded otherwise. PoCL: 0. */
+ * The device's maxima, minima, means, sums and isosurfaces against the host's, cropped, masked and jittered too: the traversal is one
+ * source, so the counters agree exactly, and pixels to the few units in the last place that the set-up of rays may be rounded otherwise.
+ * PoCL: 0. */
 #include "../picture_case.h"
 
 #define ULPS_MOST 4

@@ -52,8 +52,8 @@ static void value_ranges_of_every_type_equal_the_hosts(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; type++) {
-    for (int repeat = 0; repeat < (tiny ? 1 : 6); repeat++) {
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
+    for (int repeat = 0; repeat < (tiny ? 1 : 6); ++repeat) {
       test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
         1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
       compare_ranges(&v, 2 << random_below(&random, 3));
@@ -97,17 +97,17 @@ static void occupancy_equals_the_hosts(void** state)
     { -1, 0, 0, 0, 0.5, 0, 1, 0 } };
   uint32_t random = 2;
   (void)state;
-  for (int repeat = 0; repeat < 12; repeat++) {
+  for (int repeat = 0; repeat < 12; ++repeat) {
     test_volume v = make_volume(
       STRATUS_FLOAT32, 1 + random_below(&random, 200), 1 + random_below(&random, 12), 1 + random_below(&random, 12), 1, &random);
     float* values = v.values;
-    for (int64_t i = 0; i < v.view.dimensions[0] * v.view.dimensions[1] * v.view.dimensions[2]; i++) {
+    for (int64_t i = 0; i < v.view.dimensions[0] * v.view.dimensions[1] * v.view.dimensions[2]; ++i) {
       values[i] = values[i] > 0.9f ? values[i] : 0.01f * values[i]; /* mostly quiet: some blocks stay empty */
     }
     spoil(&v, 300, &random);
     stratus_value_range* ranges = NULL;
     assert_int_equal(stratus_value_range_create(host_context, &v.view, 2, &ranges), STRATUS_OK);
-    for (size_t f = 0; f < sizeof opacity / sizeof *opacity && ranges->whole_lo <= ranges->whole_hi; f++) {
+    for (size_t f = 0; f < sizeof opacity / sizeof *opacity && ranges->whole_lo <= ranges->whole_hi; ++f) {
       stratus_transfer transfer = stratus_transfer_default();
       transfer.opacity = opacity[f];
       transfer.opacity_count = 4;
@@ -125,7 +125,7 @@ static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint3
 {
   stratus_occupancy* o = make_occupancy(host_context, nx, ny, nz, fill, random);
   assert_true(stratus_device_takes_blocks(device, o->blocks));
-  for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; kind++) {
+  for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; ++kind) {
     stratus_distance_map *host = NULL, filled;
     assert_int_equal(stratus_distance_map_create(host_context, o, (stratus_distance_kind)kind, &host), STRATUS_OK);
     filled = *host;
@@ -135,7 +135,7 @@ static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint3
     if (stratus_device_distance_map(device, o, &filled) != STRATUS_OK) {
       fail_msg("%s", stratus_context_message(device));
     }
-    for (size_t row = 0; row < (host->bytes_size - 64) / host->pitch; row++) {
+    for (size_t row = 0; row < (host->bytes_size - 64) / host->pitch; ++row) {
       assert_memory_equal(filled.bytes + row * host->pitch, host->bytes + row * host->pitch, (size_t)nx);
     }
     free(filled.bytes);
@@ -148,7 +148,7 @@ static void distance_maps_equal_the_hosts(void** state)
 {
   uint32_t random = 3;
   (void)state;
-  for (int grid = 0; grid < (tiny ? 3 : 40); grid++) {
+  for (int grid = 0; grid < (tiny ? 3 : 40); ++grid) {
     compare_maps(1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       grid < 6 ? grid % 3 : random_below(&random, 60), &random);
   }

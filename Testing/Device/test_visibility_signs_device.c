@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of faces found by an OpenCL device against the host's, to the bit: those that take exact arithmetic, cells without volume, leaves and
- * scattered meshes among them. Run with the argument `tiny` it takes small meshes: enough for a simulator to see the kernel. */
+ * Signs of faces found by an OpenCL device against the host's, to the bit: those that take exact arithmetic, cells without volume, leaves
+ * and scattered meshes among them. Run with the argument `tiny` it takes small meshes: enough for a simulator to see the kernel. */
 #include "structures.h"
 
 #include "device.h"
@@ -27,7 +27,7 @@ static stratus_view make_view(const mesh_case* mesh, int number)
   uint32_t random = (uint32_t)number + 1;
   stratus_view view = { .parallel = number % 2 };
   const double* point = mesh->points + 3 * (mesh_random(&random) % mesh->point_count);
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; ++a) {
     const double some = 2.0 * mesh_random_unit(&random) - 1.0;
     view.direction[a] = number % 3 == 0 ? (number / 6 % 3 == a) : some;
     view.eye[a] = point[a] + (number % 3 == 0 ? 0.0 : number % 3 == 1 ? some : 50.0 * some);
@@ -44,7 +44,7 @@ static int64_t compare_signs(stratus_visibility_order* order, const stratus_view
   const int64_t exact = stratus_order_find_signs(order, view);
   int64_t open = -1;
   memcpy(expected, order->state, bytes);
-  for (size_t i = 0; i < bytes; i++) {
+  for (size_t i = 0; i < bytes; ++i) {
     order->state[i] ^= 0xff;
   }
   memset(order->seen, 0x55, (size_t)order->point_count * 3 * sizeof *order->seen);
@@ -69,10 +69,10 @@ static void scatter_points(mesh_case* mesh)
   double* points = malloc((size_t)count * 3 * sizeof *points);
   assert_non_null(points);
   assert_true(count % step != 0);
-  for (int64_t i = 0; i < count; i++) {
+  for (int64_t i = 0; i < count; ++i) {
     memcpy(points + 3 * (i * step % count), mesh->points + 3 * i, 3 * sizeof *points);
   }
-  for (int64_t i = 0; i < 4 * mesh->cell_count; i++) {
+  for (int64_t i = 0; i < 4 * mesh->cell_count; ++i) {
     mesh->vertices[i] = (int32_t)(mesh->vertices[i] * step % count);
   }
   free(mesh->points);
@@ -87,7 +87,7 @@ static mesh_case make_mesh(int kind)
   const double scale = kind == 3 ? 1e-6 : 1.0, offset = kind == 4 ? 6e6 : 0.0;
   mesh_case mesh = mesh_grid(n, kind == 0 ? 0.0 : 0.19, (uint32_t)kind);
   if (kind == 2) {
-    for (int64_t i = 0; i < mesh.point_count; i++) { /* a layer without thickness */
+    for (int64_t i = 0; i < mesh.point_count; ++i) { /* a layer without thickness */
       mesh.points[3 * i] = mesh.points[3 * i] < 1.5 ? mesh.points[3 * i] : fmax(2.0, mesh.points[3 * i] - 1.0);
     }
   }
@@ -104,7 +104,7 @@ static void signs_are_the_hosts_to_the_bit(void** state)
 {
   int64_t exact = 0, flat = 0, scattered = 0;
   (void)state;
-  for (int kind = 0; kind < 7; kind++) {
+  for (int kind = 0; kind < 7; ++kind) {
     mesh_case mesh = make_mesh(kind);
     const stratus_mesh view = mesh_case_view(&mesh);
     stratus_partition_options options = stratus_partition_options_default();
@@ -119,7 +119,7 @@ static void signs_are_the_hosts_to_the_bit(void** state)
       pieces = mesh;
     }
     stratus_visibility_order* order = make_order(device, &pieces, kind == 5 ? NULL : &cut.leaves);
-    for (int v = 0; v < (tiny ? 4 : 24); v++) {
+    for (int v = 0; v < (tiny ? 4 : 24); ++v) {
       const stratus_view seen = make_view(&pieces, v);
       exact += compare_signs(order, &seen);
     }
@@ -144,7 +144,7 @@ static void what_comes_back_in_parts_is_whole(void** state)
   mesh_case mesh = mesh_grid(n, 0.1, 3);
   assert_true(mesh.cell_count > (1 << 17) && mesh.cell_count % (1 << 17) != 0);
   stratus_visibility_order* order = make_order(device, &mesh, NULL);
-  for (int v = 0; v < 2; v++) {
+  for (int v = 0; v < 2; ++v) {
     const stratus_view view = make_view(&mesh, v + 1);
     compare_signs(order, &view);
   }
@@ -152,7 +152,8 @@ static void what_comes_back_in_parts_is_whole(void** state)
   mesh_case_free(&mesh);
 }
 
-/* A device is asked where it is taken for a GPU and cells are many. Whatever it refuses, at any call, is a clean error, and the next order right. */
+/* A device is asked where it is taken for a GPU and cells are many. Whatever it refuses, at any call, is a clean error, and the next order
+ * right. */
 static void a_gpu_is_asked_and_its_order_is_the_hosts(void** state)
 {
   static const int many[3] = { 15, 14, 14 }, few[3] = { 3, 3, 3 };
@@ -174,10 +175,10 @@ static void a_gpu_is_asked_and_its_order_is_the_hosts(void** state)
   assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
   assert_null(order->device_signs);
   stratus_visibility_order_destroy(order);
-  for (int memory = 0; memory < 2; memory++) {
+  for (int memory = 0; memory < 2; ++memory) {
     int n = 0;
     stratus_status status = STRATUS_DEVICE_ERROR;
-    for (; n < CALLS_MAX && status != STRATUS_OK; n++) {
+    for (; n < CALLS_MAX && status != STRATUS_OK; ++n) {
       order = make_order(context, &mesh, NULL);
       if (memory) {
         allocator.fail_at = allocator.calls + n + 1;

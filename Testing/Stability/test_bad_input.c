@@ -115,8 +115,10 @@ static void sizes_whose_product_overflows_are_refused(void** state)
   REFUSED_AS(f, STRATUS_OVERFLOW, "9223372036854775807", in.volume.value_stride = INT64_MAX);
   REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.opacity_count = SIZE_MAX);
   REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.color_count = SIZE_MAX);
-  REFUSED_AS(f, STRATUS_OVERFLOW, "576460752303423488", in.transfer.opacity_count = SIZE_MAX / 32 + 1); /* its bytes overflow a pointer's steps */
-  REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", (in.transfer.gradient = in.transfer.opacity, in.transfer.gradient_count = SIZE_MAX));
+  REFUSED_AS(
+    f, STRATUS_OVERFLOW, "576460752303423488", in.transfer.opacity_count = SIZE_MAX / 32 + 1); /* its bytes overflow a pointer's steps */
+  REFUSED_AS(
+    f, STRATUS_OVERFLOW, "18446744073709551615", (in.transfer.gradient = in.transfer.opacity, in.transfer.gradient_count = SIZE_MAX));
 }
 
 /* Lists of items that no array can hold are refused before the first item is read. */
@@ -402,11 +404,10 @@ static void flat_volumes_are_drawn_whatever_their_spacing(void** state)
 #define ON(fixture, test) cmocka_unit_test_prestate(test, fixture)
 #define ALL(f)                                                                                                                             \
   ON(f, spoilt_volumes_are_refused), ON(f, sizes_whose_product_overflows_are_refused), ON(f, counts_beyond_any_array_are_refused),         \
-    ON(f, spoilt_transfer_functions_are_refused),                                                                                          \
-    ON(f, spoilt_cameras_are_refused), ON(f, spoilt_options_are_refused), ON(f, spoilt_images_are_refused),                                \
-    ON(f, null_pointers_are_refused), ON(f, spoilt_camera_parameters_are_refused),                                                         \
-    ON(f, a_volume_without_a_finite_value_gives_an_empty_picture), \
-    ON(f, lengths_of_the_unit_out_of_all_proportion_draw_numbers), ON(f, flat_volumes_are_drawn_whatever_their_spacing)
+    ON(f, spoilt_transfer_functions_are_refused), ON(f, spoilt_cameras_are_refused), ON(f, spoilt_options_are_refused),                    \
+    ON(f, spoilt_images_are_refused), ON(f, null_pointers_are_refused), ON(f, spoilt_camera_parameters_are_refused),                       \
+    ON(f, a_volume_without_a_finite_value_gives_an_empty_picture), ON(f, lengths_of_the_unit_out_of_all_proportion_draw_numbers),          \
+    ON(f, flat_volumes_are_drawn_whatever_their_spacing)
 
 static fixture host, device;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What floodings get wrong, written down: never too short, sometimes too long, unfilled where steps fall too fast. And memory refused at the
- * n-th request, for every method. */
+ * What floodings get wrong, written down: never too short, sometimes too long, unfilled where steps fall too fast. And memory refused at
+ * the n-th request, for every method. */
 #include "faulty_allocator.h"
 #include "fields.h"
 
@@ -20,9 +20,10 @@ typedef struct outcome {
 /* A flooding against the exact field: what is shorter would be a fault. */
 static outcome compare(stratus_context* context, const test_set* s, stratus_field_method method, int is_signed)
 {
-  stratus_field *exact = make_field(context, s, STRATUS_FIELD_EXACT, is_signed, NULL), *flooded = make_field(context, s, method, is_signed, NULL);
+  stratus_field *exact = make_field(context, s, STRATUS_FIELD_EXACT, is_signed, NULL),
+                *flooded = make_field(context, s, method, is_signed, NULL);
   outcome o = { 0, 0 };
-  for (int64_t v = 0; v < set_voxels(s); v++) {
+  for (int64_t v = 0; v < set_voxels(s); ++v) {
     const double right = fabs(distance_at(exact, v)), got = fabs(distance_at(flooded, v));
     if (got < right) {
       fail_msg("%s, voxel %d: %g is shorter than %g", stratus_field_method_name(method), (int)v, got, right);
@@ -38,8 +39,8 @@ static outcome compare(stratus_context* context, const test_set* s, stratus_fiel
 static test_set make_plate(stratus_context* context)
 {
   test_set s = make_set(EDGE, EDGE, EDGE);
-  for (int64_t j = 0; j < EDGE; j++) {
-    for (int64_t i = 0; i < EDGE; i++) {
+  for (int64_t j = 0; j < EDGE; ++j) {
+    for (int64_t i = 0; i < EDGE; ++i) {
       const int64_t k = (31 * i + 17 * j) / 100 + 8;
       s.effective[(k * EDGE + j) * EDGE + i] = 1;
     }
@@ -51,7 +52,7 @@ static test_set make_plate(stratus_context* context)
 static test_set make_shell(stratus_context* context)
 {
   test_set s = make_set(EDGE, EDGE, EDGE);
-  for (int64_t v = 0; v < set_voxels(&s); v++) {
+  for (int64_t v = 0; v < set_voxels(&s); ++v) {
     const double x = (double)(v % EDGE) - 19.3, y = (double)(v / EDGE % EDGE) - 20.1, z = (double)(v / (EDGE * EDGE)) - 18.7;
     s.effective[v] = fabs(sqrt(x * x + y * y + z * z) - 15.0) < 0.5;
   }
@@ -62,7 +63,7 @@ static test_set make_shell(stratus_context* context)
 /* Voxels that are too far in the order of the methods from JFA on. */
 static void check_outcomes(stratus_context* context, test_set* s, int is_signed, const int64_t longer[7])
 {
-  for (int method = STRATUS_FIELD_JFA; method <= STRATUS_FIELD_AJFA_FIG5; method++) {
+  for (int method = STRATUS_FIELD_JFA; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
     const outcome o = compare(context, s, (stratus_field_method)method, is_signed);
     const int64_t expected = longer[method - STRATUS_FIELD_JFA];
     print_message("  %s: %d of %d too long, %d unfilled\n", stratus_field_method_name((stratus_field_method)method), (int)o.longer,
@@ -91,12 +92,12 @@ static void floodings_that_halve_leave_nothing_unfilled(void** state)
   static const int64_t grids[][3] = { { 1, 1, 1 }, { 2, 3, 5 }, { 9, 1, 7 }, { 33, 17, 1 }, { 40, 40, 40 }, { 1, 1, 63 } };
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
-    for (int corner = 0; corner < 2; corner++) {
+  for (size_t g = 0; g < sizeof grids / sizeof *grids; ++g) {
+    for (int corner = 0; corner < 2; ++corner) {
       test_set s = make_set(grids[g][0], grids[g][1], grids[g][2]);
       s.effective[corner ? set_voxels(&s) - 1 : 0] = 1;
       take_set(context, &s);
-      for (int method = STRATUS_FIELD_JFA; method <= STRATUS_FIELD_AJFA; method++) {
+      for (int method = STRATUS_FIELD_JFA; method <= STRATUS_FIELD_AJFA; ++method) {
         const outcome o = compare(context, &s, (stratus_field_method)method, 0);
         assert_int_equal(o.unfilled, 0);
         assert_int_equal(o.longer, 0); /* there is but one to find */
@@ -122,15 +123,15 @@ static void figure_5_leaves_voxels_unfilled_around_a_single_one(void** state)
   assert_memory_equal(report.steps, printed, sizeof printed);
   int reached[128] = { 0 }, unfilled = 0;
   reached[42] = 1;
-  for (int pass = 0; pass < 6; pass++) {
+  for (int pass = 0; pass < 6; ++pass) {
     int next[128];
-    for (int i = 0; i < 128; i++) {
+    for (int i = 0; i < 128; ++i) {
       const int low = i - printed[pass], high = i + printed[pass];
       next[i] = reached[i] || (low >= 0 && reached[low]) || (high < 128 && reached[high]);
     }
     memcpy(reached, next, sizeof next);
   }
-  for (int i = 0; i < 128; i++) {
+  for (int i = 0; i < 128; ++i) {
     assert_true(stratus_field_get(field, i, 0, 0) == (reached[i] ? fabs(i - 42.0) : INFINITY));
     unfilled += !reached[i];
   }
@@ -153,10 +154,10 @@ static void steps_are_those_of_the_method(void** state)
   stratus_context* context = make_context("host", 2);
   test_set s = make_random_set(context, EDGE, 30, 20, 500, &random);
   stratus_field_report report;
-  for (size_t m = 0; m < sizeof expected / sizeof *expected; m++) {
+  for (size_t m = 0; m < sizeof expected / sizeof *expected; ++m) {
     stratus_field_destroy(make_field(context, &s, expected[m].method, 0, &report));
     int count = 0;
-    for (; expected[m].steps[count]; count++) {
+    for (; expected[m].steps[count]; ++count) {
       assert_int_equal(report.steps[count], expected[m].steps[count]);
     }
     assert_int_equal(report.passes, count);
@@ -173,7 +174,7 @@ static void the_adaptive_steps_follow_what_the_passes_did(void** state)
   int slow = 0, fast = 0;
   (void)state;
   stratus_context* context = make_context("host", 2);
-  for (size_t f = 0; f < 4; f++) {
+  for (size_t f = 0; f < 4; ++f) {
     test_set s = make_random_set(context, EDGE, EDGE, EDGE, fills[f], &random);
     stratus_field_report report;
     stratus_field* field = make_field(context, &s, STRATUS_FIELD_AJFA, 0, &report);
@@ -182,7 +183,7 @@ static void the_adaptive_steps_follow_what_the_passes_did(void** state)
     assert_in_range(report.passes, 2, 64);
     assert_int_equal(report.steps[0], EDGE / 2);
     assert_int_equal(report.steps[report.passes - 1], 1);
-    for (int pass = 0; pass < report.passes; pass++) {
+    for (int pass = 0; pass < report.passes; ++pass) {
       assert_true(report.e1[pass] >= 0.0 && report.e1[pass] <= 1.0 && report.e2[pass] >= 0.0 && report.e2[pass] <= 1.0);
       updated += report.e1[pass] * searched;
       if (pass + 1 < report.passes && report.steps[pass] > 2) {
@@ -215,9 +216,9 @@ static void the_first_passes_numbers_are_those_of_equations_6_and_7(void** state
   assert_non_null(after);
   /* Step 1 first: what a voxel learns is the distance to a neighbour; then step 5, of which only E1 is asked. */
   double updated = 0.0;
-  for (int64_t v = 0; v < total; v++) {
+  for (int64_t v = 0; v < total; ++v) {
     double best = INFINITY;
-    for (int64_t o = 0; o < total; o++) {
+    for (int64_t o = 0; o < total; ++o) {
       const int64_t x = llabs(o % 9 - v % 9), y = llabs(o / 9 % 8 - v / 9 % 8), z = llabs(o / 72 - v / 72);
       const double d = sqrt((double)(x * x + y * y + z * z));
       best = s.effective[o] && x <= 1 && y <= 1 && z <= 1 && d < best ? d : best;
@@ -236,13 +237,13 @@ static void the_first_passes_numbers_are_those_of_equations_6_and_7(void** state
   s.effective[0] = s.effective[4] = 1;
   take_set(context, &s);
   field = make_field(context, &s, STRATUS_FIELD_JFA, 0, &report);
-  /* By hand. Step 3: voxel 1 learns of 4, voxel 3 of 0, both 3 away. Step 2: 1 and 3 learn from each other what is 1 away, 2 learns of 0 and 5
-   * by way of 3 of 0, 5 away. Step 1: 5 learns of 4. */
+  /* By hand. Step 3: voxel 1 learns of 4, voxel 3 of 0, both 3 away. Step 2: 1 and 3 learn from each other what is 1 away, 2 learns of 0
+   * and 5 by way of 3 of 0, 5 away. Step 1: 5 learns of 4. */
   static const int steps[] = { 3, 2, 1 };
   static const double e1[] = { 2.0 / 4.0, 4.0 / 4.0, 1.0 / 4.0 }, e2[] = { 0.0, (1.0 / 3.0 + 1.0 / 3.0) / 4.0, 1.0 / 5.0 };
   assert_int_equal(report.passes, 3);
   assert_int_equal(report.updated, 7);
-  for (int pass = 0; pass < 3; pass++) {
+  for (int pass = 0; pass < 3; ++pass) {
     assert_int_equal(report.steps[pass], steps[pass]);
     assert_true(fabs(report.e1[pass] - e1[pass]) < 1e-12);
     assert_true(fabs(report.e2[pass] - e2[pass]) < 1e-5); /* ratios are kept in 65536ths */
@@ -267,7 +268,7 @@ static void a_cap_on_the_first_step_is_kept_and_leaves_the_far_unknown(void** st
   assert_int_equal(stratus_field_create(context, s.voxels, &options, &field, &report), STRATUS_OK);
   assert_int_equal(report.steps[0], 8);
   assert_int_equal(report.passes, 4);
-  for (int64_t i = 0; i < 60; i++) {
+  for (int64_t i = 0; i < 60; ++i) {
     assert_true(stratus_field_get(field, i, 0, 0) == (i <= 15 ? (double)i : INFINITY)); /* 8 + 4 + 2 + 1 */
   }
   float rgba[4 * 60 * 9];
@@ -321,7 +322,7 @@ static void refuse_each_request(stratus_context* context, faulty_allocator* allo
   options.is_signed = 1;
   const int64_t live = allocator->live;
   int64_t n = 1;
-  for (; n < REQUESTS_MAX; n++) {
+  for (; n < REQUESTS_MAX; ++n) {
     stratus_field* field = NULL;
     allocator->fail_at = allocator->calls + n;
     const stratus_status status = stratus_field_create(context, s->voxels, &options, &field, NULL);
@@ -353,7 +354,7 @@ static void refuse_on(const char* device, int as_gpu)
     context->device->is_cpu = false;
   }
   test_set s = make_random_set(context, 9, 8, 7, 30, &random);
-  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; method++) {
+  for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
     if (as_gpu) {
       stratus_field_destroy(make_field(context, &s, (stratus_field_method)method, 1, NULL)); /* kernels are kept: that counts as live */
     }
@@ -362,7 +363,7 @@ static void refuse_on(const char* device, int as_gpu)
   float rgba[4 * 9 * 8 * 7];
   stratus_field* field = make_field(context, &s, STRATUS_FIELD_EXACT, 1, NULL);
   const int64_t live = allocator.live;
-  for (int64_t n = 1; n <= 3; n++) { /* the bits, the rooms */
+  for (int64_t n = 1; n <= 3; ++n) { /* the bits, the rooms */
     allocator.fail_at = allocator.calls + n;
     const stratus_status status = stratus_field_rgba(field, s.voxels, rgba);
     allocator.fail_at = 0;

@@ -29,13 +29,13 @@ static void expect_fields(const stratus_voxels* voxels, uint32_t fields)
 static void no_voxel_one_and_two_are_one_leaf(void** state)
 {
   (void)state;
-  for (int count = 0; count < 3; count++) {
+  for (int count = 0; count < 3; ++count) {
     set_begin(&set, 300, 300, 300);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
       set_add(&set, 250 * i, 6, 77);
     }
     stratus_voxels* voxels = make_voxels(context, &set);
-    for (int method = STRATUS_TREE_HYBRID; method <= STRATUS_TREE_HYBRID_PAPER; method++) {
+    for (int method = STRATUS_TREE_HYBRID; method <= STRATUS_TREE_HYBRID_PAPER; ++method) {
       hybrid_shape s = shape_by((stratus_tree_method)method, voxels);
       assert_int_equal(s.shape.node_count, 1);
       assert_int_equal(s.leaves, 1);
@@ -52,8 +52,9 @@ static void no_voxel_one_and_two_are_one_leaf(void** state)
   }
 }
 
-/* Distances to the mean are all alike: eq. 3 as printed gives .04 voxel, with the floor thousands of voxels tie for the peak, at the shell's lowest
- * pole, and deviations about that differ by more than 8 voxels. The paper's way shreds the shell; the default takes it whole. */
+/* Distances to the mean are all alike: eq. 3 as printed gives .04 voxel, with the floor thousands of voxels tie for the peak, at the
+ * shell's lowest pole, and deviations about that differ by more than 8 voxels. The paper's way shreds the shell; the default takes it
+ * whole. */
 static void a_shell_is_one_field_but_not_by_the_paper(void** state)
 {
   (void)state;
@@ -83,8 +84,8 @@ static void a_solid_block_is_one_field(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Deviations about a peak in one of them are the same on all axes: the paper's test passes, and one field covers 2048 bricks for each occupied
- * one. The default finds that too empty and cuts between them. */
+/* Deviations about a peak in one of them are the same on all axes: the paper's test passes, and one field covers 2048 bricks for each
+ * occupied one. The default finds that too empty and cuts between them. */
 static void two_diagonal_cubes_are_two_fields_but_one_empty_one_by_the_paper(void** state)
 {
   (void)state;
@@ -130,7 +131,7 @@ static void a_uniform_slab_is_one_field_but_not_by_the_paper(void** state)
 static void one_plane_is_one_field_but_not_by_the_paper(void** state)
 {
   (void)state;
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; ++axis) {
     set_begin(&set, 200, 200, 200);
     set_add_box(&set, axis == 0 ? 101 : 0, axis == 0 ? 102 : 150, axis == 1 ? 101 : 0, axis == 1 ? 102 : 150, axis == 2 ? 101 : 0,
       axis == 2 ? 102 : 150);
@@ -165,12 +166,12 @@ static void dbscan_of_uniform_noise_finds_one_many_or_none(void** state)
   int64_t counts[256] = { 0 };
   int32_t lo, hi, one, many, none;
   (void)state;
-  for (int i = 0; i < 4000; i++) {
+  for (int i = 0; i < 4000; ++i) {
     counts[random_below(&random, 256)]++;
   }
   const int64_t mean = 5 * 4000 / 256;
   int32_t peak = 0;
-  for (int32_t i = 0; i < 256; i++) {
+  for (int32_t i = 0; i < 256; ++i) {
     peak = counts[i] > counts[peak] ? i : peak;
   }
   assert_true(stratus_dbscan_counts(counts, 256, 2, mean / 2, peak, &lo, &hi, &one) > 200);
@@ -187,9 +188,9 @@ static void a_huge_sparse_box_ends_in_leaves_of_bricks(void** state)
 {
   uint32_t random = 11;
   (void)state;
-  for (int method = STRATUS_TREE_HYBRID; method <= STRATUS_TREE_HYBRID_PAPER; method++) {
+  for (int method = STRATUS_TREE_HYBRID; method <= STRATUS_TREE_HYBRID_PAPER; ++method) {
     set_begin(&set, 1 << 18, 1 << 18, 1 << 18);
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < 1500; ++i) {
       const int64_t x = random_below(&random, 1 << 18), y = random_below(&random, 1 << 18);
       set_add(&set, x, y, random_below(&random, 1 << 18));
     }
@@ -217,7 +218,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
 {
   (void)state;
   a_cluster_in_noise();
-  for (int way = 0; way < 4; way++) {
+  for (int way = 0; way < 4; ++way) {
     faulty_allocator allocator = { 0 };
     stratus_context* faulty = NULL;
     stratus_context_options wanted = faulty_options(&allocator, "host");
@@ -229,7 +230,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
     options.bandwidth = way == 2 ? 50.0 : 0.0;
     const int64_t live = allocator.live;
     int64_t n = 1;
-    for (; n < REQUESTS_MAX; n++) {
+    for (; n < REQUESTS_MAX; ++n) {
       hybrid_shape s = { .depth = 0 };
       allocator.fail_at = allocator.calls + n;
       const stratus_status status = stratus_hybrid_tree_shape(faulty, voxels, &options, &s.shape, &s.statistics);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * NULL for every argument of every public function: a call that returns a status refuses it, tells so where there is an object to leave a message
- * in, and touches nothing; one without a status takes it for something empty. The list is held against the header, so that no function is left out. */
+ * NULL for every argument of every public function: a call that returns a status refuses it, tells so where there is an object to leave a
+ * message in, and touches nothing; one without a status takes it for something empty. The list is held against the header, so that no
+ * function is left out. */
 #include "small_scene.h"
 
 #include "Core/internal.h"

@@ -61,7 +61,7 @@ static size_t seen(scene* s, const stratus_frustum* frustum, int exact)
 {
   const stratus_octree_cull_options options = { .exact = exact, .coverage = 1 };
   assert_int_equal(stratus_octree_cull(s->view, frustum, &options, &s->visible), STRATUS_OK);
-  for (size_t i = 0; i < s->visible.count; i++) {
+  for (size_t i = 0; i < s->visible.count; ++i) {
     assert_true(s->visible.coverage[i] >= 0.0f && s->visible.coverage[i] <= 1.0f);
     assert_true(!isnan(s->visible.depth[i]));
   }
@@ -71,7 +71,7 @@ static size_t seen(scene* s, const stratus_frustum* frustum, int exact)
 static void no_object_and_one(void** state)
 {
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     open_scene(&s, variant);
     const double eye[3] = { -5, 0, 0 }, origin[3] = { 0, 0, 0 }, away[3] = { -10, 0, 0 }, box[6] = { -1, 1, -1, 1, -1, 1 };
@@ -103,20 +103,20 @@ static void no_object_and_one(void** state)
 static void all_at_one_place(void** state)
 {
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
-    for (int size = 0; size < 2; size++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
+    for (int size = 0; size < 2; ++size) {
       scene s;
       open_scene(&s, variant);
       static double boxes[1000][6];
       static uint32_t ids[1000];
-      for (int i = 0; i < 1000; i++) {
-        for (int j = 0; j < 6; j++) {
+      for (int i = 0; i < 1000; ++i) {
+        for (int j = 0; j < 6; ++j) {
           boxes[i][j] = 3.0 + (j % 2 ? size : -size);
         }
       }
       assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 1000, ids), STRATUS_OK);
       const double eye[3] = { 3.001, 3, 3 }, point[3] = { 3, 3, 3 }, far_eye[3] = { 30, 3, 3 };
-      for (int frame = 0; frame < 3; frame++) {
+      for (int frame = 0; frame < 3; ++frame) {
         const stratus_frustum close = look(&s, eye, point, 1e-4, 10.0), away = look(&s, far_eye, point, 1.0, 100.0);
         assert_int_equal(seen(&s, &close, 1), 1000);
         assert_int_equal(seen(&s, &away, 0), 1000);
@@ -135,7 +135,7 @@ static void bounds_of_no_size_infinite_or_not_a_number(void** state)
     { 0, INFINITY, 0, 1, 0, 1 }, { NAN, 1, 0, 1, 0, 1 }, { 0, 1, 0, NAN, 0, 1 }, { 1e31, 2e31, 0, 1, 0, 1 }, { 50, 50, 50, 50, 50, 50 },
     { -1e30, 1e30, -1e30, 1e30, -1e30, 1e30 } };
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     uint32_t ids[8], found[8];
     size_t count;
@@ -166,13 +166,13 @@ static void bounds_of_no_size_infinite_or_not_a_number(void** state)
 static void eyes_within_boxes_and_corners(void** state)
 {
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     open_scene(&s, variant);
     static double boxes[500][6];
     static uint32_t ids[500];
     uint32_t random = 3;
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
       random_bounds(&random, 1.0, boxes[i]);
     }
     const double around[6] = { -9, 9, -9, 9, -9, 9 };
@@ -183,25 +183,25 @@ static void eyes_within_boxes_and_corners(void** state)
     (void)seen(&s, &frustum, 0);
     stratus_octree_statistics statistics;
     stratus_octree_get_statistics(s.tree, &statistics);
-    for (int corner = 0; corner < 8; corner++) {
+    for (int corner = 0; corner < 8; ++corner) {
       double eye[3], focal[3] = { 0.4, 0.4, 0.4 };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         eye[a] = statistics.root[2 * a + (corner >> a & 1)];
       }
       frustum = look(&s, eye, focal, 0.0, INFINITY);
       size_t right = 0;
-      for (int i = 0; i < 500; i++) {
+      for (int i = 0; i < 500; ++i) {
         right += stratus_frustum_side(&frustum, boxes[i], 1) != STRATUS_SIDE_OUTSIDE;
       }
       assert_true(right > 400);
       assert_int_equal(seen(&s, &frustum, 1), right);
       /* And looking out of the root: only what is about the eye. */
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         focal[a] = 2.0 * eye[a] - 0.4;
       }
       frustum = look(&s, eye, focal, 0.0, INFINITY);
       right = 0;
-      for (int i = 0; i < 500; i++) {
+      for (int i = 0; i < 500; ++i) {
         right += stratus_frustum_side(&frustum, boxes[i], 1) != STRATUS_SIDE_OUTSIDE;
       }
       assert_int_equal(seen(&s, &frustum, 1), right);
@@ -215,25 +215,25 @@ static void tiny_and_huge_extents_down_to_the_last_level(void** state)
 {
   (void)state;
   int deepest = 0;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     open_scene(&s, variant);
     static double boxes[1200][6];
     static uint32_t ids[1200];
     uint32_t random = 5;
-    for (int i = 0; i < 1200; i++) {
+    for (int i = 0; i < 1200; ++i) {
       random_bounds(&random, i < 800 ? 1e-6 : 1e8, boxes[i]);
-      for (int j = 0; j < 6 && i < 400; j++) { /* a thousandth of that */
+      for (int j = 0; j < 6 && i < 400; ++j) { /* a thousandth of that */
         boxes[i][j] *= 1e-3;
       }
     }
     assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 1200, ids), STRATUS_OK);
-    for (int frame = 0; frame < 12; frame++) {
+    for (int frame = 0; frame < 12; ++frame) {
       const double scale = frame % 3 == 0 ? 1e8 : frame % 3 == 1 ? 1e-6 : 1e-9;
       const stratus_frustum frustum = random_frustum(s.context, &random, scale, NULL);
       const size_t count = seen(&s, &frustum, 1);
       size_t right = 0;
-      for (int i = 0; i < 1200; i++) {
+      for (int i = 0; i < 1200; ++i) {
         right += stratus_frustum_side(&frustum, boxes[i], 1) != STRATUS_SIDE_OUTSIDE;
       }
       assert_int_equal(count, right);
@@ -251,24 +251,24 @@ static void tiny_and_huge_extents_down_to_the_last_level(void** state)
 static void objects_on_a_cell_s_border(void** state)
 {
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     open_scene(&s, variant);
     static double boxes[729][6];
     static uint32_t ids[729];
-    for (int i = 0; i < 729; i++) {
+    for (int i = 0; i < 729; ++i) {
       const int at[3] = { i % 9, i / 9 % 9, i / 81 };
-      for (int a = 0; a < 3; a++) {
+      for (int a = 0; a < 3; ++a) {
         boxes[i][2 * a] = at[a] - 4;
         boxes[i][2 * a + 1] = at[a] - 4 + i % 2;
       }
     }
     assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 729, ids), STRATUS_OK);
-    for (int x = -4; x <= 4; x++) {
+    for (int x = -4; x <= 4; ++x) {
       const stratus_frustum frustum = { .planes = { { 1, 0, 0, -x }, { -1, 0, 0, x }, { 0, 1, 0, 4 }, { 0, -1, 0, 4 }, { 0, 0, 1, 4 },
                                           { 0, 0, -1, 4 } } };
       size_t right = 0;
-      for (int i = 0; i < 729; i++) {
+      for (int i = 0; i < 729; ++i) {
         right += boxes[i][0] <= x && x <= boxes[i][1];
       }
       assert_true(right >= 81);
@@ -282,12 +282,12 @@ static void objects_on_a_cell_s_border(void** state)
 static void a_root_that_grows_keeps_its_objects(void** state)
 {
   (void)state;
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     scene s;
     open_scene(&s, variant);
     double boxes[200][6];
     uint32_t ids[200], random = 9, id;
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
       random_bounds(&random, 1.0, boxes[i]);
     }
     assert_int_equal(stratus_octree_insert(s.tree, boxes[0], 200, ids), STRATUS_OK);
@@ -295,7 +295,7 @@ static void a_root_that_grows_keeps_its_objects(void** state)
     const stratus_frustum all = look(&s, eye, focal, 0.1, INFINITY), part = look(&s, within, focal, 1e-3, INFINITY);
     const size_t some = seen(&s, &part, 0);
     double far_away = 2.0;
-    for (int i = 0; i < 60; i++, far_away *= i < 50 ? 2.0 : 1e3) {
+    for (int i = 0; i < 60; ++i, far_away *= i < 50 ? 2.0 : 1e3) {
       const double box[6] = { -far_away, 1 - far_away, far_away, far_away, -far_away, -far_away };
       assert_int_equal(stratus_octree_insert(s.tree, box, 1, &id), STRATUS_OK);
       assert_int_equal(stratus_octree_check(s.tree), STRATUS_OK);
@@ -318,13 +318,13 @@ static void arguments_that_are_none_are_refused_with_the_value(void** state)
   size_t count = 77;
   stratus_octree* none = NULL;
   stratus_octree_options options[9];
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 9; ++i) {
     options[i] = stratus_octree_options_default();
   }
   options[0].levels = 22, options[1].leaf_objects = 0, options[2].pixels = 0.0, options[3].c = NAN, options[4].looseness = 2.5;
   options[5].collapse_after = -1, options[6].split_budget = -1, options[7].placement = (stratus_octree_placement)2;
   options[8].stop = (stratus_octree_stop)4;
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 9; ++i) {
     assert_int_equal(stratus_octree_create(s.context, &options[i], &none), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(s.context), "octree "));
     assert_null(none);
@@ -377,7 +377,7 @@ static stratus_status live(stratus_context* context, int variant, const double* 
   TRY_CLEANUP(stratus_octree_view_create(tree, &view));
   TRY_CLEANUP(stratus_octree_insert(tree, boxes, count, ids));
   const stratus_frustum frustum = random_frustum(context, &random, 1.0, NULL);
-  for (int frame = 0; frame < 3; frame++) {
+  for (int frame = 0; frame < 3; ++frame) {
     const stratus_octree_cull_options cull = { .exact = frame % 2, .coverage = 1 };
     stratus_octree_visible visible;
     TRY_CLEANUP(stratus_octree_cull(view, &frustum, &cull, &visible));
@@ -409,10 +409,10 @@ static void memory_refused_at_any_request(void** state)
   (void)state;
   double boxes[300][6];
   uint32_t random = 4;
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < 300; ++i) {
     random_bounds(&random, 1.0, boxes[i]);
   }
-  for (int variant = 0; variant < VARIANTS; variant++) {
+  for (int variant = 0; variant < VARIANTS; ++variant) {
     faulty_allocator allocator = { 0 };
     stratus_context_options options = faulty_options(&allocator, "host");
     stratus_context* context = NULL;
@@ -422,7 +422,7 @@ static void memory_refused_at_any_request(void** state)
     uint64_t right, sum;
     assert_int_equal(live(context, variant, boxes[0], 300, &right), STRATUS_OK);
     int64_t n = 1;
-    for (; n < REQUESTS_MAX; n++) {
+    for (; n < REQUESTS_MAX; ++n) {
       allocator.fail_at = allocator.calls + n;
       const stratus_status status = live(context, variant, boxes[0], 300, &sum);
       const bool reached = allocator.fail_at == 0 || status != STRATUS_OK;

@@ -226,8 +226,7 @@ static void arguments_that_are_none(void** state)
 #define REFUSED(mesh, transfer, camera, options, image, word)                                                                              \
   assert_int_equal(stratus_tetra_caster_render(caster, mesh, transfer, camera, options, image, NULL), STRATUS_INVALID_ARGUMENT);           \
   assert_non_null(strstr(stratus_context_message(context), word))
-  assert_int_equal(
-    stratus_tetra_caster_render(NULL, &c.mesh, &c.transfer, &c.camera, NULL, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_tetra_caster_render(NULL, &c.mesh, &c.transfer, &c.camera, NULL, &image, NULL), STRATUS_INVALID_ARGUMENT);
   REFUSED(NULL, &c.transfer, &c.camera, NULL, &image, "mesh");
   REFUSED(&c.mesh, NULL, &c.camera, NULL, &image, "transfer");
   REFUSED(&c.mesh, &c.transfer, NULL, NULL, &image, "camera");
@@ -326,8 +325,7 @@ static void cancelled(void** state)
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
-  assert_int_equal(
-    stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_CANCELLED);
+  assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_CANCELLED);
   stage[0] = 'x';
   assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
   stratus_tetra_caster_destroy(caster);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's hollows, cells
- * that share no point, points that nothing uses, few inverted cells among many, a seam of other faces. Each way of drawing gives the reference's
- * picture. */
+ * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's
+ * hollows, cells that share no point, points that nothing uses, few inverted cells among many, a seam of other faces. Each way of drawing
+ * gives the reference's picture. */
 #include "tetra_case.h"
 
 #define CLOSE 0.025 /* RMSE of 255: half of the bar of record for functions with peaks */
@@ -57,7 +57,8 @@ static void add_box(tetra_case* c, int n, const double low[3], const double size
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
   const int32_t first = (int32_t)c->mesh.point_count, step[3] = { 1, n + 1, (n + 1) * (n + 1) };
   for (int i = 0; i < (n + 1) * step[2]; ++i) {
-    add_point(c, low[0] + size[0] * (i % step[1]) / n, low[1] + size[1] * (i / step[1] % step[1]) / n, low[2] + size[2] * (i / step[2]) / n);
+    add_point(
+      c, low[0] + size[0] * (i % step[1]) / n, low[1] + size[1] * (i / step[1] % step[1]) / n, low[2] + size[2] * (i / step[2]) / n);
   }
   for (int box = 0; box < n * n * n; ++box) {
     const int32_t corner = first + box % n + box / n % n * step[1] + box / n / n * step[2];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where meshes, partitions and orders may fail: memory refused at every request, a caller that cancels, parts that share nothing, numbers at
- * the ends of their range. Each ends in the right order or in an error that says why. */
+ * Where meshes, partitions and orders may fail: memory refused at every request, a caller that cancels, parts that share nothing, numbers
+ * at the ends of their range. Each ends in the right order or in an error that says why. */
 #include "faulty_allocator.h"
 #include "mesh_case.h"
 
@@ -43,7 +43,7 @@ static mesh_case seamed_mesh(void)
   static const int n[3] = { 3, 3, 3 };
   static const double one[3] = { 1, 1, 1 }, beside[3] = { 3, 0, 0 };
   mesh_case left = mesh_grid(n, 0.1, 1), right = mesh_grid(n, 0.0, 1);
-  for (int64_t i = 0; i < right.point_count; i++) {
+  for (int64_t i = 0; i < right.point_count; ++i) {
     right.points[3 * i] -= right.points[3 * i] >= 2.0;
   }
   mesh_move(&right, one, beside);
@@ -61,7 +61,7 @@ static void orders_and_partitions_are_made_whole_or_not_at_all(void** state)
   mesh_case mesh = seamed_mesh();
   const int64_t live = allocator.live;
   int64_t n = 1;
-  for (; n < REQUESTS_MAX; n++) {
+  for (; n < REQUESTS_MAX; ++n) {
     allocator.fail_at = allocator.calls + n;
     const stratus_status status = cut_and_sort(context, &mesh, NULL);
     assert_int_equal(allocator.live, live);
@@ -106,7 +106,7 @@ static void a_cancelled_call_leaves_nothing_behind(void** state)
   mesh_case mesh = seamed_mesh();
   const int64_t live = allocator.live;
   int cancelled = 0;
-  for (cancel.cancel_at = 1; cancel.cancel_at < REQUESTS_MAX; cancel.cancel_at++, cancelled++) {
+  for (cancel.cancel_at = 1; cancel.cancel_at < REQUESTS_MAX; ++cancel.cancel_at, ++cancelled) {
     cancel.calls = 0;
     const stratus_status status = cut_and_sort(context, &mesh, NULL);
     assert_int_equal(allocator.live, live);
@@ -137,7 +137,7 @@ static int64_t wrong_pairs_in_one_leaf(stratus_context* context, const mesh_case
   stratus_visibility_order* order = NULL;
   int64_t wrong = 0, pairs = 0;
   assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);
-  for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
+  for (size_t i = 0; i < sizeof eyes / sizeof *eyes; ++i) {
     stratus_camera camera = { .forward = { 1, 0, 0 } };
     stratus_visibility_result result;
     memcpy(camera.eye, eyes[i], sizeof camera.eye);
@@ -163,7 +163,7 @@ static void parts_with_gaps_between_are_in_order(void** state)
   mesh_case_free(&mesh);
 
   mesh = mesh_grid(slab, 0.1, 1); /* slabs of two parts by turns */
-  for (int i = 1; i < 6; i++) {
+  for (int i = 1; i < 6; ++i) {
     mesh_case next = mesh_grid(slab, 0.1, (uint32_t)i);
     mesh_move(&next, one, (const double[3]){ 1.6 * i, 0, 0 });
     mesh = mesh_join(mesh, next);
@@ -181,7 +181,7 @@ static void slivers_are_in_order(void** state)
   stratus_context* context = make_context();
   for (int exponent = -3; exponent >= -12; exponent -= 3) {
     mesh_case mesh = mesh_grid(n, 0.0, 1);
-    for (int64_t i = 0; i < mesh.point_count; i++) { /* a layer as thin as that */
+    for (int64_t i = 0; i < mesh.point_count; ++i) { /* a layer as thin as that */
       double* z = mesh.points + 3 * i + 2;
       *z -= *z >= 2.0 ? 1.0 - pow(10.0, exponent) : 0.0;
     }
@@ -198,7 +198,7 @@ static void numbers_at_the_ends_of_their_range_end_in_an_order_or_an_error(void*
   static const double scales[] = { 1e-300, 1e-160, 1e-30, 1e30, 1e160, 1e299, 1e305 };
   (void)state;
   stratus_context* context = make_context();
-  for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+  for (size_t i = 0; i < sizeof scales / sizeof *scales; ++i) {
     mesh_case mesh = mesh_grid(n, 0.1, 1);
     const double s = scales[i];
     mesh_move(&mesh, (const double[3]){ s, s, s }, (const double[3]){ 0, 0, 0 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is refused and
-// leaves the file that was there. Argument: a folder to write to.
+// Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is
+// refused and leaves the file that was there. Argument: a folder to write to.
 #include "Testing/exr_reading.h"
 #include "mapper_testing.h"
 
@@ -98,8 +98,8 @@ void CheckRoundTrip(int width, int height)
   const auto rgba = AddFloats(image, "RGBA", 4);
   const auto depth = AddFloats(image, "Depth", 1);
   depth->SetValue(0, std::numeric_limits<float>::infinity());
-  const auto samples = AddArray<vtkTypeUInt32Array>(
-    image, "Samples", 1, [](std::mt19937& random) { return static_cast<vtkTypeUInt32>(random() >> 8); });
+  const auto samples =
+    AddArray<vtkTypeUInt32Array>(image, "Samples", 1, [](std::mt19937& random) { return static_cast<vtkTypeUInt32>(random() >> 8); });
   const auto wide = AddArray<vtkTypeUInt64Array>(image, "wide", 1, [](std::mt19937& random) { return vtkTypeUInt64(random() >> 8) << 40; });
   const auto bytes = AddArray<vtkUnsignedCharArray>(
     image, "a name of more than thirty-one characters", 2, [](std::mt19937& random) { return static_cast<unsigned char>(random()); });
@@ -139,7 +139,8 @@ void UnnamedArrays()
     writer->SetFileName((Folder + "/unnamed.exr").c_str());
     writer->Write();
     ExrPicture picture;
-    CHECK(ReadExr(Folder + "/unnamed.exr", picture) && picture.Channels.size() == static_cast<size_t>(components), "%d components", components);
+    CHECK(
+      ReadExr(Folder + "/unnamed.exr", picture) && picture.Channels.size() == static_cast<size_t>(components), "%d components", components);
     for (int c = 0; c < components; ++c) {
       CheckChannel(picture, std::string(1, names[components - 1][c]), array, c);
     }
@@ -150,8 +151,8 @@ void UnnamedArrays()
 void SplitArrays()
 {
   vtkSmartPointer<vtkImageData> image = MakeImage(37, 17);
-  const auto array = AddArray<vtkSOADataArrayTemplate<float>>(
-    image, "RGBA", 4, [](std::mt19937& random) { return static_cast<float>(random() >> 8); });
+  const auto array =
+    AddArray<vtkSOADataArrayTemplate<float>>(image, "RGBA", 4, [](std::mt19937& random) { return static_cast<float>(random() >> 8); });
   vtkNew<vtkStratusEXRWriter> writer;
   vtkNew<ErrorObserver> errors;
   writer->AddObserver(vtkCommand::ErrorEvent, errors);
@@ -238,8 +239,7 @@ void RefusesImages()
   CheckImageRefused(image, "'short' has 11 tuples");
 }
 
-template <typename Array>
-void CheckTypeRefused(const char* words)
+template <typename Array> void CheckTypeRefused(const char* words)
 {
   vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
   vtkNew<Array> array;
@@ -249,8 +249,7 @@ void CheckTypeRefused(const char* words)
   CheckImageRefused(image, words);
 }
 
-template <typename Array>
-void CheckValueRefused(typename Array::ValueType value, const char* words)
+template <typename Array> void CheckValueRefused(typename Array::ValueType value, const char* words)
 {
   vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
   vtkNew<Array> array;
@@ -270,7 +269,8 @@ void RefusesArrays()
   CheckValueRefused<vtkDoubleArray>(1e300, "in tuple 10");
   CheckValueRefused<vtkIntArray>(16777217, "'odd' holds 16777217 in tuple 10");
   CheckValueRefused<vtkIntArray>(std::numeric_limits<int>::max(), "'odd' holds 2147483647");
-  CheckValueRefused<vtkTypeUInt64Array>((vtkTypeUInt64(1) << 53) + 1, "'odd' holds 9007199254740993"); // a double would round it to a float's value
+  CheckValueRefused<vtkTypeUInt64Array>(
+    (vtkTypeUInt64(1) << 53) + 1, "'odd' holds 9007199254740993"); // a double would round it to a float's value
   CheckValueRefused<vtkTypeUInt64Array>(std::numeric_limits<vtkTypeUInt64>::max(), "'odd' holds 18446744073709551615");
 }
 
@@ -313,7 +313,8 @@ void KeepsLinksAndPermissions()
     writer->SetInputData(image);
     writer->SetFileName(link.c_str());
     writer->Write();
-    CHECK(writer->GetErrorCode() == 0 && files::is_symlink(link) && files::is_regular_file(target), "exists %d: the link was replaced", exists);
+    CHECK(
+      writer->GetErrorCode() == 0 && files::is_symlink(link) && files::is_regular_file(target), "exists %d: the link was replaced", exists);
   }
   CHECK(files::status(target).permissions() == few, "the permissions are others");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree that an image carries: it comes through VTK's writers and readers valid, its boxes lie where the voxels are, and a filter that fails
-// keeps its last outputs. Argument: a folder to write files to.
+// The tree that an image carries: it comes through VTK's writers and readers valid, its boxes lie where the voxels are, and a filter that
+// fails keeps its last outputs. Argument: a folder to write files to.
 #include "vtkStratusHybridTreeFilter.h"
 
 #include "mapper_testing.h"
@@ -39,8 +39,7 @@ bool IsValid(vtkUnsignedCharArray* tree, vtkImageData* image, double lower, doub
   stratus_tree* loaded = nullptr;
   int covers = 0;
   vtkNew<vtkMatrix4x4> identity;
-  const stratus_volume volume =
-    ReferenceVolume(image, vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars()), false, identity);
+  const stratus_volume volume = ReferenceVolume(image, vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars()), false, identity);
   stratus_criterion criterion = stratus_criterion_default();
   criterion.lower = lower;
   criterion.upper = upper;
@@ -132,7 +131,8 @@ void BoxesLieOnTheVoxels()
     if (!depth || !kind || !count) {
       return;
     }
-    CHECK(count->GetTuple1(0) == static_cast<double>(filter->GetNumberOfVoxels()) && depth->GetTuple1(0) == 0.0, "the root is not the whole");
+    CHECK(
+      count->GetTuple1(0) == static_cast<double>(filter->GetNumberOfVoxels()) && depth->GetTuple1(0) == 0.0, "the root is not the whole");
     vtkFloatArray* values = vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars());
     vtkIdType inside = 0, all = 0;
     double leaves = 0.0;
@@ -165,8 +165,8 @@ void BoxesLieOnTheVoxels()
     boxes->GetCellBounds(0, root);
     image->GetBounds(bounds);
     for (int a = 0; a < 3; ++a) { // half a voxel at most beyond the image
-      CHECK(root[2 * a] >= bounds[2 * a] - 1.0 - 1e-9 && root[2 * a + 1] <= bounds[2 * a + 1] + 1.0 + 1e-9, "the root lies at %g..%g", root[2 * a],
-        root[2 * a + 1]);
+      CHECK(root[2 * a] >= bounds[2 * a] - 1.0 - 1e-9 && root[2 * a + 1] <= bounds[2 * a + 1] + 1.0 + 1e-9, "the root lies at %g..%g",
+        root[2 * a], root[2 * a + 1]);
     }
   }
 }
@@ -190,7 +190,8 @@ void EveryMethodBuilds()
   }
   scene.Opacity->AddPoint(0.4, 0.0); // an edit of the property is one of the filter
   filter->Update();
-  CHECK(filter->GetNumberOfVoxels() < voxels, "an edit of the opacity leaves %lld voxels", static_cast<long long>(filter->GetNumberOfVoxels()));
+  CHECK(
+    filter->GetNumberOfVoxels() < voxels, "an edit of the opacity leaves %lld voxels", static_cast<long long>(filter->GetNumberOfVoxels()));
 }
 
 // Ray casting by the tree that comes with the image: no second build as long as it shows all that the opacity does.

@@ -37,8 +37,7 @@ std::vector<View> Views()
     { "a thin slice", [](vtkCamera* c) { c->SetClippingRange(4.0, 4.2); } },
     { "off-centre window", [](vtkCamera* c) { c->SetWindowCenter(0.7, -0.4); } },
     { "parallel", [](vtkCamera* c) { c->ParallelProjectionOn(), c->SetParallelScale(2.2); } },
-    { "parallel and off-centre",
-      [](vtkCamera* c) { c->ParallelProjectionOn(), c->SetParallelScale(1.5), c->SetWindowCenter(-0.6, 0.5); } },
+    { "parallel and off-centre", [](vtkCamera* c) { c->ParallelProjectionOn(), c->SetParallelScale(1.5), c->SetWindowCenter(-0.6, 0.5); } },
     { "parallel, near plane behind the eye",
       [](vtkCamera* c) { c->ParallelProjectionOn(), c->SetParallelScale(2.0), c->SetClippingRange(-5, 8); } },
     { "sheared", [](vtkCamera* c) { c->SetViewShear(0.3, -0.2, 1.0); } },
@@ -103,8 +102,8 @@ void TestPath(int rule)
   CHECK(w.Culler->GetNumberOfNodes(w.Renderer) > 8, "%d nodes", int(w.Culler->GetNumberOfNodes(w.Renderer)));
 }
 
-// Two windows go through the same frames, one without a culler: a camera learns only when it draws that the window is in stereo, or no more, and
-// which eye it is, so a frame may depend on the one before.
+// Two windows go through the same frames, one without a culler: a camera learns only when it draws that the window is in stereo, or no
+// more, and which eye it is, so a frame may depend on the one before.
 void TestStereo()
 {
   CulledWindow culled, whole;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever brings a prop that is culled into sight, or takes one out of it, is right in the very next frame; and what has not changed is not asked.
+// Whatever brings a prop that is culled into sight, or takes one out of it, is right in the very next frame; and what has not changed is
+// not asked.
 #include "culler_testing.h"
 
 #include "vtkAssembly.h"
@@ -62,8 +63,9 @@ void TestActor()
   Run(w, { "a user's transform, edited", [&] { transform->Translate(-21, 1, 0); }, [&] { transform->Identity(); } });
   Run(w, { "shown", [&] { hidden.Actor->VisibilityOn(); }, [&] { hidden.Actor->VisibilityOff(); } });
   Run(w, { "added", [&] { w.Renderer->AddActor(added.Actor); }, [&] { w.Renderer->RemoveActor(added.Actor); } });
-  Run(w, { "UseBounds off", [&] { shown.Actor->UseBoundsOff(), w.Renderer->AddActor(shown.Actor); },
-           [&] { shown.Actor->UseBoundsOn(), w.Renderer->RemoveActor(shown.Actor); } });
+  Run(w,
+    { "UseBounds off", [&] { shown.Actor->UseBoundsOff(), w.Renderer->AddActor(shown.Actor); },
+      [&] { shown.Actor->UseBoundsOn(), w.Renderer->RemoveActor(shown.Actor); } });
 }
 
 void TestPipeline()
@@ -78,8 +80,9 @@ void TestPipeline()
   Run(w, { "a source's parameter", [&] { far.Source->SetCenter(-21, 0, 0); }, [&] { far.Source->SetCenter(0, 0, 0); } });
   vtkNew<vtkSphereSource> near;
   near->SetCenter(-21, 1, 0);
-  Run(w, { "another source", [&] { fed.Mapper->SetInputConnection(near->GetOutputPort()); },
-           [&] { fed.Mapper->SetInputConnection(fed.Source->GetOutputPort()); } });
+  Run(w,
+    { "another source", [&] { fed.Mapper->SetInputConnection(near->GetOutputPort()); },
+      [&] { fed.Mapper->SetInputConnection(fed.Source->GetOutputPort()); } });
   vtkNew<vtkPolyDataMapper> other;
   vtkNew<vtkSphereSource> low;
   low->SetCenter(-1, -21, 0);
@@ -121,8 +124,9 @@ void TestPipeline()
   shared.Actor->SetPosition(0, -30, 0);
   Run(w, { "a transform of a filter upstream", [&] { motion->Translate(-1, -12, 0); }, [&] { motion->Identity(); } });
   Run(w, { "a source far upstream", [&] { shared.Source->SetCenter(-1, -13, 0); }, [&] { shared.Source->SetCenter(0, 0, 0); } });
-  Run(w, { "a filter taken out", [&] { filters[2]->SetInputConnection(near->GetOutputPort()), near->SetCenter(1, -7, 0); },
-           [&] { filters[2]->SetInputConnection(filters[1]->GetOutputPort()); } });
+  Run(w,
+    { "a filter taken out", [&] { filters[2]->SetInputConnection(near->GetOutputPort()), near->SetCenter(1, -7, 0); },
+      [&] { filters[2]->SetInputConnection(filters[1]->GetOutputPort()); } });
 }
 
 void TestOtherProps()

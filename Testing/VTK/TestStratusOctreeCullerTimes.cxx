@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the renderer's own culler does beside culling is done here, too: render times, the order, the length of the list, the total, and that earlier
-// cullers' times count. vtkFrustumCoverageCuller is called on the same props; it keeps more, since it tests spheres.
+// What the renderer's own culler does beside culling is done here, too: render times, the order, the length of the list, the total, and
+// that earlier cullers' times count. vtkFrustumCoverageCuller is called on the same props; it keeps more, since it tests spheres.
 #include "culler_testing.h"
 
 #include "vtkActor2D.h"
@@ -77,8 +77,8 @@ void Compare(Scene& s, int initialized, const char* what)
   for (size_t i = 0; i < s.Props.size(); ++i) {
     if (kept.count(s.Props[i]) > 0) {
       // The core tells coverage in single precision, from sums of several terms.
-      CHECK(std::fabs(given.Times[i] - meant.Times[i]) <= 1e-5 * meant.Times[i] + 1e-7, "%s: prop %zu has %g, not %g", what, i, given.Times[i],
-        meant.Times[i]);
+      CHECK(std::fabs(given.Times[i] - meant.Times[i]) <= 1e-5 * meant.Times[i] + 1e-7, "%s: prop %zu has %g, not %g", what, i,
+        given.Times[i], meant.Times[i]);
       total += given.Times[i];
     } else {
       CHECK(given.Times[i] == 0.0, "%s: prop %zu is culled and has %g", what, i, given.Times[i]);
@@ -104,7 +104,8 @@ void TestPolicies()
   }
 }
 
-// A prop that goes out of sight has no time from then on, and has it again when it comes back; in a frame, its allotment is a share of the total.
+// A prop that goes out of sight has no time from then on, and has it again when it comes back; in a frame, its allotment is a share of the
+// total.
 void TestFrames()
 {
   CulledWindow w;
@@ -116,7 +117,8 @@ void TestFrames()
   w.Draw();
   CHECK(away.Actor->GetRenderTimeMultiplier() == 0.0, "never seen, and %g", away.Actor->GetRenderTimeMultiplier());
   CHECK(left.Actor->GetRenderTimeMultiplier() > 0.0, "seen, and %g", left.Actor->GetRenderTimeMultiplier());
-  const double share = left.Actor->GetRenderTimeMultiplier() / (left.Actor->GetRenderTimeMultiplier() + right.Actor->GetRenderTimeMultiplier());
+  const double share =
+    left.Actor->GetRenderTimeMultiplier() / (left.Actor->GetRenderTimeMultiplier() + right.Actor->GetRenderTimeMultiplier());
   const double allotted = left.Actor->GetAllocatedRenderTime() / w.Renderer->GetAllocatedRenderTime();
   CHECK(std::fabs(allotted - share) < 1e-9, "%g of the time, not %g", allotted, share);
   left.Actor->SetPosition(-30, 0, 0);

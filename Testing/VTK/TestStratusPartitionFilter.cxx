@@ -88,7 +88,8 @@ void Carries(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
   }
   for (vtkIdType c = 0; c < output->GetNumberOfCells(); ++c) {
     const auto from = static_cast<vtkIdType>(original->GetTuple1(c));
-    CHECK(from >= 0 && from < input->GetNumberOfCells() && numbers->GetTuple1(c) == 7.0 * from && names->GetValue(c) == std::to_string(from),
+    CHECK(
+      from >= 0 && from < input->GetNumberOfCells() && numbers->GetTuple1(c) == 7.0 * from && names->GetValue(c) == std::to_string(from),
       "cell %lld has another cell's data", static_cast<long long>(c));
   }
 }
@@ -146,11 +147,11 @@ void Quadratic()
   CHECK(filter->GetOutput()->GetNumberOfCells() == 8 && std::abs(volume - 1.0 / 6.0) < 1e-15, "parts of volume %.17g", volume);
 }
 
-// Cells of every quadratic type beside one another, straight and bent: their parts fill the box, meet face to face, and a linear field stays one.
+// Cells of every quadratic type beside one another, straight and bent: their parts fill the box, meet face to face, and a linear field
+// stays one.
 void QuadraticGrids()
 {
-  struct Case
-  {
+  struct Case {
     const char* Name;
     int Hexahedron, Wedge, Pyramid;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's files that are wrong: each is told with its line, its value and what it must be, both outputs are empty, nothing crashes and nothing is
-// allocated for a lie; files cut short at every byte, and with bytes changed. Argument: a folder to write to.
+// TetGen's files that are wrong: each is told with its line, its value and what it must be, both outputs are empty, nothing crashes and
+// nothing is allocated for a lie; files cut short at every byte, and with bytes changed. Argument: a folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenReader.h"
@@ -31,7 +31,8 @@ Outcome ReadAgain(Reader* reader)
   reader->Update();
   const bool empty = reader->GetOutput()->GetNumberOfPoints() + reader->GetOutput()->GetNumberOfCells() == 0 &&
     reader->GetSurface()->GetNumberOfPoints() + reader->GetSurface()->GetNumberOfCells() == 0;
-  CHECK(errors->Count <= 1 && (errors->Count == 0 || empty), "%d errors, the outputs hold something: %s", errors->Count, errors->Text.c_str());
+  CHECK(
+    errors->Count <= 1 && (errors->Count == 0 || empty), "%d errors, the outputs hold something: %s", errors->Count, errors->Text.c_str());
   CHECK((errors->Count == 0) == (reader->GetErrorCode() == vtkErrorCode::NoError), "no error code for: %s", errors->Text.c_str());
   return { errors->Count == 0, errors->Text, reader->GetErrorCode() };
 }
@@ -50,7 +51,8 @@ const std::pair<std::string, std::string> Good[] = {
   { ".neigh", "2 4\n1 2 -1 -1 -1\n2 -1 -1 -1 1\n" },
   { ".face", "3 1\n1 1 2 3 5\n2 1 2 4 6\n3 2 3 4 0\n" },
   { ".edge", "2 1\n1 1 2 3\n2 2 3 4\n" },
-  { ".poly", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n2 1\n1 1 5\n3 0 1 2\n1 .1 .1 0\n1 0 6\n3 0 1 3\n1\n0 5 5 5\n1\n0 .1 .2 .3 4 5\n" },
+  { ".poly",
+    "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n2 1\n1 1 5\n3 0 1 2\n1 .1 .1 0\n1 0 6\n3 0 1 3\n1\n0 5 5 5\n1\n0 .1 .2 .3 4 5\n" },
   { ".smesh", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n2 1\n3 0 1 2 5\n3 0 1 3 6\n1\n0 5 5 5\n1\n0 .1 .2 .3 4 5\n" },
 };
 
@@ -71,8 +73,8 @@ void Refused(const std::string& extension, const std::string& text, const std::v
 {
   WriteText(Folder + "/mesh" + extension, text);
   const Outcome outcome = Read("mesh" + extension);
-  CHECK(!outcome.Read && outcome.Code == code, "%s was read or fails otherwise (%lu): '%s' %s", extension.c_str(), outcome.Code, text.c_str(),
-    outcome.Text.c_str());
+  CHECK(!outcome.Read && outcome.Code == code, "%s was read or fails otherwise (%lu): '%s' %s", extension.c_str(), outcome.Code,
+    text.c_str(), outcome.Text.c_str());
   CHECK(outcome.Read || outcome.Text.find("mesh" + extension) != std::string::npos, "'%s' tells no file", outcome.Text.c_str());
   for (const std::string& word : words) {
     CHECK(outcome.Text.find(word) != std::string::npos, "'%s' says nothing of '%s'", outcome.Text.c_str(), word.c_str());
@@ -248,7 +250,8 @@ void StoppingAndWriting()
   vtkNew<Reader> mesh;
   mesh->SetFileName((Folder + "/mesh").c_str());
   mesh->Update();
-  const auto refuses = [&](const char* word, const std::function<void(vtkStratusTetGenWriter*, vtkUnstructuredGrid*, vtkPolyData*)>& breaks) {
+  const auto refuses = [&](
+                         const char* word, const std::function<void(vtkStratusTetGenWriter*, vtkUnstructuredGrid*, vtkPolyData*)>& breaks) {
     vtkNew<vtkUnstructuredGrid> grid;
     grid->DeepCopy(mesh->GetOutput());
     vtkNew<vtkPolyData> surface;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's files: what the program writes is read right, what we write it reads, and both come back the same bit for bit. Argument: a folder to
-// write to.
+// TetGen's files: what the program writes is read right, what we write it reads, and both come back the same bit for bit. Argument: a
+// folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenReader.h"
@@ -186,7 +186,8 @@ void SurfacesComeBack()
     }
   }
   // A box in a box, the inner one a hole.
-  const double lower[3] = { 0.1, -3, 1e6 }, upper[3] = { 2.1, 0, 1e6 + 1 }, inner[3] = { 0.5, -2, 1e6 + 0.25 }, outer[3] = { 1, -1, 1e6 + 0.5 };
+  const double lower[3] = { 0.1, -3, 1e6 }, upper[3] = { 2.1, 0, 1e6 + 1 }, inner[3] = { 0.5, -2, 1e6 + 0.25 },
+               outer[3] = { 1, -1, 1e6 + 0.5 };
   vtkNew<vtkPolyData> boxes;
   AddBox(boxes, lower, upper, 10);
   AddBox(boxes, inner, outer, -20);
@@ -215,7 +216,8 @@ void SurfacesComeBack()
 void PartsOfComplexes()
 {
   WriteText(Folder + "/parts.node", "6\n1 0 0 0\n2 4 0 0\n3 4 4 0\n4 0 4 0\n5 2 2 0\n6 1 1 0\n");
-  WriteText(Folder + "/parts.poly", "0 3 0 0\n2 0\n3 2\n4 1 2 3 4\n1 6\n2 5 6\n1 2.5 2.5 0\n2 1 2 0\n1\n3 1 2 5\n1\n7 1 2 3\n1\n1 5 6 7 8\n");
+  WriteText(
+    Folder + "/parts.poly", "0 3 0 0\n2 0\n3 2\n4 1 2 3 4\n1 6\n2 5 6\n1 2.5 2.5 0\n2 1 2 0\n1\n3 1 2 5\n1\n7 1 2 3\n1\n1 5 6 7 8\n");
   vtkNew<Reader> reader;
   ReadFile(reader, "parts");
   vtkPolyData* surface = reader->GetSurface();
@@ -266,7 +268,8 @@ void LongFilesAndLines()
   WriteText(Folder + "/long.smesh", text + "\r\n0\r\n0");
   vtkNew<Reader> polygon;
   ReadFile(polygon, "long.smesh");
-  CHECK(polygon->GetSurface()->GetNumberOfPolys() == 1 && polygon->GetSurface()->GetPolys()->GetCellSize(0) == 600000, "the long line is cut");
+  CHECK(
+    polygon->GetSurface()->GetNumberOfPolys() == 1 && polygon->GetSurface()->GetPolys()->GetCellSize(0) == 600000, "the long line is cut");
   WriteFile(polygon->GetSurface(), nullptr, "short.smesh", 0);
   std::ifstream lines(Folder + "/short.smesh");
   size_t longest = 0;

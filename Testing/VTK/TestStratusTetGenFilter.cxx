@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces filled by TetGen: volumes, holes, regions, limits, markers; what crashes TetGen or lets it run on becomes an error. Argument: a folder to
-// write to.
+// Surfaces filled by TetGen: volumes, holes, regions, limits, markers; what crashes TetGen or lets it run on becomes an error. Argument: a
+// folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenFilter.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: the same picture as the image mapper's where the field is the same, what the window shows, opaque geometry, matrices,
-// scalars of cells, ghosts, both blend modes, and what is refused.
+// vtkStratusTetrahedraMapper: the same picture as the image mapper's where the field is the same, what the window shows, opaque geometry,
+// matrices, scalars of cells, ghosts, both blend modes, and what is refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -31,7 +31,8 @@ void TestAgainstTheImageMapper()
 void TestMethods()
 {
   GridScene scene;
-  CHECK(scene.Tetrahedra->GetMethod() == vtkStratusTetrahedraMapper::AUTO_METHOD, "the default is %s", scene.Tetrahedra->GetMethodAsString());
+  CHECK(
+    scene.Tetrahedra->GetMethod() == vtkStratusTetrahedraMapper::AUTO_METHOD, "the default is %s", scene.Tetrahedra->GetMethodAsString());
   scene.Tetrahedra->SetMethodToMarch();
   const std::vector<float> marched = scene.GridPicture();
   CHECK(std::string(scene.Tetrahedra->GetMethodUsedAsString()) == "march", "it is %s", scene.Tetrahedra->GetMethodUsedAsString());

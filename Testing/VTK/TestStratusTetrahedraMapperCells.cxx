@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper and cells other than tetrahedra: every kind gives the image mapper's picture of the same field, whole cells are
-// hidden, scalars of cells stay theirs, what has no volume is ignored and counted, and what is built is kept.
+// vtkStratusTetrahedraMapper and cells other than tetrahedra: every kind gives the image mapper's picture of the same field, whole cells
+// are hidden, scalars of cells stay theirs, what has no volume is ignored and counted, and what is built is kept.
 #include "tetrahedra_scene.h"
 #include "vtkStratusPartitionFilter.h"
 
@@ -43,7 +43,8 @@ void EveryKindOfCell()
     }
     CHECK(scene.Tetrahedra->GetNumberOfTetrahedra() > 4 * grids[g]->GetNumberOfCells() / 2, "grid %d: %lld tetrahedra of %lld cells", g,
       static_cast<long long>(scene.Tetrahedra->GetNumberOfTetrahedra()), static_cast<long long>(grids[g]->GetNumberOfCells()));
-    CHECK(scene.Tetrahedra->GetNumberOfIgnoredCells() == 0 && scene.GridErrors->Count == 0, "grid %d: %s", g, scene.GridErrors->Text.c_str());
+    CHECK(
+      scene.Tetrahedra->GetNumberOfIgnoredCells() == 0 && scene.GridErrors->Count == 0, "grid %d: %s", g, scene.GridErrors->Text.c_str());
   }
 }
 
@@ -188,7 +189,8 @@ void LeavesAreSortedInParallel()
     }
     scene.Tetrahedra->SetInputData(whole);
     const std::vector<float> plain = scene.GridPicture();
-    CHECK(scene.Tetrahedra->GetNumberOfLeaves() == 1, "%lld leaves of no partition", static_cast<long long>(scene.Tetrahedra->GetNumberOfLeaves()));
+    CHECK(scene.Tetrahedra->GetNumberOfLeaves() == 1, "%lld leaves of no partition",
+      static_cast<long long>(scene.Tetrahedra->GetNumberOfLeaves()));
     scene.Tetrahedra->SetInputData(cut);
     for (int time = 0; time < 2; ++time) {
       const std::vector<float> picture = scene.GridPicture();

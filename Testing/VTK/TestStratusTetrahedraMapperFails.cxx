@@ -37,8 +37,7 @@ struct Case : GridScene {
     this->Parts->InsertNextCell(VTK_TETRA, 4, ids);
   }
   // n^3 cubes of six cells each, points where `place` puts them.
-  template <typename Place>
-  void AddCubes(int n, Place&& place)
+  template <typename Place> void AddCubes(int n, Place&& place)
   {
     static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
     const vtkIdType first = this->Points->GetNumberOfPoints(), step[3] = { 1, n + 1, (n + 1) * (n + 1) };
@@ -74,8 +73,8 @@ struct Case : GridScene {
       const std::vector<float> ours = this->GridPicture();
       reference = reference.empty() ? TetraReference(*this, this->Parts, this->Values, false) : reference;
       const double error = TetraError(ours, reference);
-      CHECK(error <= close, "%s, view %d, %s: RMSE %.4f of 255, at most %g; %s", what, view, this->Tetrahedra->GetMethodAsString(), error, close,
-        this->GridErrors->Text.c_str());
+      CHECK(error <= close, "%s, view %d, %s: RMSE %.4f of 255, at most %g; %s", what, view, this->Tetrahedra->GetMethodAsString(), error,
+        close, this->GridErrors->Text.c_str());
     }
   }
 
@@ -276,7 +275,8 @@ void AlongFaces(int method)
 
 void EyesInside()
 {
-  static const Vector eyes[4] = { { 1.3, 1.62, 1.45 }, { 1.5, 1.5, 1.0 }, { 1.0, 2.0, 1.0 }, { 1.5, 1.0, 1.0 } }; // cell, face, vertex, edge
+  static const Vector eyes[4] = { { 1.3, 1.62, 1.45 }, { 1.5, 1.5, 1.0 }, { 1.0, 2.0, 1.0 },
+    { 1.5, 1.0, 1.0 } }; // cell, face, vertex, edge
   for (int i = 0; i < 4; ++i) {
     Case scene;
     scene.AddCubes(3, AsItIs);
@@ -337,7 +337,8 @@ void ValuesThatAreNone()
 void NextToNothing()
 {
   Case one;
-  const vtkIdType a = one.AddPoint({ 0, 0, 0 }), b = one.AddPoint({ 2, 0, 0 }), c = one.AddPoint({ 0, 2, 0 }), d = one.AddPoint({ 0, 0, 2 });
+  const vtkIdType a = one.AddPoint({ 0, 0, 0 }), b = one.AddPoint({ 2, 0, 0 }), c = one.AddPoint({ 0, 2, 0 }),
+                  d = one.AddPoint({ 0, 0, 2 });
   one.AddCell(a, b, c, d);
   one.Agrees("one cell");
   Case flat;
@@ -359,7 +360,8 @@ void NextToNothing()
   const vtkIdType ids[3] = { 0, 1, 2 };
   bare.Parts->InsertNextCell(VTK_TRIANGLE, 3, ids);
   bare.Parts->GetPointData()->SetScalars(bare.Values);
-  CHECK(bare.GridPicture().empty() && bare.GridErrors->Has("no cell with a volume: 1"), "no tetrahedron: '%s'", bare.GridErrors->Text.c_str());
+  CHECK(
+    bare.GridPicture().empty() && bare.GridErrors->Has("no cell with a volume: 1"), "no tetrahedron: '%s'", bare.GridErrors->Text.c_str());
 }
 } // namespace
 

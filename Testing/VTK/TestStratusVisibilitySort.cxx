@@ -63,8 +63,8 @@ int WrongPairs(vtkUnstructuredGrid* grid, const std::vector<vtkIdType>& cells, v
     vtkIdType count;
     const vtkIdType* ids;
     grid->GetCellPoints(face.second[0], count, ids);
-    const vtkIdType* apex = std::find_if(
-      ids, ids + 4, [&](vtkIdType id) { return std::find(face.first.begin(), face.first.end(), id) == face.first.end(); });
+    const vtkIdType* apex =
+      std::find_if(ids, ids + 4, [&](vtkIdType id) { return std::find(face.first.begin(), face.first.end(), id) == face.first.end(); });
     const double own = Dot(normal, Minus(ToWorld(matrix, PointOf(grid, *apex)), a));
     if (std::abs(side) > 1e-9) { // else neither hides the other
       const bool first = side * own > 0.0;
@@ -96,8 +96,8 @@ void Orders()
         sort->SetMaxCellsReturned(view % 3 ? 100 : VTK_INT_MAX);
         sort->SetDirectionToFrontToBack();
         std::vector<vtkIdType> cells = Traverse(sort, sort->GetMaxCellsReturned());
-        CHECK(WrongPairs(grid, cells, camera, matrix) == 0, "view %d, depth %d, mirror %d: %d pairs in the wrong order", view, depth, mirror,
-          WrongPairs(grid, cells, camera, matrix));
+        CHECK(WrongPairs(grid, cells, camera, matrix) == 0, "view %d, depth %d, mirror %d: %d pairs in the wrong order", view, depth,
+          mirror, WrongPairs(grid, cells, camera, matrix));
         sort->SetDirectionToBackToFront();
         std::vector<vtkIdType> back = Traverse(sort, sort->GetMaxCellsReturned());
         std::reverse(back.begin(), back.end());

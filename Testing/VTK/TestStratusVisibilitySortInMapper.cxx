@@ -53,13 +53,13 @@ void PlainSort::InitTraversal()
     }
     const Vector a = PointOf(grid, face.first[0]);
     const Vector normal = Cross(Minus(PointOf(grid, face.first[1]), a), Minus(PointOf(grid, face.first[2]), a));
-    const double side =
-      this->Camera->GetParallelProjection() ? -Dot(normal, { along[0], along[1], along[2] }) : Dot(normal, Minus({ eye[0], eye[1], eye[2] }, a));
+    const double side = this->Camera->GetParallelProjection() ? -Dot(normal, { along[0], along[1], along[2] })
+                                                              : Dot(normal, Minus({ eye[0], eye[1], eye[2] }, a));
     vtkIdType count;
     const vtkIdType* ids;
     grid->GetCellPoints(face.second[0], count, ids);
-    const vtkIdType* apex = std::find_if(
-      ids, ids + 4, [&](vtkIdType id) { return std::find(face.first.begin(), face.first.end(), id) == face.first.end(); });
+    const vtkIdType* apex =
+      std::find_if(ids, ids + 4, [&](vtkIdType id) { return std::find(face.first.begin(), face.first.end(), id) == face.first.end(); });
     const bool first_in_front = side * Dot(normal, Minus(PointOf(grid, *apex), a)) > 0.0;
     const vtkIdType front = face.second[first_in_front ? 0 : 1], back = face.second[first_in_front ? 1 : 0];
     before[static_cast<size_t>(back)].push_back(front);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mapper's float picture against the double reference, for every way a camera or a volume can lie; and what the window shows against the
-// float picture.
+// The mapper's float picture against the double reference, for every way a camera or a volume can lie; and what the window shows against
+// the float picture.
 #include "mapper_testing.h"
 
 #include "vtkWindowToImageFilter.h"

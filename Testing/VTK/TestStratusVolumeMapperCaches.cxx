@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rebuild by what changed, told by counters: a camera nothing, a transfer function tables and structure, data everything; and what is rebuilt shows.
+// Rebuild by what changed, told by counters: a camera nothing, a transfer function tables and structure, data everything; and what is
+// rebuilt shows.
 #include "mapper_testing.h"
 
 namespace {

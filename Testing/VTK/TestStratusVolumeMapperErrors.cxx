@@ -15,8 +15,7 @@ namespace {
 void Modes()
 {
   Refused(
-    "slice", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); },
-    [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
+    "slice", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); }, [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
   Refused(
     "shading of a maximum", "shading",
     [](Scene& s) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// First hits in the window: light and depth as the scene has them, the same bits by every structure, the tree that an image carries used where it
-// serves, and the cloud of record against its picture in Baseline. Argument: where to leave pictures that fail.
+// First hits in the window: light and depth as the scene has them, the same bits by every structure, the tree that an image carries used
+// where it serves, and the cloud of record against its picture in Baseline. Argument: where to leave pictures that fail.
 #include "mapper_testing.h"
 #include "vtkStratusHybridTreeFilter.h"
 
@@ -62,7 +62,8 @@ void DepthIsInTheWindow()
     }
     // 24 bits of a depth buffer whose near plane is about a third of the way to the far one
     CHECK(hits > 1000 && worst < 1e-5, "%d hits, depths differ by %g", hits, worst);
-    CHECK(scene.ShownError(scene.Renderer->GetBackground()) < 1.0, "shown with an error of %g", scene.ShownError(scene.Renderer->GetBackground()));
+    CHECK(scene.ShownError(scene.Renderer->GetBackground()) < 1.0, "shown with an error of %g",
+      scene.ShownError(scene.Renderer->GetBackground()));
   }
 }
 
@@ -104,7 +105,8 @@ void GeometryIsHiddenAndHides()
     const bool green = before[p] == 0 && before[p + 1] == 255 && before[p + 2] == 0;
     ball += green;
     solid += !green && before[p] + before[p + 1] + before[p + 2] > 0;
-    differing += std::max({ std::abs(before[p] - after[p]), std::abs(before[p + 1] - after[p + 1]), std::abs(before[p + 2] - after[p + 2]) }) > 1;
+    differing +=
+      std::max({ std::abs(before[p] - after[p]), std::abs(before[p + 1] - after[p + 1]), std::abs(before[p + 2] - after[p + 2]) }) > 1;
   }
   CHECK(ball > 100 && solid > 500, "%zu pixels of the ball, %zu of the volume", ball, solid);
   // along the line where both meet, 24 bits decide
@@ -127,7 +129,8 @@ void EveryStructureShowsTheSame()
   CHECK(scene.Light() > 1000.0, "the picture is all but empty");
   scene.Mapper->AuditOn();
   scene.Render();
-  CHECK(scene.Mapper->GetDifferingPixels() == 0, "the audit found %llu pixels", static_cast<unsigned long long>(scene.Mapper->GetDifferingPixels()));
+  CHECK(scene.Mapper->GetDifferingPixels() == 0, "the audit found %llu pixels",
+    static_cast<unsigned long long>(scene.Mapper->GetDifferingPixels()));
 }
 
 // The red of a white volume's faces in the light that is given.

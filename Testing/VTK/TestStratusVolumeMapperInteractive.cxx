@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// While the window asks for a rate the picture may be coarser, when it is still it is exact. The time allotted is set, not measured, so that
-// nothing here depends on how fast the machine is.
+// While the window asks for a rate the picture may be coarser, when it is still it is exact. The time allotted is set, not measured, so
+// that nothing here depends on how fast the machine is.
 #include "mapper_testing.h"
 
 #include "vtkCullerCollection.h"

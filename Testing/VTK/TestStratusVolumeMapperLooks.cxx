@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What samples show beyond one value's colour and opacity: light, gradient opacity, several components. Each against the double reference, and each
-// setter by its effect. (How far VTK's own mappers are from the same reference: stratus-bench volume, scenes +shade and plume2.)
+// What samples show beyond one value's colour and opacity: light, gradient opacity, several components. Each against the double reference,
+// and each setter by its effect. (How far VTK's own mappers are from the same reference: stratus-bench volume, scenes +shade and plume2.)
 #include "mapper_testing.h"
 
 #include "vtkLight.h"
@@ -167,7 +167,8 @@ vtkSmartPointer<vtkFloatArray> TwoComponents(vtkImageData* image)
   for (int k = 0; k < n[2]; ++k) {
     for (int j = 0; j < n[1]; ++j) {
       for (int i = 0; i < n[0]; ++i) {
-        const double x = static_cast<double>(i) / (n[0] - 1), y = static_cast<double>(j) / (n[1] - 1), z = static_cast<double>(k) / (n[2] - 1);
+        const double x = static_cast<double>(i) / (n[0] - 1), y = static_cast<double>(j) / (n[1] - 1),
+                     z = static_cast<double>(k) / (n[2] - 1);
         array->InsertNextTuple2(Field(x, y, z), 10.0 * Field(y, 1.0 - x, z));
       }
     }
@@ -179,16 +180,14 @@ vtkSmartPointer<vtkFloatArray> TwoComponents(vtkImageData* image)
 double ComponentsPsnr(Scene& scene, vtkFloatArray* array, const stratus_transfer* transfers, int dependent)
 {
   stratus_volume volume;
-  return ReferencePsnr(
-    scene,
-    [&](reference_scene& reference) {
-      volume = *reference.volume;
-      volume.components = array->GetNumberOfComponents();
-      volume.value_stride = volume.components;
-      reference.volume = &volume;
-      reference.transfer = transfers;
-      reference.dependent = dependent;
-    });
+  return ReferencePsnr(scene, [&](reference_scene& reference) {
+    volume = *reference.volume;
+    volume.components = array->GetNumberOfComponents();
+    volume.value_stride = volume.components;
+    reference.volume = &volume;
+    reference.transfer = transfers;
+    reference.dependent = dependent;
+  });
 }
 
 void Components()

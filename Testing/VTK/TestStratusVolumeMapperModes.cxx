@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blend modes, crop regions, masks and jitter in the window: held against the double reference, and, to tell how far the two agree, beside VTK's
-// own mapper of the GPU. Every setter is seen in the picture.
+// Blend modes, crop regions, masks and jitter in the window: held against the double reference, and, to tell how far the two agree, beside
+// VTK's own mapper of the GPU. Every setter is seen in the picture.
 #include "mapper_testing.h"
 
 #include "Testing/reference_modes.h"
@@ -237,7 +237,8 @@ void FirstHits()
   CHECK(part > 0.1 * whole && part < 0.9 * whole && scene.Errors->Count == 0, "cropped first hits: %g of %g, '%s'", part, whole,
     scene.Errors->Text.c_str());
   scene.Mapper->SetCroppingRegionFlagsToFence();
-  CHECK(scene.Picture().empty() && scene.Errors->Count == 1 && scene.Errors->Has("crop regions"), "a fence: '%s'", scene.Errors->Text.c_str());
+  CHECK(
+    scene.Picture().empty() && scene.Errors->Count == 1 && scene.Errors->Has("crop regions"), "a fence: '%s'", scene.Errors->Text.c_str());
   scene.Mapper->CroppingOff();
   vtkNew<vtkImageData> mask;
   mask->CopyStructure(scene.Image);

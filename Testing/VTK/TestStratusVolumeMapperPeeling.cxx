@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling: the window against the same layers laid
-// one over the other here. A volume is one layer, at the depth where it begins to show; without peels of volumes it lies over all surfaces, and
-// volumes over one another as they come.
+// Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling: the window against the same layers
+// laid one over the other here. A volume is one layer, at the depth where it begins to show; without peels of volumes it lies over all
+// surfaces, and volumes over one another as they come.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -201,8 +201,7 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
     for (int c = 0; c < 3; ++c) {
       color[c] = backdrop.Bytes[4 * p + c] / 255.0;
     }
-    if (std::isnan(backdrop.K[p]) ||
-      !Expect(camera, size, p, backdrop.Lost ? none : sheets, drawn, peeled, backdrop.K[p], color)) {
+    if (std::isnan(backdrop.K[p]) || !Expect(camera, size, p, backdrop.Lost ? none : sheets, drawn, peeled, backdrop.K[p], color)) {
       continue;
     }
     ++judged;
@@ -265,7 +264,8 @@ void ManySheets(bool parallel)
   }
 }
 
-// Two volumes, one before the other, in either order, a sheet between them and others around: neither ends the other's rays, whatever the samples.
+// Two volumes, one before the other, in either order, a sheet between them and others around: neither ends the other's rays, whatever the
+// samples.
 void TwoVolumes(bool shared)
 {
   for (int samples : { 0, 4 }) {
@@ -296,7 +296,8 @@ void TwoVolumes(bool shared)
         }
         return drawn;
       };
-      Judge(scene, shared ? "two volumes of one mapper" : "two volumes", { true, true, samples }, sheets, { scene.Volume, other }, pictures);
+      Judge(
+        scene, shared ? "two volumes of one mapper" : "two volumes", { true, true, samples }, sheets, { scene.Volume, other }, pictures);
       float depth = 0.0f;
       const int* size = scene.Renderer->GetSize();
       scene.Window->GetZbufferData(size[0] / 2, size[1] / 2, size[0] / 2, size[1] / 2, &depth);

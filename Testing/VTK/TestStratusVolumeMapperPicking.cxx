@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picking by hardware reads props off the window: the volume is picked where it shows, what is before it or behind what shows nothing is not it, and
-// pictures are as before. Which of its cells it is, hardware does not tell.
+// Picking by hardware reads props off the window: the volume is picked where it shows, what is before it or behind what shows nothing is
+// not it, and pictures are as before. Which of its cells it is, hardware does not tell.
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
@@ -41,7 +41,8 @@ void Volume(int mode, bool coarse)
   if (selection && selection->GetNumberOfNodes() == 1) {
     vtkInformation* node = selection->GetNode(0)->GetProperties();
     CHECK(node->Get(vtkSelectionNode::PROP()) == scene.Volume, "another prop is picked");
-    CHECK(node->Get(vtkSelectionNode::PIXEL_COUNT()) == shown, "%d pixels are picked, %d show", node->Get(vtkSelectionNode::PIXEL_COUNT()), shown);
+    CHECK(node->Get(vtkSelectionNode::PIXEL_COUNT()) == shown, "%d pixels are picked, %d show", node->Get(vtkSelectionNode::PIXEL_COUNT()),
+      shown);
   }
   CHECK(shown > 1000 && scene.Picture() == before, "the picture after picking is another");
   const vtkSmartPointer<vtkSelection> cells = Select(scene, false);
@@ -71,7 +72,8 @@ void Picked()
     const bool seen = scene.Picture()[4 * scene.Pixels() / 2 + 2 * static_cast<size_t>(size[0]) + 3] > 0.0f;
     CHECK(seen == (where > 0.0), "the ball at %g: the volume %s", where, seen ? "shows" : "does not show");
     CHECK(picker->PickProp(size[0] / 2, size[1] / 2, scene.Renderer) == 1, "nothing is picked");
-    CHECK(picker->GetViewProp() == (where < 0.0 ? static_cast<vtkProp*>(actor) : scene.Volume), "the ball at %g: the other is picked", where);
+    CHECK(
+      picker->GetViewProp() == (where < 0.0 ? static_cast<vtkProp*>(actor) : scene.Volume), "the ball at %g: the other is picked", where);
   }
   CHECK(picker->PickProp(1, 1, scene.Renderer) == 0, "something is picked where nothing is");
 }

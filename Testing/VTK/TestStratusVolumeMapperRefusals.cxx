@@ -154,7 +154,8 @@ void SeveralVolumes()
   scene.Renderer->RemoveViewProp(scene.Volume);
   scene.Renderer->AddViewProp(several);
   scene.Render();
-  CHECK(errors->Count > 0 && errors->Has("only supported by vtkGPUVolumeRayCastMapper"), "several volumes in one: '%s'", errors->Text.c_str());
+  CHECK(
+    errors->Count > 0 && errors->Has("only supported by vtkGPUVolumeRayCastMapper"), "several volumes in one: '%s'", errors->Text.c_str());
   CHECK(IsBlack(scene), "several volumes in one: something is drawn");
 }
 } // namespace

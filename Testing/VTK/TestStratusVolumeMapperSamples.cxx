@@ -33,8 +33,8 @@ void CountsWhatTheReportCounts()
     CHECK(scene.Picture() == plain, "structure %d: counting changes the picture", structure);
     vtkTypeUInt32Array* samples = SamplesOf(scene);
     CHECK(samples && samples->GetNumberOfValues() * 4 == static_cast<vtkIdType>(plain.size()), "structure %d: a count a pixel", structure);
-    CHECK(Sum(samples) == scene.Mapper->GetSamplesTaken() && Sum(samples) > 0, "structure %d: %llu in the pixels, %llu in the report", structure,
-      static_cast<unsigned long long>(Sum(samples)), static_cast<unsigned long long>(scene.Mapper->GetSamplesTaken()));
+    CHECK(Sum(samples) == scene.Mapper->GetSamplesTaken() && Sum(samples) > 0, "structure %d: %llu in the pixels, %llu in the report",
+      structure, static_cast<unsigned long long>(Sum(samples)), static_cast<unsigned long long>(scene.Mapper->GetSamplesTaken()));
     int unseen = 0; // no sample, and yet something in the pixel
     for (vtkIdType pixel = 0; samples && pixel < samples->GetNumberOfValues(); ++pixel) {
       unseen += samples->GetValue(pixel) == 0 && plain[4 * static_cast<size_t>(pixel) + 3] != 0.0f ? 1 : 0;
@@ -57,7 +57,8 @@ void CountsNone()
   scene.Renderer->ResetCameraClippingRange();
   scene.Render();
   vtkTypeUInt32Array* samples = SamplesOf(scene);
-  CHECK(samples && samples->GetNumberOfValues() > 0 && Sum(samples) == 0, "looking away counts %llu", static_cast<unsigned long long>(Sum(samples)));
+  CHECK(samples && samples->GetNumberOfValues() > 0 && Sum(samples) == 0, "looking away counts %llu",
+    static_cast<unsigned long long>(Sum(samples)));
 }
 
 void CountsFirstHits()

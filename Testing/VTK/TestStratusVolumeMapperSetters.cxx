@@ -152,8 +152,10 @@ void Ranges()
     mapper->SetStructure(value);
     mapper->SetSampling(value);
     CHECK(mapper->GetNumberOfThreads() == (value < 0 ? 0 : 1024), "%d threads", mapper->GetNumberOfThreads());
-    CHECK(mapper->GetStructure() == (value < 0 ? Mapper::AUTO_STRUCTURE : Mapper::HYBRID_STRUCTURE), "structure %d", mapper->GetStructure());
-    CHECK(mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::PREINTEGRATED_SAMPLING), "sampling %d", mapper->GetSampling());
+    CHECK(
+      mapper->GetStructure() == (value < 0 ? Mapper::AUTO_STRUCTURE : Mapper::HYBRID_STRUCTURE), "structure %d", mapper->GetStructure());
+    CHECK(
+      mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::PREINTEGRATED_SAMPLING), "sampling %d", mapper->GetSampling());
   }
 }
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every kind of function a vtkVolumeProperty can hold, against VTK's own word on its value: a slab of constant value, seen straight on, shows exactly
-// one colour and one opacity.
+// Every kind of function a vtkVolumeProperty can hold, against VTK's own word on its value: a slab of constant value, seen straight on,
+// shows exactly one colour and one opacity.
 #include "mapper_testing.h"
 
 #include "vtkDiscretizableColorTransferFunction.h"

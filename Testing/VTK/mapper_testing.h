@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the mapper share: a scene of one volume, its pictures in float and in bytes, and the reference's picture of the same scene.
+// What the tests of the mapper share: a scene of one volume, its pictures in float and in bytes, and the reference's picture of the same
+// scene.
 #ifndef mapper_testing_h
 #define mapper_testing_h
 

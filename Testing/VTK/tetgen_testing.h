@@ -148,8 +148,9 @@ inline bool SameArray(vtkDataArray* a, vtkDataArray* b)
     return false;
   }
   const size_t bytes = static_cast<size_t>(a->GetNumberOfValues()) * static_cast<size_t>(a->GetDataTypeSize());
-  return bytes == 0 || std::equal(static_cast<char*>(a->GetVoidPointer(0)), static_cast<char*>(a->GetVoidPointer(0)) + bytes,
-                         static_cast<char*>(b->GetVoidPointer(0)));
+  return bytes == 0 ||
+    std::equal(
+      static_cast<char*>(a->GetVoidPointer(0)), static_cast<char*>(a->GetVoidPointer(0)) + bytes, static_cast<char*>(b->GetVoidPointer(0)));
 }
 
 // All arrays of a are in b, the same, and there are no more.

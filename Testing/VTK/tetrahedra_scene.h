@@ -107,8 +107,7 @@ struct GridScene : Scene {
 
 // ---- the reference
 
-struct Stretch
-{
+struct Stretch {
   double From, To, First, Last; // along the ray, and the field there
   vtkIdType Cell;
 };

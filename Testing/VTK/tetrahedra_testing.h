@@ -110,8 +110,8 @@ inline Grid CubesOf(int n, int type)
   return grid;
 }
 
-// A grid's cells with points in the middles of edges, faces and cells, as the types that take the place of hexahedra (and voxels), wedges and
-// pyramids want them. Points within the box from 0 to n move, or edges would be straight.
+// A grid's cells with points in the middles of edges, faces and cells, as the types that take the place of hexahedra (and voxels), wedges
+// and pyramids want them. Points within the box from 0 to n move, or edges would be straight.
 inline Grid Elevated(vtkUnstructuredGrid* linear, int hexahedron, int wedge, int pyramid, int n, double bend)
 {
   auto grid = Grid::New();

@@ -23,7 +23,8 @@ int main(void)
     return 1;
   }
   double alpha = 0.0;
-  if (stratus_scene_create(context, "cloud", &scene) != STRATUS_OK || stratus_volume_bounds(context, &scene->volume, bounds) != STRATUS_OK ||
+  if (stratus_scene_create(context, "cloud", &scene) != STRATUS_OK ||
+    stratus_volume_bounds(context, &scene->volume, bounds) != STRATUS_OK ||
     stratus_scene_camera(context, bounds, scene->up_axis, 0, 0, 1.0, &camera) != STRATUS_OK ||
     stratus_ray_caster_create(context, &caster) != STRATUS_OK ||
     stratus_ray_caster_render(caster, &scene->volume, &scene->transfer, &camera, NULL, &image, NULL) != STRATUS_OK) {
