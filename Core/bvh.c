@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Bounding volume hierarchies over boxes: checks, choice of the builder, and the measures that all are judged by. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 static bool box_is_sound(const stratus_box* box)
 {

@@ -12,7 +12,7 @@
  * Nearest clusters are searched in a binary tree over places. A node keeps, an axis, the greatest lo and the least hi of its clusters: no
  * union with any of them is smaller than the one with that. Nodes are met in the order of how their places differ, so an equal distance
  * found later never wins. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #define LEVELS_MAX 32
 #define SEARCHES_SHARED 64 /* fewer are done by one thread */

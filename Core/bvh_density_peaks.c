@@ -5,7 +5,7 @@
  *
  * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so
  * none looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A tree over density peaks' clusters: an agglomerative one over the clusters' boxes, and a SAH one in each. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Morton codes and the hierarchy over them on the context's OpenCL device: buffers and launches of kernels/morton.cl. */
-#include "bvh.h"
+#include "bvh_build.h"
 #include "device.h"
-#include "structures_device.h"
+#include "volume_device.h"
 
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The seam between clusters and what is inside them: a tree over ranges of items becomes the upper part of the tree over the items. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

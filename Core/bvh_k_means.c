@@ -2,7 +2,7 @@
  * k-means clustering (Meister & Bittner 2016), top-down: each node's boxes fall into at most 8 clusters by the distance of their corners to
  * the clusters' mean corners; the clusters are joined by agglomerative clustering, and each is a node again. Sums are of integers, so means
  * do not depend on the order of threads. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

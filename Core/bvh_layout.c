@@ -3,7 +3,7 @@
  * one. Where the tree is too deep, what lies below is parted at the median. Top-down: each subtree has its own stretch of nodes and of the
  * order, in depth-first order but for siblings, which are neighbours. Threads share the work by subtree; every place follows from the tree
  * alone. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <stdatomic.h>
 

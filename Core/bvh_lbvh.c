@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * LBVH (Lauterbach et al. 2009): boxes are parted where the highest bit of their Morton codes differs; every node finds its own range
  * (Karras 2012), on the device or on the host, by the same text. */
-#include "bvh.h"
+#include "bvh_build.h"
 
-#include "kernels/morton.h"
+#include "morton.h"
 
 stratus_status stratus_bvh_build_lbvh(stratus_bvh_build* build)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Boxes in Morton order, which every builder begins with: neighbours in space become neighbours in memory. Codes come from the device or
  * the host, the same to the bit; the sort is the host's, a radix sort that is stable, so the order is the same at any number of threads. */
-#include "bvh.h"
+#include "bvh_build.h"
 
-#include "kernels/morton.h"
+#include "morton.h"
 
 #include <omp.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * away, that makes the least box with it; those who chose each other merge; again, until one is left. Of neighbours equally good the one
  * whose place differs in the lowest bits wins: then the pair chosen is the same from both sides, so every round merges something, and in a
  * lattice or among boxes in one place half of the clusters at once. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

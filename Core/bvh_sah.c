@@ -2,7 +2,7 @@
  * Binned surface area heuristic (Wald 2007), top-down: at each node the boxes fall into bins by their middles, along every axis, and the
  * cheapest border between bins parts them. Where the middles span fewer places than there are bins, a bin is a place, and the split exact.
  * Bins hold integers, so the tree is the same however threads share the work. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #define BINS 32
 #define TASK_ITEMS 2048       /* smaller ranges stay with the thread that finds them */

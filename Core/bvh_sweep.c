@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Surface area heuristic with every split tried, top-down: boxes are sorted once by their middles along each axis, and each split keeps all
  * three orders sorted. The measure of the other builders' trees. */
-#include "bvh.h"
+#include "bvh_build.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Cameras from what people say of them: where from, where to, which way is up. */
-#include "internal.h"
+#include "base.h"
 
 #define DEGREES_TO_RADIANS 0.017453292519943295
 /* sin of the smallest angle between view direction and view-up that still tells which way is up in double. */

@@ -2,9 +2,9 @@
  * Cells sorted by the Morton code of where they are: for the partition's leaves, the order of visibility and the march. */
 #include "cell_morton.h"
 
-#include "bvh.h"
+#include "bvh_build.h"
 
-#include "kernels/morton.h"
+#include "morton.h"
 
 static uint32_t place_on_axis(double at, int bits)
 {

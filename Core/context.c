@@ -2,8 +2,8 @@
  * Context: device choice, allocation, messages, log and progress. */
 #define _POSIX_C_SOURCE 200809L
 #include "device.h"
-#include "internal.h"
-#include "ray_cast.h"
+#include "base.h"
+#include "ray_cast_host.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
  * what a voxel adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 a bandwidth, and 3.065 voxels is the mean distance
  * from a brick's corner voxel, the worst, to its 64 places. For bandwidths beyond 30 voxels see density_cells.c. */
 #include "density.h"
-#include "structures_device.h"
+#include "volume_device.h"
 #include "tree.h"
 
 #include <float.h>

@@ -3,7 +3,7 @@
 #ifndef STRATUS_DEVICE_LAYER_H
 #define STRATUS_DEVICE_LAYER_H
 
-#include "internal.h"
+#include "base.h"
 
 #ifndef CL_TARGET_OPENCL_VERSION
 #define CL_TARGET_OPENCL_VERSION 120

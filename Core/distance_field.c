@@ -2,8 +2,8 @@
  * Distance fields: checks, the choice of who builds one, and reading it. */
 #include "distance_field.h"
 
-#include "jump_flooding.h"
-#include "structures_device.h"
+#include "jump_flooding_passes.h"
+#include "volume_device.h"
 #include "device.h"
 
 #include <string.h>

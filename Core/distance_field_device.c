@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Distance fields on the context's OpenCL device: buffers, arguments and launches of distance_field.cl and jump_flooding.cl. */
 #include "device.h"
-#include "jump_flooding.h"
+#include "jump_flooding_passes.h"
 
 #include <stdio.h>
 #include <string.h>

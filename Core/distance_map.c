@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Distance maps: allocation, choice of transform, and plain block skipping as the shortest of them. */
-#include "internal.h"
+#include "base.h"
 #include "distance_sweep.h"
-#include "structures_device.h"
+#include "volume_device.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits of a batch of rays: which way, which threads. */
-#include "first_hit.h"
+#include "first_hit_batch.h"
 
-#include "../kernels/first_hit_arguments.h"
+#include "first_hit_arguments.h"
 #include "device.h"
-#include "ray_cast.h"
+#include "ray_cast_host.h"
 
 #include <omp.h>
 #include <stdatomic.h>

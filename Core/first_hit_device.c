@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits on the context's device: the host makes rays ready and answers ready, chunk by chunk, the device walks. The tree is copied
  * with each batch (a device that shares memory with the host reads it in place). */
-#include "first_hit.h"
+#include "first_hit_batch.h"
 
-#include "../kernels/first_hit_arguments.h"
+#include "first_hit_arguments.h"
 #include "device.h"
-#include "ray_cast.h"
+#include "ray_cast_host.h"
 
 #include <stdio.h>
 #include <string.h>

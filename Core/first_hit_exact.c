@@ -2,7 +2,7 @@
  * First hits in double precision, one ray at a time, through any tree: the way through trees of many nodes, and the judge of rays that the
  * packets left in doubt. Boxes are met a hair wider than they are, and wherever the ray lands near an edge all voxels about it are tried,
  * so that rounding can hide none; of all voxels that the ray meets the first counts. */
-#include "first_hit.h"
+#include "first_hit_batch.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
  * follows, is computed here from the ray and the voxel, so that the picture is the same by every way. */
 #include "first_hit_picture.h"
 
-#include "image.h"
+#include "picture.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #ifndef STRATUS_FRUSTUM_H
 #define STRATUS_FRUSTUM_H
 
-#include "internal.h"
+#include "base.h"
 
 #define STRATUS_PLANES 6
 #define STRATUS_DEPENDENT_BELOW 1e-12 /* volume of three unit vectors that no longer span a space */

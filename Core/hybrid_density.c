@@ -73,7 +73,7 @@ static void find_deviations(const hybrid_build* build, const hybrid_node* node, 
   }
 }
 
-stratus_status hybrid_look(hybrid_build* build, const hybrid_node* node, hybrid_view* view)
+stratus_status stratus_hybrid_measure(hybrid_build* build, const hybrid_node* node, hybrid_view* view)
 {
   const uint32_t* which;
   if (build->options->density_per_node || build->paper) {
@@ -90,7 +90,7 @@ stratus_status hybrid_look(hybrid_build* build, const hybrid_node* node, hybrid_
   return STRATUS_OK;
 }
 
-double hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper)
+double stratus_hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper)
 {
   double least = INFINITY, most = 0.0;
   for (int a = 0; a < 3; ++a) {
@@ -106,7 +106,7 @@ static void offer(const hybrid_build* build, const hybrid_node* node, int axis, 
 {
   const int32_t brick = (position + STRATUS_BRICK / 2) / STRATUS_BRICK;
   if (brick > node->lo[axis] && brick < node->hi[axis]) {
-    const double cost = hybrid_plane_cost(build, node, axis, brick);
+    const double cost = stratus_hybrid_plane_cost(build, node, axis, brick);
     if (cost < best->cost) {
       *best = (hybrid_plane){ axis, brick, cost };
     }
@@ -139,7 +139,7 @@ static stratus_status offer_cluster(hybrid_build* build, const hybrid_node* node
   return STRATUS_OK;
 }
 
-stratus_status hybrid_plane_density(
+stratus_status stratus_hybrid_plane_density(
   hybrid_build* build, const hybrid_node* node, const hybrid_view* view, hybrid_plane* plane, int* clustered)
 {
   const stratus_tree_node* box = build->shape->nodes + node->number;

@@ -45,7 +45,7 @@ static const stratus_brick* brick_of(const hybrid_build* build, const hybrid_nod
   return build->voxels->bricks + build->shape->order[node->first + i];
 }
 
-double hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick)
+double stratus_hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick)
 {
   bin sides[2] = { empty_bin, empty_bin };
   for (uint32_t i = 0; i < node->count; ++i) {
@@ -70,7 +70,7 @@ static void fill_bins(const hybrid_build* build, const hybrid_node* node, const 
   }
 }
 
-hybrid_plane hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node)
+hybrid_plane stratus_hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node)
 {
   bin bins[3][BINS];
   int32_t used[3];
@@ -100,7 +100,7 @@ hybrid_plane hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node
   return best;
 }
 
-uint32_t hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane)
+uint32_t stratus_hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane)
 {
   uint32_t below = 0;
   for (uint32_t i = 0; i < node->count; ++i) {
@@ -110,7 +110,7 @@ uint32_t hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, 
 }
 
 /* Across the longest axis, by halving: the plane with the fewest more than half of the bricks below. */
-hybrid_plane hybrid_plane_median(const hybrid_build* build, const hybrid_node* node)
+hybrid_plane stratus_hybrid_plane_median(const hybrid_build* build, const hybrid_node* node)
 {
   hybrid_plane plane = { .axis = 0 };
   for (int a = 1; a < 3; ++a) {
@@ -119,14 +119,14 @@ hybrid_plane hybrid_plane_median(const hybrid_build* build, const hybrid_node* n
   int32_t low = node->lo[plane.axis] + 1, high = node->hi[plane.axis] - 1;
   while (low < high) {
     plane.brick = low + (high - low) / 2;
-    if (hybrid_plane_below(build, node, &plane) >= node->count / 2) {
+    if (stratus_hybrid_plane_below(build, node, &plane) >= node->count / 2) {
       high = plane.brick;
     } else {
       low = plane.brick + 1;
     }
   }
   plane.brick = low;
-  plane.cost = hybrid_plane_cost(build, node, plane.axis, low);
+  plane.cost = stratus_hybrid_plane_cost(build, node, plane.axis, low);
   return plane;
 }
 
@@ -145,7 +145,7 @@ static void ends(uint64_t mask, uint64_t group, int step, int32_t* first, int32_
   }
 }
 
-void hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box)
+void stratus_hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box)
 {
   static const uint64_t groups[3] = { 0x1111111111111111u, 0x000f000f000f000fu, 0xffffu };
   bin all = empty_bin;
@@ -170,7 +170,7 @@ void hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree
   memcpy(node->hi, all.hi, sizeof node->hi);
 }
 
-void hybrid_partition(
+void stratus_hybrid_partition(
   hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2])
 {
   uint32_t* order = build->shape->order + node->first;
@@ -187,6 +187,6 @@ void hybrid_partition(
   sides[0] = (hybrid_node){ .first = node->first, .count = below };
   sides[1] = (hybrid_node){ .first = node->first + below, .count = above };
   for (int side = 0; side < 2; ++side) {
-    hybrid_tight_box(build, sides + side, boxes + side);
+    stratus_hybrid_tight_box(build, sides + side, boxes + side);
   }
 }

@@ -54,9 +54,9 @@ static void keep_depth(hybrid_build* build, const hybrid_node* node, hybrid_plan
   if (levels > 32 || node->count > leaf << levels || node->count <= leaf << (levels - 1)) {
     return;
   }
-  const uint32_t below = hybrid_plane_below(build, node, plane);
+  const uint32_t below = stratus_hybrid_plane_below(build, node, plane);
   if ((below > node->count - below ? below : node->count - below) > leaf << (levels - 1)) {
-    *plane = hybrid_plane_median(build, node);
+    *plane = stratus_hybrid_plane_median(build, node);
     *how = &build->statistics->median_splits;
   }
 }
@@ -69,20 +69,20 @@ static stratus_status choose_plane(hybrid_build* build, const hybrid_node* node,
   int clustered = 0;
   *even = 1;
   if (build->paper ? !node->sparse : node->count >= DENSITY_LEAST && too_empty(build, node)) {
-    TRY(hybrid_look(build, node, view));
-    const double uneven = hybrid_unevenness(node, view, build->paper);
+    TRY(stratus_hybrid_measure(build, node, view));
+    const double uneven = stratus_hybrid_unevenness(node, view, build->paper);
     *even = build->paper ? uneven < build->options->paper_threshold : uneven <= build->options->uniform;
     if (build->paper && *even && field_fits(build, node)) {
       return STRATUS_OK; /* a leaf */
     }
     if (!*even) {
-      TRY(hybrid_plane_density(build, node, view, &dense, &clustered));
+      TRY(stratus_hybrid_plane_density(build, node, view, &dense, &clustered));
     }
   }
   int* how = clustered ? &statistics->dbscan_splits : &statistics->density_splits;
   *plane = dense;
   if (dense.axis < 0 || !build->paper) {
-    const hybrid_plane sah = hybrid_plane_sah(build, node);
+    const hybrid_plane sah = stratus_hybrid_plane_sah(build, node);
     if (dense.axis < 0 || dense.cost > NEARLY_AS_CHEAP * sah.cost) {
       *plane = sah;
       how = &statistics->sah_splits;
@@ -126,7 +126,7 @@ static stratus_status split(hybrid_build* build, const hybrid_node* node, const 
   stratus_tree_shape* shape = build->shape;
   const uint32_t first = shape->node_count;
   TRY(reserve_nodes(build, first + 2));
-  hybrid_partition(build, node, plane, sides, shape->nodes + first);
+  stratus_hybrid_partition(build, node, plane, sides, shape->nodes + first);
   shape->nodes[node->number].first = first;
   shape->nodes[node->number].kind_count = stratus_tree_kind_count(STRATUS_NODE_INNER, 0);
   shape->node_count += 2;

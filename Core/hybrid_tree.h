@@ -38,17 +38,17 @@ typedef struct hybrid_plane {
 } hybrid_plane;
 
 /* hybrid_planes.c */
-double hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick);
-hybrid_plane hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node);
-hybrid_plane hybrid_plane_median(const hybrid_build* build, const hybrid_node* node);
+double stratus_hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick);
+hybrid_plane stratus_hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node);
+hybrid_plane stratus_hybrid_plane_median(const hybrid_build* build, const hybrid_node* node);
 /* How many of the node's bricks are below. */
-uint32_t hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane);
+uint32_t stratus_hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane);
 /* Moves the bricks below the plane to the front, each side in its order; fills both sides' first, count and boxes, and their nodes' boxes.
  */
-void hybrid_partition(
+void stratus_hybrid_partition(
   hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2]);
 /* The box of `count` bricks in order[first ..], tight in bricks and in voxels. */
-void hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box);
+void stratus_hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box);
 
 /* hybrid_density.c: what density says of a node. */
 typedef struct hybrid_view {
@@ -56,11 +56,11 @@ typedef struct hybrid_view {
   double deviation[3]; /* eq. 8, voxels */
 } hybrid_view;
 
-stratus_status hybrid_look(hybrid_build* build, const hybrid_node* node, hybrid_view* view);
+stratus_status stratus_hybrid_measure(hybrid_build* build, const hybrid_node* node, hybrid_view* view);
 /* Greatest difference between two axes' deviations: over the node's extents, or in voxels as the paper has it. */
-double hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper);
+double stratus_hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper);
 /* The plane by density: *clustered is 1 if it is the border of the peak's cluster. */
-stratus_status hybrid_plane_density(
+stratus_status stratus_hybrid_plane_density(
   hybrid_build* build, const hybrid_node* node, const hybrid_view* view, hybrid_plane* plane, int* clustered);
 
 #endif

@@ -9,7 +9,7 @@
  * The paper gives AJFA's rule without a threshold: after a good pass the step falls more slowly, after a poor one faster. Here a pass is
  * good where it took GOOD of the distance away on the mean over all that searched, E1 (1 - E2); then the next step is 3/4 of this one, else
  * 1/2, never less. At step 1 passes are repeated while more than AGAIN of the voxels come nearer. */
-#include "jump_flooding.h"
+#include "jump_flooding_passes.h"
 
 #include <string.h>
 

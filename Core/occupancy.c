@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which blocks the transfer function shows: the range test of Deakin & Knackstedt 2019 on hulls with their halo. */
 #include "clones.h"
-#include "internal.h"
-#include "structures_device.h"
+#include "base.h"
+#include "volume_device.h"
 #include "voxels_build.h"
 
 #include <string.h>

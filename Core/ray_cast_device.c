@@ -85,10 +85,10 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, HIDDEN, frame->hidden, frame->hidden ? hidden_bytes(caster) : 0));
     d->data_serial = caster->data_serial;
   }
-  const uint64_t table_serial = 2 * caster->table_serial + caster->looks; /* with looks it is another table */
+  const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* with shading it is another table */
   if (d->table_serial != table_serial) {
     const size_t bytes = stratus_table_words(caster->table) * sizeof(float);
-    TRY(replace(caster, TABLE, frame->table, caster->looks ? caster->look_tables.bytes : bytes));
+    TRY(replace(caster, TABLE, frame->table, caster->shades ? caster->shading_tables.bytes : bytes));
     d->table_serial = table_serial;
   }
   const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* without a map, none may stay borrowed */
@@ -166,15 +166,15 @@ static const char* obstacle(const stratus_ray_caster* caster)
 static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_ray_variant variant, bool packets, cl_kernel* kernel)
 {
   stratus_context* context = caster->context;
-  static const int modes[] = { [STRATUS_RAY_BEST] = STRATUS_RAY_EXTREME,
-    [STRATUS_RAY_ADDED] = STRATUS_RAY_SUM,
-    [STRATUS_RAY_CONTOURS] = STRATUS_RAY_SURFACE,
-    [STRATUS_RAY_LOOKS_MIDPOINT] = STRATUS_RAY_LOOKS,
-    [STRATUS_RAY_LOOKS_PREINTEGRATED] = STRATUS_RAY_LOOKS };
+  static const int modes[] = { [STRATUS_VARIANT_EXTREMES] = STRATUS_RAY_EXTREMES,
+    [STRATUS_VARIANT_SUMS] = STRATUS_RAY_SUMS,
+    [STRATUS_VARIANT_ISOSURFACE] = STRATUS_RAY_ISOSURFACE,
+    [STRATUS_VARIANT_SHADING_MIDPOINT] = STRATUS_RAY_SHADING,
+    [STRATUS_VARIANT_SHADING_PREINTEGRATED] = STRATUS_RAY_SHADING };
   char defines[192];
   int used =
     snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
-      type, variant == STRATUS_RAY_PREINTEGRATED || variant == STRATUS_RAY_LOOKS_PREINTEGRATED, packets ? 16 : 1, TILE,
+      type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1, TILE,
       stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);

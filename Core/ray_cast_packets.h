@@ -3,9 +3,9 @@
 #ifndef STRATUS_RAY_CAST_PACKETS_H
 #define STRATUS_RAY_CAST_PACKETS_H
 
-#include "ray_cast.h"
+#include "ray_cast_host.h"
 
-#include "../kernels/ray_segment.h"
+#include "ray_segment.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function" /* each type uses its part of the fetches */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One type's tile of rays on the host: included with STRATUS_TYPE, STRATUS_PREINTEGRATED, STRATUS_RAY_MODE (none: light) and RAY_NAME set.
  */
-#include "../kernels/ray_cast.h"
+#include "ray_cast.h"
 
 static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k, stratus_crop* crop)
 {

@@ -90,7 +90,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     caster->hidden = NULL;
     stratus_ray_fetched_drop(caster);
     stratus_first_hit_release(caster);
-    stratus_ray_looks_release(caster);
+    stratus_ray_shading_release(caster);
     stratus_ray_device_destroy(caster);
   }
 }
@@ -234,7 +234,7 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
   const stratus_ray_cast_options* options, double* ms)
 {
   const double start = stratus_now_ms();
-  const int media = stratus_ray_looks_media(volume, options);
+  const int media = stratus_ray_shading_media(volume, options);
   const bool same = same_transfer(caster, transfer, media, options->dependent != 0);
   if (!same) {
     TRY(keep_transfer(caster, transfer, media, options->dependent != 0));
@@ -247,7 +247,7 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
     stratus_ray_choose(
       caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
     stratus_ray_modes_choose(options, voxel, &caster->choice);
-    stratus_ray_looks_choose(caster, voxel, transfer, options);
+    stratus_ray_shading_choose(caster, voxel, transfer, options);
     caster->voxel_length = voxel;
     caster->interpolation = options->interpolation;
     caster->wanted_sampling = options->sampling;
@@ -265,7 +265,7 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
     caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
   stratus_ray_modes_mark(&shown, &caster->transfer, ranges->bias, table);
   caster->shown = shown;
-  if (!same_kind || !same_mode || caster->table->shown != table->shown || stratus_ray_looks_several(caster)) {
+  if (!same_kind || !same_mode || caster->table->shown != table->shown || stratus_ray_shading_several(caster)) {
     drop_occupancy(caster);
   }
   stratus_table_destroy(caster->table);
@@ -280,11 +280,11 @@ static stratus_status update_table(stratus_ray_caster* caster, const stratus_vol
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
 {
-  caster->looks = stratus_ray_looks_wanted(volume, transfer, options);
+  caster->shades = stratus_ray_shading_wanted(volume, transfer, options);
   TRY(update_ranges(caster, volume, options, &report->range_ms));
-  TRY(stratus_ray_looks_ranges(caster));
+  TRY(stratus_ray_shading_ranges(caster));
   TRY(update_table(caster, volume, transfer, options, &report->table_ms));
-  return caster->looks ? stratus_ray_looks_tables(caster, caster->dependent) : STRATUS_OK;
+  return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
 /* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit.
@@ -362,8 +362,8 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
   }
   if (!caster->occupancy) {
     const double start = stratus_now_ms();
-    if (stratus_ray_looks_several(caster)) {
-      TRY(stratus_ray_looks_occupancy(caster));
+    if (stratus_ray_shading_several(caster)) {
+      TRY(stratus_ray_shading_occupancy(caster));
     } else {
       TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
     }

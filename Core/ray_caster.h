@@ -3,8 +3,8 @@
 #ifndef STRATUS_RAY_CASTER_H
 #define STRATUS_RAY_CASTER_H
 
-#include "internal.h"
-#include "ray_cast.h"
+#include "base.h"
+#include "ray_cast_host.h"
 
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
@@ -27,10 +27,10 @@ typedef struct stratus_ray_shown {
 } stratus_ray_shown;
 
 /* Steps of a gradient opacity function, between which it is taken as linear. */
-#define STRATUS_LOOK_FACTORS 4096
+#define STRATUS_SHADING_FACTORS 4096
 
-/* What samples that are more than one value's colour and opacity are looked up in: ray_looks_table.c. */
-typedef struct stratus_ray_look_tables {
+/* What samples that are more than one value's colour and opacity are looked up in: ray_shading_table.c. */
+typedef struct stratus_ray_shading_tables {
   int components;                 /* of the volume */
   stratus_value_range* ranges[4]; /* of components 1 .. */
   stratus_table* tables[4];       /* of several components: where each has one */
@@ -41,7 +41,7 @@ typedef struct stratus_ray_look_tables {
   stratus_table** label_tables;  /* of label 0 and on, NULL: no labels */
   int label_tables_count, label_first;
   uint64_t range_builds, table_builds; /* the caster's, that they belong to */
-} stratus_ray_look_tables;
+} stratus_ray_shading_tables;
 
 struct stratus_ray_caster {
   stratus_context* context;
@@ -68,8 +68,8 @@ struct stratus_ray_caster {
   stratus_table* table;
   double table_distance;   /* the sample distance that the table is for .. */
   stratus_ray_shown shown; /* .. and the values */
-  bool looks, dependent;   /* of the render at hand: stratus_ray_looks_wanted() */
-  stratus_ray_look_tables look_tables;
+  bool shades, dependent;  /* of the render at hand: stratus_ray_shading_wanted() */
+  stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
   int tree_serves;      /* whether an offered tree may stand in for a map: 1, 0, or -1 where that is to be asked */
@@ -125,27 +125,27 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster);
 /* Rays show something wherever they meet the bounds, whatever the values. */
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options);
 
-/* ray_looks.c: samples that are more than their value's colour and opacity. */
-stratus_status stratus_ray_looks_check(stratus_context* context, const stratus_ray_cast_options* options);
-bool stratus_ray_looks_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-void stratus_ray_looks_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
+/* ray_shading.c: samples that are more than their value's colour and opacity. */
+stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options);
+bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
   const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
 
-/* ray_looks_table.c */
+/* ray_shading_table.c */
 int stratus_volume_components(const stratus_volume* volume);
 stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* as a volume of its own */
-int stratus_ray_looks_media(
+int stratus_ray_shading_media(
   const stratus_volume* volume, const stratus_ray_cast_options* options); /* transfer functions that the render takes */
-stratus_status stratus_ray_looks_check_volume(
+stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_looks_ranges(stratus_ray_caster* caster); /* of the components beside the first */
-void stratus_ray_looks_choose(
+stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* of the components beside the first */
+void stratus_ray_shading_choose(
   stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_looks_tables(stratus_ray_caster* caster, bool dependent); /* after caster->table */
-bool stratus_ray_looks_several(const stratus_ray_caster* caster);                    /* tables, so that one map of opacity is not enough */
-bool stratus_ray_looks_show(const stratus_ray_caster* caster);                       /* anything at all */
-stratus_status stratus_ray_looks_occupancy(stratus_ray_caster* caster);              /* caster->occupancy, of several components */
-void stratus_ray_looks_release(stratus_ray_caster* caster);
+stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* after caster->table */
+bool stratus_ray_shading_several(const stratus_ray_caster* caster);       /* tables, so that one map of opacity is not enough */
+bool stratus_ray_shading_show(const stratus_ray_caster* caster);          /* anything at all */
+stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
+void stratus_ray_shading_release(stratus_ray_caster* caster);
 
 /* ray_mask.c: the bytes of cells that ghosts hide, NULL: none. */
 stratus_status stratus_ray_hidden_make(stratus_context* context, const stratus_volume* volume, bool by_value, uint8_t** hidden);
@@ -156,7 +156,7 @@ stratus_status stratus_ray_mask_join(
 /* Bytes a cell, as traversal reads them. */
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value);
 
-/* ray_choice.c */
+/* ray_sampling.c */
 void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
   stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
 double stratus_ray_voxel_length(const stratus_volume* volume); /* shortest edge of a voxel along which the volume extends, world */
@@ -175,7 +175,7 @@ stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_
 void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
   const double lo[3], const double hi[3], const int sides[2], int window[4]);
 
-/* ray_cast.c: all tiles on the host. */
+/* ray_cast_host.c: all tiles on the host. */
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
 

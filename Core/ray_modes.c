@@ -212,12 +212,12 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 {
   const stratus_mode mode = caster->shown.mode;
   if (mode == STRATUS_MODE_ISOSURFACE) {
-    return STRATUS_RAY_CONTOURS;
+    return STRATUS_VARIANT_ISOSURFACE;
   }
   if (is_extreme(mode) || is_sum(mode)) {
-    return is_sum(mode) ? STRATUS_RAY_ADDED : STRATUS_RAY_BEST;
+    return is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;
   }
-  return caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED ? STRATUS_RAY_PREINTEGRATED : STRATUS_RAY_MIDPOINT;
+  return caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED ? STRATUS_VARIANT_PREINTEGRATED : STRATUS_VARIANT_MIDPOINT;
 }
 
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Structure HYBRID: the tree that came with the data, where it serves, or one of the caster's own. */
 #include "first_hit_picture.h"
-#include "tree_map.h"
+#include "tree_map_build.h"
 #include "voxels_build.h"
 
 static const stratus_tree* offered_tree(const stratus_ray_caster* caster)
@@ -14,7 +14,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 {
   const stratus_tree* tree = offered_tree(caster);
   *serves = false;
-  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_looks_several(caster)) {
+  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_shading_several(caster)) {
     /* what other modes need is not what the opacity shows */
     return STRATUS_OK;
   }

@@ -3,7 +3,7 @@
  * draws, reports. */
 #include "tetra_caster.h"
 
-#include "image.h"
+#include "picture.h"
 #include "ray_caster.h"
 
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #ifndef STRATUS_TETRA_CASTER_H
 #define STRATUS_TETRA_CASTER_H
 
-#include "internal.h"
-#include "tetra_march.h"
+#include "base.h"
+#include "tetra_march_frame.h"
 #include "tetra_march_device.h"
 #include "tetra_project.h"
 
@@ -44,7 +44,7 @@ struct stratus_tetra_caster {
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
 
-/* tetra_order.c: a place for each cell, neighbours in space near each other, and a name for each point by the first cell that has it. */
+/* tetra_layout.c: a place for each cell, neighbours in space near each other, and a name for each point by the first cell that has it. */
 typedef struct stratus_tetra_places {
   int32_t* of;  /* a cell's place */
   uint32_t* at; /* the cell at a place */
@@ -62,7 +62,7 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
  */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
-/* tetra_choice.c: march or project, and the reason. */
+/* tetra_method.c: march or project, and the reason. */
 stratus_tetra_method stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
   const stratus_tetra_options* options, const stratus_image* image, char* why, size_t capacity);
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);

@@ -3,7 +3,7 @@
 #ifndef STRATUS_TETRA_MARCH_DEVICE_H
 #define STRATUS_TETRA_MARCH_DEVICE_H
 
-#include "tetra_march.h"
+#include "tetra_march_frame.h"
 
 typedef struct stratus_tetra_device stratus_tetra_device;
 

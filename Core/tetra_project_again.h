@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pixels of a tile whose pieces came out of order, drawn again: the nearest pieces of their rays are collected from all cells of the tile,
- * drawn, and then the nearest behind those. Included by tetra_project_host.c. */
+ * drawn, and then the nearest behind those. Included by tetra_project_isa.c. */
 #ifndef STRATUS_TETRA_PROJECT_AGAIN_H
 #define STRATUS_TETRA_PROJECT_AGAIN_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which rays of a packet meet a cell, and where they enter and leave it. Included by tetra_project_host.c.
+ * Which rays of a packet meet a cell, and where they enter and leave it. Included by tetra_project_isa.c.
  *
  * Any cell: by the signs of its edges as rays see them, exact and the same for all cells that share one, as the march does. Most cells: by
  * the four planes. Where a ray meets plane k is linear over the screen in s = 1 - w0/w (parallel: w - w0), w0 the depth of the cell's first

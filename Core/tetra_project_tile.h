@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A tile of pixels under projection: what its pixels have gathered, and pieces of cells on their way there. Included by
- * tetra_project_host.c. Pieces are shaded a piece a lane, then put behind what their pixels have gathered, one after the other. */
+ * tetra_project_isa.c. Pieces are shaded a piece a lane, then put behind what their pixels have gathered, one after the other. */
 #ifndef STRATUS_TETRA_PROJECT_TILE_H
 #define STRATUS_TETRA_PROJECT_TILE_H
 
 #include "tetra_project.h"
 
-#include "../kernels/tetra_march.h"
+#include "tetra_march.h"
 
 #define WIDTH STRATUS_WIDTH
 #define PIXELS (PROJECT_TILE * PROJECT_TILE)

@@ -3,8 +3,8 @@
  *
  * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
  * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
-#include "internal.h"
-#include "structures_device.h"
+#include "base.h"
+#include "volume_device.h"
 
 #include <float.h>
 #include <omp.h>

@@ -5,7 +5,7 @@
 #include "clones.h"
 #include "visibility_order.h"
 
-#include "kernels/face_signs.h"
+#include "face_signs.h"
 
 #define LANES 8
 #define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */

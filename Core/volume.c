@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The view of a volume: checks, geometry, ghosts, and the float that everything later sees of a value. */
-#include "internal.h"
+#include "base.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #ifndef STRATUS_VOXELS_H
 #define STRATUS_VOXELS_H
 
-#include "internal.h"
+#include "base.h"
 
 #define STRATUS_BRICK 4
 #define STRATUS_AXIS_MAX (1 << 18) /* voxels along an axis: brick coordinates fit 16 bits */

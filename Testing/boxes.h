@@ -3,7 +3,7 @@
 #ifndef STRATUS_TESTING_BOXES_H
 #define STRATUS_TESTING_BOXES_H
 
-#include "bvh.h"
+#include "bvh_build.h"
 #include "structures.h"
 
 typedef enum box_set {

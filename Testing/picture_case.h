@@ -122,7 +122,7 @@ static inline void case_fill(picture_case* c, uint32_t seed)
 }
 
 /* World bounds, seen from camera of record `view`. */
-static inline void case_look(stratus_context* context, picture_case* c, int view, int parallel)
+static inline void case_camera(stratus_context* context, picture_case* c, int view, int parallel)
 {
   double bounds[6];
   assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
@@ -162,7 +162,7 @@ static inline void case_create(
   c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
   c->options.sample_distance = 0.25;
   c->options.termination = 1.0;
-  case_look(context, c, 0, 0);
+  case_camera(context, c, 0, 0);
 }
 
 /* One random case of everything at once: type, size, sampling, interpolation, holes, crop, planes, camera. */
@@ -208,7 +208,7 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
     }
     c->options.clip_planes[0][3] = case_uniform(&s, -5, 15);
   }
-  case_look(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
+  case_camera(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
   if (case_random(&s) % 4 == 0) { /* from inside */
     for (int a = 0; a < 3; ++a) {
       c->camera.eye[a] = case_uniform(&s, 0, (double)c->volume.dimensions[a]);

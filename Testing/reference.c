@@ -4,7 +4,7 @@
 #include "reference.h"
 
 #include "reference_field.h"
-#include "reference_looks.h"
+#include "reference_shading.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -109,7 +109,7 @@ static double look(const reference_scene* scene, const reference_field* f, const
     part.volume = &view;
     values[i] = reference_field_sample(&part, p, &c[i]);
   }
-  reference_look(scene, &place, values, &tau, glow);
+  reference_shade(scene, &place, values, &tau, glow);
   for (int a = 0; a < 3; ++a) {
     rgb[a] = tau > 0.0 ? glow[a] / tau : 0.0;
   }
@@ -122,7 +122,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
   const int64_t count = (int64_t)ceil(length / longest_step);
   const double step = length / (double)count;
   const double share = step / scene->transfer->unit_distance;
-  const bool looks = reference_has_looks(scene);
+  const bool shading = reference_has_shading(scene);
   reference_cell c[REFERENCE_COMPONENTS_MAX];
   for (int i = 0; i < REFERENCE_COMPONENTS_MAX; ++i) {
     c[i] = (reference_cell){ .at = { -1, -1, -1 } };
@@ -143,7 +143,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
     }
     ++i;
     double kept = 0.0, rgb[3] = { 0.0, 0.0, 0.0 };
-    if (looks) {
+    if (shading) {
       kept = look(scene, f, r, s, p, c, step, rgb);
     } else {
       const double value = reference_field_sample(f, p, c), opacity = isnan(value) ? 0.0 : reference_opacity(scene->transfer, value);

@@ -3,7 +3,7 @@
  * and what ghosts hide. The one thing that it skips are blocks of cells in which every value maps to an opacity of zero. */
 #include "reference_field.h"
 
-#include "reference_looks.h"
+#include "reference_shading.h"
 
 #include <math.h>
 #include <stdlib.h>

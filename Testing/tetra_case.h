@@ -129,7 +129,7 @@ static inline int tetra_stop(void** state)
 }
 
 /* From outside, camera of record `view` about a cube of edge n. */
-static inline void tetra_look(stratus_context* context, tetra_case* c, int n, int view, int parallel)
+static inline void tetra_camera(stratus_context* context, tetra_case* c, int n, int view, int parallel)
 {
   const double bounds[6] = { 0, n, 0, n, 0, n };
   assert_int_equal(stratus_scene_camera(context, bounds, 2, view, parallel, (double)TETRA_WIDTH / TETRA_HEIGHT, &c->camera), STRATUS_OK);

@@ -37,7 +37,7 @@
 #define fetch_two RAY_NAME(fetch_two)
 #define voxel_gradient RAY_NAME(voxel_gradient)
 #define ray_gradient RAY_NAME(ray_gradient)
-#define ray_look RAY_NAME(ray_look)
+#define ray_light_sample RAY_NAME(ray_light_sample)
 #define shade_labels RAY_NAME(shade_labels)
 #define label_at RAY_NAME(label_at)
 #define shade_components RAY_NAME(shade_components)
@@ -51,8 +51,8 @@
 #define ray_load RAY_NAME(ray_load)
 
 #include "fetch.h"
-#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
-#include "ray_best.h"
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
+#include "ray_extremes.h"
 #endif
 
 /* The field at index coordinates x: not finite where a corner is not, or the cell is hidden. */
@@ -108,7 +108,7 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
       byte = gather_map(map, index, need);
     }
     vmask occupied = need & vi_ge(byte, vi_set(128));
-#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
     /* an occupied block that holds nothing better is passed, too; of its neighbours nothing is known yet */
     byte = vi_select(occupied, vi_set(1), byte);
     occupied = best_may_be_in(a, map, block, k->front, occupied);
@@ -161,14 +161,14 @@ INLINE stratus_sample ray_sample(
 }
 
 /* Here and not where they are used: a device is sent each header once, in one of the branches below. */
-#if STRATUS_RAY_MODE == STRATUS_RAY_LOOKS || STRATUS_RAY_MODE == STRATUS_RAY_SURFACE
+#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
 #include "gradient.h"
-#include "shading.h"
+#include "lighting.h"
 #endif
-#if STRATUS_RAY_MODE == STRATUS_RAY_LOOKS
-#include "ray_looks.h"
-#elif STRATUS_RAY_MODE == STRATUS_RAY_SURFACE
-#include "ray_surface.h"
+#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING
+#include "ray_shading.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
+#include "ray_isosurface.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
 #include "ray_modes.h"
 #else
@@ -192,7 +192,7 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 }
 #endif
 
-#if STRATUS_RAY_MODE != STRATUS_RAY_SURFACE
+#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE
 /* Asks the structure where enough rays need it. False if that was the end of all of them. */
 INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
@@ -261,7 +261,7 @@ INLINE void ray_load(
   if (a->crop_regions) {
     crop_begin(a, &rays, k, crop);
   }
-#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
   k->front = v_set(-LARGEST_FLOAT);
 #endif
 }
@@ -285,7 +285,7 @@ INLINE void ray_load(
 #undef fetch_two
 #undef voxel_gradient
 #undef ray_gradient
-#undef ray_look
+#undef ray_light_sample
 #undef shade_labels
 #undef label_at
 #undef shade_components

@@ -14,15 +14,15 @@
 #define HIDDEN_BY_MASK 2
 #define HIDDEN_LABELS 4 /* the mask's bytes are labels, and hide nothing */
 
-#define STRATUS_CONTOUR_MAX 16
+#define STRATUS_CONTOURS_MAX 16
 
 /* What a ray makes of its samples: light behind light; the largest (or smallest) value; a sum of values. */
 #define STRATUS_RAY_COMPOSITE 0
-#define STRATUS_RAY_EXTREME 1
-#define STRATUS_RAY_SUM 2
-#define STRATUS_RAY_SURFACE 4 /* isosurfaces */
+#define STRATUS_RAY_EXTREMES 1
+#define STRATUS_RAY_SUMS 2
+#define STRATUS_RAY_ISOSURFACE 3 /* isosurfaces */
 /* Light behind light, where a sample is more than its value's colour and opacity: lit, thinned, of several components. */
-#define STRATUS_RAY_LOOKS 3
+#define STRATUS_RAY_SHADING 4
 
 typedef struct stratus_ray_cast_arguments {
   /* ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward */
@@ -77,21 +77,22 @@ typedef struct stratus_ray_cast_arguments {
   int crop_regions;               /* 0, or which of the 27 regions between crop_plane are shown: bit x + 3 y + 9 z, each 0..2 */
   int jitter, seed;               /* 1: each ray's lattice lies farther from the eye, by a part of a sample that pixel and seed decide */
   stratus_pair crop_plane[3][2];
-  float contour[STRATUS_CONTOUR_MAX][5]; /* isosurfaces, by rising values: value, colour times opacity, opacity */
-  /* looks */
+  float contour[STRATUS_CONTOURS_MAX][5]; /* isosurfaces, by rising values: value, colour times opacity, opacity */
+  /* shading */
   int shade, two_sided, light_count;
   float normal[9];                      /* rows: from a value's index gradient to a normal, of any length */
   float place[9];                       /* rows: from index displacements to the world's, in units of the shortest voxel edge */
   float material[4];                    /* ambient, diffuse, specular, specular power */
   float light[8][3], light_color[8][3]; /* directions of length 1 to the light, or its position as `place` has it */
   int light_positional[8];
-  int components, dependent;                         /* components 0 and 1: one value */
-  int component_bytes;                               /* from a value to the next component's */
-  float gradient_length[3];                          /* from a value's index gradient to value per mean spacing */
-  int look_first[4];                                 /* of each component: its table's first entry in the table of all, in floats; .. */
-  float look_scale[4], look_offset[4], look_last[4]; /* .. its entries, as table_scale, table_offset and table_last are component 0's; .. */
-  int factor_first[4];                               /* .. its gradient opacity's first entry, likewise, -1: none; .. */
-  float factor_scale[4], factor_last[4];             /* .. and that one's entries */
+  int components, dependent; /* components 0 and 1: one value */
+  int component_bytes;       /* from a value to the next component's */
+  float gradient_length[3];  /* from a value's index gradient to value per mean spacing */
+  int shading_first[4];      /* of each component: its table's first entry in the table of all, in floats; .. */
+  float shading_scale[4], shading_offset[4],
+    shading_last[4];                     /* .. its entries, as table_scale, table_offset and table_last are component 0's; .. */
+  int factor_first[4];                   /* .. its gradient opacity's first entry, likewise, -1: none; .. */
+  float factor_scale[4], factor_last[4]; /* .. and that one's entries */
   float component_weight[4];
   int label_first,
     label_count; /* labels 0..label_count: where their scale, offset, last entry and first entry / 4 stand, in floats. 0: no labels */

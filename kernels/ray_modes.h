@@ -8,7 +8,7 @@ INLINE void ray_advance(stratus_packet* k, vmask done)
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | done);
 }
 
-#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREME
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 /* Keeps the best value and where it was first met. Minima are maxima of minus the values. */
 INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {

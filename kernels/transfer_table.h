@@ -85,14 +85,14 @@ INLINE void shorten_layer(
 
 /* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A
  * specular. */
-typedef struct stratus_look {
+typedef struct stratus_lit_sample {
   vfloat factor, diffuse[3], specular[3];
-} stratus_look;
+} stratus_lit_sample;
 
-INLINE void light_layer(const stratus_look* look, vfloat layer[4])
+INLINE void light_layer(const stratus_lit_sample* lighting, vfloat layer[4])
 {
   for (int c = 0; c < 3; ++c) {
-    layer[c] = v_fma(layer[c], look->diffuse[c], layer[3] * look->specular[c]);
+    layer[c] = v_fma(layer[c], lighting->diffuse[c], layer[3] * lighting->specular[c]);
   }
 }
 
@@ -161,9 +161,9 @@ INLINE vmask segment_shows(
 }
 
 /* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
- * green, blue times tau, and tau. look: 0 where there is no more to a sample than its value. */
-INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
-  vfloat weight, vfloat lo, const stratus_look* look)
+ * green, blue times tau, and tau. lighting: 0 where there is no more to a sample than its value. */
+INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
+  vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   const vfloat place = table_place(a, value), front_place = table_place(a, k->front);
@@ -224,8 +224,8 @@ INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
       for (int c = 0; c < 3; ++c) {
         layer[c] = sum_between(a, sums, c, low, beyond, lit) * per_tau;
       }
-      if (look) {
-        light_layer(look, layer);
+      if (lighting) {
+        light_layer(lighting, layer);
       }
       composite(a, k, lit, layer, lo);
     }
@@ -239,8 +239,8 @@ INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
       layer[c] = sum_between(a, sums, c, opaque_entry, next, opaque) * per_tau;
     }
     layer[3] = v_select(opaque, one, zero);
-    if (look) {
-      light_layer(look, layer);
+    if (lighting) {
+      light_layer(lighting, layer);
     }
     composite(a, k, opaque, layer, lo);
   }
@@ -249,7 +249,7 @@ INLINE void integrate_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
 INLINE void integrate_segment(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
 {
-  integrate_look(a, sums, k, mask, value, weight, lo, 0);
+  integrate_lit(a, sums, k, mask, value, weight, lo, 0);
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A tree as the march asks it: what a distance map tells of a block, found through nodes and leaves. The buffer begins with ints, 8 a
- * record (tree_map.c writes them), `nodes` records of nodes, then those of leaves, then the leaves' bytes: node  first block x y z, last
- * block x y z, first child or leaf, 1 if it is a leaf leaf  first block x y z, blocks along x, y, z, place of its bytes, 0 A byte is a
+ * record (tree_map_build.c writes them), `nodes` records of nodes, then those of leaves, then the leaves' bytes: node  first block x y z,
+ * last block x y z, first child or leaf, 1 if it is a leaf leaf  first block x y z, blocks along x, y, z, place of its bytes, 0 A byte is a
  * distance map's: 1..127, the Chebyshev distance within the leaf; or 128 and more, occupied. */
 #ifndef STRATUS_TREE_MAP_H
 #define STRATUS_TREE_MAP_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The context: what it takes, what it refuses, and that log, progress, cancellation and the allocator's hook reach the caller. */
 #include "faulty_allocator.h"
-#include "internal.h"
+#include "base.h"
 
 #include <setjmp.h>
 #include <stdio.h>

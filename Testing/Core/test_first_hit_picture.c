@@ -2,7 +2,7 @@
  * First-hit pictures against brute force over all voxels. */
 #include "../picture_case.h"
 
-#include "internal.h"
+#include "base.h"
 
 static picture first;
 static picture second;
@@ -155,7 +155,7 @@ static void create_case(stratus_context* context, uint32_t seed, picture_case* c
       c->volume.matrix[4 * a + b] += case_uniform(&s, -0.3, 0.3) - (a == b && seed % 3 == 0 ? 1.9 : 0.0);
     }
   }
-  case_look(context, c, (int)(seed % 8), (int)(seed % 2));
+  case_camera(context, c, (int)(seed % 8), (int)(seed % 2));
   c->camera.near_k = seed % 5 == 0 ? 12.0 : c->camera.near_k;
   for (int a = 0; a < 6; ++a) {
     const int axis = a / 2;
@@ -234,7 +234,7 @@ static void opaque_depth_ends_rays(void** state)
     picture_case c;
     int before = 0, behind = 0;
     case_create(context, &c, STRATUS_FLOAT32, 9, 8, 7, 3);
-    case_look(context, &c, 2, parallel);
+    case_camera(context, &c, 2, parallel);
     c.options.mode = STRATUS_MODE_FIRST_HIT;
     c.camera.near_k = 5.0;
     c.camera.far_k = 80.0;

@@ -96,11 +96,11 @@ static void only_what_changed_is_built_anew(void** state)
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 1);
-  case_look(context, &c, 5, 1);
+  case_camera(context, &c, 5, 1);
   c.volume.spacing[1] = 2.0;
   c.volume.origin[0] = 1e6;
   c.volume.matrix[1] = 0.3;
-  case_look(context, &c, 5, 1);
+  case_camera(context, &c, 5, 1);
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 1);
   assert_true(case_lit(&first) > 100);
@@ -175,7 +175,7 @@ static void offer_begin(offer* o)
   o->c.options.mode = STRATUS_MODE_FIRST_HIT;
   o->criterion = stratus_criterion_default();
   o->criterion.transfer = &o->c.transfer;
-  case_look(o->context, &o->c, 2, 0);
+  case_camera(o->context, &o->c, 2, 0);
 }
 
 static void offer_end(offer* o)
@@ -206,7 +206,7 @@ static void a_tree_that_comes_with_the_data_is_used(void** state)
   free(bytes); /* copied */
   o.c.volume.origin[0] = 1e5;
   o.c.volume.matrix[6] = 0.4;
-  case_look(o.context, &o.c, 2, 0);
+  case_camera(o.context, &o.c, 2, 0);
   expect_offered(&o, 1);
   expect_builds(&first, 0, 0);
   o.c.options.audit = 1;

@@ -128,7 +128,7 @@ static void projections_and_places_agree(void** state)
 {
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 33, 24, 28, 9);
-  case_look(*state, &c, 5, 1);
+  case_camera(*state, &c, 5, 1);
   expect(*state, "parallel", &c, SMOOTH_DB);
   const double eye[3] = { 13.2, 11.7, 15.1 }, focal[3] = { 20, 12, 10 }, up[3] = { 0.1, 1, 0 };
   assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 70.0, 1.2, &c.camera), STRATUS_OK);
@@ -152,7 +152,7 @@ static void far_origins_and_tiny_spacings_lose_nothing(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 24, 24, 24, 10);
   const double utm[3] = { 432100.25, 6e6, 1234.5 };
   memcpy(c.volume.origin, utm, sizeof utm);
-  case_look(*state, &c, 1, 0);
+  case_camera(*state, &c, 1, 0);
   expect(*state, "UTM origin", &c, SMOOTH_DB);
   memset(c.volume.origin, 0, sizeof c.volume.origin);
   for (int a = 0; a < 3; ++a) {
@@ -160,7 +160,7 @@ static void far_origins_and_tiny_spacings_lose_nothing(void** state)
   }
   c.options.sample_distance = 0.25e-6;
   c.transfer.unit_distance = 1e-6;
-  case_look(*state, &c, 2, 0);
+  case_camera(*state, &c, 2, 0);
   expect(*state, "spacing of a millionth", &c, SMOOTH_DB);
   case_destroy(&c);
 }
@@ -174,10 +174,10 @@ static void the_volumes_own_matrix_counts(void** state)
   const double matrix[16] = { -1.2, 0.1, 0, 5, 0, 0.9, 0.3, -7, 0.2, 0, 1.4, 100, 0, 0, 0, 1 }; /* mirrors, shears, scales */
   memcpy(c.volume.spacing, spacing, sizeof spacing);
   memcpy(c.volume.direction, direction, sizeof direction);
-  case_look(*state, &c, 3, 0);
+  case_camera(*state, &c, 3, 0);
   expect(*state, "rotated", &c, SMOOTH_DB);
   memcpy(c.volume.matrix, matrix, sizeof matrix);
-  case_look(*state, &c, 3, 0);
+  case_camera(*state, &c, 3, 0);
   expect(*state, "mirrored and sheared", &c, SMOOTH_DB);
   case_destroy(&c);
 }
@@ -199,7 +199,7 @@ static void crop_planes_and_opaque_geometry_end_rays(void** state)
   expect(*state, "planes", &c, SMOOTH_DB);
   c.options.clip_plane_count = 0;
   for (int parallel = 0; parallel < 2; ++parallel) {
-    case_look(*state, &c, 4, parallel);
+    case_camera(*state, &c, 4, parallel);
     c.camera.near_k = 50.0;
     c.camera.far_k = 200.0;
     for (int i = 0; i < CASE_PIXELS; ++i) { /* a slanted wall; bare background in the corner */
@@ -218,11 +218,11 @@ static void a_single_layer_has_no_thickness_but_a_layer_of_cells_has(void** stat
 {
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 1, 24, 24, 13);
-  case_look(*state, &c, 0, 0);
+  case_camera(*state, &c, 0, 0);
   case_render(*state, &c, &drawn);
   assert_int_equal(case_lit(&drawn), 0);
   c.volume.cell_centered = 1;
-  case_look(*state, &c, 1, 0);
+  case_camera(*state, &c, 1, 0);
   expect(*state, "one layer of cells", &c, SMOOTH_DB);
   case_destroy(&c);
 }
@@ -268,7 +268,7 @@ static void indices_beyond_32_bits_do_not_overflow(void** state)
   for (int a = 0; a < 3; ++a) {
     c.volume.origin[a] = (double)at;
   }
-  case_look(*state, &c, 0, 0);
+  case_camera(*state, &c, 0, 0);
   static float reference[4 * CASE_PIXELS];
   const reference_scene scene = case_scene(&c);
   double db = 0.0;
@@ -298,7 +298,7 @@ static void depth_is_where_the_picture_begins(void** state)
   static float depth[CASE_PIXELS];
   case_create(*state, &c, STRATUS_FLOAT32, 24, 24, 24, 16);
   for (int parallel = 0; parallel < 2; ++parallel) {
-    case_look(*state, &c, 6, parallel);
+    case_camera(*state, &c, 6, parallel);
     const reference_scene scene = case_scene(&c);
     case_render(*state, &c, &drawn);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64.0, rgba, depth), 0);

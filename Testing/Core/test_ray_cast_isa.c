@@ -2,8 +2,8 @@
  * One source, many widths: AVX-512, AVX2 and the baseline must give the same bits and the same counts, whatever packets they work in. */
 #include "../picture_case.h"
 
-#include "Core/internal.h"
-#include "Core/ray_cast.h"
+#include "base.h"
+#include "ray_cast_host.h"
 
 static picture best;
 static picture other;

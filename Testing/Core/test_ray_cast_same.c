@@ -176,7 +176,7 @@ static void a_caster_that_was_used_before_draws_the_same(void** state)
     case_render_with(context, used, &c, &second);
     expect_same("a used caster", &first, &second);
     const stratus_ray_cast_report before = second.report;
-    case_look(context, &c, 3, 0);
+    case_camera(context, &c, 3, 0);
     case_render_with(context, used, &c, &second); /* a camera move builds nothing */
     assert_int_equal(second.report.range_builds, before.range_builds);
     assert_int_equal(second.report.table_builds, before.table_builds);

@@ -3,7 +3,7 @@
  * each function and weight by its effect; what is refused. */
 #include "../picture_case.h"
 
-#include "Core/internal.h"
+#include "base.h"
 
 /* dB against the reference at a quarter of a voxel, as for one component: what is left is the sampling's own error. */
 #define MIDPOINT_DB 64.0
@@ -111,7 +111,7 @@ static void gradient_opacity_thins_as_the_reference_says(void** state)
   assert_true(after < 0.9 * before && after > 0.02 * before);
   m.c.options.shade = 1;
   m.c.volume.spacing[1] = 1.5; /* magnitudes are per mean spacing */
-  case_look(context, &m.c, 2, 0);
+  case_camera(context, &m.c, 2, 0);
   check("lit, uneven", context, &m, MIDPOINT_DB);
   m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   check("pre-integrated", context, &m, MIDPOINT_DB);
@@ -134,7 +134,7 @@ static void independent_components_mix_as_the_reference_mixes_them(void** state)
       m.transfers[count - 1].gradient = types[t] == STRATUS_UINT8 ? steep : NULL;
       m.transfers[count - 1].gradient_count = types[t] == STRATUS_UINT8 ? 2 : 0;
       m.c.options.shade = t % 2;
-      case_look(context, &m.c, count + t, t == 1);
+      case_camera(context, &m.c, count + t, t == 1);
       snprintf(what, sizeof what, "%d of %s%s", count, case_type_names[types[t]], m.c.options.shade ? ", lit" : "");
       check(what, context, &m, MIDPOINT_DB);
       many_destroy(&m);

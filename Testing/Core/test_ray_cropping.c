@@ -72,7 +72,7 @@ static void each_region_is_where_it_should_be(void** state)
     const uint32_t regions = i < 27 ? 1u << i : named[i - 27];
     crop_between(&c, regions);
     c.options.mode = modes[i % 2]; /* composite and maximum: every region counts in both */
-    case_look(*state, &c, i % 8, i % 3 == 0);
+    case_camera(*state, &c, i % 8, i % 3 == 0);
     snprintf(what, sizeof what, "regions 0x%07x", (unsigned)regions);
     const double db = compare(*state, &c, what);
     assert_true(case_lit(&drawn) > 0);
@@ -91,7 +91,7 @@ static void regions_in_every_mode(void** state)
     c.options.sample_distance = 0.1;
     c.options.mode = modes[mode];
     c.volume.cell_centered = mode % 2;
-    case_look(*state, &c, mode, 0);
+    case_camera(*state, &c, mode, 0);
     const double db = compare(*state, &c, "corners and middles");
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     assert_true(db >= (modes[mode] == STRATUS_MODE_ISOSURFACE ? SURFACE_DB : CROP_DB));

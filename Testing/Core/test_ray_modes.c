@@ -6,7 +6,7 @@
  * curvature times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of
  * the peaked functions below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a
  * surface it may meet it in one and not in the other. */
-#include "internal.h"
+#include "base.h"
 
 #include "../picture_case.h"
 #include "../reference_modes.h"
@@ -77,7 +77,7 @@ static void extremes_and_sums_from_everywhere(void** state)
     c.volume.matrix[1] = 0.3; /* sheared and mirrored */
     c.volume.matrix[10] = -1.0;
     c.volume.cell_centered = mode % 2;
-    case_look(*state, &c, 3, mode % 2);
+    case_camera(*state, &c, 3, mode % 2);
     expect_samples(*state, &c, "sheared and mirrored");
     for (int i = 0; i < 9; ++i) {
       case_store(c.values, STRATUS_FLOAT32, (size_t)(1000 + 777 * i), (double)NAN);
@@ -171,7 +171,7 @@ static void isosurfaces_are_where_the_field_is_the_contour(void** state)
         case_store(c.values, type, i, case_type_values[type].base + f * case_type_values[type].scale);
       }
     }
-    case_look(*state, &c, (int)(seed % 8), (int)(seed % 2));
+    case_camera(*state, &c, (int)(seed % 8), (int)(seed % 2));
     case_render(*state, &c, &drawn);
     draw_expected(&c);
     double error;
@@ -204,7 +204,7 @@ static void no_ray_slips_between_cells(void** state)
   c.options.contour_count = 1;
   c.options.contours[0] = 0.0;
   for (int view = 0; view < 8; ++view) {
-    case_look(*state, &c, view, view % 2);
+    case_camera(*state, &c, view, view % 2);
     case_render(*state, &c, &drawn);
     draw_expected(&c);
     double error;
@@ -236,7 +236,7 @@ static void surfaces_are_lit_by_the_gradient(void** state)
   c.options.contour_count = 1;
   c.options.contours[0] = 8.0;
   c.options.shade = 1;
-  case_look(*state, &c, 2, 0);
+  case_camera(*state, &c, 2, 0);
   case_render(*state, &c, &drawn);
   int lit = 0;
   double worst = 0.0;

@@ -31,7 +31,7 @@ static void from_outside(void** state)
     for (int parallel = 0; parallel < 2; ++parallel) {
       tetra_case c;
       tetra_create(&c, 3, 0.2, seed < 2 ? 0.0 : 0.3, seed);
-      tetra_look(*state, &c, 3, (int)seed, parallel);
+      tetra_camera(*state, &c, 3, (int)seed, parallel);
       check(*state, &c, parallel ? "parallel" : "perspective");
       tetra_destroy(&c);
     }
@@ -66,7 +66,7 @@ static void ends_at_what_is_opaque(void** state)
     tetra_case c;
     uint32_t s = 17;
     tetra_create(&c, 3, 0.2, 0.2, 4);
-    tetra_look(*state, &c, 3, 2, parallel);
+    tetra_camera(*state, &c, 3, 2, parallel);
     c.camera.near_k = parallel ? 5.0 : 7.0;
     c.camera.far_k = 16.0;
     for (int i = 0; i < TETRA_PIXELS; ++i) {
@@ -83,7 +83,7 @@ static void depth_is_where_something_shows_first(void** state)
   tetra_case c;
   tetra_create(&c, 3, 0.2, 0.0, 5);
   c.opacity[1] = 0.1; /* everything shows */
-  tetra_look(*state, &c, 3, 1, 0);
+  tetra_camera(*state, &c, 3, 1, 0);
   check(*state, &c, "depth");
   int compared = 0;
   for (int i = 0; i < TETRA_PIXELS; ++i) {
@@ -105,7 +105,7 @@ static void a_value_a_cell(void** state)
   for (int64_t i = 0; i < c.mesh.cell_count; ++i) {
     c.values[i] = (float)(i % 17) / 16.0f;
   }
-  tetra_look(*state, &c, 3, 3, 0);
+  tetra_camera(*state, &c, 3, 3, 0);
   check(*state, &c, "cell values");
   c.opacity[7] = 0.9; /* most opaque at the largest value: the table's sums are at their end there */
   check(*state, &c, "cell values, opaque at their end");
@@ -122,7 +122,7 @@ static void hidden_cells_and_values_that_are_no_numbers(void** state)
   c.mesh.hidden = c.hidden;
   c.values[21] = NAN;
   c.values[42] = INFINITY;
-  tetra_look(*state, &c, 3, 4, 0);
+  tetra_camera(*state, &c, 3, 4, 0);
   check(*state, &c, "hidden");
   assert_true(picture.report.shown_cells < c.mesh.cell_count * 4 / 5);
   tetra_destroy(&c);
@@ -134,7 +134,7 @@ static void the_maximum(void** state)
     tetra_case c;
     tetra_create(&c, 3, 0.2, 0.3, 8);
     c.options.mode = STRATUS_TETRA_MAXIMUM;
-    tetra_look(*state, &c, 3, 5, 0);
+    tetra_camera(*state, &c, 3, 5, 0);
     if (inside) {
       c.camera.near_k = 10.0;
       c.camera.far_k = 10.4;
@@ -152,7 +152,7 @@ static void matrices_and_far_away_places(void** state)
     tetra_case c;
     tetra_create(&c, 3, 0.2, 0.2, 10);
     memcpy(c.mesh.matrix, matrices[i < 3 ? i : 2], sizeof matrices[0]);
-    tetra_look(*state, &c, 3, 6, i & 1);
+    tetra_camera(*state, &c, 3, 6, i & 1);
     const double scale = i == 3 ? 1e-6 : 1.0, offset = i == 2 ? 6e6 : 0.0;
     for (int64_t p = 0; p < 3 * c.mesh.point_count; ++p) {
       c.points[p] = c.points[p] * scale + offset;
@@ -210,7 +210,7 @@ static void cells_without_volume_show_nothing_and_are_told(void** state)
     for (int64_t i = 0; i < c.mesh.point_count && seed % 3 == 1; ++i) {
       c.points[3 * i + 2] = 1.5 + 1e-9 * (c.points[3 * i + 2] - 1.5); /* hardly thicker than a plane */
     }
-    tetra_look(*state, &c, 3, (int)seed % 8, seed & 1);
+    tetra_camera(*state, &c, 3, (int)seed % 8, seed & 1);
     if (seed % 3 == 2) {
       check(*state, &c, "cells that name a point twice");
     } else {
@@ -245,7 +245,7 @@ static void lengths_of_any_size_are_drawn_or_refused(void** state)
       stratus_tetra_caster* caster = NULL;
       tetra_case c;
       tetra_create(&c, 3, 0.2, 0.2, 10);
-      tetra_look(*state, &c, 3, 6, parallel);
+      tetra_camera(*state, &c, 3, 6, parallel);
       for (int64_t p = 0; p < 3 * c.mesh.point_count; ++p) {
         c.points[p] *= scale;
       }
@@ -283,7 +283,7 @@ static void windows_narrower_than_floats_are_refused(void** state)
   tetra_create(&c, 3, 0.2, 0.2, 10);
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
   for (int zoom = 0; zoom < 40; zoom += 3) {
-    tetra_look(*state, &c, 3, 6, 1);
+    tetra_camera(*state, &c, 3, 6, 1);
     for (int a = 0; a < 3; ++a) {
       c.camera.right[a] *= pow(10.0, -zoom);
       c.camera.up[a] *= pow(10.0, -zoom);

@@ -3,7 +3,7 @@
  * something else before. */
 #include "tetra_case.h"
 
-#include "internal.h"
+#include "base.h"
 
 static tetra_picture one, other;
 
@@ -32,7 +32,7 @@ static void at_any_number_of_threads_and_instruction_set(void** state)
     tetra_case c;
     tetra_create(&c, 4, 0.2, 0.25, seed);
     stratus_context* context = open_context(1);
-    tetra_look(context, &c, 4, (int)seed, seed & 1);
+    tetra_camera(context, &c, 4, (int)seed, seed & 1);
     c.options.mode = seed == 5 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
     c.options.termination = seed & 2 ? 0.9 : 1.0;
     c.mesh.cell_values = seed == 6;
@@ -62,7 +62,7 @@ static void whatever_the_order_of_cells(void** state)
   uint32_t s = 3;
   (void)state;
   tetra_create(&c, 4, 0.2, 0.0, 1); /* no hollows: no two ways begin at one depth */
-  tetra_look(context, &c, 4, 2, 0);
+  tetra_camera(context, &c, 4, 2, 0);
   tetra_draw(context, &c, &one);
   for (int64_t i = c.mesh.cell_count - 1; i > 0; --i) {
     const int64_t j = (int64_t)tetra_uniform(&s, 0, (double)i + 0.999);
@@ -91,7 +91,7 @@ static void from_a_caster_that_drew_before(void** state)
   };
   static const uint64_t meshes[] = { 1, 1, 1, 1, 2, 2 }, tables[] = { 1, 1, 2, 3, 4, 4 };
   for (int step = 0; step < 6; ++step) {
-    tetra_look(context, &c, 3, step, step & 1);
+    tetra_camera(context, &c, 3, step, step & 1);
     if (step == 2) {
       c.opacity[5] = 0.3;
     } else if (step == 3) {

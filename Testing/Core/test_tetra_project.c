@@ -49,7 +49,7 @@ static void pieces_are_the_march_s_segments(void** state)
     tetra_case c;
     tetra_create(&c, 4, 0.2, 0.3, seed);
     c.opacity[1] = c.opacity[3] = 0.1;
-    tetra_look(*state, &c, 4, (int)seed, seed & 1);
+    tetra_camera(*state, &c, 4, (int)seed, seed & 1);
     draw_both(*state, &c);
     agrees(&c, "segments");
     assert_int_equal(marched.report.method, STRATUS_TETRA_METHOD_MARCH);
@@ -189,7 +189,7 @@ static void cells_that_overlap_are_drawn_again(void** state)
   c.mesh.point_count = COPIES * points;
   c.mesh.cell_count = COPIES * cells;
   c.transfer.unit_distance = 4.0;
-  tetra_look(*state, &c, N, 2, 0);
+  tetra_camera(*state, &c, N, 2, 0);
   draw_both(*state, &c);
   double largest;
   tetra_reference(&c, reference, NULL);
@@ -211,7 +211,7 @@ static void opaque_things(void** state)
     tetra_case c;
     tetra_create(&c, 4, 0.2, 0.4, seed);
     c.transfer.unit_distance = 0.02;
-    tetra_look(*state, &c, 4, (int)seed, seed & 1);
+    tetra_camera(*state, &c, 4, (int)seed, seed & 1);
     c.options.termination = 0.999;
     draw_both(*state, &c);
     assert_true(difference() <= 10.0 * DIFFERENCE_MOST); /* a pixel may end one faint piece later */
@@ -236,7 +236,7 @@ static void leaves_change_nothing_but_roundings(void** state)
   assert_int_equal(cut.cell_count, c.mesh.cell_count);
   assert_true(cut.leaves.leaf_count == 8);
   memcpy(c.vertices, cut.vertices, (size_t)(4 * cut.cell_count) * sizeof *cut.vertices); /* leaf by leaf */
-  tetra_look(*state, &c, 4, 3, 0);
+  tetra_camera(*state, &c, 4, 3, 0);
   draw_both(*state, &c);
   marched = projected;
   c.options.leaves = &cut.leaves;
@@ -267,7 +267,7 @@ static void auto_chooses_by_what_shows(void** state)
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = projected.rgba };
   static const stratus_tetra_method expected[2] = { STRATUS_TETRA_METHOD_MARCH, STRATUS_TETRA_METHOD_PROJECT };
   tetra_create(&c, 3, 0.2, 0.0, 6);
-  tetra_look(*state, &c, 3, 1, 0);
+  tetra_camera(*state, &c, 3, 1, 0);
   c.options.method = STRATUS_TETRA_METHOD_AUTO;
   assert_int_equal(stratus_tetra_options_default().method, STRATUS_TETRA_METHOD_AUTO);
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);

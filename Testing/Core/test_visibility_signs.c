@@ -3,7 +3,7 @@
 #include "mesh_case.h"
 #include "visibility_order.h"
 
-#include "Core/ray_cast.h"
+#include "ray_cast_host.h"
 
 static stratus_visibility_order* make_order(stratus_context* context, const mesh_case* mesh, const stratus_leaves* leaves)
 {

@@ -5,7 +5,7 @@
 
 #include "device.h"
 #include "device_pair.h"
-#include "jump_flooding.h"
+#include "jump_flooding_passes.h"
 
 static void compare_reports(stratus_field_report* a, stratus_field_report* b)
 {

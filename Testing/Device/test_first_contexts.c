@@ -43,7 +43,7 @@ static void* draw_first(void* argument)
   w->status = stratus_context_create(&options, &context, w->message, sizeof w->message);
   if (w->status == STRATUS_OK) {
     w->devices = stratus_device_count();
-    (void)small_scene_look(context, &scene);
+    (void)small_scene_camera(context, &scene);
     (void)stratus_ray_caster_create(context, &caster);
     w->status = small_render(caster, &scene, &scene.transfer, 1, &w->picture, NULL);
     snprintf(w->message, sizeof w->message, "%s", stratus_context_message(context));

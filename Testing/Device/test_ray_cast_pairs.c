@@ -3,8 +3,8 @@
  * held against the host's, from near and from a million voxels away, where plain floats would shake by a sixteenth of a voxel. */
 #include "../picture_case.h"
 
-#include "Core/device_state.h"
-#include "Core/internal.h"
+#include "device_state.h"
+#include "base.h"
 
 /* Of colours in 0..1: a ray moved by a thousandth of a voxel changes these fields by less. */
 #define LARGEST_DIFFERENCE 2e-3f

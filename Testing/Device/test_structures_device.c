@@ -6,7 +6,7 @@
 
 #include "device.h"
 #include "device_pair.h"
-#include "structures_device.h"
+#include "volume_device.h"
 
 /* The same object with its own arrays, full of something else, for the device to fill. */
 static stratus_value_range blank_ranges(const stratus_value_range* host)

@@ -39,7 +39,7 @@ static void assert_same(void)
 static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, const float* opaque)
 {
   tetra_create(c, edge, 0.2, seed % 3 == 0 ? 0.3 : 0.0, seed);
-  tetra_look(context, c, edge, (int)(seed % 8), seed & 1);
+  tetra_camera(context, c, edge, (int)(seed % 8), seed & 1);
   c->options.mode = seed % 6 == 4 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
   c->options.termination = seed & 2 ? 0.9 : 1.0;
   c->mesh.cell_values = seed % 6 == 5;
@@ -96,7 +96,7 @@ static void a_caster_that_drew_before(void** state)
     .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba, .depth = ours.depth, .rgba8 = ours.rgba8, .samples = ours.samples
   };
   for (int step = 0; step < 6; ++step) {
-    tetra_look(device, &c, 3, step, step & 1);
+    tetra_camera(device, &c, 3, step, step & 1);
     if (step == 1) {
       c.opacity[5] = 0.3;
     } else if (step == 2) {
@@ -126,7 +126,7 @@ static void the_loss_of_the_device_at_any_call(void** state)
   int calls = 0;
   assert_non_null(device);
   tetra_create(&c, 2, 0.2, 0.0, 4);
-  tetra_look(device, &c, 2, 1, 0);
+  tetra_camera(device, &c, 2, 1, 0);
   tetra_draw(device, &c, &theirs);
   const stratus_image image = {
     .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba, .depth = ours.depth, .rgba8 = ours.rgba8, .samples = ours.samples
@@ -161,7 +161,7 @@ static void refused_memory(void** state)
   assert_int_equal(stratus_context_create(&options, &device, NULL, 0), STRATUS_OK);
   device->device->is_cpu = !*(const int*)*state;
   tetra_create(&c, 2, 0.2, 0.2, 10);
-  tetra_look(device, &c, 2, 0, 0);
+  tetra_camera(device, &c, 2, 0, 0);
   tetra_draw(device, &c, &theirs); /* programs are built */
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
   for (bool reached = true; reached;) {

@@ -65,7 +65,7 @@ static inline void small_scene_fill(small_scene* scene)
 }
 
 /* The seen side of the ball. Needs no memory, so it is called once and before anything fails. */
-static inline stratus_status small_scene_look(stratus_context* context, small_scene* scene)
+static inline stratus_status small_scene_camera(stratus_context* context, small_scene* scene)
 {
   double bounds[6];
   const stratus_status status = stratus_volume_bounds(context, &scene->volume, bounds);

@@ -102,7 +102,7 @@ static void a_first_picture_fails_cleanly_and_comes_at_the_next_attempt(void** s
   stratus_context* context = open_context(&allocator, *state);
   assert_non_null(context);
   small_scene_fill(&scene);
-  assert_int_equal(small_scene_look(context, &scene), STRATUS_OK);
+  assert_int_equal(small_scene_camera(context, &scene), STRATUS_OK);
   for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
     stratus_ray_caster* caster = NULL;
     assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
@@ -153,7 +153,7 @@ static void an_edit_that_fails_leaves_the_earlier_result_intact(void** state)
   stratus_ray_caster* caster = NULL;
   assert_non_null(context);
   small_scene_fill(&scene);
-  assert_int_equal(small_scene_look(context, &scene), STRATUS_OK);
+  assert_int_equal(small_scene_camera(context, &scene), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   for (int setting = 0; setting < SMALL_SETTINGS; ++setting) {
     assert_int_equal(small_render(caster, &scene, &scene.edited, setting, &after, NULL), STRATUS_OK);

@@ -40,7 +40,7 @@ static void open_fixture(fixture* f, const char* device)
   assert_int_equal(stratus_context_create(&options, &f->context, NULL, 0), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(f->context, &f->caster), STRATUS_OK);
   small_scene_fill(&f->scene);
-  assert_int_equal(small_scene_look(f->context, &f->scene), STRATUS_OK);
+  assert_int_equal(small_scene_camera(f->context, &f->scene), STRATUS_OK);
   f->good.volume = f->scene.volume;
   f->good.transfer = f->scene.transfer;
   f->good.camera = f->scene.camera;

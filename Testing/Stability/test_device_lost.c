@@ -28,7 +28,7 @@ static stratus_status open_fixture(fixture* f, const int* as_gpu, char* message,
   if (status == STRATUS_OK) {
     f->context->device->is_cpu = !*as_gpu;
     small_scene_fill(&f->scene);
-    return small_scene_look(f->context, &f->scene);
+    return small_scene_camera(f->context, &f->scene);
   }
   return status;
 }

@@ -6,7 +6,7 @@
 
 #include "device.h"
 #include "device_state.h"
-#include "jump_flooding.h"
+#include "jump_flooding_passes.h"
 
 #include <stdio.h>
 

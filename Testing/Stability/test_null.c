@@ -4,7 +4,7 @@
  * function is left out. */
 #include "small_scene.h"
 
-#include "Core/internal.h"
+#include "base.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -536,7 +536,7 @@ static void no_public_function_falls_over_null(void** state)
   options.threads = 1;
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   small_scene_fill(&scene);
-  assert_int_equal(small_scene_look(context, &scene), STRATUS_OK);
+  assert_int_equal(small_scene_camera(context, &scene), STRATUS_OK);
   nine[0] = nine[4] = nine[8] = 1.0;
   contexts();
   inputs(&scene);

@@ -93,7 +93,7 @@ static void parts_with_gaps_and_parts_that_touch(void** state)
     add_copy(&c, points, cells, shifts[i], 0.0);
     add_copy(&c, points, cells, 0.0, shifts[i]);
     add_copy(&c, points, cells, shifts[i], shifts[i]);
-    tetra_look(*state, &c, 4, i, 0);
+    tetra_camera(*state, &c, 4, i, 0);
     agrees(*state, &c, 0.025, "parts");
     tetra_destroy(&c);
   }
@@ -111,7 +111,7 @@ static void slivers_and_flat_cells(void** state)
         c.points[3 * p + 2] = 1.0 + thickness[i];
       }
     }
-    tetra_look(*state, &c, 3, i, i & 1);
+    tetra_camera(*state, &c, 3, i, i & 1);
     agrees(*state, &c, 0.05, "slivers");
     assert_int_equal(picture.report.flat > 0, thickness[i] == 0.0);
     tetra_destroy(&c);
@@ -130,7 +130,7 @@ static void flat_cells_at_the_border(void** state)
   c.mesh.point_count = 6;
   c.mesh.cell_count = 4;
   for (int view = 0; view < 8; ++view) {
-    tetra_look(*state, &c, 3, view, view & 1);
+    tetra_camera(*state, &c, 3, view, view & 1);
     agrees(*state, &c, 0.025, "flat");
     assert_int_equal(picture.report.flat, 3);
   }
@@ -147,7 +147,7 @@ static void inverted_cells(void** state)
     for (int i = 0; i < 12; ++i) {
       c.color[i] = i & 3 ? 0.5 : c.color[i]; /* order does not count then, only that every cell does */
     }
-    tetra_look(*state, &c, 4, (int)seed % 8, seed & 1);
+    tetra_camera(*state, &c, 4, (int)seed % 8, seed & 1);
     agrees(*state, &c, 0.05, "inverted");
     assert_true(picture.report.folded_faces > 0);
     tetra_destroy(&c);
@@ -165,7 +165,7 @@ static void seams_whose_diagonals_do_not_match(void** state)
     c.points[3 * i] = 4.0 - c.points[3 * i];
   }
   for (int view = 0; view < 8; ++view) {
-    tetra_look(*state, &c, 4, view, 0);
+    tetra_camera(*state, &c, 4, view, 0);
     agrees(*state, &c, 0.025, "seam");
   }
   tetra_destroy(&c);
@@ -176,7 +176,7 @@ static void nothing_to_draw(void** state)
   for (int i = 0; i < 5; ++i) {
     tetra_case c;
     tetra_create(&c, 2, 0.2, 0.0, 7);
-    tetra_look(*state, &c, 2, 0, 0);
+    tetra_camera(*state, &c, 2, 0, 0);
     if (i == 0) {
       c.mesh.cell_count = 0;
     } else if (i == 1) {
@@ -207,7 +207,7 @@ static void one_cell(void** state)
   tetra_case c;
   tetra_create(&c, 2, 0.2, 0.0, 8);
   c.mesh.cell_count = 1;
-  tetra_look(*state, &c, 1, 0, 0);
+  tetra_camera(*state, &c, 1, 0, 0);
   agrees(*state, &c, 0.025, "one cell");
   tetra_destroy(&c);
 }
@@ -218,7 +218,7 @@ static void arguments_that_are_none(void** state)
   stratus_tetra_caster* caster = NULL;
   stratus_context* context = *state;
   tetra_create(&c, 2, 0.2, 0.0, 9);
-  tetra_look(context, &c, 2, 0, 0);
+  tetra_camera(context, &c, 2, 0, 0);
   stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(NULL, &caster), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_tetra_caster_create(context, NULL), STRATUS_INVALID_ARGUMENT);
@@ -268,7 +268,7 @@ static void refused_memory(void** state)
   static tetra_picture whole;
   tetra_case c;
   tetra_create(&c, 3, 0.2, 0.2, 10);
-  tetra_look(*state, &c, 3, 0, 0);
+  tetra_camera(*state, &c, 3, 0, 0);
   tetra_draw(*state, &c, &whole);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   int refused = 0;
@@ -321,7 +321,7 @@ static void cancelled(void** state)
   options.progress_user = stage;
   strcpy(stage, stratus_tetra_method_name(tetra_method));
   tetra_create(&c, 3, 0.2, 0.2, 10);
-  tetra_look(*state, &c, 3, 0, 0);
+  tetra_camera(*state, &c, 3, 0, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);

@@ -87,7 +87,7 @@ static void three_cells_in_a_ring(void** state)
       add_cell(&c, 4 * bar, 4 * bar + 1, 4 * bar + 2, 4 * bar + 3);
     }
     c.transfer.unit_distance = 0.1; /* nearly opaque: what is behind hardly counts */
-    tetra_look(*state, &c, 4, view % 8, view & 1);
+    tetra_camera(*state, &c, 4, view % 8, view & 1);
     if (view == 8) { /* along the axis, where the ring is one */
       const double eye[3] = { 2, 2, 12 }, focal[3] = { 2, 2, 2 }, up[3] = { 0, 1, 0 };
       assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 30.0, 1.2, &c.camera), STRATUS_OK);
@@ -108,7 +108,7 @@ static void parts_that_interleave(void** state)
       const double low[3] = { i % 4, i / 4 % 4, i / 16 }, size[3] = { shrink, shrink, shrink };
       add_box(&c, 1, low, size);
     }
-    tetra_look(*state, &c, 4, view, view & 1);
+    tetra_camera(*state, &c, 4, view, view & 1);
     agrees(*state, &c, "board");
     tetra_destroy(&c);
   }
@@ -125,7 +125,7 @@ static void a_part_in_the_hollow_of_another(void** state)
       const double low[3] = { i % 3 + shift, i / 3 % 3 + shift, i / 9 + shift }, size[3] = { shrink, shrink, shrink };
       add_box(&c, 1, low, size);
     }
-    tetra_look(*state, &c, 3, 2 * view, view & 1);
+    tetra_camera(*state, &c, 3, 2 * view, view & 1);
     agrees(*state, &c, "hollow");
     tetra_destroy(&c);
   }
@@ -147,7 +147,7 @@ static void points_that_are_there_twice_or_for_nothing(void** state)
   }
   apart.mesh.cell_count = c.mesh.cell_count;
   for (int view = 0; view < 4; ++view) {
-    tetra_look(*state, &c, 2, view, view & 1);
+    tetra_camera(*state, &c, 2, view, view & 1);
     apart.camera = c.camera;
     agrees(*state, &c, "points shared");
     assert_int_equal(picture.report.border_faces, 6 * 2 * 2 * 2);
@@ -183,7 +183,7 @@ static void few_inverted_cells_among_many(void** state)
     for (int i = 0; i < 12; ++i) {
       c.color[i] = i & 3 ? 0.5 : c.color[i];
     }
-    tetra_look(*state, &c, 4, 3 * view, view & 1);
+    tetra_camera(*state, &c, 4, 3 * view, view & 1);
     agrees(*state, &c, "inverted");
     assert_true(picture.report.folded_faces > 0 && picture.report.folded_faces < 48);
     tetra_destroy(&c);
@@ -199,7 +199,7 @@ static void a_seam_of_other_faces(void** state)
     clear(&c, 200, 300);
     add_box(&c, 2, low, size);
     add_box(&c, 3, beside, size);
-    tetra_look(*state, &c, 3, view, view & 1);
+    tetra_camera(*state, &c, 3, view, view & 1);
     agrees(*state, &c, "seam");
     tetra_destroy(&c);
   }

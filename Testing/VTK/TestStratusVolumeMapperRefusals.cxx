@@ -12,7 +12,7 @@
 #include "vtkTransform.h"
 
 namespace {
-void Looks()
+void Shading()
 {
   Refused(
     "intensity of what is clipped", "UseClippedVoxelIntensity", [](Scene& s) { s.Volume->GetProperty()->UseClippedVoxelIntensityOn(); },
@@ -162,7 +162,7 @@ void SeveralVolumes()
 
 int main()
 {
-  Looks();
+  Shading();
   Lights();
   Props();
   Peeling();

@@ -55,7 +55,7 @@ if vtk.vtkVersion.GetVTKVersion().startswith("9.1"):
 for name in "ScatteringAnisotropy", "GlobalIlluminationReach", "VolumetricScatteringBlending":
     check(not hasattr(ours, "Set" + name), f"{name} is not there")
 
-# Tests by their names: `Looks: Shading, Setters` are functions of TestStratusVolumeMapperLooks.
+# Tests by their names: `Shading: Shading, Setters` are functions of TestStratusVolumeMapperShading.
 for what, _, tests in table:
     for test in tests.split(";"):
         name, _, cases = test.strip().strip("`").replace("`", "").partition(":")

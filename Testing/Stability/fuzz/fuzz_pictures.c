@@ -3,8 +3,8 @@
  * must be that of a caster that has drawn nothing before. */
 #include "fuzz.h"
 
-#include "Core/internal.h"
-#include "Core/ray_cast.h"
+#include "base.h"
+#include "ray_cast_host.h"
 
 #include <stdlib.h>
 

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the files of the partition share: nodes that hold their cells while the mesh is being cut. */
+#ifndef STRATUS_KDTREE_H
+#define STRATUS_KDTREE_H
+
+#include "mesh.h"
+
+typedef struct stratus_kdtree_cell {
+  int32_t vertex[4];
+  int32_t origin; /* the mesh's cell */
+} stratus_kdtree_cell;
+
+typedef struct stratus_kdtree_node {
+  stratus_kdtree_cell* cells; /* of a leaf */
+  int64_t count;
+  size_t capacity;
+  double box[6]; /* what the planes above leave, in the frame */
+  stratus_partition_node plane;
+} stratus_kdtree_node;
+
+struct stratus_partition {
+  stratus_context* context;
+  stratus_partition_options options;
+  double frame[9];
+  stratus_kdtree_node* nodes;
+  size_t node_capacity;
+  int32_t node_count, leaf_count;
+
+  double* points;
+  double* along;    /* the points in the frame; `points` itself while the frame is the identity */
+  double tolerance; /* points so near a plane are on it */
+  size_t point_capacity, along_capacity;
+  int64_t point_count, old_points;
+  int32_t* ends;
+  size_t ends_capacity;
+  double* weights;
+  size_t weights_capacity;
+
+  uint8_t* cut; /* a flag for each of the mesh's cells; released when all is cut */
+  int64_t tiny_pieces, cut_cells;
+  int rotations;
+
+  /* the result */
+  int64_t cell_count, largest_leaf;
+  int32_t *vertices, *cells, *leaf;
+  stratus_partition_node* tree;
+};
+
+typedef struct stratus_kdtree_plane {
+  int axis; /* -1: none is admissible */
+  double value;
+  double growth, imbalance; /* beta, alpha */
+} stratus_kdtree_plane;
+
+/* How far a point is above a plane, 0 if it is on it: a point's own business, so that all cells and faces at it agree. */
+static inline double stratus_kdtree_above(double coordinate, double value, double tolerance)
+{
+  const double above = coordinate - value;
+  return fabs(above) <= tolerance ? 0.0 : above;
+}
+
+/* Pieces below and above a plane of a cell with so many vertices below and above it: 0 and 0 of a cell that is not cut. */
+static inline void stratus_kdtree_pieces(int below, int above, int* pieces_below, int* pieces_above)
+{
+  static const int8_t pieces[4][4] = { { 0, 0, 0, 0 }, { 0, 1, 1, 1 }, { 0, 2, 3, 0 }, { 0, 3, 0, 0 } }; /* [this side][other side] */
+  *pieces_below = pieces[below & 3][above & 3];
+  *pieces_above = pieces[above & 3][below & 3];
+}
+
+/* ---- partition_planes.c */
+stratus_status stratus_kdtree_choose_plane(
+  const stratus_partition* partition, const stratus_kdtree_node* node, stratus_kdtree_plane* plane);
+
+/* ---- partition_cut.c: two children for a node. Cells of other nodes that share an edge with one that is cut are divided along. */
+stratus_status stratus_kdtree_cut(stratus_partition* partition, int32_t node, const stratus_kdtree_plane* plane);
+
+/* ---- partition_leaves.c: a leaf's cells near one another where they are so in space. */
+stratus_status stratus_kdtree_list_cells(const stratus_partition* partition, stratus_kdtree_node* node);
+
+/* ---- partition.c: room for at least `needed`, keeping `used`. */
+stratus_status stratus_kdtree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
+
+#endif

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The traversal on the host, compiled once for each instruction set and picked at run time. */
+#ifndef STRATUS_RAY_CAST_HOST_H
+#define STRATUS_RAY_CAST_HOST_H
+
+#include "ray_cast_arguments.h"
+
+#include <stdint.h>
+
+/* Bodies that the traversal is compiled with. */
+typedef enum stratus_ray_variant {
+  STRATUS_VARIANT_MIDPOINT,
+  STRATUS_VARIANT_PREINTEGRATED,
+  STRATUS_VARIANT_EXTREMES,         /* maxima and minima */
+  STRATUS_VARIANT_SUMS,             /* means and sums */
+  STRATUS_VARIANT_ISOSURFACE,       /* isosurfaces */
+  STRATUS_VARIANT_SHADING_MIDPOINT, /* samples that are lit, .. */
+  STRATUS_VARIANT_SHADING_PREINTEGRATED
+} stratus_ray_variant;
+
+typedef struct stratus_ray_counts {
+  uint64_t rays, samples, skipped, lookups;
+} stratus_ray_counts;
+
+/* Pixels and the arrays that a frame reads. */
+typedef struct stratus_ray_cast_frame {
+  const stratus_ray_cast_arguments* arguments;
+  const void* values;
+  const uint8_t* hidden;
+  const uint8_t* map;
+  const void* table; /* midpoint: 4 floats an entry, then 4 (optical depth, 0, 0, 0) an entry; pre-integrated: sums */
+  const float* opaque_depth;
+  float* rgba;
+  float* depth;      /* NULL: not wanted */
+  uint32_t* samples; /* NULL: not wanted */
+  uint8_t* rgba8;    /* NULL: not wanted */
+} stratus_ray_cast_frame;
+
+/* Marches the rays of pixels [x0, x1) x [y0, y1); x0, y0 multiples of 8. */
+typedef void stratus_ray_cast_tile(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts);
+
+/* The traversal of this machine's best instruction set (or of `isa` 0..2 if that is less) for stratus_type `type`, -1 the generic one. */
+stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant);
+/* Types that have a fast fetch. */
+int stratus_ray_cast_type_is_fast(int type);
+
+/* Best instruction set that can run here: 2 AVX-512, 1 AVX2, 0 any; and its name. */
+int stratus_ray_cast_best_isa(void);
+const char* stratus_ray_cast_isa(void);
+
+/* One a compiled instruction set. */
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa0(int type);
+stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa1(int type);
+stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa2(int type);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_shading_tile_isa0(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_shading_tile_isa1(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile* stratus_ray_shading_tile_isa2(int type, stratus_ray_variant variant);
+
+#endif

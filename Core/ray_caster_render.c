@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A render of the ray caster: checks what it is given, has rebuilt what changed, draws on device or host, audits, reports. */
+#include "ray_caster.h"
+
+#include "picture.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- checks */
+
+static stratus_status check_crop(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  for (int axis = 0; options->crop && axis < 3; ++axis) {
+    const double lo = options->crop_bounds[2 * axis], hi = options->crop_bounds[2 * axis + 1];
+    if (!(lo <= hi) || !isfinite(lo) || !isfinite(hi)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop bounds %g..%g along axis %d are reversed or not finite", lo, hi, axis);
+    }
+  }
+  if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_CLIP_PLANES_MAX) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clip_plane_count, STRATUS_CLIP_PLANES_MAX);
+  }
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    for (int i = 0; i < 4; ++i) {
+      if (!isfinite(options->clip_planes[p][i])) {
+        return stratus_fail(
+          context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clip_planes[p][i]);
+      }
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  if ((unsigned)options->mode > STRATUS_MODE_ISOSURFACE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
+      STRATUS_MODE_ISOSURFACE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+  }
+  if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
+    (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
+      STRATUS_STRUCTURE_HYBRID, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
+      STRATUS_INTERPOLATION_NEAREST);
+  }
+  if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
+  }
+  if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
+  }
+  const int size = options->block_size;
+  if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
+  }
+  TRY(stratus_ray_modes_check(context, options));
+  TRY(stratus_ray_shading_check(context, options));
+  return check_crop(context, options);
+}
+
+/* ---- drawing */
+
+static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
+  bool with_map, stratus_ray_counts* counts, double* upload_ms)
+{
+  const stratus_ray_variant light = caster->table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
+  const stratus_ray_variant variant = caster->shades ? light : stratus_ray_modes_variant(caster);
+  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
+  const stratus_ray_cast_frame frame = { .arguments = arguments,
+    .values = caster->traversed.values,
+    .hidden = caster->hidden,
+    .map = with_map ? caster->map->bytes : NULL,
+    .table = caster->shades ? caster->shading_tables.memory : table,
+    .opaque_depth = image->opaque_depth,
+    .rgba = image->rgba,
+    .depth = image->depth,
+    .samples = image->samples,
+    .rgba8 = image->rgba8 };
+  const int type = stratus_ray_fetch_type(&caster->traversed);
+  if (caster->context->device) {
+    bool drawn = false;
+    TRY(stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn));
+    if (drawn) {
+      return STRATUS_OK;
+    }
+  }
+  return stratus_ray_cast_host(caster->context, &frame, type, variant, counts);
+}
+
+/* Draws again without structure and counts the pixels whose bits differ. */
+static stratus_status audit(
+  stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  _Alignas(64) stratus_ray_cast_arguments plain = *arguments;
+  stratus_ray_counts counts;
+  stratus_image march = *image;
+  void *rgba = NULL, *depth = NULL;
+  double upload_ms = 0.0;
+  stratus_status status;
+
+  stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
+  plain.want_samples = plain.want_bytes = 0;
+  march.samples = NULL;
+  march.rgba8 = NULL;
+  TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
+  march.rgba = rgba;
+  if (image->depth) {
+    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(float), &depth));
+    march.depth = depth;
+  }
+  TRY_CLEANUP(draw(caster, &plain, &march, false, &counts, &upload_ms));
+  *differing = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    *differing += memcmp(image->rgba + 4 * i, march.rgba + 4 * i, 4 * sizeof(float)) != 0 ||
+      (image->depth && memcmp(image->depth + i, march.depth + i, sizeof(float)) != 0);
+  }
+cleanup:
+  stratus_release(caster->context, rgba);
+  stratus_release(caster->context, depth);
+  return status;
+}
+
+static void report_window(const int window[4], int reported[4])
+{
+  const bool any = window[0] < window[1] && window[2] < window[3];
+  for (int side = 0; side < 4; ++side) {
+    reported[side] = any ? window[side] : 0;
+  }
+}
+
+static void fill_report(
+  const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report)
+{
+  report->rays = counts->rays;
+  report->samples = counts->samples;
+  report->skipped = counts->skipped;
+  report->lookups = counts->lookups;
+  if (caster->occupancy) {
+    const int64_t* n = caster->occupancy->blocks;
+    report->blocks = (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
+    report->occupied_blocks = (uint64_t)caster->occupancy->count;
+  }
+  report->range_builds = caster->range_builds;
+  report->table_builds = caster->table_builds;
+  report->occupancy_builds = caster->occupancy_builds;
+  report->structure_builds = caster->structure_builds;
+  report->uploads = caster->uploads;
+  report->structure_bytes = used != STRATUS_STRUCTURE_NONE && caster->map ? stratus_distance_map_bytes(caster->map) : 0;
+  report->structure = used;
+  report->sampling = caster->choice.sampling;
+  report->sample_distance = caster->choice.sample_distance;
+}
+
+static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  _Alignas(64) stratus_ray_cast_arguments arguments; /* as devices want what they borrow */
+  stratus_structure used = STRATUS_STRUCTURE_NONE;
+  stratus_ray_counts counts = { 0 };
+  char why[128] = "";
+  bool empty = false;
+
+  TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
+  TRY(stratus_ray_frame_arguments(
+    caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
+  const bool covers = stratus_ray_modes_covers(options);
+  const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
+  const double start = stratus_now_ms();
+  if (empty || (!stratus_ray_shading_show(caster) && !covers)) {
+    stratus_image_clear(image);
+    memset(report->window, 0, sizeof report->window);
+  } else {
+    const bool found = !with_map || caster->occupancy->count > 0;
+    arguments.has_hidden = caster->hides;
+    stratus_ray_modes_arguments(caster, options, &arguments);
+    stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
+    stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
+    if (found) {
+      TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+      report_window(arguments.window, report->window);
+    } else {
+      stratus_image_clear(image);
+      memset(report->window, 0, sizeof report->window);
+    }
+    if (options->audit) {
+      TRY(audit(caster, &arguments, image, &report->differing_pixels));
+    }
+  }
+  report->cast_ms = stratus_now_ms() - start - report->upload_ms;
+  caster->lookups_since_edit += counts.lookups;
+  caster->samples_since_data += counts.samples;
+  fill_report(caster, &counts, used, report);
+  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why,
+    stratus_sampling_name(caster->choice.sampling), caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  stratus_ray_cast_report mine = { 0 };
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  options = options ? options : &defaults;
+  TRY(stratus_volume_check(caster->context, volume));
+  TRY(stratus_transfer_check(caster->context, transfer));
+  TRY(stratus_ray_shading_check_volume(caster->context, volume, transfer, options));
+  TRY(check_options(caster->context, options));
+  TRY(stratus_image_check(caster->context, image));
+  mine.window[1] = image->width;
+  mine.window[3] = image->height;
+  if (options->mode == STRATUS_MODE_FIRST_HIT) {
+    TRY(stratus_first_hit_render(caster, volume, transfer, camera, options, image, &mine));
+  } else {
+    TRY(render(caster, volume, transfer, camera, options, image, &mine));
+  }
+  if (report) {
+    *report = mine;
+  }
+  return STRATUS_OK;
+}

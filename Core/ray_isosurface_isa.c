@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Isosurfaces, compiled for one instruction set, STRATUS_ISA. Types that have no fetch of their own here take the generic one, until their
+ * values are kept as floats. */
+#include "ray_cast_packets.h"
+
+#define STRATUS_PREINTEGRATED 0
+#define STRATUS_RAY_MODE STRATUS_RAY_ISOSURFACE
+
+#define STRATUS_TYPE -1
+#define RAY_NAME(x) JOIN(x, surface_any)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 1
+#define RAY_NAME(x) JOIN(x, surface_uint8)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 2
+#define RAY_NAME(x) JOIN(x, surface_int16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 3
+#define RAY_NAME(x) JOIN(x, surface_uint16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 8
+#define RAY_NAME(x) JOIN(x, surface_float32)
+#include "ray_cast_tile.h"
+
+#if STRATUS_ISA == 2
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa2
+#elif STRATUS_ISA == 1
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa1
+#else
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa0
+#endif
+
+stratus_ray_cast_tile* ISOSURFACE_ISA(int type)
+{
+  static stratus_ray_cast_tile* const tiles[11] = { tile_surface_any, tile_surface_any, tile_surface_uint8, tile_surface_int16,
+    tile_surface_uint16, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_float32, tile_surface_any };
+  return tiles[type + 1];
+}

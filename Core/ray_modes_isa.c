@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maxima, minima and sums along rays, compiled for one instruction set, STRATUS_ISA. Types that have no fetch of their own here take the
+ * generic one, until their values are kept as floats. */
+#include "ray_cast_packets.h"
+
+#define STRATUS_PREINTEGRATED 0
+
+#define STRATUS_RAY_MODE STRATUS_RAY_EXTREMES
+#define STRATUS_TYPE -1
+#define RAY_NAME(x) JOIN(x, best_any)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 1
+#define RAY_NAME(x) JOIN(x, best_uint8)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 2
+#define RAY_NAME(x) JOIN(x, best_int16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 3
+#define RAY_NAME(x) JOIN(x, best_uint16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 8
+#define RAY_NAME(x) JOIN(x, best_float32)
+#include "ray_cast_tile.h"
+#undef STRATUS_RAY_MODE
+
+#define STRATUS_RAY_MODE STRATUS_RAY_SUMS
+#define STRATUS_TYPE -1
+#define RAY_NAME(x) JOIN(x, sum_any)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 1
+#define RAY_NAME(x) JOIN(x, sum_uint8)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 2
+#define RAY_NAME(x) JOIN(x, sum_int16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 3
+#define RAY_NAME(x) JOIN(x, sum_uint16)
+#include "ray_cast_tile.h"
+#define STRATUS_TYPE 8
+#define RAY_NAME(x) JOIN(x, sum_float32)
+#include "ray_cast_tile.h"
+#undef STRATUS_RAY_MODE
+
+#if STRATUS_ISA == 2
+#define MODES_ISA stratus_ray_modes_tile_isa2
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa2
+#elif STRATUS_ISA == 1
+#define MODES_ISA stratus_ray_modes_tile_isa1
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa1
+#else
+#define MODES_ISA stratus_ray_modes_tile_isa0
+#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa0
+#endif
+
+stratus_ray_cast_tile* MODES_ISA(int type, stratus_ray_variant variant)
+{
+  static stratus_ray_cast_tile* const tiles[2][11] = {
+    { tile_best_any, tile_best_any, tile_best_uint8, tile_best_int16, tile_best_uint16, tile_best_any, tile_best_any, tile_best_any,
+      tile_best_any, tile_best_float32, tile_best_any },
+    { tile_sum_any, tile_sum_any, tile_sum_uint8, tile_sum_int16, tile_sum_uint16, tile_sum_any, tile_sum_any, tile_sum_any, tile_sum_any,
+      tile_sum_float32, tile_sum_any },
+  };
+  return variant == STRATUS_VARIANT_ISOSURFACE ? ISOSURFACE_ISA(type) : tiles[variant == STRATUS_VARIANT_SUMS][type + 1];
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Samples that are more than their value's colour and opacity: what of a render's input asks for them, and what their rays are told. */
+#include "ray_caster.h"
+
+#include "first_hit_picture.h"
+
+_Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
+
+stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
+{
+  return options->shade ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
+}
+
+bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const bool more = options->shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->label_count > 0;
+  return options->mode == STRATUS_MODE_COMPOSITE && more;
+}
+
+/* In voxels: from here on light comes from one direction, whatever place it falls on. */
+#define LIGHT_FAR 1e15
+
+static double length_of(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* The light as floats tell it: directions of length 1, positions from index (0,0,0) in units of `edge`. */
+static void set_light(const stratus_light* light, const double index_to_world[16], double edge, int number, stratus_ray_cast_arguments* a)
+{
+  double vector[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    vector[axis] = light->vector[axis] - (light->positional ? index_to_world[4 * axis + 3] : 0.0);
+  }
+  const double largest = fmax(fmax(fabs(vector[0]), fabs(vector[1])), fabs(vector[2]));
+  const bool near = light->positional && largest < LIGHT_FAR * edge;
+  for (int axis = 0; axis < 3; ++axis) {
+    vector[axis] /= near ? edge : largest;
+  }
+  const double length = near ? 1.0 : length_of(vector);
+  for (int axis = 0; axis < 3; ++axis) {
+    a->light[number][axis] = (float)(vector[axis] / length);
+    a->light_color[number][axis] = (float)light->color[axis];
+  }
+  a->light_positional[number] = near;
+}
+
+static void set_lights(
+  const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge, stratus_ray_cast_arguments* a)
+{
+  a->light_count = shading->light_count;
+  for (int i = 0; i < shading->light_count; ++i) {
+    set_light(&shading->lights[i], index_to_world, edge, i, a);
+  }
+  if (shading->light_count < 0) {
+    stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
+    for (int axis = 0; axis < 3; ++axis) {
+      light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+    }
+    set_light(&light, index_to_world, edge, 0, a);
+    a->light_count = 1;
+  }
+}
+
+static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_arguments* a)
+{
+  const stratus_ray_shading_tables* shading = &caster->shading_tables;
+  const stratus_volume* volume = &caster->traversed;
+  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  a->components = shading->components;
+  a->dependent = caster->dependent;
+  a->label_first = shading->label_first;
+  a->label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
+  a->component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
+  for (int c = 0; c < 4; ++c) {
+    const stratus_table* table = shading->tables[c];
+    const bool has = caster->shades && c < shading->components;
+    a->factor_first[c] = has ? shading->factor_first[c] : -1;
+    a->factor_scale[c] = shading->factor_scale[c];
+    a->factor_last[c] = (float)STRATUS_SHADING_FACTORS;
+    a->shading_first[c] = shading->first[c];
+    a->shading_scale[c] = table ? table->scale : 0.0f;
+    a->shading_offset[c] = table ? table->offset : 0.0f;
+    a->shading_last[c] = table ? (float)(table->size - 1) : 0.0f;
+    a->component_weight[c] =
+      c < shading->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
+  }
+}
+
+void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
+{
+  const double edge = stratus_ray_voxel_length(volume);
+  double index_to_world[16], world_to_index[16];
+  if (!caster->shades && !options->shade) {
+    return;
+  }
+  stratus_volume_index_to_world(volume, index_to_world);
+  if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
+    return; /* stratus_ray_frame_arguments() has refused it */
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's transposed, against the gradient */
+      a->normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge);
+      a->place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
+    }
+  }
+  const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    a->gradient_length[axis] = (float)(mean / volume->spacing[axis]);
+  }
+  set_tables(caster, a);
+  if (!options->shade) { /* nobody has checked the lights, and nothing asks for them */
+    return;
+  }
+  const stratus_shading* shading = &options->shading;
+  a->shade = 1;
+  a->two_sided = !shading->one_sided;
+  a->material[0] = (float)shading->ambient;
+  a->material[1] = (float)shading->diffuse;
+  a->material[2] = (float)shading->specular;
+  a->material[3] = (float)shading->specular_power;
+  set_lights(camera, shading, index_to_world, edge, a);
+}

@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What shaded samples are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a
+ * table each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
+#include "ray_caster.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Floats tell so many entries apart, less what stands before them. */
+#define LABEL_ENTRIES_MOST 16000000
+
+int stratus_volume_components(const stratus_volume* volume)
+{
+  return volume->components > 1 ? volume->components : 1;
+}
+
+stratus_volume stratus_volume_component(const stratus_volume* volume, int component)
+{
+  stratus_volume view = *volume;
+  view.values = (const char*)volume->values + (size_t)component * stratus_type_size(volume->type);
+  view.components = 1;
+  return view;
+}
+
+int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  return options->label_count > 0 ? 1 + options->label_count : options->dependent ? 1 : stratus_volume_components(volume);
+}
+
+/* ---- checks */
+
+stratus_status stratus_ray_shading_check_volume(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const int components = stratus_volume_components(volume);
+  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d components: only composite takes more than 1",
+      stratus_mode_name(options->mode), components);
+  }
+  if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",
+      options->label_count, options->mask ? "with" : "without");
+  }
+  if (options->label_count > 0 && (components > 1 || options->mode != STRATUS_MODE_COMPOSITE)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "labels in mode %s of a volume of %d components: only composite of 1 takes them",
+      stratus_mode_name(options->mode), components);
+  }
+  if (options->dependent && components == 3) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "3 dependent components, must be 2 or 4");
+  }
+  if (options->dependent && components == 4 && volume->type != STRATUS_UINT8) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
+  }
+  for (int c = 0; c < stratus_ray_shading_media(volume, options); ++c) {
+    TRY(stratus_transfer_check(context, transfer + c));
+    const double weight = transfer[c].weight;
+    if (components > 1 && !options->dependent && !(weight >= 0.0 && weight <= 1.0)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
+    }
+    if (options->label_count > 0 && c > 0 && transfer[c].gradient_count > 0) {
+      return stratus_fail(
+        context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* ---- ranges and choice */
+
+static void drop_label_tables(stratus_ray_caster* caster)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  for (int l = 0; l < shading->label_tables_count; ++l) {
+    stratus_table_destroy(shading->label_tables[l]);
+  }
+  stratus_release(caster->context, shading->label_tables);
+  shading->label_tables = NULL;
+  shading->label_tables_count = 0;
+}
+
+void stratus_ray_shading_release(stratus_ray_caster* caster)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  for (int c = 0; c < 4; ++c) {
+    stratus_value_range_destroy(shading->ranges[c]);
+    stratus_table_destroy(shading->tables[c]);
+  }
+  drop_label_tables(caster);
+  stratus_release(caster->context, shading->memory);
+  memset(shading, 0, sizeof *shading);
+}
+
+static bool has_labels(const stratus_ray_caster* caster)
+{
+  return caster->shading_tables.components == 1 && caster->transfer_count > 1;
+}
+
+bool stratus_ray_shading_several(const stratus_ray_caster* caster)
+{
+  return caster->shading_tables.components > 1 || has_labels(caster);
+}
+
+stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  const int components = stratus_volume_components(&caster->volume);
+  if (shading->range_builds == caster->range_builds && shading->components == components) {
+    return STRATUS_OK;
+  }
+  stratus_ray_shading_release(caster);
+  for (int c = 1; c < components; ++c) {
+    const stratus_volume view = stratus_volume_component(&caster->volume, c);
+    TRY(stratus_value_range_create(caster->context, &view, caster->ranges->block_size, &shading->ranges[c]));
+  }
+  shading->components = components;
+  shading->range_builds = caster->range_builds;
+  return STRATUS_OK;
+}
+
+static const stratus_value_range* range_of(const stratus_ray_caster* caster, int c)
+{
+  return c == 0 ? caster->ranges : caster->shading_tables.ranges[c];
+}
+
+void stratus_ray_shading_choose(
+  stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const int components = stratus_volume_components(&caster->volume), media = stratus_ray_shading_media(&caster->volume, options);
+  if (components == 1 && media == 1) {
+    return;
+  }
+  for (int m = 0; m < media; ++m) {
+    stratus_ray_choice choice;
+    stratus_ray_choose(range_of(caster,
+                         components == 1 ? 0
+                           : media == 1  ? components - 1
+                                         : m),
+      voxel, transfer + m, options->interpolation, STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
+    if (m == 0 || choice.sample_distance < caster->choice.sample_distance) {
+      caster->choice = choice;
+    }
+  }
+}
+
+/* ---- tables */
+
+/* Entries of color times optical depth, and optical depth, from those of color times alpha, and alpha. */
+static void thicken(const stratus_table* table, float* out)
+{
+  for (size_t e = 0; e < (size_t)table->size; ++e) {
+    const float* entry = table->rgba + 4 * e;
+    const float alpha = entry[3], depth = table->rgba[4 * ((size_t)table->size + e)];
+    for (size_t i = 0; i < 3; ++i) {
+      out[4 * e + i] = alpha > 0.0f ? entry[i] / alpha * depth : 0.0f;
+    }
+    out[4 * e + 3] = alpha > 0.0f ? depth : 0.0f;
+  }
+}
+
+static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
+{
+  const stratus_value_range* ranges = range_of(caster, c);
+  const bool any = ranges->whole_lo <= ranges->whole_hi;
+  return stratus_table_create(caster->context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
+    STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
+}
+
+static stratus_status create_label_tables(stratus_ray_caster* caster)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  void* memory = NULL;
+  drop_label_tables(caster);
+  if (!has_labels(caster)) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate_zero(caster->context, (size_t)caster->transfer_count, sizeof *shading->label_tables, &memory));
+  shading->label_tables = memory;
+  shading->label_tables_count = caster->transfer_count;
+  size_t entries = 0;
+  for (int l = 0; l < caster->transfer_count; ++l) {
+    TRY(create_table(caster, caster->transfers + l, 0, &shading->label_tables[l]));
+    entries += 2 * (size_t)shading->label_tables[l]->size;
+  }
+  if (entries > LABEL_ENTRIES_MOST) {
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
+      "%d labels' functions take %zu entries, at most %d: their narrowest features ask for less", caster->transfer_count - 1, entries,
+      LABEL_ENTRIES_MOST);
+  }
+  return STRATUS_OK;
+}
+
+/* A table for each component that has one: media, and the colour that goes with a dependent opacity. */
+static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  const int last = shading->components - 1;
+  for (int c = 0; c <= last; ++c) {
+    stratus_table_destroy(shading->tables[c]);
+    shading->tables[c] = NULL;
+  }
+  if (last == 0) {
+    return create_label_tables(caster);
+  }
+  if (!dependent) {
+    for (int c = 0; c <= last; ++c) {
+      TRY(create_table(caster, caster->transfers + c, c, &shading->tables[c]));
+    }
+    return STRATUS_OK;
+  }
+  if (last == 1) {
+    stratus_transfer color = caster->transfers[0];
+    const double opaque[2] = { color.color[0], 1.0 };
+    color.opacity = opaque;
+    color.opacity_count = 1;
+    color.clamp = 1;
+    TRY(create_table(caster, &color, 0, &shading->tables[0]));
+  }
+  return create_table(caster, caster->transfers, last, &shading->tables[last]);
+}
+
+/* The function over magnitudes from 0 to its last point. */
+static void fill_factors(const stratus_transfer* transfer, float* out)
+{
+  const stratus_transfer function = { .opacity = transfer->gradient,
+    .opacity_count = transfer->gradient_count,
+    .color = transfer->color,
+    .color_count = transfer->color_count,
+    .clamp = 1 };
+  const double most = transfer->gradient[2 * (transfer->gradient_count - 1)];
+  double rgba[4];
+  for (int e = 0; e < STRATUS_SHADING_FACTORS + 2; ++e) {
+    const int at = e < STRATUS_SHADING_FACTORS ? e : STRATUS_SHADING_FACTORS;
+    stratus_transfer_at(&function, most > 0.0 ? most * at / STRATUS_SHADING_FACTORS : most, rgba);
+    out[e] = (float)rgba[3];
+  }
+}
+
+/* Labels: where each one's table stands, and the tables. */
+static size_t lay_out_labels(stratus_ray_shading_tables* shading, size_t at, float* out)
+{
+  const size_t labels = (size_t)shading->label_tables_count;
+  shading->label_first = (int)at;
+  float* header = out ? out + at : NULL;
+  at += 4 * labels;
+  for (size_t l = 0; l < labels; ++l) {
+    const stratus_table* table = shading->label_tables[l];
+    if (out) {
+      const float place[4] = { table->scale, table->offset, (float)(table->size - 1), (float)(at / 4) };
+      memcpy(header + 4 * l, place, sizeof place);
+      memcpy(out + at, table->rgba, stratus_table_words(table) * sizeof *out);
+    }
+    at += stratus_table_words(table);
+  }
+  return at;
+}
+
+/* Writes all tables one after the other, where out is not NULL; returns how many words they take. */
+static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  size_t at = 0;
+  if (shading->components == 1) {
+    at = stratus_table_words(caster->table);
+    if (out) {
+      memcpy(out, caster->table->rgba ? (const void*)caster->table->rgba : (const void*)caster->table->sums, 4 * at);
+    }
+  }
+  for (int c = 0; c < shading->components; ++c) {
+    const stratus_table* table = shading->tables[c];
+    shading->first[c] = (int)at;
+    if (table && out && dependent && c == 0 && shading->components == 2) {
+      memcpy(out + at, table->rgba, 16 * (size_t)table->size);
+    } else if (table && out) {
+      thicken(table, out + at);
+    }
+    at += table ? 4 * (size_t)table->size : 0;
+  }
+  for (int c = 0; c < shading->components; ++c) { /* of labels, the first function's */
+    const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
+    const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == shading->components);
+    const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
+    shading->factor_first[c] = has ? (int)at : -1;
+    shading->factor_scale[c] = most > 0.0 ? (float)fmin(STRATUS_SHADING_FACTORS / most, (double)FLT_MAX) : 0.0f;
+    if (has && out) {
+      fill_factors(transfer, out + at);
+    }
+    at += has ? STRATUS_SHADING_FACTORS + 2 : 0;
+  }
+  return lay_out_labels(shading, (at + 3) / 4 * 4, out);
+}
+
+stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  void* memory = NULL;
+  if (shading->memory && shading->table_builds == caster->table_builds) {
+    return STRATUS_OK;
+  }
+  stratus_release(caster->context, shading->memory);
+  shading->memory = NULL;
+  TRY(create_tables(caster, dependent));
+  const size_t words = lay_out(caster, dependent, NULL);
+  TRY(stratus_allocate(caster->context, words, sizeof(float), &memory));
+  (void)lay_out(caster, dependent, memory);
+  shading->memory = memory;
+  shading->bytes = words * sizeof(float);
+  shading->table_builds = caster->table_builds;
+  ++caster->table_serial;
+  return STRATUS_OK;
+}
+
+bool stratus_ray_shading_show(const stratus_ray_caster* caster)
+{
+  const stratus_ray_shading_tables* shading = &caster->shading_tables;
+  for (int l = 0; caster->shades && l < shading->label_tables_count; ++l) {
+    if (shading->label_tables[l]->shown > 0) {
+      return true;
+    }
+  }
+  if (shading->components <= 1) {
+    return caster->table->shown > 0;
+  }
+  for (int c = 0; c < shading->components; ++c) {
+    if (shading->tables[c] && (!caster->dependent || c + 1 == shading->components) && shading->tables[c]->shown > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* ---- occupancy */
+
+stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster)
+{
+  const stratus_ray_shading_tables* shading = &caster->shading_tables;
+  stratus_occupancy* whole = NULL;
+  stratus_status status = STRATUS_OK;
+  const bool labels = has_labels(caster);
+  const int first = caster->dependent && !labels ? shading->components - 1 : 0,
+            count = labels ? shading->label_tables_count : shading->components;
+  for (int c = first; c < count; ++c) {
+    stratus_occupancy* part = NULL;
+    TRY_CLEANUP(stratus_occupancy_build(
+      caster->context, range_of(caster, labels ? 0 : c), labels ? shading->label_tables[c] : shading->tables[c], &part));
+    if (whole) {
+      stratus_occupancy_add(whole, part);
+      stratus_occupancy_destroy(part);
+    } else {
+      whole = part;
+    }
+  }
+  caster->occupancy = whole;
+  return STRATUS_OK;
+cleanup:
+  stratus_occupancy_destroy(whole);
+  return status;
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Structures on the context's OpenCL device: buffers, arguments and launches of the kernels of the same names. */
+#include "volume_device.h"
+
+#include "device.h"
+
+#include <stdio.h>
+
+static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
+{
+  return stratus_device_buffer(context, CL_MEM_READ_WRITE, bytes, NULL, false, buffer);
+}
+
+static stratus_status make_input(stratus_context* context, size_t bytes, const void* host, cl_mem* buffer)
+{
+  return stratus_device_buffer(context, CL_MEM_READ_ONLY, bytes, host, true, buffer);
+}
+
+static void release_buffers(cl_mem* buffers, size_t count)
+{
+  for (size_t i = 0; i < count; ++i) {
+    stratus_device_buffer_release(buffers[i]);
+  }
+}
+
+bool stratus_structures_on_device(const stratus_context* context)
+{
+  return context->device && !stratus_device_is_cpu(context->device);
+}
+
+/* ---- value ranges */
+
+static size_t volume_bytes(const stratus_volume* volume)
+{
+  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  return ((values - 1) * (size_t)volume->value_stride + 1) * stratus_type_size(volume->type);
+}
+
+bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume)
+{
+  /* Columns of extremes: at most a float for every two values along y and z. */
+  const size_t columns = (size_t)volume->dimensions[0] * ((size_t)volume->dimensions[1] / 2 + 1) * ((size_t)volume->dimensions[2] / 2 + 1);
+  const size_t largest = stratus_device_largest_allocation(context->device);
+  return volume_bytes(volume) <= largest && columns <= largest / sizeof(float) &&
+    (!stratus_type_is_wide(volume->type) || stratus_device_has_double(context->device));
+}
+
+static const char* value_name(stratus_type type)
+{
+  static const char* const names[] = { "char", "uchar", "short", "ushort", "int", "uint", "long", "ulong", "float", "double" };
+  return names[type];
+}
+
+typedef struct range_buffers {
+  cl_mem values, column_lo, column_hi, column_bad, lo, hi, gaps;
+} range_buffers;
+
+static stratus_status make_range_buffers(
+  stratus_context* context, const stratus_volume* volume, size_t columns, size_t blocks, range_buffers* b)
+{
+  TRY(make_input(context, volume_bytes(volume), volume->values, &b->values));
+  TRY(make_buffer(context, columns * sizeof(float), &b->column_lo));
+  TRY(make_buffer(context, columns * sizeof(float), &b->column_hi));
+  TRY(make_buffer(context, columns, &b->column_bad));
+  TRY(make_buffer(context, blocks * sizeof(float), &b->lo));
+  TRY(make_buffer(context, blocks * sizeof(float), &b->hi));
+  return make_buffer(context, blocks, &b->gaps);
+}
+
+static stratus_status run_ranges(
+  stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges, const range_buffers* b)
+{
+  const cl_long nx = volume->dimensions[0], ny = volume->dimensions[1], nz = volume->dimensions[2], stride = volume->value_stride;
+  const cl_long size = ranges->block_size, bx = ranges->blocks[0], by = ranges->blocks[1], bz = ranges->blocks[2], rows = by * bz;
+  const int wide = stratus_type_is_wide(volume->type);
+  const cl_float no_bias = 0.0f;
+  char defines[64];
+  snprintf(defines, sizeof defines, "-DVALUE=%s -DWIDE=%d", value_name(volume->type), wide);
+  const stratus_kernel_argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
+  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride),
+    ARGUMENT(size), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
+  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx),
+    ARGUMENT(size), ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
+  TRY(stratus_device_launch(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
+  return stratus_device_launch(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
+}
+
+stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+{
+  stratus_status status = STRATUS_OK;
+  range_buffers b = { .values = NULL };
+  const size_t rows = (size_t)(ranges->blocks[1] * ranges->blocks[2]), count = rows * (size_t)ranges->blocks[0];
+
+  TRY_CLEANUP(make_range_buffers(context, volume, rows * (size_t)volume->dimensions[0], count, &b));
+  TRY_CLEANUP(run_ranges(context, volume, ranges, &b));
+  TRY_CLEANUP(stratus_device_read(context, b.lo, 0, count * sizeof(float), ranges->lo));
+  TRY_CLEANUP(stratus_device_read(context, b.hi, 0, count * sizeof(float), ranges->hi));
+  TRY_CLEANUP(stratus_device_read(context, b.gaps, 0, count, ranges->gaps));
+
+cleanup:
+  release_buffers((cl_mem[]){ b.values, b.column_lo, b.column_hi, b.column_bad, b.lo, b.hi, b.gaps }, 7);
+  return status;
+}
+
+/* ---- occupancy */
+
+stratus_status stratus_device_occupancy(
+  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem lo = NULL, hi = NULL, gaps = NULL, next_shown = NULL, occupied = NULL;
+  const cl_ulong count = (cl_ulong)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]);
+  const cl_int gaps_show = table->sums && table->shown > 0, size = table->size;
+
+  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
+  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
+  TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
+  TRY_CLEANUP(make_input(context, ((size_t)table->size + 1) * sizeof(int), table->next_shown, &next_shown));
+  TRY_CLEANUP(make_buffer(context, count, &occupied));
+  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size),
+    ARGUMENT(table->scale), ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
+  TRY_CLEANUP(stratus_device_launch(
+    context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
+
+cleanup:
+  release_buffers((cl_mem[]){ lo, hi, gaps, next_shown, occupied }, 5);
+  return status;
+}
+
+/* ---- distance maps */
+
+static size_t sums_count(const int64_t blocks[3])
+{
+  return (size_t)(blocks[0] + 1) * (size_t)(blocks[1] + 1) * (size_t)(blocks[2] + 1);
+}
+
+bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3])
+{
+  const size_t sums = sums_count(blocks); /* which bounds the number of blocks, and a 32-bit sum must hold that */
+  return sums <= UINT32_MAX && sums <= stratus_device_largest_allocation(context->device) / sizeof(cl_uint);
+}
+
+static stratus_status run_sums(stratus_context* context, const int64_t blocks[3], cl_mem occupied, cl_mem sums)
+{
+  const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2], sx = nx + 1, sy = ny + 1, sz = nz + 1, one = 1, plane = sx * sy;
+  const stratus_kernel_argument along_x[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(sums) };
+  const stratus_kernel_argument along_y[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sz), ARGUMENT(plane), ARGUMENT(sy),
+    ARGUMENT(sx) };
+  const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz),
+    ARGUMENT(plane) };
+  TRY(stratus_device_launch(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
+  TRY(stratus_device_launch(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
+  return stratus_device_launch(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
+}
+
+static stratus_status search_maps(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem sums = NULL;
+  const cl_long nx = map->blocks[0], ny = map->blocks[1], nz = map->blocks[2], pitch = (cl_long)map->pitch;
+  const int octants = map->kind == STRATUS_DISTANCE_OCTANT ? 8 : 1;
+
+  TRY_CLEANUP(make_buffer(context, sums_count(map->blocks) * sizeof(cl_uint), &sums));
+  TRY_CLEANUP(run_sums(context, map->blocks, occupied, sums));
+  for (int octant = 0; octant < octants; ++octant) {
+    const cl_int whole = octants == 1;
+    const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
+    const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x),
+      ARGUMENT(y), ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
+    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
+    TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes + (size_t)octant * map->map_bytes));
+  }
+
+cleanup:
+  stratus_device_buffer_release(sums);
+  return status;
+}
+
+/* The paper's three passes for blocks of occupancy `target`. The result is in distance[1]. */
+static stratus_status run_paper(stratus_context* context, const int64_t blocks[3], cl_mem occupied, cl_int target, const cl_mem distance[2])
+{
+  const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2];
+  const cl_ulong count = (cl_ulong)(nx * ny * nz);
+  const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(target), ARGUMENT(count), ARGUMENT(distance[0]) };
+  TRY(stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  for (cl_int axis = 0; axis < 3; ++axis) {
+    const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
+      ARGUMENT(distance[(axis + 1) & 1]) };
+    TRY(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), blocks));
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status paper_map(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem swap = NULL, outer = NULL, inner = NULL;
+  const cl_long nx = map->blocks[0], rows = map->blocks[1] * map->blocks[2], pitch = (cl_long)map->pitch;
+
+  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &swap));
+  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &outer));
+  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &inner));
+  TRY_CLEANUP(run_paper(context, map->blocks, occupied, 1, (const cl_mem[]){ swap, outer }));
+  TRY_CLEANUP(run_paper(context, map->blocks, occupied, 0, (const cl_mem[]){ swap, inner }));
+  const stratus_kernel_argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch),
+    ARGUMENT(bytes) };
+  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_merge", merge, COUNT_OF(merge), (const int64_t[]){ nx, rows, 1 }));
+  TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
+
+cleanup:
+  release_buffers((cl_mem[]){ swap, outer, inner }, 3);
+  return status;
+}
+
+stratus_status stratus_device_distance_map(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem occupied = NULL, bytes = NULL;
+  const size_t count = (size_t)(map->blocks[0] * map->blocks[1] * map->blocks[2]);
+
+  TRY_CLEANUP(make_input(context, count, occupancy->occupied, &occupied));
+  TRY_CLEANUP(make_buffer(context, map->map_bytes, &bytes));
+  if (map->kind == STRATUS_DISTANCE_PAPER) {
+    TRY_CLEANUP(paper_map(context, map, occupied, bytes));
+  } else {
+    TRY_CLEANUP(search_maps(context, map, occupied, bytes));
+  }
+
+cleanup:
+  release_buffers((cl_mem[]){ occupied, bytes }, 2);
+  return status;
+}

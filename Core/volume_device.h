@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The structures built by the context's OpenCL device, equal to the bit to what the host builds. The host is faster on a CPU, so only
+ * GPUs are asked (stratus_structures_on_device); tests call the builders on any device. Each fills arrays that its caller allocated. */
+#ifndef STRATUS_STRUCTURES_DEVICE_H
+#define STRATUS_STRUCTURES_DEVICE_H
+
+#include "base.h"
+
+/* Whether the context's device should build structures. */
+bool stratus_structures_on_device(const stratus_context* context);
+
+/* Whether the device can take the volume: it fits an allocation, and wide types find doubles. */
+bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume);
+
+/* Fills lo, hi and gaps (of values that are not finite; hidden cells are the caller's) of ranges, whose other fields are set. */
+stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges);
+
+/* Fills occupied[]. */
+stratus_status stratus_device_occupancy(
+  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy);
+
+/* Whether the running sums that the device counts with fit one of its allocations. */
+bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3]);
+
+/* Fills bytes[] up to the padding. Not for STRATUS_DISTANCE_BLOCK. */
+stratus_status stratus_device_distance_map(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
+
+#endif

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Light, gradient opacity and components of the reference renderer: written from the contract in stratus.h, in doubles, without regard to
+ * speed. */
+#include "reference_shading.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+/* An opaque sample's optical depth: large, and finite, so that it can be weighed against others. */
+#define OPAQUE_DEPTH 1e6
+
+int reference_components(const stratus_volume* volume)
+{
+  return volume->components > 1 ? volume->components : 1;
+}
+
+int reference_has_shading(const reference_scene* scene)
+{
+  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 || scene->label_count > 0;
+}
+
+/* The transfer function of the nearest value's label. */
+static const stratus_transfer* function_of(const reference_scene* scene, const reference_place* place)
+{
+  const int64_t* n = scene->volume->dimensions;
+  int64_t at[3];
+  for (int a = 0; a < 3; ++a) {
+    at[a] = (int64_t)floor(place->index[a] + 0.5);
+    at[a] = at[a] < n[a] ? at[a] : n[a] - 1;
+  }
+  const int label = scene->label_count > 0 ? scene->labels[(at[2] * n[1] + at[1]) * n[0] + at[0]] : 0;
+  return scene->transfer + (label <= scene->label_count ? label : 0);
+}
+
+stratus_volume reference_component(const stratus_volume* volume, int c)
+{
+  stratus_volume view = *volume;
+  view.values = (const char*)volume->values + (size_t)c * stratus_type_size(volume->type);
+  view.components = 1;
+  return view;
+}
+
+static double length_of(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static double dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* To length 1, or 0 where there is none. */
+static void unit(double v[3])
+{
+  const double length = length_of(v);
+  for (int a = 0; a < 3; ++a) {
+    v[a] = length > 0.0 ? v[a] / length : 0.0;
+  }
+}
+
+/* ---- gradients */
+
+static double difference(const stratus_volume* volume, const int64_t at[3], int axis)
+{
+  int64_t low[3] = { at[0], at[1], at[2] }, high[3] = { at[0], at[1], at[2] };
+  low[axis] -= at[axis] > 0;
+  high[axis] += at[axis] + 1 < volume->dimensions[axis];
+  if (!isfinite(reference_value(volume, low[0], low[1], low[2]))) {
+    low[axis] = at[axis];
+  }
+  if (!isfinite(reference_value(volume, high[0], high[1], high[2]))) {
+    high[axis] = at[axis];
+  }
+  const double apart = (double)(high[axis] - low[axis]);
+  const double rise = reference_value(volume, high[0], high[1], high[2]) - reference_value(volume, low[0], low[1], low[2]);
+  return apart > 0.0 ? rise / apart : 0.0;
+}
+
+/* Value a voxel along each axis: the differences at the corners of the cell about p, each weighed by how near it is. */
+static void gradient_at(const stratus_volume* volume, const double p[3], bool linear, double g[3])
+{
+  memset(g, 0, 3 * sizeof *g);
+  for (int corner = 0; corner < 8; ++corner) {
+    int64_t at[3];
+    double weight = 1.0;
+    for (int a = 0; a < 3; ++a) {
+      const int64_t lower = (int64_t)floor(linear ? p[a] : p[a] + 0.5);
+      const double t = linear ? p[a] - (double)lower : 0.0;
+      at[a] = lower + (corner >> a & 1);
+      weight *= corner >> a & 1 ? t : 1.0 - t;
+      at[a] = at[a] < volume->dimensions[a] ? at[a] : volume->dimensions[a] - 1;
+    }
+    for (int a = 0; weight > 0.0 && a < 3; ++a) {
+      g[a] += weight * difference(volume, at, a);
+    }
+  }
+}
+
+static double gradient_factor(const stratus_volume* volume, const stratus_transfer* transfer, const double g[3])
+{
+  double v[3];
+  const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
+  if (transfer->gradient_count == 0) {
+    return 1.0;
+  }
+  for (int a = 0; a < 3; ++a) {
+    v[a] = g[a] / volume->spacing[a] * mean;
+  }
+  const stratus_transfer function = { .opacity = transfer->gradient, .opacity_count = transfer->gradient_count, .clamp = 1 };
+  return reference_opacity(&function, length_of(v));
+}
+
+/* ---- light */
+
+static void add_light(const stratus_shading* shading, const stratus_light* light, const reference_place* place, const double normal[3],
+  double diffuse[3], double specular[3])
+{
+  double to[3], half_way[3];
+  for (int a = 0; a < 3; ++a) {
+    to[a] = light->vector[a] - (light->positional ? place->world[a] : 0.0);
+  }
+  unit(to);
+  for (int a = 0; a < 3; ++a) {
+    half_way[a] = to[a] - place->direction[a];
+  }
+  unit(half_way);
+  const double cosine = dot(normal, to), gloss = dot(normal, half_way);
+  if (cosine > 0.0) {
+    for (int a = 0; a < 3; ++a) {
+      diffuse[a] += shading->diffuse * cosine * light->color[a];
+      specular[a] += gloss > 0.0 ? shading->specular * pow(gloss, shading->specular_power) * light->color[a] : 0.0;
+    }
+  }
+}
+
+static void illuminate(const reference_scene* scene, const reference_place* place, const double g[3], double rgb[3])
+{
+  const stratus_shading* shading = scene->shading;
+  double normal[3], diffuse[3] = { shading->ambient, shading->ambient, shading->ambient }, specular[3] = { 0.0, 0.0, 0.0 };
+  for (int a = 0; a < 3; ++a) {
+    normal[a] = -(g[0] * place->to_index[0][a] + g[1] * place->to_index[1][a] + g[2] * place->to_index[2][a]);
+  }
+  unit(normal);
+  if (!shading->one_sided && dot(normal, place->direction) > 0.0) {
+    for (int a = 0; a < 3; ++a) {
+      normal[a] = -normal[a];
+    }
+  }
+  stratus_light eye = { .color = { 1.0, 1.0, 1.0 }, .positional = !scene->camera->parallel };
+  for (int a = 0; a < 3; ++a) {
+    eye.vector[a] = scene->camera->parallel ? -scene->camera->forward[a] : scene->camera->eye[a];
+  }
+  for (int i = 0; i < (shading->light_count < 0 ? 1 : shading->light_count); ++i) {
+    add_light(shading, shading->light_count < 0 ? &eye : &shading->lights[i], place, normal, diffuse, specular);
+  }
+  for (int a = 0; a < 3; ++a) {
+    rgb[a] = rgb[a] * diffuse[a] + specular[a];
+  }
+}
+
+/* ---- a sample */
+
+static double depth_of(double opacity)
+{
+  return opacity < 1.0 ? fmin(-log1p(-opacity), OPAQUE_DEPTH) : OPAQUE_DEPTH;
+}
+
+/* Adds one medium: `shown` is the component whose gradient counts. */
+static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
+  double opacity, double weight, double rgb[3], double* tau, double glow[3])
+{
+  const stratus_volume view = reference_component(scene->volume, shown);
+  double g[3] = { 0.0, 0.0, 0.0 };
+  if (opacity <= 0.0) {
+    return;
+  }
+  if (scene->shading || transfer->gradient_count > 0) {
+    gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, g);
+  }
+  const double depth = weight * depth_of(opacity) * gradient_factor(scene->volume, transfer, g) / transfer->unit_distance;
+  if (scene->shading) {
+    illuminate(scene, place, g, rgb);
+  }
+  *tau += depth;
+  for (int a = 0; a < 3; ++a) {
+    glow[a] += depth * rgb[a];
+  }
+}
+
+void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3])
+{
+  const int components = reference_components(scene->volume), last = components - 1;
+  double rgb[3];
+  bool whole = true;
+  *tau = glow[0] = glow[1] = glow[2] = 0.0;
+  for (int c = 0; c < components; ++c) {
+    whole = whole && !isnan(values[c]);
+  }
+  for (int c = 0; c < components && !scene->dependent; ++c) {
+    const stratus_transfer* transfer = components > 1 ? scene->transfer + c : function_of(scene, place);
+    if (!isnan(values[c])) {
+      reference_color(transfer, values[c], rgb);
+      add_medium(
+        scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);
+    }
+  }
+  if (scene->dependent && whole) {
+    reference_color(scene->transfer, values[0], rgb);
+    for (int c = 0; c < 3 && last == 3; ++c) {
+      rgb[c] = values[c] / 255.0;
+    }
+    add_medium(scene, place, scene->transfer, last, reference_opacity(scene->transfer, values[last]), 1.0, rgb, tau, glow);
+  }
+}

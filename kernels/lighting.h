@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The light that falls on a sample, as VTK's volume mappers shade: ambient, diffuse by N L, specular by (N H)^power with H half way between
+ * the light and the eye (Blinn 1977), N against the gradient and, where both sides are lit, turned towards the eye. */
+#ifndef STRATUS_SHADING_H
+#define STRATUS_SHADING_H
+
+#include "transfer_table.h"
+
+INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
+
+/* rows of m times v */
+INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
+{
+  for (int row = 0; row < 3; ++row) {
+    result[row] = v_fma(v_set(m[3 * row]), v[0], v_fma(v_set(m[3 * row + 1]), v[1], v_set(m[3 * row + 2]) * v[2]));
+  }
+}
+
+/* By the power of 2 that takes the largest component to 1..4, exactly: squares then neither overflow nor vanish, be the values' range what
+ * it may. The largest as it was. */
+INLINE vfloat v_scale3(vfloat v[3])
+{
+  const vfloat largest = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));
+  const vint exponent =
+    v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is a normal number's */
+  const vfloat scale = v_from_bits(vi_set(0x7f000000) - exponent);
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] = v[axis] * scale;
+  }
+  return largest;
+}
+
+/* To length 1; 0 where no component is above `least` or one is no number. */
+INLINE void v_normalize3(vfloat v[3], float least)
+{
+  const vfloat largest = v_scale3(v), square = v_dot3(v, v), zero = v_set(0.0f);
+  const vmask any = v_lt(v_set(least), largest) & v_lt(zero, square) & v_finite(square);
+  const vfloat scale = v_inverse_root(v_select(any, square, v_set(1.0f)));
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] = v_select(any, v[axis] * scale, zero);
+  }
+}
+
+/* a^power for 0 < a <= 1, to some 1e-6: the series of the logarithm about 1 after the exponent is taken off, and v_absorbed(). */
+INLINE vfloat v_power(vfloat a, float power)
+{
+  const vint bits = v_to_bits(a) - vi_set(0x3f3504f3); /* from sqrt(1/2) on */
+  const vint exponent = bits >> vi_set(23);
+  const vfloat m = v_from_bits((bits & vi_set(0x7fffff)) + vi_set(0x3f3504f3)), one = v_set(1.0f);
+  const vfloat s = (m - one) * v_reciprocal(m + one), square = s * s;
+  vfloat series = v_fma(square, v_set(2.0f / 11.0f), v_set(2.0f / 9.0f));
+  series = v_fma(square, series, v_set(2.0f / 7.0f));
+  series = v_fma(square, series, v_set(2.0f / 5.0f));
+  series = v_fma(square, series, v_set(2.0f / 3.0f));
+  series = v_fma(square * s, series, s + s);
+  const vfloat logarithm = v_fma(v_from_int(exponent), v_set(0.69314718f), series);
+  const vfloat depth = v_clamp(v_set(0.0f) - logarithm * v_set(power), 0.0f, 80.0f);
+  return one - v_absorbed(depth);
+}
+
+/* The entry of component c's table that a value falls in. */
+INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, int c, vfloat value)
+{
+  return v_to_int(v_clamp(v_fma(value, v_set(a->shading_scale[c]), v_set(a->shading_offset[c])), 0.0f, a->shading_last[c]));
+}
+
+/* What component c's gradient opacity makes of its optical depth where its index gradient is g; 1 without such a function. */
+INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const vfloat g[3], vmask mask)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  const float last = a->factor_last[c];
+  vfloat v[3];
+  if (a->factor_first[c] < 0) {
+    return one;
+  }
+  for (int axis = 0; axis < 3; ++axis) { /* in entries; a component beyond the last one is as good as at it, and its square is finite */
+    v[axis] = v_clamp(g[axis] * v_set(a->gradient_length[axis]) * v_set(a->factor_scale[c]), -last, last);
+  }
+  const vfloat square = v_dot3(v, v);
+  const vmask steep = v_le(v_set(1e-28f), square); /* below it the first entry's */
+  const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
+  const vint entry = v_to_int(place);
+  GLOBAL const int* factors = (GLOBAL const int*)table + a->factor_first[c];
+  const vfloat low = v_from_bits(gather_int32(factors, entry, mask)), high = v_from_bits(gather_int32(factors + 1, entry, mask));
+  return v_lerp(low, high, place - v_from_int(entry));
+}
+
+/* Of the samples at index coordinates x with the index gradient g, on rays of index direction d: a colour C of opacity A becomes
+ * C diffuse + A specular. diffuse holds the ambient light, too. */
+INLINE void ray_light(
+  CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
+{
+  const vfloat zero = v_set(0.0f);
+  vfloat normal[3], eye[3], place[3];
+  vfloat steep[3] = { g[0], g[1], g[2] };
+  v_scale3(steep);
+  v_transform3(a->normal, steep, normal);
+  v_normalize3(normal, 0.0f); /* a field that is flat has no normal: ambient light only */
+  v_transform3(a->place, d, eye);
+  v_normalize3(eye, 0.0f);
+  v_transform3(a->place, x, place);
+  const vmask away = v_lt(zero, v_dot3(normal, eye));
+  for (int axis = 0; axis < 3; ++axis) {
+    eye[axis] = zero - eye[axis];
+    if (a->two_sided) {
+      normal[axis] = v_select(away, zero - normal[axis], normal[axis]);
+    }
+    diffuse[axis] = v_set(a->material[0]);
+    specular[axis] = zero;
+  }
+  for (int i = 0; i < a->light_count; ++i) {
+    vfloat light[3], half_way[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      light[axis] = v_set(a->light[i][axis]);
+      if (a->light_positional[i]) {
+        light[axis] = light[axis] - place[axis];
+      }
+    }
+    v_normalize3(light, 0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      half_way[axis] = light[axis] + eye[axis];
+    }
+    v_normalize3(half_way, 1e-6f); /* light and eye opposite: what is left is rounding */
+    const vfloat cosine = v_max(v_dot3(normal, light), zero), gloss = v_dot3(normal, half_way);
+    const vmask lit = v_lt(zero, cosine), shines = lit & v_lt(v_set(1e-9f), gloss);
+    const vfloat matt = cosine * v_set(a->material[1]);
+    vfloat shine = zero;
+    if (a->material[2] > 0.0f && m_any(shines)) {
+      shine = v_select(shines, v_power(v_select(shines, gloss, v_set(1.0f)), a->material[3]) * v_set(a->material[2]), zero);
+    }
+    for (int c = 0; c < 3; ++c) {
+      diffuse[c] = v_fma(matt, v_set(a->light_color[i][c]), diffuse[c]);
+      specular[c] = v_fma(shine, v_set(a->light_color[i][c]), specular[c]);
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components.
+ * Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_SHADING. What is looked up beyond the values is so only where something
+ * shows, and only thins or colours that: a segment left out would have added exactly zero, here too. */
+
+/* Few samples come this far, and the code is long: once for each type, not wherever it is called. */
+#ifdef STRATUS_DEVICE
+#define OUTLINE static
+#else
+#define OUTLINE static __attribute__((noinline))
+#endif
+
+#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->component_bytes)
+
+/* What samples at s on their rays show beside their values, in the lanes of `mask`, by the gradient of component c. */
+OUTLINE void ray_light_sample(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vmask mask, stratus_lit_sample* lighting)
+{
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
+  if (a->shade || a->factor_first[c] >= 0) {
+    ray_gradient(a, COMPONENT_VALUES(a, values, c), x, mask, g);
+  }
+  lighting->factor = gradient_factor(a, table, c, g, mask);
+  if (a->shade) {
+    ray_light(a, x, k->d, g, lighting->diffuse, lighting->specular);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      lighting->diffuse[i] = v_set(1.0f);
+      lighting->specular[i] = v_set(0.0f);
+    }
+  }
+}
+
+#if !STRATUS_PREINTEGRATED
+/* Adds the medium whose optical depth is layer[3] and whose light is layer[0..2], both over a whole sample, by component c's gradient. */
+OUTLINE void ray_add_medium(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
+  const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[4])
+{
+  const vmask shows = mask & v_lt(v_set(0.0f), layer[3]);
+  stratus_lit_sample lighting;
+  if (m_any(shows)) {
+    ray_light_sample(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &lighting);
+    light_layer(&lighting, layer);
+    for (int i = 0; i < 4; ++i) {
+      sum[i] = v_select(shows, v_fma(layer[i], lighting.factor * v_set(a->component_weight[c]), sum[i]), sum[i]);
+    }
+  }
+}
+
+/* The value of component c where the sample is. */
+OUTLINE vfloat component_value(
+  CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
+{
+  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  return ray_value(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
+}
+
+/* Each component a medium: their optical depths add up, and their light. */
+INLINE void add_independent(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
+{
+  for (int c = 0; c < a->components; ++c) {
+    const vfloat value = component_value(a, k, sample, c, k->live);
+    vfloat layer[4];
+    gather_four((GLOBAL const float*)table + a->shading_first[c], shading_entry(a, c, value), k->live & v_finite(value), layer);
+    ray_add_medium(a, table, c, k, sample, k->live, layer, sum);
+  }
+}
+
+/* Colour from all components but the last, opacity from that. */
+INLINE void add_dependent(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
+{
+  const int last = a->components - 1;
+  vfloat value = component_value(a, k, sample, last, k->live), layer[4], color[4];
+  vmask valid = k->live & v_finite(value);
+  gather_four((GLOBAL const float*)table + a->shading_first[last], shading_entry(a, last, value), valid, layer);
+  valid = valid & v_lt(v_set(0.0f), layer[3]);
+  if (!m_any(valid)) {
+    return;
+  }
+  if (last == 1) {
+    value = component_value(a, k, sample, 0, valid);
+    valid = valid & v_finite(value);
+    gather_four((GLOBAL const float*)table + a->shading_first[0], shading_entry(a, 0, value), valid, color);
+  } else {
+    for (int c = 0; c < 3; ++c) {
+      color[c] = component_value(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    layer[c] = color[c] * layer[3];
+  }
+  ray_add_medium(a, table, last, k, sample, valid, layer, sum);
+}
+
+OUTLINE void shade_components(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat zero = v_set(0.0f);
+  vfloat sum[4] = { zero, zero, zero, zero };
+  if (a->dependent) {
+    add_dependent(a, table, k, sample, sum);
+  } else {
+    add_independent(a, table, k, sample, sum);
+  }
+  const vmask shows = k->live & v_lt(zero, sum[3]);
+  if (m_any(shows)) {
+    vfloat layer[4];
+    layer[3] = v_select(shows, v_absorbed(sum[3] * sample->weight), zero);
+    const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(sum[3], v_set(1e-30f))), zero);
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = sum[c] * per_depth;
+    }
+    composite(a, k, shows, layer, sample->lo);
+  }
+}
+
+/* Labels at index coordinates x: of the nearest value; 0 where it has no functions of its own. */
+OUTLINE vint label_at(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
+{
+  float place[3][STRATUS_WIDTH];
+  int wanted[STRATUS_WIDTH], label[STRATUS_WIDTH];
+  vi_store(wanted, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    vfloat at = x[axis];
+    if (a->clamp) {
+      at = v_clamp(at, 0.0f, a->last[axis]);
+    }
+    v_store(place[axis], at);
+  }
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    label[lane] = wanted[lane] ? (int)hidden[hidden_place(a, 1, place[0][lane], place[1][lane], place[2][lane])] : 0;
+    label[lane] = label[lane] <= a->label_count ? label[lane] : 0;
+  }
+  return vi_load(label);
+}
+
+/* One value, in the colour and opacity of its label. */
+OUTLINE void shade_labels(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  GLOBAL const float* floats = (GLOBAL const float*)table;
+  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  const vmask valid = k->live & v_finite(sample->value);
+  vfloat of[4], layer[4];
+  gather_four(floats + a->label_first, label_at(a, sample->hidden, x, valid), valid, of);
+  const vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2])) + v_to_int(of[3]);
+  gather_four(floats, entry, valid, layer);
+  const vmask shows = valid & v_lt(zero, layer[3]);
+  if (m_any(shows)) {
+    stratus_lit_sample lighting;
+    ray_light_sample(a, sample->values, table, 0, k, s, shows, &lighting);
+    const vfloat thick = sample->weight * lighting.factor;
+    const vmask part = shows & v_lt(thick, v_set(1.0f));
+    if (m_any(part)) { /* as shorten_layer() */
+      vfloat depth[4];
+      gather_four(floats, entry + v_to_int(of[2]) + vi_set(1), part, depth);
+      const vfloat alpha = v_absorbed(depth[0] * thick),
+                   ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
+      for (int c = 0; c < 4; ++c) {
+        layer[c] = layer[c] * ratio;
+      }
+    }
+    light_layer(&lighting, layer);
+    composite(a, k, shows, layer, sample->lo);
+  }
+}
+#endif
+
+/* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
+OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
+  stratus_lit_sample lighting;
+  k->samples -= mask_int(k->live);
+#if STRATUS_PREINTEGRATED
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
+  const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
+  if (m_any(shows)) {
+    ray_light_sample(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+    integrate_lit(a, (GLOBAL const int*)table, k, shows, value, weight * lighting.factor, lo, &lighting);
+  }
+  k->front = value;
+  k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
+  k->fresh = m_none();
+#else
+  if (a->components > 1) {
+    shade_components(a, table, k, sample);
+  } else if (a->label_count > 0) {
+    shade_labels(a, table, k, sample);
+  } else {
+    const vint entry = table_entry(a, value);
+    vfloat layer[4];
+    gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
+    const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);
+    if (m_any(shows)) {
+      ray_light_sample(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+      shorten_layer(a, (GLOBAL const float*)table, entry, shows, weight * lighting.factor, layer);
+      light_layer(&lighting, layer);
+      composite(a, k, shows, layer, lo);
+    }
+  }
+  k->i = k->i + vi_set(1);
+#endif
+  k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
+}
+
+#undef OUTLINE
+#undef COMPONENT_VALUES
+
+INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+{
+  (void)a;
+  (void)table;
+  (void)k;
+}
