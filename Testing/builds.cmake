@@ -48,7 +48,7 @@ if (stratus_vtk)
 endif ()
 
 # ---- every kernel through clang's own OpenCL front end, warnings as errors
-file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/kernels/*.cl")
+file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/kernels/*/*.cl")
 foreach (kernel IN LISTS kernels)
   get_filename_component(name "${kernel}" NAME_WE)
   set(compile "${PROJECT_SOURCE_DIR}/Testing/compile-kernel" "${CLANG}" "${kernel}")

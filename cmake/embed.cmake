@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DFOLDER=kernels -DNAMES=a,b -DOUT=kernels_embedded.c -P embed.cmake
-# Writes the entry points a.cl, b.cl as byte arrays, each #include "x.h" replaced, once a kernel, by the file itself: an OpenCL device sees no
-# file system. #line keeps build logs readable.
+# cmake -DFOLDER=kernels -DFILES=kernels/x/a.cl,kernels/y/b.cl -DOUT=kernels_embedded.c -P embed.cmake
+# Writes the entry points a.cl, b.cl as byte arrays, each #include "x.h" replaced, once a kernel, by the file of that name in a room of
+# FOLDER: an OpenCL device sees no file system. #line keeps build logs readable.
 cmake_minimum_required(VERSION 3.20)
 
 set(quote_include "(^|\n)[ \t]*#[ \t]*include[ \t]+\"([^\"\n]+)\"[^\n]*")
@@ -13,10 +13,12 @@ function (expand file output)
     return ()
   endif ()
   set_property(GLOBAL APPEND PROPERTY seen "${file}")
-  if (NOT EXISTS "${FOLDER}/${file}")
-    message(FATAL_ERROR "${FOLDER}/${file}: included, but not there")
+  file(GLOB path "${FOLDER}/*/${file}")
+  list(LENGTH path count)
+  if (NOT count EQUAL 1)
+    message(FATAL_ERROR "${FOLDER}/*/${file}: included, but there are ${count} of them")
   endif ()
-  file(READ "${FOLDER}/${file}" rest)
+  file(READ "${path}" rest)
   set(result "#line 1 \"${file}\"\n")
   set(line 1)
   while (rest MATCHES "${quote_include}")
@@ -42,8 +44,9 @@ endfunction ()
 
 set(arrays "")
 set(cases "")
-string(REPLACE "," ";" names "${NAMES}")
-foreach (name IN LISTS names)
+string(REPLACE "," ";" files "${FILES}")
+foreach (file IN LISTS files)
+  get_filename_component(name "${file}" NAME_WE)
   set_property(GLOBAL PROPERTY seen "")
   expand("${name}.cl" text)
   string(HEX "${text}" hex)
