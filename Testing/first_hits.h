@@ -3,7 +3,7 @@
 #ifndef STRATUS_TESTING_FIRST_HITS_H
 #define STRATUS_TESTING_FIRST_HITS_H
 
-#include "base.h"
+#include "volume.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

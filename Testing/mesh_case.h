@@ -3,7 +3,7 @@
 #ifndef STRATUS_MESH_CASE_H
 #define STRATUS_MESH_CASE_H
 
-#include "base.h"
+#include "volume.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

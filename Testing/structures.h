@@ -3,7 +3,7 @@
 #ifndef STRATUS_TESTING_STRUCTURES_H
 #define STRATUS_TESTING_STRUCTURES_H
 
-#include "base.h"
+#include "volume.h"
 
 #include <float.h>
 #include <setjmp.h>

@@ -1,34 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Cameras from what people say of them: where from, where to, which way is up. */
-#include "base.h"
+#include "camera.h"
+
+#include "matrix.h"
+#include "vector.h"
 
 #define DEGREES_TO_RADIANS 0.017453292519943295
 /* sin of the smallest angle between view direction and view-up that still tells which way is up in double. */
 #define PARALLEL_BELOW 1e-9
-
-/* Length 1; false for a zero or infinite vector. Scaled first, so that no square over- or underflows. */
-static bool normalize(double v[3])
-{
-  const double largest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
-  if (!(largest > 0.0) || !isfinite(largest)) {
-    return false;
-  }
-  for (int a = 0; a < 3; ++a) {
-    v[a] /= largest;
-  }
-  const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  for (int a = 0; a < 3; ++a) {
-    v[a] /= length;
-  }
-  return true;
-}
-
-static void cross(const double a[3], const double b[3], double result[3])
-{
-  result[0] = a[1] * b[2] - a[2] * b[1];
-  result[1] = a[2] * b[0] - a[0] * b[2];
-  result[2] = a[0] * b[1] - a[1] * b[0];
-}
+/* Squared lengths of the forward vector that a camera may have. */
+#define SMALLEST_VECTOR 1e-30
+#define LARGEST_VECTOR 1e30
 
 static stratus_status check_vector(stratus_context* context, const char* what, const double* v)
 {
@@ -63,20 +45,20 @@ static stratus_status aim(stratus_context* context, const double eye[3], const d
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "camera aspect %g times half the window's height, %g, must be finite", aspect, half_height);
   }
-  if (!normalize(forward)) {
+  if (!stratus_vector_normalize(forward)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye and focal point (%g, %g, %g) must differ, by a finite distance",
       focal[0], focal[1], focal[2]);
   }
-  if (!normalize(upwards)) {
+  if (!stratus_vector_normalize(upwards)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera view_up is (0, 0, 0), must have a length");
   }
-  cross(forward, upwards, right);
+  stratus_vector_cross(forward, upwards, right);
   if (!(right[0] * right[0] + right[1] * right[1] + right[2] * right[2] > PARALLEL_BELOW * PARALLEL_BELOW)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera view_up (%g, %g, %g) is parallel to the view direction", view_up[0],
       view_up[1], view_up[2]);
   }
-  (void)normalize(right);
-  cross(right, forward, up);
+  (void)stratus_vector_normalize(right);
+  stratus_vector_cross(right, forward, up);
 
   stratus_camera result = { .near_k = 0.0, .far_k = INFINITY, .parallel = parallel };
   for (int a = 0; a < 3; ++a) {
@@ -111,4 +93,80 @@ stratus_status stratus_camera_parallel(stratus_context* context, const double ey
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera parallel_scale %g, must be positive and finite", parallel_scale);
   }
   return aim(context, eye, focal, view_up, parallel_scale, aspect, 1, camera);
+}
+
+stratus_status stratus_camera_check(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
+{
+  if (!camera) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
+  }
+  if (!stratus_vector_finite(camera->eye) || !stratus_vector_finite(camera->forward) || !stratus_vector_finite(camera->right) ||
+    !stratus_vector_finite(camera->up)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera eye (%g, %g, %g), forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) must be finite", camera->eye[0],
+      camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2], camera->right[0], camera->right[1],
+      camera->right[2], camera->up[0], camera->up[1], camera->up[2]);
+  }
+  const double* f = camera->forward;
+  const double* r = camera->right;
+  const double* u = camera->up;
+  const double ff = stratus_vector_dot(f, f), rr = stratus_vector_dot(r, r), uu = stratus_vector_dot(u, u);
+  if (!(ff >= SMALLEST_VECTOR && ff <= LARGEST_VECTOR)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera forward (%g, %g, %g) has no direction: its squared length %g must be %g..%g", f[0], f[1], f[2], ff, SMALLEST_VECTOR,
+      LARGEST_VECTOR);
+  }
+  const double volume = f[0] * (r[1] * u[2] - r[2] * u[1]) + f[1] * (r[2] * u[0] - r[0] * u[2]) + f[2] * (r[0] * u[1] - r[1] * u[0]);
+  if (!camera->parallel && rr > 0.0 && uu > 0.0 && !(fabs(volume) > 1e-12 * sqrt(ff) * sqrt(rr) * sqrt(uu))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) lie in one plane", f[0], f[1], f[2], r[0], r[1], r[2], u[0],
+      u[1], u[2]);
+  }
+  if (!(camera->near_k < camera->far_k) || !isfinite(camera->near_k) || (!camera->parallel && camera->near_k < 0.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera near %g and far %g: near must be %sfinite and below far", camera->near_k,
+      camera->far_k, camera->parallel ? "" : "at least 0, ");
+  }
+  if (image->opaque_depth && (!isfinite(camera->far_k) || (!camera->parallel && camera->near_k <= 0.0))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "opaque depth needs a finite far and a positive near, not %g and %g",
+      camera->far_k, camera->near_k);
+  }
+  return STRATUS_OK;
+}
+
+void stratus_camera_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
+  const double lo[3], const double hi[3], const int sides[2], int window[4])
+{
+  double matrix[16] = { [15] = 1.0 }, inverse[16], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
+  window[0] = window[2] = 0;
+  window[1] = sides[0];
+  window[3] = sides[1];
+  for (int row = 0; row < 3; ++row) {
+    matrix[4 * row] = right[row];
+    matrix[4 * row + 1] = up[row];
+    matrix[4 * row + 2] = forward[row];
+  }
+  if (!stratus_matrix_invert_affine(matrix, inverse)) {
+    return;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    double point[3], uvk[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = (corner >> axis & 1 ? hi[axis] : lo[axis]) - eye[axis];
+    }
+    stratus_matrix_vector(inverse, point, uvk);
+    if (!parallel && !(uvk[2] > 0.0)) {
+      return;
+    }
+    for (int side = 0; side < 2; ++side) {
+      const double at = uvk[side] / (parallel ? 1.0 : uvk[2]);
+      range[2 * side] = fmin(range[2 * side], at);
+      range[2 * side + 1] = fmax(range[2 * side + 1], at);
+    }
+  }
+  for (int side = 0; side < 2; ++side) {
+    const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0),
+                 last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
+    window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
+    window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
+  }
 }

@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "device_state.h"
 
+#include "device.h"
+
 #include <ctype.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -395,4 +397,9 @@ stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, si
   }
   TRY(stratus_device_check(context, device, "clEnqueueMapBuffer", error));
   return CALL(context, device, "clEnqueueUnmapMemObject", clEnqueueUnmapMemObject(device->queue, buffer, mapped, 0, NULL, NULL));
+}
+
+bool stratus_device_builds(const stratus_context* context)
+{
+  return context->device && !stratus_device_is_cpu(context->device);
 }

@@ -14,6 +14,9 @@
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
 void stratus_device_close(stratus_device* device); /* takes NULL */
 
+/* Whether structures are built on the context's device: the host builds them faster than a CPU's OpenCL. */
+bool stratus_device_builds(const stratus_context* context);
+
 const char* stratus_device_label(const stratus_device* device);
 bool stratus_device_is_cpu(const stratus_device* device);
 bool stratus_device_has_double(const stratus_device* device);

@@ -2,10 +2,10 @@
  * What the builders of bounding volume hierarchies share. Each makes a binary tree down to single boxes, in whatever way is its own;
  * bvh_layout.c then gathers boxes into leaves where that is cheaper, bounds the depth and lays the nodes out. So builders differ in shape
  * only. */
-#ifndef STRATUS_BVH_H
-#define STRATUS_BVH_H
+#ifndef STRATUS_BVH_BUILD_H
+#define STRATUS_BVH_BUILD_H
 
-#include "tree.h"
+#include "bvh.h"
 
 #define STRATUS_BVH_LEAF 0x80000000u
 #define STRATUS_BVH_BOXES_MAX 0x1fffffffu
@@ -31,8 +31,6 @@ typedef struct stratus_bvh_build {
 /* ---- bvh_morton.c */
 /* Sorts boxes into `build`, whose context, count and max_depth are set. On failure what was allocated is the caller's to release. */
 stratus_status stratus_bvh_sort_boxes(stratus_bvh_build* build, const stratus_box* boxes);
-/* Stable sort of keys, of which only the lowest `bits` may be set, and their values. */
-stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits);
 
 /* ---- bvh_device.c: the same to the bit as on the host. */
 /* Whether the context's device should build structures, and can take as many boxes. */

@@ -7,6 +7,8 @@
  * none looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
 #include "bvh_build.h"
 
+#include "radix_sort.h"
+
 #include <string.h>
 
 #define LEVELS_MAX 32

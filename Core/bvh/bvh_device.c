@@ -2,11 +2,10 @@
  * Morton codes and the hierarchy over them on the context's OpenCL device: buffers and launches of kernels/morton.cl. */
 #include "bvh_build.h"
 #include "device.h"
-#include "volume_device.h"
 
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count)
 {
-  return stratus_structures_on_device(context) && count <= stratus_device_largest_allocation(context->device) / sizeof(stratus_box);
+  return stratus_device_builds(context) && count <= stratus_device_largest_allocation(context->device) / sizeof(stratus_box);
 }
 
 stratus_status stratus_device_morton_codes(

@@ -5,6 +5,8 @@
  * alone. */
 #include "bvh_build.h"
 
+#include "radix_sort.h"
+
 #include <stdatomic.h>
 
 #define NO_PARENT UINT32_MAX

@@ -3,6 +3,8 @@
  * three orders sorted. The measure of the other builders' trees. */
 #include "bvh_build.h"
 
+#include "radix_sort.h"
+
 #include <string.h>
 
 #define TASK_BOXES 1024 /* smaller ranges stay with the thread that finds them */

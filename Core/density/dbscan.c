@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * DBSCAN (Ester et al. 1996) of points on a line at whole coordinates, given as counts: one scan with a sliding window. Noise between
  * clusters that two of them reach belongs to the lower one, as in a scan of the points in ascending order. */
-#include "tree.h"
+#include "density.h"
 
 typedef struct cluster {
   int32_t first, last; /* core coordinates */

@@ -7,7 +7,8 @@
  * from a brick's corner voxel, the worst, to its 64 places. For bandwidths beyond 30 voxels see density_cells.c. */
 #include "density.h"
 #include "volume_device.h"
-#include "tree.h"
+#include "device.h"
+#include "density_plan.h"
 
 #include <float.h>
 
@@ -33,7 +34,7 @@ static stratus_status sum_weights(
     return stratus_density_cells(context, bricks, count, density->bandwidth, density->exact, density->start, sums);
   }
   TRY_CLEANUP(stratus_density_plan_create(context, density->bandwidth, density->exact, &plan));
-  if (stratus_structures_on_device(context) && stratus_device_takes_density(context, &plan, count, voxels)) {
+  if (stratus_device_builds(context) && stratus_device_takes_density(context, &plan, count, voxels)) {
     TRY_CLEANUP(stratus_device_density(context, &plan, bricks, count, density->start, sums));
   } else {
     TRY_CLEANUP(stratus_density_rows(&plan, bricks, count, density->start, sums));

@@ -1,89 +1,44 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the ways to sum a density over bricks share: weights in fixed point, and how neighbouring bricks are found.
- *
- * A weight of the kernel is rounded once, to 28 bits behind the point, and sums of weights are integers: any order, any number of threads
- * and any device give the same bits. Rounding moves a density by at most 2^-29 of what one voxel adds at its own place, for each voxel in
- * reach. */
+ * Densities of effective voxels, and clusters along an axis. */
 #ifndef STRATUS_DENSITY_H
 #define STRATUS_DENSITY_H
 
 #include "voxels.h"
 
-#define DENSITY_POINT 28    /* bits behind the point: fifteen weights still fit 32 bits */
-#define DENSITY_REACH_MAX 7 /* bricks to each side: their rows fit 64 bits */
-#define DENSITY_SIDE_MAX (STRATUS_BRICK * (2 * DENSITY_REACH_MAX + 1))
-#define DENSITY_PARALLEL 2048 /* fewer bricks than this are not worth a team of threads */
-
-/* 105 / (32 pi): makes the integral of (1 - t^2)^2 over the unit ball 1. */
-#define DENSITY_CONSTANT 1.0444543140405631
-
-/* One row of voxels in reach of a voxel: `offset` among the rows gathered around a brick, `table` where its sums begin. */
-typedef struct density_row {
-  int32_t offset;
-  int32_t table;
-} density_row;
-
-/* Exact: a row's window of 2*radius + 1 bits is looked up in `chunks` pieces of `width` bits: table[row.table + (piece << width) + bits].
- * Over bricks: table[(|dz|*(reach+1) + |dy|)*(reach+1) + |dx|] is the mean weight of a brick's 64 places, seen from a brick's middle. */
-typedef struct density_plan {
+/* ---- density.c: the field that the hybrid tree splits by. Deterministic: the same bits at any thread count and on host and device. */
+typedef struct stratus_density {
   stratus_context* context;
   double bandwidth;
-  int exact;
-  int radius; /* largest whole number of voxels below the bandwidth */
-  int reach;  /* bricks to each side */
-  int width, chunks;
-  int row_count;
-  size_t table_size;
-  density_row* rows;
-  uint32_t* table;
-} density_plan;
+  int exact; /* 1: of[] has a density a voxel (bricks in order, bits ascending); 0: a density a brick, at the brick's middle */
+  float* of;
+  int64_t* start; /* exact: of[start[b]] is the first voxel of brick b; brick_count + 1 entries. NULL if not exact. */
+} stratus_density;
 
-/* Whether bricks in reach are few enough for a plan; beyond it stratus_density_cells() sums. */
-bool stratus_density_plan_fits(double bandwidth, int exact);
-stratus_status stratus_density_plan_create(stratus_context* context, double bandwidth, int exact, density_plan* plan);
-void stratus_density_plan_release(density_plan* plan);
+/* bricks: count of them, any subset of a set's, in its order (a node's). bandwidth > 0. */
+stratus_status stratus_density_create(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact, stratus_density** density);
+void stratus_density_destroy(stratus_density* density);
+stratus_status stratus_density_bandwidth_of(
+  stratus_context* context, const stratus_brick* bricks, int64_t count, double* bandwidth, double* raw);
+/* The densest effective voxel among the bricks numbered which[0..count-1] (NULL: all `count`) of those the density was made of; ties go to
+ * the first in (z, y, x). Not exact: the densest brick's voxel nearest to its middle, ties the same. */
+void stratus_density_peak(
+  const stratus_density* density, const stratus_brick* bricks, const uint32_t* which, int64_t count, int32_t peak[3]);
+/* Where density falls most steeply along each axis through the peak: for every axis and both sides, the first change of sign of the second
+ * derivative (eq. 11; sampled at voxel borders from the peak outward, within [lo, hi)), and the first derivative's size there.
+ * position[axis][side] in voxels (a plane between voxels position-1 and position), fall = 0 where there is none. Sums over the node's
+ * bricks. */
+typedef struct stratus_density_borders {
+  int32_t position[3][2];
+  double fall[3][2];
+} stratus_density_borders;
+stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
+  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders);
 
-/* Sums of weights in fixed point: exact: a voxel (start[b] is the first of brick b), else a brick. */
-stratus_status stratus_density_rows(
-  const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums); /* density_rows.c */
-stratus_status stratus_density_cells(stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact,
-  const int64_t* start, uint64_t* sums); /* density_cells.c */
-/* density_device.c: the same by the context's OpenCL device. */
-bool stratus_device_takes_density(const stratus_context* context, const density_plan* plan, int64_t count, int64_t voxels);
-stratus_status stratus_device_density(
-  stratus_context* context, const density_plan* plan, const stratus_brick* bricks, int64_t count, const int64_t* start, uint64_t* sums);
-
-/* (1 - t^2)^2 of a squared distance in fixed point, 0 from the bandwidth on. */
-static inline uint64_t density_weight(double squared, double bandwidth)
-{
-  const double rest = 1.0 - squared / (bandwidth * bandwidth);
-  return rest > 0.0 ? (uint64_t)(rest * rest * (double)(1u << DENSITY_POINT) + 0.5) : 0;
-}
-
-/* Of a brick's place, which may lie up to DENSITY_REACH_MAX + 1 outside the grid: ascending as bricks are. */
-static inline uint64_t density_key(int64_t x, int64_t y, int64_t z)
-{
-  return (uint64_t)(z + 8) << 40 | (uint64_t)(y + 8) << 20 | (uint64_t)(x + 8);
-}
-
-static inline uint64_t density_brick_key(const stratus_brick* brick)
-{
-  return density_key(brick->at[0], brick->at[1], brick->at[2]);
-}
-
-/* First of the ascending bricks whose key is not below `key`. */
-static inline int64_t density_first_brick(const stratus_brick* bricks, int64_t count, uint64_t key)
-{
-  int64_t low = 0;
-  while (low < count) {
-    const int64_t middle = low + (count - low) / 2;
-    if (density_brick_key(bricks + middle) < key) {
-      low = middle + 1;
-    } else {
-      count = middle;
-    }
-  }
-  return low;
-}
+/* ---- dbscan.c: 1-D DBSCAN of coordinates given as counts: counts[i] voxels have coordinate i, 0 <= i < n; reach eps >= 1 in coordinates,
+ * min_points. Finds the cluster that holds coordinate `peak`: [*lo, *hi); returns its number of core coordinates, 0 if the peak is noise.
+ * *clusters: how many. */
+int32_t stratus_dbscan_counts(
+  const int64_t* counts, int32_t n, int32_t eps, int64_t min_points, int32_t peak, int32_t* lo, int32_t* hi, int32_t* clusters);
 
 #endif

@@ -2,7 +2,8 @@
  * The bandwidth of density by a rule of thumb (Guo et al. 2025, eq. 3 and 4): spread of the voxels' distances to their mean place, over the
  * fifth root of their number. Sums run in chunks that depend on the number of bricks alone, so that threads change no bit. */
 #include "density.h"
-#include "tree.h"
+
+#include "density_plan.h"
 
 #include <omp.h>
 #include <string.h>

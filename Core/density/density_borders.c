@@ -5,7 +5,8 @@
  *   c / (n h^3) (1 - u)^2,   its derivative along x   -4 c / (n h^5) (x - xi) (1 - u),   the second   -4 c / (n h^5) (1 - u - 2 (x - xi)^2
  * / h^2). Guo et al. 2025 print the same (eq. 9 to 11) with 15/16, and 15/4 for 4 c: the constant of one dimension. */
 #include "density.h"
-#include "tree.h"
+
+#include "density_plan.h"
 
 #include <stdlib.h>
 #include <string.h>

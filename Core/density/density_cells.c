@@ -3,7 +3,7 @@
  * neighbours are in 27 cells, three to a row. A point is a voxel, or, over bricks, the voxels of a bin, all in its middle: a bin's edge is
  * a quarter to an eighth of the bandwidth, and each of its bricks gets the density there, which is at most .87 edges from the brick's
  * middle and errs by min(1, 1.54 * .87 * edge / bandwidth) for each voxel in reach, in units of what one adds at its own place. */
-#include "density.h"
+#include "density_plan.h"
 
 #include <stdlib.h>
 

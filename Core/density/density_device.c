@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The sums of density_rows.c on the context's OpenCL device: buffers, arguments and launches of kernels/density.cl. */
-#include "density.h"
+#include "density_plan.h"
 #include "device.h"
 
 typedef struct density_buffers {

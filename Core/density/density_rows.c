@@ -2,7 +2,7 @@
  * Sums of weights over few bricks in reach. A voxel's neighbours are read as rows of bits, and a row's sum of weights is looked up. Bricks
  * are in ascending order, and so are the bricks at a fixed distance from them: each row of neighbours has a cursor that only moves forward.
  */
-#include "density.h"
+#include "density_plan.h"
 
 #include <omp.h>
 #include <string.h>

@@ -74,7 +74,7 @@ stratus_status stratus_bits_create(stratus_context* context, const stratus_voxel
 
 bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes)
 {
-  return stratus_structures_on_device(context) &&
+  return stratus_device_builds(context) &&
     (size_t)n[0] * (size_t)n[1] * (size_t)n[2] <= stratus_device_largest_allocation(context->device) / bytes;
 }
 

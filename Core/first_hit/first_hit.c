@@ -4,7 +4,7 @@
 
 #include "first_hit_arguments.h"
 #include "device.h"
-#include "ray_cast_host.h"
+#include "instruction_set.h"
 
 #include <omp.h>
 #include <stdatomic.h>
@@ -74,17 +74,8 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
 
 const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context)
 {
-  const int best = stratus_ray_cast_best_isa(), isa = context->isa < best ? context->isa : best;
-#if STRATUS_HAVE_X86_ISAS
-  if (isa == 2) {
-    return &stratus_hit_functions_isa2;
-  }
-  if (isa == 1) {
-    return &stratus_hit_functions_isa1;
-  }
-#endif
-  (void)isa;
-  return &stratus_hit_functions_isa0;
+  static const stratus_hit_functions* const functions[] = STRATUS_ISA_EACH(&stratus_hit_functions);
+  return functions[stratus_isa_at_most(context->isa)];
 }
 
 /* Packets walk one field; and where every position is in doubt they would be a waste. */

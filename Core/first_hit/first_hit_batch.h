@@ -3,6 +3,7 @@
 #ifndef STRATUS_FIRST_HIT_LAYER_H
 #define STRATUS_FIRST_HIT_LAYER_H
 
+#include "instruction_set.h"
 #include "tree.h"
 
 /* What all rays of a batch need. Voxel coordinates: voxel i is i .. i+1, so they are index coordinates + 1/2. */

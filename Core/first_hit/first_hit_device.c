@@ -5,7 +5,6 @@
 
 #include "first_hit_arguments.h"
 #include "device.h"
-#include "ray_cast_host.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -9,9 +9,6 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
 
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-
 /* ---------------------------------------------------------------- in */
 
 #define HAIR 4e-7 /* of t found in floats, over t */
@@ -345,4 +342,4 @@ static void finish(const stratus_hit_batch* batch, const stratus_ray* rays, cons
   }
 }
 
-const stratus_hit_functions JOIN(stratus_hit_functions_isa, STRATUS_ISA) = { prepare, walk, finish };
+const stratus_hit_functions STRATUS_ISA_NAME(stratus_hit_functions) = { prepare, walk, finish };

@@ -2,7 +2,7 @@
  * Cells sorted by the Morton code of where they are: for the partition's leaves, the order of visibility and the march. */
 #include "cell_morton.h"
 
-#include "bvh_build.h"
+#include "radix_sort.h"
 
 #include "morton.h"
 

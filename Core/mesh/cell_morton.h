@@ -4,7 +4,7 @@
 #ifndef STRATUS_CELL_MORTON_H
 #define STRATUS_CELL_MORTON_H
 
-#include "base.h"
+#include "volume.h"
 
 /* So many cells fit a cache in any order. */
 #define STRATUS_MORTON_FEW_CELLS 4096

@@ -2,6 +2,8 @@
  * The view of a mesh of tetrahedra: what must hold before anything reads through its point numbers. */
 #include "mesh.h"
 
+#include "matrix.h"
+
 #include <string.h>
 
 #define POINTS_MAX 2147483647LL

@@ -3,7 +3,7 @@
 #ifndef STRATUS_MESH_H
 #define STRATUS_MESH_H
 
-#include "base.h"
+#include "volume.h"
 
 /* Of the largest coordinate: what lies nearer to a partition's plane lies on it. Some roundings of a point that is computed to be there. */
 #define STRATUS_PLANE_TOLERANCE 0x1p-46

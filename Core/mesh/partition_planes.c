@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The plane that a node is cut by: every candidate's new cells (the paper's beta) and balance (alpha) are counted, none is estimated. Of
  * the median rule the candidates pass through points of the mesh: a grid, however bent, often has planes of faces that cut nothing. */
-#include "bvh_build.h"
+#include "radix_sort.h"
 #include "partition_build.h"
 
 #include <string.h>

@@ -3,6 +3,8 @@
  * (frustum_exact.c) by every separating axis. Whatever rounds, rounds towards "seen". */
 #include "frustum.h"
 
+#include "vector.h"
+
 #include <string.h>
 
 /* ---- from a camera */

@@ -4,36 +4,13 @@
 #define STRATUS_FRUSTUM_H
 
 #include "base.h"
+#include "vector.h"
 
 #define STRATUS_PLANES 6
 #define STRATUS_DEPENDENT_BELOW 1e-12 /* volume of three unit vectors that no longer span a space */
 /* Of a plane's value at a point, relative to the sum of its terms' magnitudes: four products and sums round by less. */
 #define STRATUS_PLANE_SLACK 2e-15
 #define STRATUS_COORDINATE_MAX 1e30 /* beyond it a box has no bounds */
-
-static inline void stratus_vector_cross(const double a[3], const double b[3], double result[3])
-{
-  result[0] = a[1] * b[2] - a[2] * b[1];
-  result[1] = a[2] * b[0] - a[0] * b[2];
-  result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/* Length 1, and the length that it had; 0 for none. */
-static inline double stratus_vector_normalize(double v[3])
-{
-  const double largest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
-  if (!(largest > 0.0) || !isfinite(largest)) {
-    return 0.0;
-  }
-  for (int a = 0; a < 3; ++a) {
-    v[a] /= largest;
-  }
-  const double length = sqrt(stratus_vector_dot(v, v));
-  for (int a = 0; a < 3; ++a) {
-    v[a] /= length;
-  }
-  return largest * length;
-}
 
 typedef struct stratus_frustum_plan {
   double planes[STRATUS_PLANES][4]; /* scaled by powers of two, so that the largest coefficient of the normal is in .5..1 */

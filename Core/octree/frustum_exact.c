@@ -3,6 +3,8 @@
  * edge. */
 #include "frustum.h"
 
+#include "vector.h"
+
 #include <string.h>
 
 #define CORNER_SLACK 1e-9 /* of a corner's place, relative to how far it is: three planes meet less exactly than one is known */

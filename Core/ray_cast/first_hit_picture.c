@@ -6,6 +6,8 @@
 #include "first_hit_picture.h"
 
 #include "picture.h"
+#include "camera.h"
+#include "matrix.h"
 
 #include <string.h>
 
@@ -260,8 +262,8 @@ static void set_window(first_hit_frame* frame)
   const int sides[2] = { frame->image->width, frame->image->height };
   memset(frame->window, 0, sizeof frame->window);
   if (frame->scene.lo[0] < frame->scene.hi[0]) {
-    stratus_ray_window(frame->eye, frame->right, frame->up, frame->forward, frame->camera->parallel != 0, frame->scene.lo, frame->scene.hi,
-      sides, frame->window);
+    stratus_camera_window(frame->eye, frame->right, frame->up, frame->forward, frame->camera->parallel != 0, frame->scene.lo,
+      frame->scene.hi, sides, frame->window);
   }
 }
 
@@ -271,7 +273,7 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   stratus_context* context = caster->context;
   first_hit_frame frame = { .options = options, .image = image, .camera = camera };
   double index_to_world[16], world_to_index[16];
-  TRY(stratus_ray_check_camera(context, camera, image));
+  TRY(stratus_camera_check(context, camera, image));
   if (options->shading.on) {
     TRY(stratus_shading_check(context, &options->shading));
   }

@@ -2,29 +2,10 @@
  * The colour of a hit: the transfer function's at the voxel's value, in the light that falls on the face, the field or the cut. */
 #include "first_hit_picture.h"
 
+#include "vector.h"
+#include "matrix.h"
+
 #include <string.h>
-
-static double dot3(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Length 1; false for a vector without length. Scaled first, so that no square over- or underflows. */
-static bool normalize(double v[3])
-{
-  const double largest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
-  if (!(largest > 0.0) || !isfinite(largest)) {
-    return false;
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    v[axis] /= largest;
-  }
-  const double length = sqrt(dot3(v, v));
-  for (int axis = 0; axis < 3; ++axis) {
-    v[axis] /= length;
-  }
-  return true;
-}
 
 /* ---- set-up */
 
@@ -78,7 +59,7 @@ static void set_lights(stratus_shader* shader, const stratus_camera* camera, con
   }
   for (int i = 0; i < shader->light_count; ++i) {
     if (!shader->lights[i].positional) {
-      (void)normalize(shader->lights[i].vector);
+      (void)stratus_vector_normalize(shader->lights[i].vector);
     }
   }
 }
@@ -95,13 +76,13 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
   memcpy(shader->world_to_index, world_to_index, sizeof shader->world_to_index);
   for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's rows, shear or not */
     memcpy(shader->face[axis], world_to_index + 4 * axis, sizeof shader->face[axis]);
-    (void)normalize(shader->face[axis]);
+    (void)stratus_vector_normalize(shader->face[axis]);
   }
   for (int p = 0; p < options->clip_plane_count; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       shader->plane[p][axis] = -options->clip_planes[p][axis];
     }
-    (void)normalize(shader->plane[p]);
+    (void)stratus_vector_normalize(shader->plane[p]);
   }
   if (options->shading.on) {
     set_lights(shader, camera, &options->shading);
@@ -162,10 +143,10 @@ static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3]
       world[row] += slope * shader->world_to_index[4 * axis + row];
     }
   }
-  if (!normalize(world)) {
+  if (!stratus_vector_normalize(world)) {
     return false;
   }
-  const double sign = dot3(world, direction) > 0.0 ? -1.0 : 1.0;
+  const double sign = stratus_vector_dot(world, direction) > 0.0 ? -1.0 : 1.0;
   for (int axis = 0; axis < 3; ++axis) {
     normal[axis] = sign * world[axis];
   }
@@ -211,14 +192,15 @@ static void illuminate(
     for (int axis = 0; axis < 3; ++axis) {
       to[axis] = shader->lights[i].vector[axis] - (shader->lights[i].positional ? point[axis] : 0.0);
     }
-    if (shader->lights[i].positional && !normalize(to)) {
+    if (shader->lights[i].positional && !stratus_vector_normalize(to)) {
       memcpy(to, normal, sizeof to); /* the light stands on the hit */
     }
-    const double cosine = dot3(normal, to);
+    const double cosine = stratus_vector_dot(normal, to);
     if (!(cosine > 0.0)) {
       continue;
     }
-    const double mirrored = dot3(to, direction) - 2.0 * cosine * dot3(normal, direction); /* R V, with V against the direction */
+    const double mirrored =
+      stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R V, with V against the direction */
     const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
     for (int c = 0; c < 3; ++c) {
       light[c] += shading->diffuse * cosine * shader->lights[i].color[c];
@@ -238,7 +220,7 @@ void stratus_shader_apply(
   int face;
   const double t = entry(ray, voxel, &face);
   stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
-  const double length = sqrt(dot3(direction, direction));
+  const double length = sqrt(stratus_vector_dot(direction, direction));
   color_at(shader->transfer, value_at(shader, at) + shader->bias, rgb);
   if (shader->options->shading.on) {
     for (int axis = 0; axis < 3; ++axis) {

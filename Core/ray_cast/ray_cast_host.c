@@ -3,33 +3,13 @@
 #include "ray_cast_host.h"
 
 #include "ray_caster.h"
+#include "instruction_set.h"
 
 #include <omp.h>
 #include <stdatomic.h>
 
 /* Pixels a tile: small enough to share out evenly, large enough that its rays meet the same voxels. */
 #define TILE 32
-
-int stratus_ray_cast_best_isa(void)
-{
-#if STRATUS_HAVE_X86_ISAS
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-    __builtin_cpu_supports("avx512vl")) {
-    return 2;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    return 1;
-  }
-#endif
-  return 0;
-}
-
-const char* stratus_ray_cast_isa(void)
-{
-  static const char* const names[3] = { "baseline", "AVX2", "AVX-512" };
-  return names[stratus_ray_cast_best_isa()];
-}
 
 int stratus_ray_cast_type_is_fast(int type)
 {
@@ -40,17 +20,10 @@ int stratus_ray_cast_type_is_fast(int type)
 stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant)
 {
   typedef stratus_ray_cast_tile* tile_of(int type, stratus_ray_variant variant);
-#if STRATUS_HAVE_X86_ISAS
-  static tile_of* const composite[3] = { stratus_ray_cast_tile_isa0, stratus_ray_cast_tile_isa1, stratus_ray_cast_tile_isa2 };
-  static tile_of* const modes[3] = { stratus_ray_modes_tile_isa0, stratus_ray_modes_tile_isa1, stratus_ray_modes_tile_isa2 };
-  static tile_of* const shading[3] = { stratus_ray_shading_tile_isa0, stratus_ray_shading_tile_isa1, stratus_ray_shading_tile_isa2 };
-#else
-  static tile_of* const composite[1] = { stratus_ray_cast_tile_isa0 };
-  static tile_of* const modes[1] = { stratus_ray_modes_tile_isa0 };
-  static tile_of* const shading[1] = { stratus_ray_shading_tile_isa0 };
-#endif
-  const int best = stratus_ray_cast_best_isa();
-  isa = isa < best ? isa : best;
+  static tile_of* const composite[] = STRATUS_ISA_EACH(stratus_ray_cast_tile);
+  static tile_of* const modes[] = STRATUS_ISA_EACH(stratus_ray_modes_tile);
+  static tile_of* const shading[] = STRATUS_ISA_EACH(stratus_ray_shading_tile);
+  isa = stratus_isa_at_most(isa);
   return (variant <= STRATUS_VARIANT_PREINTEGRATED ? composite
       : variant < STRATUS_VARIANT_SHADING_MIDPOINT ? modes
                                                    : shading)[isa](type, variant);

@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_CAST_HOST_H
 #define STRATUS_RAY_CAST_HOST_H
 
+#include "instruction_set.h"
 #include "ray_cast_arguments.h"
 
 #include <stdint.h>
@@ -43,10 +44,6 @@ typedef void stratus_ray_cast_tile(const stratus_ray_cast_frame* frame, int x0, 
 stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant);
 /* Types that have a fast fetch. */
 int stratus_ray_cast_type_is_fast(int type);
-
-/* Best instruction set that can run here: 2 AVX-512, 1 AVX2, 0 any; and its name. */
-int stratus_ray_cast_best_isa(void);
-const char* stratus_ray_cast_isa(void);
 
 /* One a compiled instruction set. */
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);

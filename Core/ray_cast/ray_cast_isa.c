@@ -49,15 +49,7 @@
 #define RAY_NAME(x) JOIN(x, pre_float64)
 #include "ray_cast_tile.h"
 
-#if STRATUS_ISA == 2
-#define TILE_ISA stratus_ray_cast_tile_isa2
-#elif STRATUS_ISA == 1
-#define TILE_ISA stratus_ray_cast_tile_isa1
-#else
-#define TILE_ISA stratus_ray_cast_tile_isa0
-#endif
-
-stratus_ray_cast_tile* TILE_ISA(int type, stratus_ray_variant variant)
+stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_cast_tile)(int type, stratus_ray_variant variant)
 {
   static stratus_ray_cast_tile* const tiles[2][11] = {
     { tile_mid_any, tile_mid_int8, tile_mid_uint8, tile_mid_int16, tile_mid_uint16, tile_mid_any, tile_mid_any, tile_mid_any, tile_mid_any,

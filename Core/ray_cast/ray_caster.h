@@ -3,7 +3,7 @@
 #ifndef STRATUS_RAY_CASTER_H
 #define STRATUS_RAY_CASTER_H
 
-#include "base.h"
+#include "volume.h"
 #include "ray_cast_host.h"
 
 typedef struct stratus_ray_device stratus_ray_device;
@@ -168,12 +168,6 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
 /* Adds what table and map decide; either NULL leaves it out. */
 void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
-
-/* The same checks and window for who draws otherwise. Pixels [window[0], window[1]) x [window[2], window[3]) that the box [lo, hi] covers,
- * and one more each way: all of them where it reaches behind the eye. Vectors as in stratus_camera, in the box's coordinates. */
-stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image);
-void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
-  const double lo[3], const double hi[3], const int sides[2], int window[4]);
 
 /* ray_cast_host.c: all tiles on the host. */
 stratus_status stratus_ray_cast_host(

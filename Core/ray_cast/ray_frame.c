@@ -2,6 +2,10 @@
  * From camera, volume and options to the numbers that every ray of a frame shares. */
 #include "ray_caster.h"
 
+#include "vector.h"
+#include "camera.h"
+#include "matrix.h"
+
 #include <string.h>
 
 /* More samples than this on one ray, and floats no longer tell them apart. */
@@ -11,19 +15,9 @@
 #define FLOAT_COARSENESS 0x1p-21
 /* More voxels than this a sample, and the margin above would no longer hold. */
 #define VOXELS_A_SAMPLE_MOST 4096.0
-#define SMALLEST_VECTOR 1e-30
-#define LARGEST_VECTOR 1e30
+#define SMALLEST_SAMPLE_DISTANCE 1e-30
+#define LARGEST_SAMPLE_DISTANCE 1e30
 #define UNBOUNDED 1e30f
-
-static bool finite3(const double v[3])
-{
-  return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
-static double dot3(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* World distance from the eye (parallel: from anywhere in the window) that no point of the volume exceeds. */
 static double farthest_point(const stratus_volume* volume, const stratus_camera* camera, const double m[16])
@@ -40,44 +34,7 @@ static double farthest_point(const stratus_volume* volume, const stratus_camera*
     }
     farthest = fmax(farthest, sqrt(square));
   }
-  return farthest + sqrt(dot3(camera->right, camera->right)) + sqrt(dot3(camera->up, camera->up));
-}
-
-stratus_status stratus_ray_check_camera(stratus_context* context, const stratus_camera* camera, const stratus_image* image)
-{
-  if (!camera) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera is NULL");
-  }
-  if (!finite3(camera->eye) || !finite3(camera->forward) || !finite3(camera->right) || !finite3(camera->up)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "camera eye (%g, %g, %g), forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) must be finite", camera->eye[0],
-      camera->eye[1], camera->eye[2], camera->forward[0], camera->forward[1], camera->forward[2], camera->right[0], camera->right[1],
-      camera->right[2], camera->up[0], camera->up[1], camera->up[2]);
-  }
-  const double* f = camera->forward;
-  const double* r = camera->right;
-  const double* u = camera->up;
-  const double ff = dot3(f, f), rr = dot3(r, r), uu = dot3(u, u);
-  if (!(ff >= SMALLEST_VECTOR && ff <= LARGEST_VECTOR)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "camera forward (%g, %g, %g) has no direction: its squared length %g must be %g..%g", f[0], f[1], f[2], ff, SMALLEST_VECTOR,
-      LARGEST_VECTOR);
-  }
-  const double volume = f[0] * (r[1] * u[2] - r[2] * u[1]) + f[1] * (r[2] * u[0] - r[0] * u[2]) + f[2] * (r[0] * u[1] - r[1] * u[0]);
-  if (!camera->parallel && rr > 0.0 && uu > 0.0 && !(fabs(volume) > 1e-12 * sqrt(ff) * sqrt(rr) * sqrt(uu))) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "camera forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) lie in one plane", f[0], f[1], f[2], r[0], r[1], r[2], u[0],
-      u[1], u[2]);
-  }
-  if (!(camera->near_k < camera->far_k) || !isfinite(camera->near_k) || (!camera->parallel && camera->near_k < 0.0)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera near %g and far %g: near must be %sfinite and below far", camera->near_k,
-      camera->far_k, camera->parallel ? "" : "at least 0, ");
-  }
-  if (image->opaque_depth && (!isfinite(camera->far_k) || (!camera->parallel && camera->near_k <= 0.0))) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "opaque depth needs a finite far and a positive near, not %g and %g",
-      camera->far_k, camera->near_k);
-  }
-  return STRATUS_OK;
+  return farthest + sqrt(stratus_vector_dot(camera->right, camera->right)) + sqrt(stratus_vector_dot(camera->up, camera->up));
 }
 
 static void set_camera(const stratus_camera* camera, const double world_to_index[16], stratus_ray_cast_arguments* a)
@@ -96,12 +53,12 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
       targets[v][axis] = stratus_pair_of(vector[axis]);
     }
   }
-  a->metric[0] = stratus_pair_of(dot3(camera->forward, camera->forward));
-  a->metric[1] = stratus_pair_of(2.0 * dot3(camera->forward, camera->right));
-  a->metric[2] = stratus_pair_of(2.0 * dot3(camera->forward, camera->up));
-  a->metric[3] = stratus_pair_of(dot3(camera->right, camera->right));
-  a->metric[4] = stratus_pair_of(2.0 * dot3(camera->right, camera->up));
-  a->metric[5] = stratus_pair_of(dot3(camera->up, camera->up));
+  a->metric[0] = stratus_pair_of(stratus_vector_dot(camera->forward, camera->forward));
+  a->metric[1] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->right));
+  a->metric[2] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->up));
+  a->metric[3] = stratus_pair_of(stratus_vector_dot(camera->right, camera->right));
+  a->metric[4] = stratus_pair_of(2.0 * stratus_vector_dot(camera->right, camera->up));
+  a->metric[5] = stratus_pair_of(stratus_vector_dot(camera->up, camera->up));
   a->near_k = stratus_pair_of(camera->near_k);
   a->has_far = isfinite(camera->far_k);
   a->far_k = stratus_pair_of(a->has_far ? camera->far_k : 0.0);
@@ -175,7 +132,7 @@ static void set_clip_planes(const stratus_ray_cast_options* options, const doubl
       }
     }
     /* brought to length 1: only its sign counts, and small or large spacings shall not leave the floats' range */
-    const double length = sqrt(dot3(result, result));
+    const double length = sqrt(stratus_vector_dot(result, result));
     for (int i = 0; i < 4; ++i) {
       a->clip[p][i] = stratus_pair_of(length > 0.0 ? result[i] / length : result[i]);
     }
@@ -217,12 +174,12 @@ static stratus_status check_samples(
   }
   double voxels = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    voxels = fmax(voxels, sample_distance * sqrt(dot3(inverse + 4 * axis, inverse + 4 * axis)));
+    voxels = fmax(voxels, sample_distance * sqrt(stratus_vector_dot(inverse + 4 * axis, inverse + 4 * axis)));
   }
-  if (!(voxels <= VOXELS_A_SAMPLE_MOST) || !(sample_distance >= SMALLEST_VECTOR && sample_distance <= LARGEST_VECTOR)) {
+  if (!(voxels <= VOXELS_A_SAMPLE_MOST) || !(sample_distance >= SMALLEST_SAMPLE_DISTANCE && sample_distance <= LARGEST_SAMPLE_DISTANCE)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "sample distance %g is too long or out of range: %g voxels a sample, at most %g; distances %g..%g", sample_distance, voxels,
-      VOXELS_A_SAMPLE_MOST, SMALLEST_VECTOR, LARGEST_VECTOR);
+      VOXELS_A_SAMPLE_MOST, SMALLEST_SAMPLE_DISTANCE, LARGEST_SAMPLE_DISTANCE);
   }
   return STRATUS_OK;
 }
@@ -232,7 +189,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
 {
   double index_to_world[16], world_to_index[16];
   memset(a, 0, sizeof *a);
-  TRY(stratus_ray_check_camera(context, camera, image));
+  TRY(stratus_camera_check(context, camera, image));
   stratus_volume_index_to_world(volume, index_to_world);
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
@@ -290,44 +247,6 @@ static double pair_value(stratus_pair pair)
   return (double)pair.hi + (double)pair.lo;
 }
 
-void stratus_ray_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
-  const double lo[3], const double hi[3], const int sides[2], int window[4])
-{
-  double matrix[16] = { [15] = 1.0 }, inverse[16], range[4] = { INFINITY, -INFINITY, INFINITY, -INFINITY };
-  window[0] = window[2] = 0;
-  window[1] = sides[0];
-  window[3] = sides[1];
-  for (int row = 0; row < 3; ++row) {
-    matrix[4 * row] = right[row];
-    matrix[4 * row + 1] = up[row];
-    matrix[4 * row + 2] = forward[row];
-  }
-  if (!stratus_matrix_invert_affine(matrix, inverse)) {
-    return;
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    double point[3], uvk[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = (corner >> axis & 1 ? hi[axis] : lo[axis]) - eye[axis];
-    }
-    stratus_matrix_vector(inverse, point, uvk);
-    if (!parallel && !(uvk[2] > 0.0)) {
-      return;
-    }
-    for (int side = 0; side < 2; ++side) {
-      const double at = uvk[side] / (parallel ? 1.0 : uvk[2]);
-      range[2 * side] = fmin(range[2 * side], at);
-      range[2 * side + 1] = fmax(range[2 * side + 1], at);
-    }
-  }
-  for (int side = 0; side < 2; ++side) {
-    const double first = floor(0.5 * (range[2 * side] + 1.0) * sides[side] - 1.0),
-                 last = ceil(0.5 * (range[2 * side + 1] + 1.0) * sides[side] + 1.0);
-    window[2 * side] = first > 0.0 ? (int)fmin(first, sides[side]) : 0;
-    window[2 * side + 1] = last < sides[side] ? (int)fmax(last, 0.0) : sides[side];
-  }
-}
-
 static void pair_values(const stratus_pair pairs[3], double values[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
@@ -367,5 +286,5 @@ void stratus_ray_frame_structures(
   pair_values(a->right, right);
   pair_values(a->up, up);
   pair_values(a->forward, forward);
-  stratus_ray_window(eye, right, up, forward, a->parallel, lo, hi, sides, a->window);
+  stratus_camera_window(eye, right, up, forward, a->parallel, lo, hi, sides, a->window);
 }

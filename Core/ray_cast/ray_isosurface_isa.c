@@ -22,15 +22,7 @@
 #define RAY_NAME(x) JOIN(x, surface_float32)
 #include "ray_cast_tile.h"
 
-#if STRATUS_ISA == 2
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa2
-#elif STRATUS_ISA == 1
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa1
-#else
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa0
-#endif
-
-stratus_ray_cast_tile* ISOSURFACE_ISA(int type)
+stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_isosurface_tile)(int type)
 {
   static stratus_ray_cast_tile* const tiles[11] = { tile_surface_any, tile_surface_any, tile_surface_uint8, tile_surface_int16,
     tile_surface_uint16, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_float32, tile_surface_any };

@@ -169,7 +169,7 @@ stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratu
 #pragma omp parallel for num_threads(caster->context->threads)
   for (size_t b = 0; b < blocks; ++b) {
     const float best = smallest ? -ranges->lo[b] : ranges->hi[b]; /* -INFINITY where no value is finite */
-    const float bound = best + 1e-6f * fmaxf(fabsf(ranges->lo[b]), fabsf(ranges->hi[b]));
+    const float bound = best + STRATUS_HULL_SLACK * fmaxf(fabsf(ranges->lo[b]), fabsf(ranges->hi[b]));
     memcpy(bounds + b * sizeof bound, isfinite(best) ? &bound : &best, sizeof bound);
   }
   stratus_release(caster->context, map->bytes);

@@ -41,18 +41,7 @@
 #include "ray_cast_tile.h"
 #undef STRATUS_RAY_MODE
 
-#if STRATUS_ISA == 2
-#define MODES_ISA stratus_ray_modes_tile_isa2
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa2
-#elif STRATUS_ISA == 1
-#define MODES_ISA stratus_ray_modes_tile_isa1
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa1
-#else
-#define MODES_ISA stratus_ray_modes_tile_isa0
-#define ISOSURFACE_ISA stratus_ray_isosurface_tile_isa0
-#endif
-
-stratus_ray_cast_tile* MODES_ISA(int type, stratus_ray_variant variant)
+stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_modes_tile)(int type, stratus_ray_variant variant)
 {
   static stratus_ray_cast_tile* const tiles[2][11] = {
     { tile_best_any, tile_best_any, tile_best_uint8, tile_best_int16, tile_best_uint16, tile_best_any, tile_best_any, tile_best_any,
@@ -60,5 +49,6 @@ stratus_ray_cast_tile* MODES_ISA(int type, stratus_ray_variant variant)
     { tile_sum_any, tile_sum_any, tile_sum_uint8, tile_sum_int16, tile_sum_uint16, tile_sum_any, tile_sum_any, tile_sum_any, tile_sum_any,
       tile_sum_float32, tile_sum_any },
   };
-  return variant == STRATUS_VARIANT_ISOSURFACE ? ISOSURFACE_ISA(type) : tiles[variant == STRATUS_VARIANT_SUMS][type + 1];
+  return variant == STRATUS_VARIANT_ISOSURFACE ? STRATUS_ISA_NAME(stratus_ray_isosurface_tile)(type)
+                                               : tiles[variant == STRATUS_VARIANT_SUMS][type + 1];
 }

@@ -3,6 +3,7 @@
 #include "ray_caster.h"
 
 #include "first_hit_picture.h"
+#include "matrix.h"
 
 _Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
 

@@ -40,15 +40,7 @@
 #define RAY_NAME(x) JOIN(x, shading_pre_float32)
 #include "ray_cast_tile.h"
 
-#if STRATUS_ISA == 2
-#define SHADING_ISA stratus_ray_shading_tile_isa2
-#elif STRATUS_ISA == 1
-#define SHADING_ISA stratus_ray_shading_tile_isa1
-#else
-#define SHADING_ISA stratus_ray_shading_tile_isa0
-#endif
-
-stratus_ray_cast_tile* SHADING_ISA(int type, stratus_ray_variant variant)
+stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_shading_tile)(int type, stratus_ray_variant variant)
 {
   static stratus_ray_cast_tile* const tiles[2][11] = {
     { tile_shading_any, tile_shading_any, tile_shading_uint8, tile_shading_int16, tile_shading_uint16, tile_shading_any, tile_shading_any,

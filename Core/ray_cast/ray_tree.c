@@ -3,6 +3,7 @@
 #include "first_hit_picture.h"
 #include "tree_map_build.h"
 #include "voxels_build.h"
+#include "volume_hash.h"
 
 static const stratus_tree* offered_tree(const stratus_ray_caster* caster)
 {

@@ -4,7 +4,7 @@
 #include "tetra_caster.h"
 
 #include "picture.h"
-#include "ray_caster.h"
+#include "camera.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -281,7 +281,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   TRY(stratus_image_check(caster->context, image));
   TRY(check_options(caster->context, options));
   TRY(stratus_transfer_check(caster->context, transfer));
-  TRY(stratus_ray_check_camera(caster->context, camera, image));
+  TRY(stratus_camera_check(caster->context, camera, image));
   /* what has been checked once need not be again: a moved camera shall not cost a pass over the mesh */
   if (!mesh || !caster->mesh || !same_mesh(&caster->view, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
     TRY(stratus_mesh_check(caster->context, mesh));

@@ -3,7 +3,7 @@
 #ifndef STRATUS_TETRA_CASTER_H
 #define STRATUS_TETRA_CASTER_H
 
-#include "base.h"
+#include "volume.h"
 #include "tetra_march_frame.h"
 #include "tetra_march_device.h"
 #include "tetra_project.h"

@@ -3,7 +3,8 @@
  * column of pixels, and for each tile the border faces that may cover it. */
 #include "tetra_caster.h"
 
-#include "ray_caster.h"
+#include "vector.h"
+#include "matrix.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * All tiles of a picture of tetrahedra on the host: first how many ways into the mesh each pixel has, then the ways and the march. */
 #include "tetra_caster.h"
 
-#include "ray_caster.h"
+#include "instruction_set.h"
 
 #include <omp.h>
 #include <stdatomic.h>
@@ -12,17 +12,8 @@
 
 static stratus_tetra_tile* tile_for(int isa)
 {
-  const int best = stratus_ray_cast_best_isa();
-  isa = isa < best ? isa : best;
-#if STRATUS_HAVE_X86_ISAS
-  if (isa == 2) {
-    return stratus_tetra_tile_isa2;
-  }
-  if (isa == 1) {
-    return stratus_tetra_tile_isa1;
-  }
-#endif
-  return stratus_tetra_tile_isa0;
+  static stratus_tetra_tile* const tiles[] = STRATUS_ISA_EACH(stratus_tetra_tile);
+  return tiles[stratus_isa_at_most(isa)];
 }
 
 static stratus_status each_tile(stratus_context* context, const stratus_tetra_frame* frame, bool counting, stratus_tetra_counts* counts)

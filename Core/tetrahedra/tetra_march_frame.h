@@ -3,9 +3,10 @@
 #ifndef STRATUS_TETRA_MARCH_HOST_H
 #define STRATUS_TETRA_MARCH_HOST_H
 
+#include "instruction_set.h"
 #include "tetra_arguments.h"
 
-#include "base.h"
+#include "volume.h"
 
 /* A face of one shown cell only, turned so that a ray that enters the cell by it sees its points turn from right to up. */
 typedef struct stratus_tetra_face {

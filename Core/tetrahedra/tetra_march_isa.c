@@ -8,14 +8,6 @@
 #pragma GCC diagnostic ignored "-Wunused-function" /* the headers have more words than this file needs */
 #endif
 
-#if STRATUS_ISA == 2
-#define TILE_ISA stratus_tetra_tile_isa2
-#elif STRATUS_ISA == 1
-#define TILE_ISA stratus_tetra_tile_isa1
-#else
-#define TILE_ISA stratus_tetra_tile_isa0
-#endif
-
 static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
 {
   return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values },
@@ -33,7 +25,7 @@ static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
     .samples = frame->image.samples };
 }
 
-void TILE_ISA(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
+void STRATUS_ISA_NAME(stratus_tetra_tile)(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
 {
   const stratus_tetra_view view = view_of(frame);
   uint32_t filled[TETRA_PIXELS];

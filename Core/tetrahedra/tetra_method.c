@@ -4,7 +4,7 @@
 #include "tetra_caster.h"
 
 #include "mesh.h"
-#include "ray_caster.h"
+#include "matrix.h"
 
 #include <stdio.h>
 

@@ -4,7 +4,7 @@
 #include "tetra_caster.h"
 
 #include "mesh.h"
-#include "ray_caster.h"
+#include "instruction_set.h"
 
 #include <omp.h>
 #include <stdatomic.h>
@@ -12,32 +12,16 @@
 
 #define CELLS_AT_ONCE 4096
 
-static int best_isa(const stratus_context* context)
+static stratus_tetra_outlines* outlines_for(const stratus_context* context)
 {
-  const int best = stratus_ray_cast_best_isa();
-  return context->isa < best ? context->isa : best;
+  static stratus_tetra_outlines* const outlines[] = STRATUS_ISA_EACH(stratus_tetra_outlines);
+  return outlines[stratus_isa_at_most(context->isa)];
 }
 
-static stratus_tetra_outlines* outlines_for(int isa)
+static stratus_tetra_project_tile* tile_for(const stratus_context* context)
 {
-#if STRATUS_HAVE_X86_ISAS
-  if (isa > 0) {
-    return isa == 2 ? stratus_tetra_outlines_isa2 : stratus_tetra_outlines_isa1;
-  }
-#endif
-  (void)isa;
-  return stratus_tetra_outlines_isa0;
-}
-
-static stratus_tetra_project_tile* tile_for(int isa)
-{
-#if STRATUS_HAVE_X86_ISAS
-  if (isa > 0) {
-    return isa == 2 ? stratus_tetra_project_tile_isa2 : stratus_tetra_project_tile_isa1;
-  }
-#endif
-  (void)isa;
-  return stratus_tetra_project_tile_isa0;
+  static stratus_tetra_project_tile* const tiles[] = STRATUS_ISA_EACH(stratus_tetra_project_tile);
+  return tiles[stratus_isa_at_most(context->isa)];
 }
 
 /* ---- of a mesh */
@@ -141,7 +125,7 @@ static stratus_status sort_cells(stratus_tetra_projector* projector, const strat
 /* Where each cell may show. */
 static int64_t find_rects(const stratus_context* context, stratus_tetra_projection* projection)
 {
-  stratus_tetra_outlines* const work = outlines_for(best_isa(context));
+  stratus_tetra_outlines* const work = outlines_for(context);
   const int64_t parts = (projection->cell_count + CELLS_AT_ONCE - 1) / CELLS_AT_ONCE;
   int64_t found = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(context->threads) reduction(+ : found)
@@ -224,7 +208,7 @@ static stratus_status bin_cells(
 static stratus_status draw_tiles(stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
 {
   const int tiles = projection->columns * projection->rows;
-  stratus_tetra_project_tile* const work = tile_for(best_isa(context));
+  stratus_tetra_project_tile* const work = tile_for(context);
   uint64_t rays = 0, segments = 0, again = 0;
   atomic_int next = 0, cancelled = 0;
   stratus_status status = STRATUS_OK;

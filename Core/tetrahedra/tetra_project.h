@@ -4,6 +4,7 @@
 #ifndef STRATUS_TETRA_PROJECT_H
 #define STRATUS_TETRA_PROJECT_H
 
+#include "instruction_set.h"
 #include "tetra_march_frame.h"
 
 /* Pixels of a tile's edge: a tile's state fits the innermost cache, and most cells lie in one tile. */

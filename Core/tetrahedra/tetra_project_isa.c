@@ -10,17 +10,6 @@
 #pragma GCC diagnostic ignored "-Wunused-function" /* the headers have more words than this file needs */
 #endif
 
-#if STRATUS_ISA == 2
-#define OUTLINES_ISA stratus_tetra_outlines_isa2
-#define TILE_ISA stratus_tetra_project_tile_isa2
-#elif STRATUS_ISA == 1
-#define OUTLINES_ISA stratus_tetra_outlines_isa1
-#define TILE_ISA stratus_tetra_project_tile_isa1
-#else
-#define OUTLINES_ISA stratus_tetra_outlines_isa0
-#define TILE_ISA stratus_tetra_project_tile_isa0
-#endif
-
 /* ---- outlines, a cell a lane */
 
 static vmask transparent(const stratus_tetra_projection* projection, vmask mask, vfloat lo, vfloat hi)
@@ -44,7 +33,7 @@ static void pixel_span(vfloat lo, vfloat hi, int pixels, vint* first, vint* last
   *last = vi_select(v_lt(high, v_set(0.0f)), vi_set(-1), *last);
 }
 
-int64_t OUTLINES_ISA(const stratus_tetra_projection* projection, int64_t first, int64_t beyond)
+int64_t STRATUS_ISA_NAME(stratus_tetra_outlines)(const stratus_tetra_projection* projection, int64_t first, int64_t beyond)
 {
   const stratus_tetra_frame* frame = projection->frame;
   const vfloat middle = v_set(frame->arguments.middle), shear = v_set(frame->arguments.shear);
@@ -264,7 +253,8 @@ static void draw_cells(project_tile* t, const uint32_t* cells, uint32_t count)
   flush(t);
 }
 
-void TILE_ISA(const stratus_tetra_projection* projection, int tile, stratus_tetra_project_counts* counts)
+void STRATUS_ISA_NAME(stratus_tetra_project_tile)(
+  const stratus_tetra_projection* projection, int tile, stratus_tetra_project_counts* counts)
 {
   const uint32_t begin = projection->bin_begin[tile], count = projection->bin_begin[tile + 1] - begin;
   project_tile t; /* cleared by what follows */

@@ -12,6 +12,8 @@
  * divided by surface area. It keeps the defaults' cap on a field's bricks, and cuts between bricks. */
 #include "hybrid_tree.h"
 
+#include "density_plan.h"
+
 #include <stdio.h>
 #include <string.h>
 

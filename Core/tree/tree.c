@@ -2,6 +2,8 @@
  * Trees for first hits: the builders behind one interface, and what a tree tells of itself. */
 #include "tree.h"
 
+#include "matrix.h"
+
 #include <stdio.h>
 #include <string.h>
 

@@ -3,96 +3,9 @@
 #ifndef STRATUS_TREE_H
 #define STRATUS_TREE_H
 
+#include "bvh.h"
+#include "density.h"
 #include "voxels.h"
-
-/* [lo, hi) in voxels. Children of an inner node are `first` and `first + 1`; a leaf of bricks has bricks first .. first + count - 1 of the
- * tree's; a leaf of a distance field is fields[first]. kind_count: kind << 30 | count. The root is node 0. The same bytes on host and
- * device. */
-typedef struct stratus_tree_node {
-  int32_t lo[3], hi[3];
-  uint32_t first;
-  uint32_t kind_count;
-} stratus_tree_node;
-
-#define STRATUS_NODE_COUNT_MAX 0x3fffffffu
-
-static inline stratus_node_kind stratus_tree_node_kind(const stratus_tree_node* node)
-{
-  return (stratus_node_kind)(node->kind_count >> 30);
-}
-static inline uint32_t stratus_tree_node_count(const stratus_tree_node* node)
-{
-  return node->kind_count & STRATUS_NODE_COUNT_MAX;
-}
-static inline uint32_t stratus_tree_kind_count(stratus_node_kind kind, uint32_t count)
-{
-  return (uint32_t)kind << 30 | count;
-}
-
-/* A hierarchy over boxes as a builder leaves it: nodes, and the boxes' numbers in the leaves' order (leaf: order[first .. first+count-1]).
- */
-typedef struct stratus_bvh {
-  stratus_tree_node* nodes; /* of node_count_max = 2*boxes - 1 */
-  uint32_t node_count;
-  uint32_t* order; /* of `boxes` */
-} stratus_bvh;
-
-typedef struct stratus_box {
-  int32_t lo[3], hi[3]; /* [lo, hi) in voxels */
-} stratus_box;
-
-typedef struct stratus_bvh_options {
-  stratus_tree_method method; /* SAH .. KMEANS */
-  int leaf_boxes;             /* most boxes a leaf, 1..64 */
-  int max_depth; /* 1..64: deeper is made a leaf where leaf_boxes allows it, else split at the median (of the boxes' Morton order),
-                  * whatever the depth */
-} stratus_bvh_options;
-
-/* bvh.c: any builder, 1 <= count < 2^29, lo < hi, coordinates within 2^28. Boxes may overlap and repeat. The same tree at any thread count
- * and on any device. On failure *bvh is untouched. */
-stratus_status stratus_bvh_create(
-  stratus_context* context, const stratus_box* boxes, uint32_t count, const stratus_bvh_options* options, stratus_bvh* bvh);
-void stratus_bvh_release(stratus_context* context, stratus_bvh* bvh);
-/* Every box in exactly one leaf, node boxes tight, children behind their parents. */
-stratus_status stratus_bvh_check(stratus_context* context, const stratus_bvh* bvh, const stratus_box* boxes, uint32_t count);
-/* Surface area heuristic over the root's area: an inner node costs 1, a leaf 1 a box, a distance field 1. */
-double stratus_bvh_sah(const stratus_tree_node* nodes, uint32_t node_count);
-
-/* ---- density.c: the field that the hybrid tree splits by. Deterministic: the same bits at any thread count and on host and device. */
-typedef struct stratus_density {
-  stratus_context* context;
-  double bandwidth;
-  int exact; /* 1: of[] has a density a voxel (bricks in order, bits ascending); 0: a density a brick, at the brick's middle */
-  float* of;
-  int64_t* start; /* exact: of[start[b]] is the first voxel of brick b; brick_count + 1 entries. NULL if not exact. */
-} stratus_density;
-
-/* bricks: count of them, any subset of a set's, in its order (a node's). bandwidth > 0. */
-stratus_status stratus_density_create(
-  stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact, stratus_density** density);
-void stratus_density_destroy(stratus_density* density);
-stratus_status stratus_density_bandwidth_of(
-  stratus_context* context, const stratus_brick* bricks, int64_t count, double* bandwidth, double* raw);
-/* The densest effective voxel among the bricks numbered which[0..count-1] (NULL: all `count`) of those the density was made of; ties go to
- * the first in (z, y, x). Not exact: the densest brick's voxel nearest to its middle, ties the same. */
-void stratus_density_peak(
-  const stratus_density* density, const stratus_brick* bricks, const uint32_t* which, int64_t count, int32_t peak[3]);
-/* Where density falls most steeply along each axis through the peak: for every axis and both sides, the first change of sign of the second
- * derivative (eq. 11; sampled at voxel borders from the peak outward, within [lo, hi)), and the first derivative's size there.
- * position[axis][side] in voxels (a plane between voxels position-1 and position), fall = 0 where there is none. Sums over the node's
- * bricks. */
-typedef struct stratus_density_borders {
-  int32_t position[3][2];
-  double fall[3][2];
-} stratus_density_borders;
-stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
-  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders);
-
-/* ---- dbscan.c: 1-D DBSCAN of coordinates given as counts: counts[i] voxels have coordinate i, 0 <= i < n; reach eps >= 1 in coordinates,
- * min_points. Finds the cluster that holds coordinate `peak`: [*lo, *hi); returns its number of core coordinates, 0 if the peak is noise.
- * *clusters: how many. */
-int32_t stratus_dbscan_counts(
-  const int64_t* counts, int32_t n, int32_t eps, int64_t min_points, int32_t peak, int32_t* lo, int32_t* hi, int32_t* clusters);
 
 /* Builders of shapes. hybrid_tree.c: fills nodes (with kind FIELD where a field is to stand: bricks [first, first+count) of `order`, not
  * yet a field), order of bricks, and the statistics' splits and why; tree.c makes the fields and the rest. */

@@ -3,6 +3,8 @@
  * are all checked before the tree is handed out, so that no bytes can lead traversal astray. */
 #include "tree.h"
 #include "voxels_build.h"
+#include "volume_hash.h"
+#include "matrix.h"
 
 #include <string.h>
 

@@ -3,6 +3,8 @@
  * one another through no face that they share. All others are faces of the leaf's convex hull, through which no ray comes back. */
 #include "visibility_order.h"
 
+#include "vector.h"
+
 #include <string.h>
 
 #define SLACK 1e-13 /* of the mesh's size: gaps that are narrower are rounding's */

@@ -3,6 +3,8 @@
  * parallel, and the leaves of the K-D tree peeled one by one, in parallel. */
 #include "visibility_order.h"
 
+#include "matrix.h"
+
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Distance maps: allocation, choice of transform, and plain block skipping as the shortest of them. */
-#include "base.h"
+#include "volume.h"
 #include "distance_sweep.h"
 #include "volume_device.h"
+#include "device.h"
 
 #include <string.h>
 
@@ -53,7 +54,7 @@ static stratus_status fill_map(stratus_context* context, const stratus_occupancy
     fill_block(context, occupancy, map);
     return STRATUS_OK;
   }
-  if (stratus_structures_on_device(context) && stratus_device_takes_blocks(context, map->blocks)) {
+  if (stratus_device_builds(context) && stratus_device_takes_blocks(context, map->blocks)) {
     return stratus_device_distance_map(context, occupancy, map);
   }
   return map->kind == STRATUS_DISTANCE_PAPER ? stratus_distance_paper(context, occupancy, map)

@@ -3,7 +3,7 @@
 #ifndef STRATUS_DISTANCE_SWEEP_H
 #define STRATUS_DISTANCE_SWEEP_H
 
-#include "base.h"
+#include "volume.h"
 
 #define DISTANCE_MAX 127      /* longer ones are told as this */
 #define DISTANCE_OCCUPIED 128 /* added to the inner distance of an occupied block */

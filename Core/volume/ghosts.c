@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What the ghost flags of points and cells say of a volume: which cells are transparent, which another piece draws. */
-#include "base.h"
+#include "volume.h"
 
 /* Flags of points and of cells, whichever way the values lie. Along a flat axis VTK counts one cell. */
 typedef struct ghosts {

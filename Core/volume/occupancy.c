@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which blocks the transfer function shows: the range test of Deakin & Knackstedt 2019 on hulls with their halo. */
 #include "clones.h"
-#include "base.h"
+#include "volume.h"
 #include "volume_device.h"
-#include "voxels_build.h"
+#include "criterion.h"
+#include "device.h"
 
 #include <string.h>
 
-#define SLACK 1e-6f /* as in stratus_table_shows() */
-#define RUN 256     /* blocks tested at once: their entries stay in the first cache */
+#define RUN 256 /* blocks tested at once: their entries stay in the first cache */
 
 /* stratus_table_shows() of a run of blocks, cut in two so that the half with the arithmetic vectorises. */
 static ALWAYS_INLINE void test_run(
@@ -18,7 +18,7 @@ static ALWAYS_INLINE void test_run(
   for (int64_t b = 0; b < count; ++b) {
     const float from = lo[b] <= hi[b] ? lo[b] : 0.0f, to = lo[b] <= hi[b] ? hi[b] : 0.0f;
     /* Not fmaxf(): what it promises of NaN keeps it a call. */
-    const float slack = SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
+    const float slack = STRATUS_HULL_SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
     first[b] = stratus_table_entry(table, from - slack);
     last[b] = stratus_table_entry(table, to + slack);
   }
@@ -146,7 +146,7 @@ stratus_status stratus_occupancy_build(
 
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges, &occupancy));
-  if (stratus_structures_on_device(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
+  if (stratus_device_builds(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
     TRY_CLEANUP(stratus_device_occupancy(context, ranges, table, occupancy));
     test_rows(context, NULL, NULL, occupancy);
   } else {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The transfer function as traversal samples it: a table over the data's values, each entry the function at the entry's middle (midpoint
  * sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
-#include "base.h"
+#include "volume.h"
 
 #include <string.h>
 

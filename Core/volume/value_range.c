@@ -3,7 +3,7 @@
  *
  * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
  * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
-#include "base.h"
+#include "volume.h"
 #include "volume_device.h"
 
 #include <float.h>
@@ -114,6 +114,7 @@ typedef struct span {
 #define FETCH SAME
 #define FLOATS 1
 #include "value_range_rows.h"
+#include "device.h"
 
 typedef void (*reduce_function)(const span*);
 
@@ -349,7 +350,7 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));
   TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
-  if (stratus_structures_on_device(context) && stratus_device_takes_volume(context, volume)) {
+  if (stratus_device_builds(context) && stratus_device_takes_volume(context, volume)) {
     TRY_CLEANUP(stratus_device_value_range(context, volume, ranges));
   } else {
     TRY_CLEANUP(reduce_on_host(context, volume, ranges));

@@ -23,11 +23,6 @@ static void release_buffers(cl_mem* buffers, size_t count)
   }
 }
 
-bool stratus_structures_on_device(const stratus_context* context)
-{
-  return context->device && !stratus_device_is_cpu(context->device);
-}
-
 /* ---- value ranges */
 
 static size_t volume_bytes(const stratus_volume* volume)

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The structures built by the context's OpenCL device, equal to the bit to what the host builds. The host is faster on a CPU, so only
- * GPUs are asked (stratus_structures_on_device); tests call the builders on any device. Each fills arrays that its caller allocated. */
-#ifndef STRATUS_STRUCTURES_DEVICE_H
-#define STRATUS_STRUCTURES_DEVICE_H
+ * GPUs are asked (stratus_device_builds); tests call the builders on any device. Each fills arrays that its caller allocated. */
+#ifndef STRATUS_VOLUME_DEVICE_H
+#define STRATUS_VOLUME_DEVICE_H
 
-#include "base.h"
-
-/* Whether the context's device should build structures. */
-bool stratus_structures_on_device(const stratus_context* context);
+#include "volume.h"
+#include "device.h"
 
 /* Whether the device can take the volume: it fits an allocation, and wide types find doubles. */
 bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume);

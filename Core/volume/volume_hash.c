@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A volume's content in 64 bits, so that a structure that comes with the data is used for these data only. Rows are hashed apart and
  * added up: the order of threads doesn't matter, and whoever reads the rows anyway hashes them while they are in the cache. */
-#include "voxels_build.h"
+#include "volume_hash.h"
 
 #include <omp.h>
 #include <string.h>

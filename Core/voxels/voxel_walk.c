@@ -7,6 +7,9 @@
  * A ray that runs within a plane between voxels is in the upper one. */
 #include "voxels.h"
 
+#include "vector.h"
+#include "matrix.h"
+
 #include <string.h>
 
 typedef struct walk {
@@ -148,11 +151,6 @@ bool stratus_voxels_world_to_corner(const double index_to_world[16], double worl
   return true;
 }
 
-static bool is_finite3(const double v[3])
-{
-  return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
 bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray)
 {
   double o[3], d[3];
@@ -165,7 +163,7 @@ bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray)
 stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxels[16], const stratus_ray* ray, size_t index)
 {
   double direction[3];
-  if (!is_finite3(ray->origin) || !is_finite3(ray->direction) || !isfinite(ray->t_min) || isnan(ray->t_max)) {
+  if (!stratus_vector_finite(ray->origin) || !stratus_vector_finite(ray->direction) || !isfinite(ray->t_min) || isnan(ray->t_max)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "ray %zu has a number that is not finite: origin %g %g %g, direction %g %g %g, t %g..%g", index, ray->origin[0], ray->origin[1],
       ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2], ray->t_min, ray->t_max);

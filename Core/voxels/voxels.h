@@ -3,9 +3,9 @@
 #ifndef STRATUS_VOXELS_H
 #define STRATUS_VOXELS_H
 
-#include "base.h"
+#include "criterion.h"
+#include "volume.h"
 
-#define STRATUS_BRICK 4
 #define STRATUS_AXIS_MAX (1 << 18) /* voxels along an axis: brick coordinates fit 16 bits */
 
 /* Bit (z*4 + y)*4 + x of mask is voxel (4*at[0] + x, 4*at[1] + y, 4*at[2] + z). The same bytes on host and device. */
@@ -14,17 +14,6 @@ typedef struct stratus_brick {
   uint16_t at[3];
   uint16_t count; /* bits in mask, 1..64 */
 } stratus_brick;
-
-#define STRATUS_INTERVALS_MAX 64
-
-/* What a tree may stand in for. */
-typedef struct stratus_origin {
-  uint64_t hash;     /* of values, type, dimensions and hidden parts; 0: a list, which nothing covers */
-  int32_t cells;     /* 1: of stratus_voxels_create_cells() */
-  int32_t intervals; /* of values that show. More than the maximum: of cells, merged across their narrowest gaps (and cells
-                      * chosen by that); of voxels, a single one from INFINITY to -INFINITY, so that no tree covers another's. */
-  double interval[STRATUS_INTERVALS_MAX][2]; /* ascending, disjoint, ends included */
-} stratus_origin;
 
 struct stratus_voxels {
   stratus_context* context;
@@ -48,18 +37,6 @@ uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j,
 /* stratus_voxels_create_cells() from ranges of 4^3 cells that are there already. hash: of the volume, or 0. */
 stratus_status stratus_voxels_create_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
   const stratus_criterion* criterion, uint64_t hash, stratus_voxels** voxels);
-
-/* ---- criterion.c */
-
-/* The intervals of values that a criterion shows. cells: reads the whole volume, for the tables span its values. */
-stratus_status stratus_criterion_intervals(
-  stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin);
-/* 1 if what was made for `tree` may stand in for what would be made for `wanted`: the same use and hash, and for cells intervals that lie
- * within the tree's, for voxels the very same ones, since a voxel too many would be hit. */
-int stratus_origin_covers(const stratus_origin* tree, const stratus_origin* wanted);
-
-/* ---- volume_hash.c: of the values as they are (not the stride between them), type, dimensions, centring and ghost flags. */
-stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash);
 
 /* ---- voxel_walk.c */
 

@@ -3,14 +3,15 @@
  * meets an interval that shows. */
 #include "voxels_build.h"
 
-#include <string.h>
+#include "volume_hash.h"
+#include "matrix.h"
 
-#define SLACK 1e-6f /* as in stratus_table_shows() */
+#include <string.h>
 
 /* A block's hull, as wide as occupancy takes it, against all intervals. */
 static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
 {
-  const float slack = SLACK * fmaxf(fabsf(lo), fabsf(hi));
+  const float slack = STRATUS_HULL_SLACK * fmaxf(fabsf(lo), fabsf(hi));
   const double from = (double)(lo - slack), to = (double)(hi + slack);
   for (int32_t i = 0; lo <= hi && i < origin->intervals; ++i) {
     if (origin->interval[i][0] - bias <= to && origin->interval[i][1] - bias >= from) {

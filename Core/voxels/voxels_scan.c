@@ -78,6 +78,7 @@ typedef struct bounds {
 #define NAME(f) f##_float64
 #define BOUND d
 #include "voxels_rows.h"
+#include "volume_hash.h"
 
 typedef void (*mark_function)(const void*, int64_t, const bounds*, int64_t, uint8_t*);
 

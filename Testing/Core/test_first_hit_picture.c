@@ -2,7 +2,7 @@
  * First-hit pictures against brute force over all voxels. */
 #include "../picture_case.h"
 
-#include "base.h"
+#include "volume.h"
 
 static picture first;
 static picture second;

@@ -2,7 +2,7 @@
  * One source, many widths: AVX-512, AVX2 and the baseline must give the same bits and the same counts, whatever packets they work in. */
 #include "../picture_case.h"
 
-#include "base.h"
+#include "volume.h"
 #include "ray_cast_host.h"
 
 static picture best;
@@ -12,7 +12,7 @@ static void every_instruction_set_gives_the_same_bits(void** state)
 {
   (void)state;
   stratus_context* context = case_context("host", 2);
-  const int best_isa = stratus_ray_cast_best_isa();
+  const int best_isa = stratus_isa_best();
   int lit = 0;
   if (best_isa == 0) {
     print_message("SKIPPED: this machine has the baseline only\n");

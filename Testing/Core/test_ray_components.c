@@ -3,7 +3,7 @@
  * each function and weight by its effect; what is refused. */
 #include "../picture_case.h"
 
-#include "base.h"
+#include "volume.h"
 
 /* dB against the reference at a quarter of a voxel, as for one component: what is left is the sampling's own error. */
 #define MIDPOINT_DB 64.0

@@ -6,7 +6,7 @@
  * curvature times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of
  * the peaked functions below 20 of a range), 2.5e-3. Isosurfaces don't sample: floats leave some 1e-5 voxel, but where a ray grazes a
  * surface it may meet it in one and not in the other. */
-#include "base.h"
+#include "volume.h"
 
 #include "../picture_case.h"
 #include "../reference_modes.h"

@@ -3,7 +3,7 @@
  * shading by its effect. */
 #include "../picture_case.h"
 
-#include "base.h"
+#include "volume.h"
 
 /* dB against the reference at a quarter of a voxel. What is left is the sampling's own error, as without light: light multiplies colours
  * that are sampled at the same places, so the bound is that of the unlit pictures. */

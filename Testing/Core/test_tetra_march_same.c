@@ -3,7 +3,7 @@
  * something else before. */
 #include "tetra_case.h"
 
-#include "base.h"
+#include "volume.h"
 
 static tetra_picture one, other;
 

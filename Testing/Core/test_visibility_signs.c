@@ -17,7 +17,7 @@ static stratus_visibility_order* make_order(stratus_context* context, const mesh
 static void every_instruction_set_finds_the_same_signs(void** state)
 {
   static const int n[3] = { 5, 4, 3 };
-  const int best = stratus_ray_cast_best_isa();
+  const int best = stratus_isa_best();
   int64_t exact = 0;
   (void)state;
   if (best == 0) {

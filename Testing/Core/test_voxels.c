@@ -3,6 +3,7 @@
 #include "faulty_allocator.h"
 #include "reference.h"
 #include "structures.h"
+#include "volume_hash.h"
 #include "voxels.h"
 
 static const double white[4] = { 0, 1, 1, 1 };

@@ -4,7 +4,7 @@
 #include "../picture_case.h"
 
 #include "device_state.h"
-#include "base.h"
+#include "volume.h"
 
 /* Of colours in 0..1: a ray moved by a thousandth of a voxel changes these fields by less. */
 #define LARGEST_DIFFERENCE 2e-3f

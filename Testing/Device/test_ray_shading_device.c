@@ -3,7 +3,7 @@
  * a few units in the last place of the whole picture's colours. */
 #include "../picture_case.h"
 
-#include "base.h"
+#include "volume.h"
 
 /* Of colours near 1. The set-up of rays divides and takes roots in double, which a device may round otherwise. PoCL: 0. */
 #define LARGEST_DIFFERENCE 1e-5f

@@ -165,8 +165,8 @@ static void distance_maps_equal_the_hosts(void** state)
 static void only_a_gpu_is_asked_to_build(void** state)
 {
   (void)state;
-  assert_false(stratus_structures_on_device(host_context));
-  assert_int_equal(stratus_structures_on_device(device), !stratus_device_is_cpu(device->device));
+  assert_false(stratus_device_builds(host_context));
+  assert_int_equal(stratus_device_builds(device), !stratus_device_is_cpu(device->device));
 }
 
 int main(int argc, char** argv)

@@ -4,7 +4,7 @@
  * function is left out. */
 #include "small_scene.h"
 
-#include "base.h"
+#include "volume.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
  * must be that of a caster that has drawn nothing before. */
 #include "fuzz.h"
 
-#include "base.h"
+#include "volume.h"
 #include "ray_cast_host.h"
 
 #include <stdlib.h>
@@ -162,7 +162,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   stratus_ray_cast_report other;
   const bool structures = fuzz_chance(f, 0.5);
   if (!stratus_context_on_device(context)) {
-    context->isa = (int)fuzz_below(f, (uint64_t)stratus_ray_cast_best_isa() + 1);
+    context->isa = (int)fuzz_below(f, (uint64_t)stratus_isa_best() + 1);
   }
   if (structures) {
     options.structure = (stratus_structure)fuzz_below(f, STRATUS_STRUCTURE_HYBRID + 1);

@@ -4,7 +4,7 @@
  * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers; of doubles, every one of them is closed.
  * For ray casting the question is what a table shows that samples the function at its entries: an entry stands for all values that round to
  * it. */
-#include "voxels_build.h"
+#include "criterion.h"
 
 #include <string.h>
 
