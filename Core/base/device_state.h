@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What device.c, which chooses a device and talks to it, and device_program.c, which builds and caches its kernels, share. */
+ * What device.c, which chooses a device and talks to it, device_program.c, which builds and caches its kernels, and device_error.c share.
+ */
 #ifndef STRATUS_DEVICE_STATE_H
 #define STRATUS_DEVICE_STATE_H
 

@@ -41,7 +41,7 @@ typedef struct stratus_hit_functions {
   stratus_hit_walk* walk;
   stratus_hit_finish* finish;
 } stratus_hit_functions;
-const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit.c */
+const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit_batch.c */
 extern const stratus_hit_functions stratus_hit_functions_isa0, stratus_hit_functions_isa1, stratus_hit_functions_isa2;
 
 /* first_hit_exact.c: any tree, one ray, double precision: the voxel that the plain walk finds, to the bit of t. */

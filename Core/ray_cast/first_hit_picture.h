@@ -10,14 +10,10 @@
 struct stratus_first_hit {
   /* what voxels and tree were built from */
   stratus_volume volume;
-  double* opacity; /* the transfer function's pairs, copied; NULL: nothing is built */
-  size_t opacity_count;
-  int clamp;
-  stratus_voxels* voxels; /* NULL while only an offered tree is used */
-  stratus_tree* tree;     /* NULL, or by `method` */
+  stratus_transfer* transfer; /* a copy; NULL: nothing is built */
+  stratus_voxels* voxels;     /* NULL while only an offered tree is used */
+  stratus_tree* tree;         /* NULL, or by `method` */
   stratus_tree_method method;
-  stratus_tree* offered; /* NULL: none */
-  int offered_serves;    /* 1 yes, 0 no, -1 not asked since data, opacity or offer changed */
 };
 
 /* What a picture looks through. */

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
-
 static void drop_tree(struct stratus_first_hit* kept)
 {
   stratus_tree_destroy(kept->tree);
@@ -19,10 +17,10 @@ void stratus_first_hit_release(stratus_ray_caster* caster)
   if (kept) {
     drop_tree(kept);
     stratus_voxels_destroy(kept->voxels);
-    stratus_release(caster->context, kept->opacity);
+    stratus_release(caster->context, kept->transfer);
     kept->voxels = NULL;
-    kept->opacity = NULL;
-    kept->offered_serves = -1;
+    kept->transfer = NULL;
+    caster->tree_serves = -1;
   }
 }
 
@@ -30,7 +28,6 @@ void stratus_first_hit_destroy(stratus_ray_caster* caster)
 {
   if (caster->first_hit) {
     stratus_first_hit_release(caster);
-    stratus_tree_destroy(caster->first_hit->offered);
     stratus_release(caster->context, caster->first_hit);
     caster->first_hit = NULL;
   }
@@ -42,28 +39,6 @@ static stratus_status make_kept(stratus_ray_caster* caster)
   if (!caster->first_hit) {
     TRY(stratus_allocate_zero(caster->context, 1, sizeof(struct stratus_first_hit), &memory));
     caster->first_hit = memory;
-    caster->first_hit->offered_serves = -1;
-  }
-  return STRATUS_OK;
-}
-
-stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const void* bytes, size_t size)
-{
-  stratus_tree* tree = NULL;
-  if (!caster) {
-    return STRATUS_INVALID_ARGUMENT;
-  }
-  TRY(make_kept(caster));
-  stratus_tree_destroy(caster->first_hit->offered);
-  caster->first_hit->offered = NULL;
-  caster->first_hit->offered_serves = -1;
-  stratus_ray_tree_dropped(caster);
-  if (bytes) {
-    TRY(stratus_tree_load(caster->context, bytes, size, &tree));
-    /* rays come in index coordinates: where the volume was when the tree was made does not count */
-    memcpy(tree->index_to_world, identity, sizeof identity);
-    memcpy(tree->world_to_index, identity, sizeof identity);
-    caster->first_hit->offered = tree;
   }
   return STRATUS_OK;
 }
@@ -78,25 +53,16 @@ static bool same_data(const stratus_volume* old, const stratus_volume* volume)
     old->revision == volume->revision;
 }
 
-static bool same_opacity(const struct stratus_first_hit* kept, const stratus_transfer* transfer)
-{
-  return kept->opacity && kept->opacity_count == transfer->opacity_count && kept->clamp == transfer->clamp &&
-    memcmp(kept->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0;
-}
-
 static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer)
 {
   struct stratus_first_hit* kept = caster->first_hit;
-  void* memory = NULL;
-  if (same_data(&kept->volume, volume) && same_opacity(kept, transfer)) {
+  stratus_transfer* copy = NULL;
+  if (same_data(&kept->volume, volume) && kept->transfer && stratus_transfer_same_opacity(kept->transfer, transfer)) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(caster->context, 2 * transfer->opacity_count, sizeof(double), &memory));
-  memcpy(memory, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count);
+  TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
   stratus_first_hit_release(caster);
-  kept->opacity = memory;
-  kept->opacity_count = transfer->opacity_count;
-  kept->clamp = transfer->clamp;
+  kept->transfer = copy;
   kept->volume = *volume;
   return STRATUS_OK;
 }
@@ -146,20 +112,6 @@ static stratus_status update_tree(stratus_ray_caster* caster, stratus_tree_metho
   kept->method = method;
   ++caster->structure_builds;
   report->structure_ms = stratus_now_ms() - start;
-  return STRATUS_OK;
-}
-
-static stratus_status ask_offered(
-  stratus_ray_caster* caster, const stratus_volume* plain, const stratus_criterion* criterion, stratus_ray_cast_report* report)
-{
-  struct stratus_first_hit* kept = caster->first_hit;
-  if (kept->offered_serves < 0) {
-    const double start = stratus_now_ms();
-    int covers = 0;
-    TRY(stratus_tree_covers(caster->context, kept->offered, plain, criterion, 0, &covers));
-    kept->offered_serves = covers;
-    report->structure_ms += stratus_now_ms() - start;
-  }
   return STRATUS_OK;
 }
 
@@ -217,16 +169,15 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
   criterion.transfer = transfer;
   memset(scene, 0, sizeof *scene);
   scene->used = structure == STRATUS_STRUCTURE_AUTO ? STRATUS_STRUCTURE_HYBRID : structure;
-  if (kept->offered && scene->used == STRATUS_STRUCTURE_HYBRID) {
-    TRY(ask_offered(caster, &in_index, &criterion, report));
-    offered = kept->offered_serves == 1;
+  if (scene->used == STRATUS_STRUCTURE_HYBRID) {
+    TRY(stratus_ray_tree_serves_first_hits(caster, &in_index, &criterion, &offered, &report->structure_ms));
   }
   if (!offered || plain) {
     TRY(update_voxels(caster, &in_index, &criterion, report));
   }
   scene->voxels = kept->voxels;
   if (offered) {
-    scene->tree = kept->offered;
+    scene->tree = caster->offered;
   } else if (scene->used != STRATUS_STRUCTURE_NONE) {
     TRY(update_tree(caster, methods[structure], report));
     scene->tree = kept->tree;

@@ -57,9 +57,7 @@ struct stratus_ray_caster {
   int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK, HIDDEN_LABELS: what `hidden` holds */
   const uint8_t* mask; /* that it was made from, or NULL */
   uint64_t mask_revision;
-  double* points;              /* the transfer functions', copied: opacity, then colour, then gradient opacity, of each */
-  stratus_transfer transfer;   /* the first, or only, .. */
-  stratus_transfer* transfers; /* .. of these, which stand before the points */
+  stratus_transfer* transfers; /* copies, transfer_count of them; NULL: none yet */
   int transfer_count;
   stratus_interpolation interpolation; /* with the next three: what the choice was made for */
   stratus_sampling wanted_sampling;
@@ -72,9 +70,10 @@ struct stratus_ray_caster {
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
-  int tree_serves;      /* whether an offered tree may stand in for a map: 1, 0, or -1 where that is to be asked */
-  uint64_t hash;        /* of the volume's values and shape, .. */
-  uint64_t hash_ranges; /* .. if this is range_builds */
+  stratus_tree* offered; /* a tree that came with the data, in index coordinates; NULL: none */
+  int tree_serves;       /* whether that tree shows what the transfer function does: 1, 0, or -1 where that is to be asked */
+  uint64_t hash;         /* of the volume's values and shape, .. */
+  uint64_t hash_ranges;  /* .. if this is range_builds */
   uint64_t lookups_since_edit;
 
   stratus_first_hit* first_hit; /* NULL until asked for: first_hit_picture.h */
@@ -84,7 +83,13 @@ struct stratus_ray_caster {
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
 };
 
-/* ray_caster.c: builds anew what changed and nothing else. */
+/* ray_caster_drop.c: each drops what was built from it, too. The last drops a map that is an offered tree's. */
+void stratus_ray_drop_transfer(stratus_ray_caster* caster);
+void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
+void stratus_ray_drop_map(stratus_ray_caster* caster);
+void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
+
+/* ray_caster_update.c: builds anew what changed and nothing else. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
@@ -95,7 +100,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster);
 void stratus_ray_fetched_drop(stratus_ray_caster* caster);
 int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE that traversal is compiled for, -1 the generic one */
 
-/* first_hit_picture.c, first_hit_scene.c: the mode of first hits; dropping what it built; that and the offered tree */
+/* first_hit_picture.c, first_hit_scene.c: the mode of first hits; dropping what it built; the whole of it */
 stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 void stratus_first_hit_release(stratus_ray_caster* caster);
@@ -103,9 +108,11 @@ void stratus_first_hit_destroy(stratus_ray_caster* caster);
 
 /* ray_tree.c: structure HYBRID. Whether a tree was offered that shows all that the transfer function does, of this very volume. */
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves);
+/* The same of first hits: whether its voxels are those that the criterion shows. Asked once, which takes *ms more. */
+stratus_status stratus_ray_tree_serves_first_hits(
+  stratus_ray_caster* caster, const stratus_volume* in_index, const stratus_criterion* criterion, bool* serves, double* ms);
 /* That tree, or a new one, as the march asks it; caster->occupancy is there. */
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);
-void stratus_ray_tree_dropped(stratus_ray_caster* caster); /* another tree is offered, or none: ray_caster.c */
 
 /* ray_modes.c: what other modes than composite ask for. */
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options);

@@ -192,11 +192,11 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
   a->grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->grey_offset = a->grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
-  a->sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfer.unit_distance, 1e30) : 0.0f;
+  a->sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
   a->contour_count = 0;
   for (int n = 0; n < caster->shown.contour_count; ++n) {
     double rgba[4];
-    stratus_transfer_at(&caster->transfer, caster->shown.contours[n], rgba);
+    stratus_transfer_at(caster->transfers, caster->shown.contours[n], rgba);
     if (rgba[3] > 0.0) { /* one that is transparent is none */
       float* contour = a->contour[a->contour_count++];
       contour[0] = (float)(caster->shown.contours[n] - ranges->bias);

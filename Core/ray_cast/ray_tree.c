@@ -1,19 +1,62 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Structure HYBRID: the tree that came with the data, where it serves, or one of the caster's own. */
-#include "first_hit_picture.h"
+#include "ray_caster.h"
 #include "tree_map_build.h"
-#include "voxels_build.h"
+#include "tree.h"
 #include "volume_hash.h"
 
-static const stratus_tree* offered_tree(const stratus_ray_caster* caster)
+#include <string.h>
+
+static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+
+stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const void* bytes, size_t size)
 {
-  const stratus_tree* tree = caster->first_hit ? caster->first_hit->offered : NULL;
-  return tree && tree->origin.cells && tree->origin.hash ? tree : NULL;
+  stratus_tree* tree = NULL;
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  stratus_tree_destroy(caster->offered);
+  caster->offered = NULL;
+  stratus_ray_drop_offer_map(caster);
+  if (bytes) {
+    TRY(stratus_tree_load(caster->context, bytes, size, &tree));
+    /* rays come in index coordinates: where the volume was when the tree was made does not count */
+    memcpy(tree->index_to_world, identity, sizeof identity);
+    memcpy(tree->world_to_index, identity, sizeof identity);
+    caster->offered = tree;
+  }
+  return STRATUS_OK;
+}
+
+/* A tree of cells serves the march, one of voxels first hits: never both, so that one answer is enough. */
+static const stratus_tree* offered_tree(const stratus_ray_caster* caster, bool of_cells)
+{
+  const stratus_tree* tree = caster->offered;
+  return tree && tree->origin.hash && (tree->origin.cells != 0) == of_cells ? tree : NULL;
+}
+
+stratus_status stratus_ray_tree_serves_first_hits(
+  stratus_ray_caster* caster, const stratus_volume* in_index, const stratus_criterion* criterion, bool* serves, double* ms)
+{
+  const stratus_tree* tree = offered_tree(caster, false);
+  *serves = false;
+  if (!tree) {
+    return STRATUS_OK;
+  }
+  if (caster->tree_serves < 0) {
+    const double start = stratus_now_ms();
+    int covers = 0;
+    TRY(stratus_tree_covers(caster->context, tree, in_index, criterion, 0, &covers));
+    caster->tree_serves = covers;
+    *ms += stratus_now_ms() - start;
+  }
+  *serves = caster->tree_serves == 1;
+  return STRATUS_OK;
 }
 
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 {
-  const stratus_tree* tree = offered_tree(caster);
+  const stratus_tree* tree = offered_tree(caster, true);
   *serves = false;
   if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_shading_several(caster)) {
     /* what other modes need is not what the opacity shows */
@@ -22,7 +65,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
   if (caster->tree_serves < 0) {
     stratus_origin wanted = { .cells = 1 };
     stratus_criterion criterion = stratus_criterion_default();
-    criterion.transfer = &caster->transfer;
+    criterion.transfer = caster->transfers;
     if (caster->hash_ranges != caster->range_builds) {
       TRY(stratus_volume_hash(caster->context, &caster->volume, &caster->hash));
       caster->hash_ranges = caster->range_builds;
@@ -40,7 +83,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map)
 {
   if (offered) {
-    return stratus_tree_map_create(caster->context, offered_tree(caster), STRATUS_BRICK, map);
+    return stratus_tree_map_create(caster->context, offered_tree(caster, true), STRATUS_BRICK, map);
   }
   stratus_tree* tree = NULL;
   TRY(stratus_tree_of_occupancy(caster->context, caster->occupancy, &tree));

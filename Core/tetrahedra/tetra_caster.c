@@ -46,10 +46,10 @@ static void drop_table(stratus_tetra_caster* caster)
   stratus_tetra_device_drop_table(caster->device);
   stratus_table_destroy(caster->table);
   stratus_release(caster->context, caster->march_sums);
-  stratus_release(caster->context, caster->transfer_points);
+  stratus_release(caster->context, caster->transfer);
   caster->table = NULL;
   caster->march_sums = NULL;
-  caster->transfer_points = NULL;
+  caster->transfer = NULL;
 }
 
 static void drop_mesh(stratus_tetra_caster* caster)
@@ -120,30 +120,19 @@ static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_me
   return STRATUS_OK;
 }
 
-static bool same_transfer(const stratus_tetra_caster* caster, const stratus_transfer* transfer)
-{
-  const stratus_transfer* old = &caster->transfer;
-  return caster->table && old->opacity_count == transfer->opacity_count && old->color_count == transfer->color_count &&
-    old->clamp == transfer->clamp && old->unit_distance == transfer->unit_distance &&
-    memcmp(old->opacity, transfer->opacity, 2 * sizeof(double) * transfer->opacity_count) == 0 &&
-    memcmp(old->color, transfer->color, 4 * sizeof(double) * transfer->color_count) == 0;
-}
-
 /* Composite: running sums, a world unit as their sample distance. Maximum: colour and alpha of one unit distance. */
 static stratus_status update_table(stratus_tetra_caster* caster, const stratus_transfer* transfer, stratus_tetra_mode mode, double* ms)
 {
   const double start = stratus_now_ms();
-  const size_t opacity = 2 * transfer->opacity_count, color = 4 * transfer->color_count;
   const stratus_tetra_mesh* mesh = caster->mesh;
   const bool any = mesh->low <= mesh->high;
   stratus_table* table = NULL;
   int32_t* sums = NULL;
-  void* memory = NULL;
-  if (same_transfer(caster, transfer) && caster->mode == mode) {
+  stratus_transfer* copy = NULL;
+  if (caster->table && stratus_transfer_same(caster->transfer, transfer) && caster->mode == mode) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(caster->context, opacity + color, sizeof(double), &memory));
-  double* points = memory;
+  TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
   stratus_status status = stratus_table_create_fine(caster->context, transfer, mesh->bias, any ? mesh->low : 0.0f, any ? mesh->high : 0.0f,
     mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
     mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, ENTRIES, &table);
@@ -152,19 +141,14 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   }
   if (status != STRATUS_OK) {
     stratus_table_destroy(table);
-    stratus_release(caster->context, points);
+    stratus_release(caster->context, copy);
     return status;
   }
-  memcpy(points, transfer->opacity, opacity * sizeof *points);
-  memcpy(points + opacity, transfer->color, color * sizeof *points);
   drop_table(caster);
   caster->table = table;
   caster->march_sums = sums;
   caster->mode = mode;
-  caster->transfer_points = points;
-  caster->transfer = *transfer;
-  caster->transfer.opacity = points;
-  caster->transfer.color = points + opacity;
+  caster->transfer = copy;
   ++caster->table_builds;
   *ms = stratus_now_ms() - start;
   return STRATUS_OK;

@@ -30,9 +30,8 @@ struct stratus_tetra_caster {
   stratus_mesh view; /* what `mesh` was made from */
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
-  double* transfer_points;            /* the transfer function's, copied: opacity, then colour */
-  stratus_transfer transfer;
-  stratus_tetra_mode mode; /* that the table is for */
+  stratus_transfer* transfer;         /* a copy, NULL: none yet */
+  stratus_tetra_mode mode;            /* that the table is for */
   stratus_table* table;
   int32_t* march_sums;          /* stratus_tetra_sums() */
   stratus_tetra_device* device; /* copies on the OpenCL device, NULL on the host */

@@ -96,6 +96,13 @@ static inline int stratus_table_shows(const stratus_table* table, float lo, floa
   return lo <= hi && table->next_shown[stratus_table_entry(table, lo - slack)] <= stratus_table_entry(table, hi + slack);
 }
 
+/* ---- transfer_copy.c */
+/* Whether two functions give the same opacity everywhere; and whether all of them is the same. */
+bool stratus_transfer_same_opacity(const stratus_transfer* a, const stratus_transfer* b);
+bool stratus_transfer_same(const stratus_transfer* a, const stratus_transfer* b);
+/* `count` functions with their points, one allocation that the caller releases. */
+stratus_status stratus_transfer_copy(stratus_context* context, const stratus_transfer* transfers, int count, stratus_transfer** copy);
+
 /* ---- occupancy.c */
 struct stratus_occupancy {
   stratus_context* context;

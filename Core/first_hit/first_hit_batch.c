@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What all rays of a batch share: the tree in voxel coordinates, and the functions for an instruction set. */
+#include "first_hit_batch.h"
+
+#include <string.h>
+
+/* The unit normals of the voxels' faces: gradients of the index coordinates. */
+static void find_normals(const stratus_tree* tree, double normal[6][3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    double length = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      length = fmax(length, fabs(tree->world_to_index[4 * axis + a]));
+    }
+    double scaled[3], squares = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      scaled[a] = tree->world_to_index[4 * axis + a] / length;
+      squares += scaled[a] * scaled[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      normal[2 * axis + 1][a] = scaled[a] / sqrt(squares);
+      normal[2 * axis][a] = -normal[2 * axis + 1][a];
+    }
+  }
+}
+
+void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
+{
+  int32_t most = 1;
+  *batch = (stratus_hit_batch){ .tree = tree, .mask_words = (const int32_t*)(const void*)tree->masks };
+  memcpy(batch->to_voxels, tree->world_to_index, sizeof batch->to_voxels);
+  for (int a = 0; a < 3; ++a) {
+    batch->to_voxels[4 * a + 3] += 0.5;
+    batch->lo[a] = tree->node_count ? tree->nodes[0].lo[a] : 0;
+    batch->hi[a] = tree->node_count ? tree->nodes[0].hi[a] : 0;
+    most = tree->dimensions[a] > most ? tree->dimensions[a] : most;
+  }
+  /* A float position is that of its rounded start, direction and length: some five roundings of at most twice the longest edge. */
+  batch->slack = 1.2e-7f * 8.0f * (float)most;
+  find_normals(tree, batch->normal);
+}
+
+const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context)
+{
+  static const stratus_hit_functions* const functions[] = STRATUS_ISA_EACH(&stratus_hit_functions);
+  return functions[stratus_isa_at_most(context->isa)];
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a caller may ask of a render, by default and by name. */
+#include "ray_caster.h"
+
+const char* stratus_structure_name(stratus_structure structure)
+{
+  static const char* const names[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
+  return (unsigned)structure < sizeof names / sizeof *names ? names[structure] : "unknown";
+}
+
+const char* stratus_sampling_name(stratus_sampling sampling)
+{
+  static const char* const names[] = { "auto", "midpoint", "pre-integrated" };
+  return (unsigned)sampling < sizeof names / sizeof *names ? names[sampling] : "unknown";
+}
+
+stratus_ray_cast_options stratus_ray_cast_options_default(void)
+{
+  return (stratus_ray_cast_options){ .termination = 0.999,
+    .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 },
+    .average_range = { -INFINITY, INFINITY },
+    .crop_regions = STRATUS_CROP_INSIDE };
+}

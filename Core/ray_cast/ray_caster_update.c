@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a ray caster builds anew when: data -> ranges; transfer function -> table, occupancy and map; camera -> nothing. */
+#include "ray_caster.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define BLOCK_SIZE_DEFAULT 4
+/* Traversal addresses the eight maps with one int. */
+#define MAP_BYTES_MOST 2000000000.0
+/* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
+#define OCCUPIED_LARGEST 0.8
+/* Eight maps cost about this many look-ups a block to build, and save every other look-up. */
+#define OCTANT_LOOKUPS_A_BLOCK 6
+
+static bool same_data(const stratus_ray_caster* caster, const stratus_volume* volume, int block_size)
+{
+  const stratus_volume* old = &caster->volume;
+  return caster->ranges && caster->ranges->block_size == block_size && old->values == volume->values && old->type == volume->type &&
+    memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
+    stratus_volume_components(old) == stratus_volume_components(volume) && old->cell_centered == volume->cell_centered &&
+    old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts && old->revision == volume->revision;
+}
+
+static int chosen_block_size(const stratus_volume* volume, int wanted)
+{
+  int size = wanted ? wanted : BLOCK_SIZE_DEFAULT;
+  while (size < 32) {
+    double bytes = 8.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      bytes *= ceil((double)volume->dimensions[axis] / size + (axis == 0 ? 64.0 : 0.0));
+    }
+    if (bytes < MAP_BYTES_MOST) {
+      break;
+    }
+    size *= 2;
+  }
+  return size;
+}
+
+static stratus_status update_ranges(
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
+{
+  const int block_size = chosen_block_size(volume, options->block_size);
+  const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
+  const bool same = same_data(caster, volume, block_size);
+  if (!same || caster->hidden_by_value != by_value || !stratus_ray_mask_same(caster, options)) {
+    const double start = stratus_now_ms();
+    stratus_value_range* ranges = NULL;
+    uint8_t* hidden = NULL;
+    int hides = 0;
+    stratus_status status = stratus_ray_hidden_make(caster->context, volume, by_value, &hidden);
+    if (status == STRATUS_OK) {
+      status = stratus_ray_mask_join(caster->context, volume, options->mask, options->label_count > 0, by_value, &hidden, &hides);
+    }
+    if (status == STRATUS_OK && !same) {
+      status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
+    }
+    if (status != STRATUS_OK) {
+      stratus_release(caster->context, hidden);
+      return status;
+    }
+    stratus_release(caster->context, caster->hidden);
+    caster->hidden = hidden;
+    caster->hidden_by_value = by_value;
+    caster->hides = hides;
+    caster->mask = options->mask;
+    caster->mask_revision = options->mask_revision;
+    stratus_ray_drop_offer_map(caster);
+    ++caster->data_serial;
+    if (!same) {
+      stratus_ray_drop_transfer(caster);
+      stratus_value_range_destroy(caster->ranges);
+      caster->ranges = ranges;
+      stratus_ray_fetched_drop(caster);
+      ++caster->range_builds;
+    }
+    *ms = stratus_now_ms() - start;
+  }
+  caster->volume = *volume;
+  return stratus_ray_fetched_update(caster);
+}
+
+static bool same_transfers(const stratus_ray_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
+{
+  bool same = caster->transfers && caster->transfer_count == count && caster->dependent == dependent;
+  for (int i = 0; same && i < count; ++i) {
+    same = stratus_transfer_same(caster->transfers + i, transfers + i);
+  }
+  return same;
+}
+
+static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
+{
+  stratus_transfer* copy = NULL;
+  TRY(stratus_transfer_copy(caster->context, transfers, count, &copy));
+  stratus_ray_drop_transfer(caster);
+  caster->transfers = copy;
+  caster->transfer_count = count;
+  caster->dependent = dependent;
+  caster->lookups_since_edit = 0;
+  return STRATUS_OK;
+}
+
+/* Transfer function, the choices that follow from it, and the table. */
+static stratus_status update_table(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, double* ms)
+{
+  const double start = stratus_now_ms();
+  const int media = stratus_ray_shading_media(volume, options);
+  const bool same = same_transfers(caster, transfer, media, options->dependent != 0);
+  if (!same) {
+    TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
+  }
+  const double voxel = stratus_ray_voxel_length(volume);
+  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  const bool same_mode = stratus_ray_modes_same(&caster->shown, &shown);
+  if (!same || !same_mode || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
+    caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
+    stratus_ray_choose(
+      caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
+    stratus_ray_modes_choose(options, voxel, &caster->choice);
+    stratus_ray_shading_choose(caster, voxel, transfer, options);
+    caster->voxel_length = voxel;
+    caster->interpolation = options->interpolation;
+    caster->wanted_sampling = options->sampling;
+    caster->wanted_distance = options->sample_distance;
+  }
+  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
+  if (same_kind && same_mode && caster->table_distance == caster->choice.sample_distance) {
+    return STRATUS_OK;
+  }
+  const stratus_value_range* ranges = caster->ranges;
+  const bool any = ranges->whole_lo <= ranges->whole_hi;
+  stratus_table* table = NULL;
+  TRY(stratus_table_create(caster->context, caster->transfers, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
+    caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
+  stratus_ray_modes_mark(&shown, caster->transfers, ranges->bias, table);
+  caster->shown = shown;
+  if (!same_kind || !same_mode || caster->table->shown != table->shown || stratus_ray_shading_several(caster)) {
+    stratus_ray_drop_occupancy(caster);
+  }
+  stratus_table_destroy(caster->table);
+  caster->table = table;
+  caster->table_distance = caster->choice.sample_distance;
+  ++caster->table_builds;
+  ++caster->table_serial;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
+{
+  caster->shades = stratus_ray_shading_wanted(volume, transfer, options);
+  TRY(update_ranges(caster, volume, options, &report->range_ms));
+  TRY(stratus_ray_shading_ranges(caster));
+  TRY(update_table(caster, volume, transfer, options, &report->table_ms));
+  return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
+}
+
+/* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit.
+ */
+static stratus_structure choose_structure(
+  const stratus_ray_caster* caster, stratus_structure wanted, bool offered, char* why, size_t capacity)
+{
+  const int64_t* n = caster->occupancy->blocks;
+  const double blocks = (double)n[0] * (double)n[1] * (double)n[2], share = (double)caster->occupancy->count / blocks;
+  if (wanted != STRATUS_STRUCTURE_AUTO) {
+    snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
+    return wanted;
+  }
+  if (share > OCCUPIED_LARGEST) {
+    snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
+    return STRATUS_STRUCTURE_NONE;
+  }
+  if (offered) {
+    snprintf(why, capacity, "hybrid: %.3g %% occupied, and a tree came with the data", 100.0 * share);
+    return STRATUS_STRUCTURE_HYBRID;
+  }
+  if ((double)caster->lookups_since_edit > OCTANT_LOOKUPS_A_BLOCK * blocks) {
+    snprintf(why, capacity, "octant: %.3g %% occupied, and rays have paid for eight maps since the last edit", 100.0 * share);
+    return STRATUS_STRUCTURE_OCTANT;
+  }
+  snprintf(why, capacity, "distance: %.3g %% occupied; eight maps are not paid for yet", 100.0 * share);
+  return STRATUS_STRUCTURE_DISTANCE;
+}
+
+static bool is_map_of(const stratus_distance_map* map, stratus_structure structure, stratus_distance_kind kind)
+{
+  return map && (structure == STRATUS_STRUCTURE_HYBRID ? map->tree_nodes > 0 : map->tree_nodes == 0 && map->kind == kind);
+}
+
+static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, double* ms)
+{
+  static const stratus_distance_kind kinds[] = { [STRATUS_STRUCTURE_BLOCK] = STRATUS_DISTANCE_BLOCK,
+    [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL,
+    [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT,
+    [STRATUS_STRUCTURE_HYBRID] = STRATUS_DISTANCE_FULL };
+  if (structure == STRATUS_STRUCTURE_NONE || is_map_of(caster->map, structure, kinds[structure])) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  stratus_distance_map* map = NULL;
+  if (structure == STRATUS_STRUCTURE_HYBRID && caster->occupancy->count == 0) {
+    return STRATUS_OK; /* nobody will ask */
+  }
+  if (structure == STRATUS_STRUCTURE_HYBRID) {
+    TRY(stratus_ray_tree_map(caster, offered, &map));
+  } else {
+    TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+  }
+  const stratus_status status = stratus_ray_modes_bounds(caster, map);
+  if (status != STRATUS_OK) {
+    stratus_distance_map_destroy(map);
+    return status;
+  }
+  stratus_ray_drop_map(caster);
+  caster->map = map;
+  caster->structure_builds += structure != STRATUS_STRUCTURE_HYBRID || !offered;
+  ++caster->map_serial;
+  *ms = stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
+  size_t capacity, stratus_ray_cast_report* report)
+{
+  bool offered = false;
+  if (wanted == STRATUS_STRUCTURE_NONE) {
+    *used = wanted;
+    snprintf(why, capacity, "none as asked");
+    return STRATUS_OK;
+  }
+  if (!caster->occupancy) {
+    const double start = stratus_now_ms();
+    if (stratus_ray_shading_several(caster)) {
+      TRY(stratus_ray_shading_occupancy(caster));
+    } else {
+      TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
+    }
+    ++caster->occupancy_builds;
+    report->occupancy_ms = stratus_now_ms() - start;
+  }
+  if (wanted == STRATUS_STRUCTURE_HYBRID || wanted == STRATUS_STRUCTURE_AUTO) {
+    TRY(stratus_ray_tree_serves(caster, &offered));
+  }
+  *used = choose_structure(caster, wanted, offered, why, capacity);
+  report->offered_tree = offered && *used == STRATUS_STRUCTURE_HYBRID;
+  return update_map(caster, *used, offered, &report->structure_ms);
+}
