@@ -37,13 +37,6 @@ static stratus_status find_bounds(stratus_visibility_order* order)
   return STRATUS_OK;
 }
 
-stratus_status stratus_order_allocate(stratus_visibility_order* order, size_t count, size_t size, void** memory)
-{
-  TRY(stratus_allocate(order->context, count, size, memory));
-  order->bytes += count * size;
-  return STRATUS_OK;
-}
-
 /* A leaf is one thread's. */
 static int peeling_threads(const stratus_visibility_order* order)
 {

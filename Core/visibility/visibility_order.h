@@ -167,8 +167,13 @@ static inline int stratus_order_side(const stratus_visibility_order* order, int6
   return (order->sides[cell] >> 4) - 1;
 }
 
-/* ---- visibility_order.c: memory that lasts as long as the order, counted in its bytes. */
-stratus_status stratus_order_allocate(stratus_visibility_order* order, size_t count, size_t size, void** memory);
+/* Memory that lasts as long as the order, counted in its bytes. */
+static inline stratus_status stratus_order_allocate(stratus_visibility_order* order, size_t count, size_t size, void** memory)
+{
+  TRY(stratus_allocate(order->context, count, size, memory));
+  order->bytes += count * size;
+  return STRATUS_OK;
+}
 
 /* ---- visibility_flat.c: sides of cells without volume. What does not fit together is no neighbour any more. */
 stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order);
@@ -219,6 +224,17 @@ static inline uint32_t stratus_gate_cell(const stratus_gates* gates, int64_t gat
   return gates->faces[gate] / 4;
 }
 
+/* The corners of a gate's face, as seen. */
+static inline void stratus_gate_points(const stratus_gates* gates, int64_t gate, stratus_view_point points[3])
+{
+  const stratus_visibility_order* order = gates->order;
+  const int32_t* v = stratus_order_vertices(order, stratus_gate_cell(gates, gate));
+  for (unsigned i = 0; i < 3; ++i) {
+    const double* p = stratus_order_seen(order, v[(gates->faces[gate] + 1 + i) % 4]);
+    points[i] = (stratus_view_point){ p[0], p[1], p[2] };
+  }
+}
+
 stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps);
 #define STRATUS_GATE_IN 0x80u  /* of `waiting`: the cell has ways in from gaps */
 #define STRATUS_GATE_OUT 0x40u /* ways out into gaps */
@@ -231,6 +247,9 @@ uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell);
 bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before);
 /* A cell marked OUT has come. */
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell);
+
+/* ---- visibility_gate_cover.c */
+
 /* Whether the face of gate a lies before the one of b in the middle of what they share of the view. */
 bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b);
 
