@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The order's own cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are so in space,
- * since peeling goes from neighbour to neighbour. */
+ * Where cells and points are kept. Cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are
+ * so in space, since peeling goes from neighbour to neighbour. Points as they are seen in a view: in the order in which those cells read
+ * them. */
 #include "cell_morton.h"
 #include "visibility_order.h"
 
 #include <string.h>
 
-#define SCATTERED 16 /* neighbours further apart in the mean than one cell in so many: numbers say nothing of where a cell is */
+/* Neighbours further apart in the mean than one cell in so many, or a cell's points than one point: numbers say nothing of where they are.
+ */
+#define SCATTERED 16
+#define FEW_POINTS 4096 /* that fit a cache in any order */
 #define AXIS_BITS 10
 #define LEAF_BITS 16
 
 /* Of cells that know their neighbours: told by how far apart those are listed. */
-static bool is_scattered(const stratus_visibility_order* order, const int32_t* leaf)
+static bool cells_are_scattered(const stratus_visibility_order* order, const int32_t* leaf)
 {
   int64_t pairs = 0;
   double distance = 0.0;
@@ -70,7 +74,7 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
   for (int32_t l = 0; l < order->leaf_count; ++l) {
     order->leaf_begin[l + 1] += order->leaf_begin[l];
   }
-  const bool scattered = is_scattered(order, leaf);
+  const bool scattered = cells_are_scattered(order, leaf);
   if (listed && !scattered) {
     return STRATUS_OK;
   }
@@ -134,5 +138,42 @@ stratus_status stratus_order_take_cells(stratus_visibility_order* order, const i
   }
   fill_cells(order, side, leaf, places);
   stratus_release(order->context, places);
+  return STRATUS_OK;
+}
+
+/* ---- points */
+
+static bool points_are_scattered(const stratus_visibility_order* order)
+{
+  double distance = 0.0;
+  int64_t asked = 0;
+  for (int64_t cell = 0; cell < order->cell_count; cell += 61, ++asked) {
+    const int32_t* v = order->vertices + 4 * cell;
+    distance += fabs((double)v[1] - v[0]) + fabs((double)v[2] - v[0]) + fabs((double)v[3] - v[0]);
+  }
+  return order->point_count > FEW_POINTS && distance * SCATTERED > 3.0 * (double)asked * (double)order->point_count;
+}
+
+/* In the order in which cells ask for them; those that none asks for come last. */
+stratus_status stratus_order_place_points(stratus_visibility_order* order)
+{
+  const size_t points = (size_t)order->point_count;
+  uint32_t placed = 0;
+  void* memory;
+  if (!points_are_scattered(order)) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_order_allocate(order, points, sizeof *order->seen_at, &memory));
+  order->seen_at = memset(memory, 0xff, points * sizeof *order->seen_at);
+  for (int64_t i = 0; i < order->cell_count; ++i) {
+    const int32_t* v = stratus_order_vertices(order, (uint32_t)i);
+    for (int k = 0; k < 4; ++k) {
+      uint32_t* at = order->seen_at + v[k];
+      *at = *at == UINT32_MAX ? placed++ : *at;
+    }
+  }
+  for (size_t p = 0; p < points; ++p) {
+    order->seen_at[p] = order->seen_at[p] == UINT32_MAX ? placed++ : order->seen_at[p];
+  }
   return STRATUS_OK;
 }

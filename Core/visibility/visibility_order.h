@@ -181,11 +181,10 @@ stratus_status stratus_order_side_flat_cells(stratus_visibility_order* order);
 /* ---- visibility_seams.c: neighbours through faces that coincide but name different points. */
 stratus_status stratus_order_join_seams(stratus_visibility_order* order);
 
-/* ---- visibility_points.c: seen_at. After the cells. */
-stratus_status stratus_order_place_points(stratus_visibility_order* order);
-
 /* ---- visibility_cells.c: listed, neighbours, sides, state, waiting and leaf_begin. leaf NULL: there is one. */
 stratus_status stratus_order_take_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf);
+/* seen_at. After the cells. */
+stratus_status stratus_order_place_points(stratus_visibility_order* order);
 
 /* ---- visibility_leaves.c: whether a tree is one, and has the mesh's cells in its leaves: asked first, as a mesh that has moved since is
  * not worth building anything for. NULL: there is none. */
@@ -294,17 +293,18 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
 /* ---- visibility_layers.c */
 stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds);
 
-/* ---- visibility_cut.c */
+/* ---- visibility_peeling.c */
 
-/* A neighbour need no longer come before a cell. */
+/* A neighbour need no longer come before a cell: one relation of a ring, on both sides of its face. */
 void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face);
 
-/* ---- visibility_seeds.c: a leaf's cells in steps of some, nearest first */
+/* Steps of a leaf's cells: some that follow one another, and so are near one another. */
 static inline int64_t stratus_order_seed_count(int64_t cells)
 {
   return (cells + STRATUS_SEED_CELLS - 1) / STRATUS_SEED_CELLS;
 }
 
+/* A leaf's, nearest first. */
 void stratus_order_sort_seeds(const stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds);
 
 #endif

@@ -1,6 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A leaf's cells in steps of some that follow one another, and so are near one another: nearest first. */
+ * What both ways of peeling a leaf do alike: they cut one relation of a ring, and take cells that nothing else orders by distance. */
 #include "visibility_order.h"
+
+void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face)
+{
+  const uint32_t before = (uint32_t)order->neighbours[4 * (int64_t)cell + face];
+  const unsigned after = stratus_order_after(order, before);
+  order->state[cell] = (uint8_t)(order->state[cell] & ~(16u << face));
+  for (int f = 0; f < 4; ++f) {
+    if (after >> f & 1 && order->neighbours[4 * (int64_t)before + f] == (int32_t)cell) {
+      order->state[before] = (uint8_t)(order->state[before] & ~(1u << f));
+      return;
+    }
+  }
+}
+
+/* ---- seeds */
 
 static bool comes_before(const stratus_order_seed* p, const stratus_order_seed* q)
 {
