@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What the files of the partition share: nodes that hold their cells while the mesh is being cut. */
-#ifndef STRATUS_KDTREE_H
-#define STRATUS_KDTREE_H
+#ifndef STRATUS_PARTITION_BUILD_H
+#define STRATUS_PARTITION_BUILD_H
 
 #include "mesh.h"
 
@@ -77,7 +77,7 @@ stratus_status stratus_kdtree_cut(stratus_partition* partition, int32_t node, co
 /* ---- partition_leaves.c: a leaf's cells near one another where they are so in space. */
 stratus_status stratus_kdtree_list_cells(const stratus_partition* partition, stratus_kdtree_node* node);
 
-/* ---- partition.c: room for at least `needed`, keeping `used`. */
+/* ---- partition_storage.c: room for at least `needed`, keeping `used`. */
 stratus_status stratus_kdtree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
 
 #endif
