@@ -3,8 +3,6 @@
 #include "distance_field.h"
 
 #include "jump_flooding_passes.h"
-#include "volume_device.h"
-#include "device.h"
 
 #include <string.h>
 
@@ -71,12 +69,6 @@ stratus_status stratus_bits_create(stratus_context* context, const stratus_voxel
 }
 
 /* ---- building */
-
-bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes)
-{
-  return stratus_device_builds(context) &&
-    (size_t)n[0] * (size_t)n[1] * (size_t)n[2] <= stratus_device_largest_allocation(context->device) / bytes;
-}
 
 static stratus_status check_options(stratus_context* context, const stratus_field_options* options)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields on the context's OpenCL device: buffers, arguments and launches of distance_field.cl and jump_flooding.cl. */
+ * Distance fields on the context's OpenCL device: whether it makes them; buffers, arguments and launches of distance_field.cl and
+ * jump_flooding.cl. */
 #include "device.h"
 #include "jump_flooding_passes.h"
 
@@ -7,6 +8,12 @@
 #include <string.h>
 
 #define DEFINES_MAX 64
+
+bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes)
+{
+  return stratus_device_builds(context) &&
+    (size_t)n[0] * (size_t)n[1] * (size_t)n[2] <= stratus_device_largest_allocation(context->device) / bytes;
+}
 
 static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem* buffer)
 {
