@@ -15,12 +15,6 @@
 /* Cells end at any value, tables at entries: what light errs by falls with their width. */
 #define ENTRIES 32768
 
-const char* stratus_tetra_method_name(stratus_tetra_method method)
-{
-  static const char* const names[] = { "auto", "march", "project" };
-  return (unsigned)method < sizeof names / sizeof *names ? names[method] : "unknown";
-}
-
 stratus_tetra_options stratus_tetra_options_default(void)
 {
   return (stratus_tetra_options){ .termination = 0.9999 };

@@ -22,6 +22,12 @@
 #define BOX_OVER_COVERED 2.5
 #define PACKET_EDGE 4.0
 
+const char* stratus_tetra_method_name(stratus_tetra_method method)
+{
+  static const char* const names[] = { "auto", "march", "project" };
+  return (unsigned)method < sizeof names / sizeof *names ? names[method] : "unknown";
+}
+
 typedef struct view_counts {
   double passed;                 /* segments of rays */
   double shown, pieces, packets; /* cells in view that can show something, and of those */
