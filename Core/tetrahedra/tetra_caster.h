@@ -42,6 +42,10 @@ struct stratus_tetra_caster {
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
+/* Whether a cell is drawn: it is not hidden, names four points, and its values are finite. range: the least and the greatest of them. A
+ * point has its value in point_values; NULL: cells have values, fetched from `volume`, the mesh's. */
+bool stratus_tetra_shows(
+  const stratus_mesh* mesh, const stratus_volume* volume, const float* point_values, double bias, int64_t cell, float range[2]);
 
 /* tetra_layout.c: a place for each cell, neighbours in space near each other, and a name for each point by the first cell that has it. */
 typedef struct stratus_tetra_places {

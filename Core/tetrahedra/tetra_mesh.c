@@ -9,6 +9,22 @@
 #define CELL_INTS_MOST INT32_MAX
 #define POINTS_MOST (INT32_MAX / 4) /* four floats each */
 
+bool stratus_tetra_shows(
+  const stratus_mesh* mesh, const stratus_volume* volume, const float* point_values, double bias, int64_t cell, float range[2])
+{
+  const int32_t* v = mesh->vertices + 4 * cell;
+  bool shows = !(mesh->hidden && mesh->hidden[cell]) && !stratus_names_a_point_twice(v);
+  range[0] = range[1] = point_values ? point_values[v[0]] : stratus_volume_fetch(volume, bias, (size_t)cell);
+  shows = shows && isfinite(range[0]);
+  for (int i = 1; i < 4 && point_values; ++i) {
+    const float value = point_values[v[i]];
+    shows = shows && isfinite(value);
+    range[0] = fminf(range[0], value);
+    range[1] = fmaxf(range[1], value);
+  }
+  return shows;
+}
+
 static void find_shown(
   stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
 {
@@ -17,23 +33,16 @@ static void find_shown(
 #pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown, blanked, repeated) reduction(min : low)                  \
   reduction(max : high)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
-    const int32_t* v = mesh->vertices + 4 * cell;
-    float least = INFINITY, most = -INFINITY;
-    const bool hidden = mesh->hidden && mesh->hidden[cell], twice = stratus_names_a_point_twice(v);
-    bool finite = !hidden && !twice;
-    for (int i = 0; i < 4; ++i) {
-      const float value = mesh->cell_values ? stratus_volume_fetch(volume, tetra->bias, (size_t)cell) : tetra->values[v[i]];
-      finite = finite && isfinite(value);
-      least = fminf(least, value);
-      most = fmaxf(most, value);
-    }
-    tetra->shown[cell] = finite;
-    shown += finite;
-    blanked += !finite && !hidden;
+    const bool hidden = mesh->hidden && mesh->hidden[cell], twice = stratus_names_a_point_twice(mesh->vertices + 4 * cell);
+    float range[2];
+    const bool shows = stratus_tetra_shows(mesh, volume, tetra->values, tetra->bias, cell, range);
+    tetra->shown[cell] = shows;
+    shown += shows;
+    blanked += !shows && !hidden;
     repeated += twice && !hidden;
-    if (finite && adjacency->orientation[cell] != 0) {
-      low = fminf(low, least);
-      high = fmaxf(high, most);
+    if (shows && adjacency->orientation[cell] != 0) {
+      low = fminf(low, range[0]);
+      high = fmaxf(high, range[1]);
     }
   }
   tetra->shown_cells = shown;

@@ -31,15 +31,11 @@ static void find_shown(stratus_tetra_projector* projector, const stratus_mesh* m
   const stratus_volume volume = stratus_mesh_values(mesh);
 #pragma omp parallel for num_threads(projector->context->threads)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
-    const int32_t* v = mesh->vertices + 4 * cell;
-    bool finite = !(mesh->hidden && mesh->hidden[cell]) && !stratus_names_a_point_twice(v);
-    if (values) {
-      finite = finite && isfinite(values[v[0]]) && isfinite(values[v[1]]) && isfinite(values[v[2]]) && isfinite(values[v[3]]);
-    } else {
-      projector->cell_values[cell] = stratus_volume_fetch(&volume, bias, (size_t)cell);
-      finite = finite && isfinite(projector->cell_values[cell]);
+    float range[2];
+    projector->shown[cell] = stratus_tetra_shows(mesh, &volume, values, bias, cell, range);
+    if (!values) {
+      projector->cell_values[cell] = range[0];
     }
-    projector->shown[cell] = finite;
   }
 }
 
