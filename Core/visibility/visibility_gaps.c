@@ -17,7 +17,7 @@ typedef struct gap_search {
   double* boxes; /* 6 each: level by level, the finest first */
   int64_t level_begin[STRATUS_GATE_LEVELS_MAX];
   int levels;
-  double slack;
+  double slack, scale; /* scale: a power of two by which edges are at most 1 long, so that no product of them overflows */
 } gap_search;
 
 /* How many boxes stand over so many faces. */
@@ -83,7 +83,8 @@ static bool outer_plane(const gap_search* search, uint32_t face, double normal[3
   double inner = 0.0, length = 0.0;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    normal[i] = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
+    const double bj = (b[j] - a[j]) * search->scale, bk = (b[k] - a[k]) * search->scale;
+    normal[i] = bj * ((c[k] - a[k]) * search->scale) - bk * ((c[j] - a[j]) * search->scale);
   }
   for (int i = 0; i < 3; ++i) {
     inner += normal[i] * (apex[i] - a[i]);
@@ -209,7 +210,8 @@ stratus_status stratus_order_find_gaps(stratus_visibility_order* order)
 {
   stratus_context* context = order->context;
   stratus_status status = STRATUS_OK;
-  gap_search search = { .order = order, .slack = SLACK * mesh_size(order) };
+  const double size = mesh_size(order);
+  gap_search search = { .order = order, .slack = SLACK * size, .scale = stratus_order_scale(size) };
   uint32_t* faces = NULL;
   void *begin = NULL, *kept = NULL, *boxes = NULL;
   int64_t largest = 0, count = 0;

@@ -25,6 +25,14 @@ static inline double stratus_larger(double a, double b)
   return b > a ? b : a;
 }
 
+/* The power of two that brings what is at most `largest` to at most 1. */
+static inline double stratus_order_scale(double largest)
+{
+  int exponent;
+  (void)frexp(largest, &exponent);
+  return ldexp(1.0, exponent < -1000 ? 1000 : -exponent);
+}
+
 /* An eye, or the direction of parallel rays, in the mesh's local coordinates: exact from here on. */
 typedef struct stratus_view {
   double eye[3], direction[3];

@@ -14,12 +14,10 @@
 static double view_scale(const stratus_visibility_order* order, const double from[3])
 {
   double largest = 0.0;
-  int exponent;
   for (int i = 0; i < 6; ++i) {
     largest = fmax(largest, fabs(order->bounds[i] - from[i / 2]));
   }
-  (void)frexp(largest, &exponent);
-  return ldexp(1.0, exponent < -1000 ? 1000 : -exponent);
+  return stratus_order_scale(largest);
 }
 
 /* Perspective: points as seen from the eye. Parallel: x and y across the direction, so that the determinant with ones for z is the one

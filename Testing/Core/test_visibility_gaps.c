@@ -334,6 +334,47 @@ static void only_faces_that_look_at_others_are_gaps(void** state)
   stratus_context_destroy(context);
 }
 
+/* Gaps and orders of a mesh are those of the same mesh in other units: no product of its lengths overflows, and none vanishes. */
+static void a_mesh_of_any_size_has_the_same_gaps_and_orders(void** state)
+{
+  static const int exponents[] = { 0, 345, 990, -345, -900 }; /* 2^990: some 1e298; 2^345: its third power overflows */
+  (void)state;
+  stratus_context* context = mesh_context(2);
+  mesh_case mesh = nested();
+  const size_t cells = (size_t)mesh.cell_count;
+  uint32_t* first = malloc(24 * cells * sizeof *first);
+  double* points = malloc((size_t)mesh.point_count * 3 * sizeof *points);
+  int64_t gaps = 0;
+  assert_true(first && points);
+  memcpy(points, mesh.points, (size_t)mesh.point_count * 3 * sizeof *points);
+  for (size_t e = 0; e < sizeof exponents / sizeof *exponents; ++e) {
+    for (int64_t i = 0; i < 3 * mesh.point_count; ++i) {
+      mesh.points[i] = ldexp(points[i], exponents[e]);
+    }
+    const stratus_mesh view = mesh_case_view(&mesh);
+    stratus_visibility_order* order = NULL;
+    assert_int_equal(stratus_visibility_order_create(context, &view, NULL, &order), STRATUS_OK);
+    gaps = e == 0 ? order->gap_begin[1] : gaps;
+    assert_true(gaps > 0);
+    assert_int_equal(order->gap_begin[1], gaps);
+    for (int v = 0; v < 24; ++v) {
+      const stratus_camera camera = camera_of(&mesh, v);
+      stratus_visibility_result result;
+      assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
+      assert_int_equal(result.cycles + result.forced, 0);
+      if (e == 0) {
+        memcpy(first + (size_t)v * cells, result.cells, cells * sizeof *first);
+      }
+      assert_memory_equal(first + (size_t)v * cells, result.cells, cells * sizeof *first);
+    }
+    stratus_visibility_order_destroy(order);
+  }
+  free(first);
+  free(points);
+  mesh_case_free(&mesh);
+  stratus_context_destroy(context);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -344,6 +385,7 @@ int main(void)
     cmocka_unit_test(cells_that_overlap_take_bounded_work_and_are_told),
     cmocka_unit_test(scattered_cells_and_points_come_in_order),
     cmocka_unit_test(only_faces_that_look_at_others_are_gaps),
+    cmocka_unit_test(a_mesh_of_any_size_has_the_same_gaps_and_orders),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
