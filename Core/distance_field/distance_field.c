@@ -48,7 +48,7 @@ static void set_brick(const stratus_brick* brick, const stratus_bits* set)
   }
 }
 
-stratus_status stratus_bits_create(stratus_context* context, const stratus_voxels* voxels, stratus_bits* set)
+static stratus_status create_bits(stratus_context* context, const stratus_voxels* voxels, stratus_bits* set)
 {
   size_t count;
   void* memory;
@@ -110,7 +110,7 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
       return STRATUS_OK;
     }
   }
-  TRY_CLEANUP(stratus_bits_create(context, voxels, &set));
+  TRY_CLEANUP(create_bits(context, voxels, &set));
   if (flood) {
     TRY_CLEANUP(stratus_flood(context, &set, options, field, report));
     field->set = set;
@@ -320,7 +320,7 @@ stratus_status stratus_field_rgba(const stratus_field* field, const stratus_voxe
     write_flooded(field, rgba);
   } else {
     stratus_bits set = { .bits = NULL };
-    TRY(stratus_bits_create(context, voxels, &set));
+    TRY(create_bits(context, voxels, &set));
     const stratus_status status = stratus_field_nearest(context, &set, field->is_signed, rgba);
     stratus_release(context, set.bits);
     TRY(status);

@@ -30,9 +30,6 @@ static inline int stratus_bits_get(const stratus_bits* set, int64_t i, int64_t j
   return (int)(set->bits[(k * set->n[1] + j) * set->words + (i >> 6)] >> (i & 63) & 1);
 }
 
-/* distance_field.c */
-stratus_status stratus_bits_create(stratus_context* context, const stratus_voxels* voxels, stratus_bits* set);
-
 /* Whether a context's device makes a field: a GPU (see device.h) does where buffers of `bytes` a voxel fit, else the host does.
  * distance_field_device.c */
 bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes);

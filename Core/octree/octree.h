@@ -151,8 +151,6 @@ void stratus_octree_count_splits(stratus_octree_level* level); /* into rank[] */
 /* Every split node of `level` whose children are not split and were last used more than `age` calls ago is whole again. age < 0: all of
  * them. */
 stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t age, uint64_t* collapses);
-/* The whole tree into the root's list; the next split makes a new root. */
-stratus_status stratus_octree_flatten(stratus_octree* tree);
 /* The root's cell holds the box, or the tree is flat. */
 stratus_status stratus_octree_grow(stratus_octree* tree, const float box[6]);
 
@@ -235,10 +233,5 @@ stratus_status stratus_octree_walk_nodes(stratus_octree_view* view, stratus_octr
 /* Splits whatever has more than leaf_objects, down to the last level. */
 stratus_status stratus_octree_split_all(stratus_octree_view* view, uint64_t* splits, uint64_t* handed_down);
 stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view);
-
-/* ---- octree_cull.c */
-
-/* False if doubles show the object outside (exact: separated). */
-bool stratus_octree_object_seen(const stratus_octree* tree, const stratus_frustum_plan* plan, uint32_t id, bool exact);
 
 #endif

@@ -62,7 +62,8 @@ static bool look_divides(const stratus_octree* tree, const void* self, int level
 
 /* ---- boxes */
 
-bool stratus_octree_object_seen(const stratus_octree* tree, const stratus_frustum_plan* plan, uint32_t id, bool exact)
+/* False if doubles show the object outside (exact: separated). */
+static bool object_is_seen(const stratus_octree* tree, const stratus_frustum_plan* plan, uint32_t id, bool exact)
 {
   const bool turned = tree->kind[id] == STRATUS_OBJECT_TURNED;
   const stratus_solid_box box = turned ? stratus_solid_box_of_turned(tree->turned[id]) : stratus_solid_box_of_bounds(tree->bounds[id]);
@@ -87,7 +88,7 @@ static uint64_t test_job(const stratus_octree_view* view, const looker* look, bo
     for (unsigned ask = unsure[p] & kept; ask; ask &= ask - 1) {
       const int lane = __builtin_ctz(ask);
       ++retested;
-      if (!stratus_octree_object_seen(tree, look->plan, job->ids[p * STRATUS_PACK + (uint32_t)lane], exact)) {
+      if (!object_is_seen(tree, look->plan, job->ids[p * STRATUS_PACK + (uint32_t)lane], exact)) {
         kept &= ~(1u << lane);
       }
     }

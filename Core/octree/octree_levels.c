@@ -216,7 +216,8 @@ stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t 
   return status;
 }
 
-stratus_status stratus_octree_flatten(stratus_octree* tree)
+/* The whole tree into the root's list; the next split makes a new root. */
+static stratus_status flatten(stratus_octree* tree)
 {
   uint64_t collapses = 0;
   while (tree->depth > 0) {
@@ -275,7 +276,7 @@ stratus_status stratus_octree_grow(stratus_octree* tree, const float box[6])
       octant |= (unsigned)(lo[a] <= tree->corner[a]) << a;
     }
     if (tree->edge >= tree->first_edge * FIRST_GROWTH) {
-      return stratus_octree_flatten(tree);
+      return flatten(tree);
     }
     TRY(raise_root(tree, octant));
   }

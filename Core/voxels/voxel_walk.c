@@ -140,7 +140,8 @@ static void walk_ray(const walk* w, brick_cache* cache, stratus_hit* hit)
 
 /* ---------------------------------------------------------------- world */
 
-bool stratus_voxels_world_to_corner(const double index_to_world[16], double world_to_corner[16])
+/* World to the frame where voxel (i,j,k) fills [i,i+1] and so on: borders of voxels are whole numbers, to the bit for a list. */
+static bool invert_to_corner(const double index_to_world[16], double world_to_corner[16])
 {
   if (!stratus_matrix_invert_affine(index_to_world, world_to_corner)) {
     return false;
@@ -179,7 +180,7 @@ stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxe
     ray->origin[2], ray->direction[0], ray->direction[1], ray->direction[2]);
 }
 
-stratus_status stratus_rays_check(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count)
+static stratus_status check_rays(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count)
 {
   for (size_t r = 0; r < count; ++r) {
     if (!stratus_ray_usable(to_voxels, rays + r)) {
@@ -220,10 +221,10 @@ stratus_status stratus_voxels_first_hit(
   }
   TRY(stratus_array_check(context, "rays", count, sizeof *rays));
   double corner[16];
-  if (!stratus_voxels_world_to_corner(voxels->index_to_world, corner)) {
+  if (!invert_to_corner(voxels->index_to_world, corner)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the voxels' matrix is singular");
   }
-  TRY(stratus_rays_check(context, corner, rays, count));
+  TRY(check_rays(context, corner, rays, count));
   brick_cache cache = { { -1, -1, -1 }, 0 };
   for (size_t r = 0; r < count; ++r) {
     stratus_hit hit = { .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1 };

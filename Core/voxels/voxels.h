@@ -32,12 +32,6 @@ struct stratus_voxels {
 /* Mask of brick (i,j,k), 0 where there is none: a binary search. */
 uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k);
 
-/* ---- voxels_cells.c */
-
-/* stratus_voxels_create_cells() from ranges of 4^3 cells that are there already. hash: of the volume, or 0. */
-stratus_status stratus_voxels_create_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
-  const stratus_criterion* criterion, uint64_t hash, stratus_voxels** voxels);
-
 /* ---- voxel_walk.c */
 
 #define STRATUS_RAY_SHORTEST 1e-290 /* of a direction's longest component, in voxels */
@@ -46,8 +40,5 @@ stratus_status stratus_voxels_create_ranges(stratus_context* context, const stra
 bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray);
 /* Says why one can't. */
 stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxels[16], const stratus_ray* ray, size_t index);
-stratus_status stratus_rays_check(stratus_context* context, const double to_voxels[16], const stratus_ray* rays, size_t count);
-/* World to the frame where voxel (i,j,k) fills [i,i+1] and so on: borders of voxels are whole numbers, to the bit for a list. */
-bool stratus_voxels_world_to_corner(const double index_to_world[16], double world_to_corner[16]);
 
 #endif

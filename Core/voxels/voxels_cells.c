@@ -48,14 +48,14 @@ static void place_cells(const stratus_volume* volume, double index_to_world[16])
   }
 }
 
-stratus_status stratus_voxels_create_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
+/* ranges: of blocks of 4^3 cells of the volume, whose hash this is. */
+static stratus_status create_from_ranges(stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges,
   const stratus_criterion* criterion, uint64_t hash, stratus_voxels** out)
 {
   stratus_voxels* voxels = NULL;
   stratus_status status;
   void* masks = NULL;
   int64_t dimensions[3];
-  TRY(stratus_criterion_check(context, criterion));
   for (int a = 0; a < 3; ++a) {
     dimensions[a] = STRATUS_BRICK * ranges->blocks[a];
   }
@@ -87,7 +87,7 @@ stratus_status stratus_voxels_create_cells(
   }
   TRY_CLEANUP(stratus_value_range_create(context, volume, STRATUS_BRICK, &ranges));
   TRY_CLEANUP(stratus_volume_hash(context, volume, &hash));
-  TRY_CLEANUP(stratus_voxels_create_ranges(context, volume, ranges, criterion, hash, out));
+  TRY_CLEANUP(create_from_ranges(context, volume, ranges, criterion, hash, out));
 cleanup:
   stratus_value_range_destroy(ranges);
   return status;
