@@ -168,6 +168,78 @@ static void turned_boxes_are_tested_as_they_are(void** state)
   stratus_context_destroy(context);
 }
 
+/* Long and thin, about the z axis, where its bounds are most of them empty. */
+static void random_turned(uint32_t* random, double box[12])
+{
+  const double angle = 6.2831853071795865 * random_unit(random), length = 0.01 + 0.2 * random_unit(random), c = cos(angle), s = sin(angle);
+  const double edges[9] = { length * c, length * s, 0, -0.01 * s, 0.01 * c, 0, 0, 0, 0.01 };
+  for (int a = 0; a < 3; ++a) {
+    box[a] = random_unit(random);
+  }
+  memcpy(box + 3, edges, sizeof edges);
+}
+
+/* Straight and turned boxes that were moved to turned ones, one by one and many at once, and some back to straight ones: bounds and what is
+ * seen are those of boxes that were inserted there. */
+static void moved_to_turned_boxes_are_as_if_inserted_there(void** state)
+{
+  enum { COUNT = 2000, BACK = COUNT / 4 };
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  const stratus_octree_options options = options_of(1);
+  stratus_octree *moved = make_tree(context, &options), *fresh = make_tree(context, &options);
+  double(*straight)[6] = make_boxes(COUNT, 1.0, 5), (*turned)[12] = malloc(COUNT * sizeof *turned);
+  uint32_t *ids = malloc(COUNT * sizeof *ids), *fresh_ids = malloc(COUNT * sizeof *ids), random = 11;
+  for (int i = 0; i < COUNT; ++i) {
+    double from[12];
+    random_turned(&random, from);
+    random_turned(&random, turned[i]);
+    assert_int_equal(
+      i % 2 ? stratus_octree_insert_oriented(moved, from, 1, &ids[i]) : stratus_octree_insert(moved, straight[i], 1, &ids[i]), STRATUS_OK);
+  }
+  stratus_octree_view *view = make_view(moved), *expected = make_view(fresh);
+  stratus_octree_visible a, b, c;
+  stratus_frustum frustum = random_frustum(context, &random, 1.0, NULL);
+  assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &a), STRATUS_OK); /* nodes are split before anything moves */
+  for (int i = 0; i < COUNT / 2; ++i) {
+    assert_int_equal(stratus_octree_move_oriented(moved, &ids[i], turned[i], 1), STRATUS_OK);
+  }
+  assert_int_equal(stratus_octree_move_oriented(moved, ids + COUNT / 2, turned[COUNT / 2], COUNT - COUNT / 2), STRATUS_OK);
+  assert_int_equal(stratus_octree_move(moved, ids, straight[0], BACK), STRATUS_OK);
+  assert_int_equal(stratus_octree_insert(fresh, straight[0], BACK, fresh_ids), STRATUS_OK);
+  assert_int_equal(stratus_octree_insert_oriented(fresh, turned[BACK], COUNT - BACK, fresh_ids + BACK), STRATUS_OK);
+  assert_int_equal(stratus_octree_check(moved), STRATUS_OK);
+  for (int i = 0; i < COUNT; ++i) {
+    double p[6], q[6];
+    assert_int_equal(stratus_octree_bounds(moved, ids[i], p), STRATUS_OK);
+    assert_int_equal(stratus_octree_bounds(fresh, fresh_ids[i], q), STRATUS_OK);
+    assert_int_equal(ids[i], fresh_ids[i]);
+    assert_memory_equal(p, q, sizeof p);
+  }
+  size_t seen = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    frustum = random_frustum(context, &random, 1.0, NULL);
+    const stratus_octree_cull_options exact = { .exact = 1 };
+    assert_int_equal(stratus_octree_cull(view, &frustum, &exact, &a), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(expected, &frustum, &exact, &b), STRATUS_OK);
+    assert_same_visible(&a, &b);
+    seen += b.count;
+    assert_int_equal(stratus_octree_cull(expected, &frustum, NULL, &c), STRATUS_OK);
+    assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &a), STRATUS_OK);
+    assert_same_visible(&a, &c);
+  }
+  assert_true(seen > COUNT);
+  stratus_octree_view_destroy(view);
+  stratus_octree_view_destroy(expected);
+  stratus_octree_destroy(moved);
+  stratus_octree_destroy(fresh);
+  free(straight);
+  free(turned);
+  free(ids);
+  free(fresh_ids);
+  stratus_context_destroy(context);
+}
+
 static void threads_change_no_bit_of_the_list(void** state)
 {
   enum { COUNT = 60000 };
@@ -420,6 +492,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_tree_shows_what_the_linear_list_shows),
     cmocka_unit_test(turned_boxes_are_tested_as_they_are),
+    cmocka_unit_test(moved_to_turned_boxes_are_as_if_inserted_there),
     cmocka_unit_test(threads_change_no_bit_of_the_list),
     cmocka_unit_test(views_share_a_tree),
     cmocka_unit_test(nodes_come_with_the_border_and_go_without_it),
