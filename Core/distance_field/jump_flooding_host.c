@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A pass of jump flooding on the host, row by row: the same bits as kernels/jump_flooding.cl. */
+ * A pass of jump flooding on the host, row by row: the same bits as jump_flooding.cl. */
 #include "clones.h"
 #include "jump_flooding_passes.h"
 

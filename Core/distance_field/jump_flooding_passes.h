@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Jump flooding: what distance_field.c calls, and what host and device passes share. */
-#ifndef STRATUS_FLOODING_H
-#define STRATUS_FLOODING_H
+#ifndef STRATUS_JUMP_FLOODING_PASSES_H
+#define STRATUS_JUMP_FLOODING_PASSES_H
 
 #include "jump_flooding.h"
 #include "distance_field.h"
