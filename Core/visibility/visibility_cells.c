@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where cells and points are kept. Cells: leaf by leaf, so that a leaf is a range of places, and near one another in memory where they are
- * so in space, since peeling goes from neighbour to neighbour. Points as they are seen in a view: in the order in which those cells read
- * them. */
+ * The places of cells and points in memory. Cells are listed leaf by leaf, so that a leaf is a range of places. Peeling goes from neighbour
+ * to neighbour, so cells that lie scattered in memory are listed along a Morton curve. Points that lie scattered are kept in the order in
+ * which the cells read them. */
 #include "cell_morton.h"
 #include "visibility_order.h"
 
 #include <string.h>
 
-/* Neighbours further apart in the mean than one cell in so many, or a cell's points than one point: numbers say nothing of where they are.
- */
+/* Cells lie scattered if neighbours' numbers differ in the mean by more than 1/SCATTERED of a leaf; points, if those of one cell do by more
+ * than 1/SCATTERED of all points. */
 #define SCATTERED 16
-#define FEW_POINTS 4096 /* that fit a cache in any order */
+#define FEW_POINTS 4096 /* so many fit a cache in any order */
 #define AXIS_BITS 10
 #define LEAF_BITS 16
 
-/* Of cells that know their neighbours: told by how far apart those are listed. */
+/* Samples neighbours of the same leaf, and measures how far apart the mesh lists them. */
 static bool cells_are_scattered(const stratus_visibility_order* order, const int32_t* leaf)
 {
   int64_t pairs = 0;
   double distance = 0.0;
-  for (int64_t i = 0; i < 4 * order->cell_count; i += 61) { /* has no divisor in common with 4: all faces alike */
+  for (int64_t i = 0; i < 4 * order->cell_count; i += 61) { /* odd: samples all four faces of cells alike */
     const int64_t neighbour = order->adjacency->neighbours[i];
     const bool together = neighbour >= 0 && (!leaf || leaf[neighbour] == leaf[i / 4]);
     pairs += together;
@@ -29,7 +29,7 @@ static bool cells_are_scattered(const stratus_visibility_order* order, const int
   return cells > STRATUS_MORTON_FEW_CELLS && distance * SCATTERED > (double)pairs * cells;
 }
 
-/* The order's cells, as the curve asks for their places. */
+/* What place_cell() needs to place a cell on the curve. */
 typedef struct cell_places {
   const stratus_visibility_order* order;
   const int32_t* leaf;
@@ -50,7 +50,7 @@ static uint32_t place_cell(const void* data, int64_t cell, double at[3])
   return places->leaf ? (uint32_t)places->leaf[cell] : 0;
 }
 
-/* Cells of a leaf by the Morton code of where they are. */
+/* Fills `listed`: leaf by leaf, by the Morton code of the cells' middles. */
 static stratus_status list_by_place(stratus_visibility_order* order, const int32_t* leaf)
 {
   const double* b = order->bounds;
@@ -62,10 +62,10 @@ static stratus_status list_by_place(stratus_visibility_order* order, const int32
   return stratus_morton_order(order->context, &cells, order->listed);
 }
 
-/* leaf_begin, and `listed` if cells are not to stay as they come. */
+/* Makes leaf_begin, and `listed` unless the cells can stay as they come. */
 static stratus_status list_cells(stratus_visibility_order* order, const int32_t* leaf)
 {
-  bool listed = true; /* as they come */
+  bool listed = true; /* leaf by leaf, as they come */
   void* memory;
   for (int64_t cell = 0; cell < order->cell_count; ++cell) {
     order->leaf_begin[(leaf ? leaf[cell] : 0) + 1]++;
@@ -93,7 +93,7 @@ static stratus_status list_cells(stratus_visibility_order* order, const int32_t*
   return STRATUS_OK;
 }
 
-/* Relations end at a leaf's border. places: of each cell, NULL: its own number. */
+/* Neighbours are cells of the same leaf only: the leaves' order decides between leaves. places: each cell's; NULL: its own number. */
 static void fill_cells(stratus_visibility_order* order, const int8_t* side, const int32_t* leaf, const uint32_t* places)
 {
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
@@ -154,7 +154,7 @@ static bool points_are_scattered(const stratus_visibility_order* order)
   return order->point_count > FEW_POINTS && distance * SCATTERED > 3.0 * (double)asked * (double)order->point_count;
 }
 
-/* In the order in which cells ask for them; those that none asks for come last. */
+/* Numbers points in the order in which cells name them; points that no cell names come last. */
 stratus_status stratus_order_place_points(stratus_visibility_order* order)
 {
   const size_t points = (size_t)order->point_count;

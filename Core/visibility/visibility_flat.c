@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cells without volume lie on no side of their faces, but what lies before and behind them still hides one another through them. So they
- * get the side on which they would lie were they blown up a little: the one that fits a neighbour's, passed on from cell to cell. */
+ * Cells without volume lie on no side of their faces, yet cells before and behind them hide one another through them. Each flat cell gets
+ * the side that it would have if it were inflated a little: one that agrees with a neighbour's side, passed on from cell to cell. */
 #include "visibility_order.h"
 
-/* The neighbour's face that names the same points, -1 if none does; signs as stratus_face_points() returns them. */
+/* The neighbour's face with the same points as face f of the cell; -1: none. The signs are those of stratus_face_points(). */
 static int find_face(const stratus_visibility_order* order, int64_t cell, int f, int64_t neighbour, int* sign, int* neighbour_sign)
 {
   int32_t points[3], other[3];
@@ -18,7 +18,7 @@ static int find_face(const stratus_visibility_order* order, int64_t cell, int f,
   return -1;
 }
 
-/* The side of a cell that a neighbour's side asks for; 0: none. */
+/* The side that a cell needs to agree with the neighbour behind face f; 0: there is none, or it has no side. */
 static int wanted_side(const stratus_visibility_order* order, int64_t cell, int f)
 {
   const int64_t neighbour = order->adjacency->neighbours[4 * cell + f];
@@ -29,7 +29,7 @@ static int wanted_side(const stratus_visibility_order* order, int64_t cell, int 
   return -sign * neighbour_sign * order->side[neighbour];
 }
 
-/* The queue only ever holds flat cells that have a side, each once. */
+/* Breadth first: the queue holds the flat cells that have got a side, each once. */
 static void spread_sides(stratus_visibility_order* order, uint32_t* queue)
 {
   int64_t end = 0;

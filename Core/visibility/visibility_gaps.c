@@ -1,26 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where a ray may leave a leaf and come back: border faces beyond whose plane lies more of the leaf. Cells on both sides of such a gap hide
- * one another through no face that they share. All others are faces of the leaf's convex hull, through which no ray comes back. */
+ * Gap faces: border faces through which a ray may leave a leaf and come back, as more of the leaf lies beyond the face's plane. Cells on
+ * both sides of a gap share no face, so relations through faces do not order them. Every other border face lies on the leaf's convex hull,
+ * and no ray comes back through it. */
 #include "visibility_order.h"
 
 #include "vector.h"
 
 #include <string.h>
 
-#define SLACK 1e-13 /* of the mesh's size: gaps that are narrower are rounding's */
+#define SLACK 1e-13 /* of the mesh's size: what looks like a narrower gap is a rounding error */
 
-/* Boxes over border faces that follow one another, boxes over those, .. */
+/* A leaf's border faces, and a tree of boxes: each covers STRATUS_GATE_CHILDREN consecutive faces, or as many boxes of the level before. */
 typedef struct gap_search {
   const stratus_visibility_order* order;
-  const uint32_t* faces; /* a leaf's */
+  const uint32_t* faces; /* of the leaf */
   int64_t count;
-  double* boxes; /* 6 each: level by level, the finest first */
+  double* boxes; /* 6 numbers each, level by level, those over faces first */
   int64_t level_begin[STRATUS_GATE_LEVELS_MAX];
   int levels;
-  double slack, scale; /* scale: a power of two by which edges are at most 1 long, so that no product of them overflows */
+  double slack, scale; /* scale: a power of two that makes edges at most 1 long, so that no product of them overflows */
 } gap_search;
 
-/* How many boxes stand over so many faces. */
+/* How many boxes the tree over so many faces has. */
 static int64_t count_boxes(int64_t faces)
 {
   int64_t boxes = 0;
@@ -74,7 +75,8 @@ static void build_boxes(gap_search* search)
   } while (below > 1);
 }
 
-/* normal and the least of normal*p that is beyond a face's plane. False: it has no outer side, or every side is. */
+/* The plane of a face, its normal outwards: points p with normal*p > *least lie beyond it. Returns false for a face or cell without extent,
+ * whose outer side is unknown. */
 static bool outer_plane(const gap_search* search, uint32_t face, double normal[3], double* least)
 {
   const stratus_visibility_order* order = search->order;
@@ -140,7 +142,7 @@ static bool looks_at_others(const gap_search* search, uint32_t face)
   return false;
 }
 
-/* Border faces leaf by leaf, in rising order. */
+/* Lists the border faces, leaf by leaf, ascending. */
 static stratus_status list_borders(const stratus_visibility_order* order, int64_t* begin, uint32_t** faces)
 {
   void* memory;
@@ -165,7 +167,7 @@ static stratus_status list_borders(const stratus_visibility_order* order, int64_
   return STRATUS_OK;
 }
 
-/* Keeps the leaf's faces that look at others, moved to the front. Returns how many. */
+/* Moves the leaf's gap faces to the front of its faces, and returns how many there are. */
 static int64_t keep_gaps(gap_search* search, uint32_t* faces, uint8_t* kept)
 {
   const int threads = search->count > STRATUS_GATE_CHILDREN * STRATUS_GATE_CHILDREN ? search->order->context->threads : 1;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which of two gates hides the other: their faces are intersected in the view, and compared in depth in the middle of what they share. */
+ * Whether one gate hides another. Their faces are intersected in the view, and their depths compared in the middle of the intersection. */
 #include "visibility_order.h"
 
 #include <string.h>
 
-#define CORNERS_MAX 6    /* of two triangles' intersection */
-#define LEAST_SHARE 1e-6 /* of a face that another covers: less is rounding's, of faces that only touch */
-#define LEAST_DEPTH 1e-9 /* by which one lies off another's plane, in sizes of that one: less, and both are in one place */
+#define CORNERS_MAX 6    /* corners of two triangles' intersection */
+#define LEAST_SHARE 1e-6 /* of a face: faces that share less of the view only touch, but for rounding */
+#define LEAST_DEPTH 1e-9 /* from the other's plane, in lengths of the other's edges: what is nearer lies on the plane */
 
-/* How large three points are in the view, and which way round. */
+/* The size of a triangle in the view, signed by which way round its points come: an area, or in perspective a determinant. */
 static double turn_of(const stratus_gates* gates, const stratus_view_point* a, const stratus_view_point* b, const stratus_view_point* c)
 {
   if (gates->parallel) {
@@ -17,7 +17,7 @@ static double turn_of(const stratus_gates* gates, const stratus_view_point* a, c
   return a->x * (b->y * c->z - b->z * c->y) + a->y * (b->z * c->x - b->x * c->z) + a->z * (b->x * c->y - b->y * c->x);
 }
 
-/* The part of a convex polygon, which has room for one more corner, where distance[] is not negative. */
+/* Cuts off the part of a convex polygon where distance[], of its corners, is negative. The polygon has room for one more corner. */
 static int clip(stratus_view_point* polygon, int count, const double* distance)
 {
   stratus_view_point kept[CORNERS_MAX + 2];
@@ -42,7 +42,7 @@ static stratus_view_point minus(const stratus_view_point* p, const stratus_view_
   return (stratus_view_point){ p->x - q->x, p->y - q->y, p->z - q->z };
 }
 
-/* Whether p is on the eye's side of a face's plane, or on it. *nearness: how many times as far the plane is. */
+/* Whether p lies on a face's plane or on the eye's side of it. *nearness: the plane's distance along the ray through p, over p's. */
 static bool is_before(const stratus_gates* gates, const stratus_view_point* p, const stratus_view_point face[3], double* nearness)
 {
   const stratus_view_point u = minus(face + 1, face), v = minus(face + 2, face), from = minus(p, face);

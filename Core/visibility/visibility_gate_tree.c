@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ways out into gaps by where they are in the view: boxes over those that follow one another, and so are near one another, as its sides see
- * them: one where rays are parallel, the six of a cube around the eye where not. */
+ * A tree over ways out, searched for one that hides a way in. Each node covers consecutive gates, which lie near one another, by a box in
+ * the view. A view of parallel rays has one side, a plane; a perspective view has six, the sides of a cube around the eye. */
 #include "visibility_order.h"
 
-/* Across, down and ahead of a side of the cube. */
+/* A point's coordinates relative to a side of the cube: two along the side, and one towards it. */
 static void turn_to(int side, const stratus_view_point* point, double turned[3])
 {
   const double p[3] = { point->x, point->y, point->z };
@@ -13,7 +13,7 @@ static void turn_to(int side, const stratus_view_point* point, double turned[3])
   turned[2] = side % 2 ? -p[axis] : p[axis];
 }
 
-/* Sees it if not all points are beyond one of its four edges. */
+/* A side sees a face unless all three points lie beyond one of the side's four edges. */
 static bool side_sees(int side, const stratus_view_point points[3])
 {
   unsigned outside = 15;
@@ -33,7 +33,7 @@ static void include(float box[4], double u, double v)
   box[3] = (float)v > box[3] ? (float)v : box[3];
 }
 
-/* The side that sees all of a face and is the only one to, -1 if there is none. */
+/* The side that a face lies wholly within; -1: the face reaches over an edge of the cube. */
 static int only_side(const stratus_view_point points[3])
 {
   const double x = fabs(points->x), y = fabs(points->y), z = fabs(points->z);
@@ -48,7 +48,7 @@ static int only_side(const stratus_view_point points[3])
   return side;
 }
 
-/* What is seen from one side only has a box there. */
+/* Boxes hold for one side: what several sides see has none. */
 static bool has_box(unsigned sides)
 {
   return (sides & (sides - 1)) == 0;
@@ -64,7 +64,7 @@ void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stra
     for (int side = 0; side < gates->sides; ++side) {
       gate->sides |= (uint8_t)(side_sees(side, points) << side);
     }
-    if (has_box(gate->sides)) { /* and beyond it: none after all */
+    if (has_box(gate->sides)) { /* the face is not wholly within that side: its box covers the side */
       include(gate->box, -INFINITY, -INFINITY);
       include(gate->box, INFINITY, INFINITY);
     }
@@ -80,7 +80,7 @@ void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stra
   }
 }
 
-/* Part of the view, and depths, that two things have in common if the one lies before the other. */
+/* Whether a gate or node can hide `other`: it is not wholly behind it, and a side sees both, with boxes that overlap. */
 static bool may_lie_before(float low, unsigned sides, const float box[4], const stratus_gate* other)
 {
   const float* q = other->box;

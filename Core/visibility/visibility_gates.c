@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Order across gaps. Before a cell that rays enter from a gap come all from which rays leave into that gap or one before it: those whose
- * faces cover its own in the view and lie before it. */
+ * Order across gaps. A ray may leave a cell into a gap and enter another cell behind it: the first cell's face then hides the second's. A
+ * cell with a way in waits for every cell of its leaf that has a way out which hides that way in. */
 #include "visibility_order.h"
 
-#define DEPTH_SLACK 1e-12 /* beyond roundings of depths near 0: what is seen reaches to 1 */
+#define DEPTH_SLACK 1e-12 /* exceeds rounding errors of depths near 0, as `seen` is scaled to 1 */
 
 static double length_squared(double x, double y, double z)
 {
   return x * x + y * y + z * z;
 }
 
-/* Not nearer, nor farther, than any point of the face. */
+/* Sets a gate's depths: no point of its face is nearer than `low` or farther than `high`, whatever the rounding. */
 static void find_depths(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3])
 {
   const stratus_view_point *p = points, *q = points + 1, *r = points + 2;
@@ -18,7 +18,7 @@ static void find_depths(const stratus_gates* gates, stratus_gate* gate, const st
   if (gates->parallel) {
     low = stratus_smaller(stratus_smaller(p->z, q->z), r->z);
     high = stratus_larger(stratus_larger(p->z, q->z), r->z);
-  } else { /* nearest is what a ball around the face would reach */
+  } else { /* low: a ball around the face comes no nearer */
     const double x = (p->x + q->x + r->x) / 3.0, y = (p->y + q->y + r->y) / 3.0, z = (p->z + q->z + r->z) / 3.0;
     double radius = length_squared(p->x - x, p->y - y, p->z - z);
     radius = stratus_larger(radius, length_squared(q->x - x, q->y - y, q->z - z));
@@ -31,14 +31,15 @@ static void find_depths(const stratus_gates* gates, stratus_gate* gate, const st
   gate->high = (float)(high + 1e-6 * fabs(high) + DEPTH_SLACK);
 }
 
-/* So that the work is bounded. Rings take from it, as those of cells that overlap hardly end, and what leads to each passes many cells. */
+/* Bounds the work in a leaf. Each ring across gaps uses up some of it: overlapping cells make rings without end, and finding each passes
+ * many cells. */
 static void set_bounds(stratus_gates* gates, int64_t cells)
 {
   gates->tests_left = (int64_t)(STRATUS_GATE_TESTS * (double)gates->count * sqrt((double)gates->count));
   gates->ring_tests = gates->tests_left / (STRATUS_GATE_RINGS + (int64_t)sqrt((double)cells)) + 1;
 }
 
-/* At most so many nodes stand over the gates of the leaves before one: a seventh of those, and one more a level. */
+/* Where a leaf's nodes begin. The trees of the leaves before it have at most a seventh as many nodes as gates, and one more per level. */
 static int64_t nodes_before(int64_t gates, int64_t leaf)
 {
   return gates / (STRATUS_GATE_CHILDREN - 1) + STRATUS_GATE_LEVELS_MAX * leaf;
@@ -80,18 +81,18 @@ void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, i
   }
 }
 
-/* A cell's first gate. Its others follow. */
+/* A cell's first gate; its other gates follow it. */
 static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
 {
   int64_t gate = gates->order->gap_at[cell / STRATUS_GAP_BLOCK] - (gates->faces - gates->order->gap_faces);
-  gate = gate > 0 ? gate : 0; /* the block may begin in another leaf */
+  gate = gate > 0 ? gate : 0; /* the block may begin in the leaf before */
   while (gate < gates->count && stratus_gate_cell(gates, gate) < cell) {
     ++gate;
   }
   return gate;
 }
 
-/* The cell that has to come before a way in's, STRATUS_NO_CELL if none is left. */
+/* The cell that a way in waits for; STRATUS_NO_CELL: none. */
 static uint32_t cell_before(stratus_gates* gates, int64_t way_in)
 {
   const int64_t way_out = gates->gates[way_in].facing < 0 ? stratus_gates_search(gates, way_in) : -1;

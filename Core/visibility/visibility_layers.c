@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Peeling of one leaf in layers (Li et al. 2012, section 3.1): all cells that nothing hides through a face, then all that only these hid,
- * .. Gaps are crossed as it comes. */
+ * Peels one leaf in layers (Li et al. 2012, section 3.1). The first layer is all cells that no neighbour hides; each next layer is all
+ * cells that only cells of the layers before it hide. Relations across gaps are ignored. */
 #include "visibility_order.h"
 
-/* out[emitted..ready) may come, up to out[layer_end) in this layer. A cell's `waiting` counts the neighbours that come before it and are
- * not ready yet. */
+/* `out` holds the cells that are listed, up to `emitted`, then those that are ready, up to `ready`. The current layer ends at `layer_end`.
+ * A cell's `waiting` counts the neighbours that come before it and are not listed yet. */
 typedef struct leaf_peel {
   stratus_visibility_order* order;
   uint32_t first;
   int64_t count, emitted, ready, layer_end;
   uint32_t* out;
-  int64_t unreleased, steps; /* cells listed before `unreleased` have come or are ready */
+  int64_t unreleased, steps; /* the leaf's first `unreleased` cells are listed or ready */
   stratus_peel_counts counts;
 } leaf_peel;
 
-/* A cell that waits for neighbours, STRATUS_NO_CELL if none does. */
+/* A cell that waits for a neighbour; STRATUS_NO_CELL: none does. */
 static uint32_t find_waiting(leaf_peel* peel)
 {
   for (; peel->unreleased < peel->count; ++peel->unreleased) {
@@ -26,7 +26,7 @@ static uint32_t find_waiting(leaf_peel* peel)
   return STRATUS_NO_CELL;
 }
 
-/* A face through which a cell waits for a neighbour that waits itself: one that waits has one. */
+/* A face through which a waiting cell waits for a neighbour that waits itself. When nothing is ready, every waiting cell has one. */
 static int face_in_front(const stratus_visibility_order* order, uint32_t cell)
 {
   const int32_t* neighbours = order->neighbours + 4 * (int64_t)cell;
@@ -43,11 +43,12 @@ static uint32_t cell_in_front(const stratus_visibility_order* order, uint32_t ce
   return (uint32_t)order->neighbours[4 * (int64_t)cell + face_in_front(order, cell)];
 }
 
-/* Nothing is ready, yet cells wait: the relation of a cycle that is seen smallest is taken out. Returns the cell that it led to, ready or
- * not. */
+/* Nothing is ready, yet cells wait: some form a ring. Drops the ring's relation whose face is seen smallest, and returns the cell that
+ * waited by it, which may still wait for others. */
 static uint32_t break_cycle(leaf_peel* peel, uint32_t start)
 {
-  /* From cell to cell in front: one comes again. The one that is kept moves up each time the walk has doubled (Brent 1980). */
+  /* A walk from cell to the cell in front must meet a cell again. It compares with `kept`, which moves up whenever the walk's length has
+   * doubled (Brent 1980). */
   stratus_visibility_order* order = peel->order;
   uint32_t kept = start, cell = cell_in_front(order, start);
   int64_t power = 1, length = 1;
@@ -76,7 +77,7 @@ static uint32_t break_cycle(leaf_peel* peel, uint32_t start)
   return least;
 }
 
-/* Makes a cell ready, or all that are left, by distance. */
+/* Makes one cell ready by breaking rings; after too many steps lists all cells that are left, nearest seeds first. */
 static void unstick(leaf_peel* peel, int32_t leaf, stratus_order_seed* seeds)
 {
   stratus_visibility_order* order = peel->order;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The K-D tree over a mesh: checked once, and walked for each view from the side of every plane on which the eye is. */
+ * The leaves of the K-D tree. The tree is checked once. Each view walks it: at every plane the child on the eye's side comes first. */
 #include "visibility_order.h"
 
 #include <string.h>
 
-#define FRAME_SLACK 1e-9 /* of the mesh's size: where axes are turned, points on a plane are on it but for rounding */
+#define FRAME_SLACK 1e-9 /* of the mesh's size: rounding moves points off a plane of a turned frame */
 
 static stratus_status check_tree(stratus_context* context, const stratus_leaves* leaves)
 {
@@ -27,7 +27,7 @@ static stratus_status check_tree(stratus_context* context, const stratus_leaves*
   for (int32_t n = 0; n < leaves->node_count; ++n) {
     const stratus_partition_node* node = leaves->nodes + n;
     const bool leaf = node->axis == -1 && node->below >= 0 && node->below < leaves->leaf_count;
-    /* Children come behind their parents: no node is its own ancestor. */
+    /* Children have higher numbers than their parents, so no node is its own ancestor. */
     const bool inner = node->axis >= 0 && node->axis < 3 && node->below > n && node->above > n && node->below < leaves->node_count &&
       node->above < leaves->node_count && node->below != node->above && isfinite(node->value);
     if (!leaf && !inner) {
@@ -39,7 +39,7 @@ static stratus_status check_tree(stratus_context* context, const stratus_leaves*
   return STRATUS_OK;
 }
 
-/* 6 a leaf: its box in the tree's frame. Each node and each leaf is reached once, or the tree is none. */
+/* Fills boxes with 6 numbers a leaf, its box in the tree's frame, and refuses nodes or leaves that are not reached exactly once. */
 static stratus_status find_boxes(stratus_context* context, const stratus_leaves* leaves, double* boxes, int32_t* parents)
 {
   memset(parents, 0xff, (size_t)leaves->node_count * sizeof *parents);
@@ -162,7 +162,7 @@ stratus_status stratus_order_take_leaves(stratus_visibility_order* order, const 
 
 bool stratus_order_sort_leaves(stratus_visibility_order* order, const stratus_view* view)
 {
-  /* The far children that are still to come: fewer than there are leaves. leaf_output serves as the stack. */
+  /* The stack holds far children, fewer than there are leaves, so leaf_output has room for it. */
   int64_t* stack = order->leaf_output;
   int32_t found = 0, pending = 0;
   bool changed = false;

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One leaf's cells, nearest first by steps of some: each comes after all that hide it, through faces or across gaps, which are looked for
- * depth first (Williams 1992). A cell that is met while it waits itself closes a ring, which loses a relation. Where rings across gaps, or
- * what has to be looked at to find what hides a cell there, are too many, no gap is looked across any more: cells come after those that
- * hide them through faces. */
+ * Peels one leaf, nearest seeds first. Before a cell is listed, a depth-first search lists all cells that hide it, through faces or across
+ * gaps (Williams 1992). A cell that the search meets while it waits itself closes a ring, and one relation of the ring is dropped. Where
+ * rings across gaps or tests of gates become too many, gaps no longer count, and cells only wait for those that hide them through faces. */
 #include "visibility_order.h"
 
-/* `waiting` of a cell. Bits 0 to 3: neighbours that may have to come before it and were not asked yet. */
+/* The bits of `waiting`. Bits 0 to 3, a bit a face: the neighbour has to come first, and has not been looked at. */
 #define FACES 0x0fu
-#define STARTED 0x10u /* it waits, or has come */
-#define CAME 0x20u
+#define STARTED 0x10u /* the cell waits, or is listed */
+#define CAME 0x20u    /* the cell is listed */
 #define GATES (STRATUS_GATE_IN | STRATUS_GATE_OUT)
 #define STEPS_PER_GATE 32
 
@@ -19,11 +18,11 @@ typedef struct leaf_search {
   uint32_t first;
   int64_t count, emitted, steps;
   int64_t face_rings, gap_rings, forced;
-  uint32_t *out, *bottom; /* cells that wait for the one on top of them are kept where the last ones will come to stand: top..bottom */
+  uint32_t *out, *bottom; /* the stack of waiting cells, each waiting for the one above, grows down from `bottom`, the end of `out` */
   stratus_gates gates;
 } leaf_search;
 
-/* Of the neighbours asked for, those that have not come. Without branches: they would be guessed wrong half the time. */
+/* Which of the neighbours behind faces `asked` are not listed yet. Branches would be mispredicted half the time, so there are none. */
 static inline unsigned still_to_come(const uint8_t* waiting, const int32_t neighbours[4], unsigned asked)
 {
   const unsigned came = (waiting[neighbours[0]] & CAME) | (waiting[neighbours[1]] & CAME) << 1 | (waiting[neighbours[2]] & CAME) << 2 |
@@ -31,7 +30,7 @@ static inline unsigned still_to_come(const uint8_t* waiting, const int32_t neigh
   return asked & ~(came / CAME);
 }
 
-/* The face through which `before` comes before a cell, -1: it does across a gap. */
+/* The face through which `before` comes before a cell; -1: across a gap. */
 static int face_towards(const stratus_visibility_order* order, uint32_t cell, uint32_t before)
 {
   const unsigned faces = stratus_order_before(order, cell);
@@ -42,8 +41,9 @@ static int face_towards(const stratus_visibility_order* order, uint32_t cell, ui
   return f;
 }
 
-/* The relation of a ring that gives way: across a gap if any is, else the one that is seen smallest. The cells from `top` down to `last`
- * wait each for the one above, and top's for `last`. Returns the place of the cell that waited. */
+/* Chooses the relation of a ring to drop: one across a gap if there is any, else the one whose face is seen smallest. On the stack each
+ * cell of the ring, from `top` to `last`, waits for the one above it, and the top one for `last`. Returns the place of the cell that waits
+ * no more. */
 static uint32_t* find_least(leaf_search* search, uint32_t* top, uint32_t last)
 {
   const stratus_visibility_order* order = search->order;
@@ -63,8 +63,8 @@ static uint32_t* find_least(leaf_search* search, uint32_t* top, uint32_t last)
   }
 }
 
-/* One of a ring waits no more: see find_least(), or, if rings were too many to look at whole, the one on top. What it waited for has to be
- * looked for again. Returns its place, which is on top now. */
+/* Drops a relation of a ring: find_least() chooses it, or it is the top cell's once rings have taken too many steps. Cells above its cell
+ * leave the stack, and wait anew. Returns the place of its cell, the new top. */
 static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
 {
   stratus_visibility_order* order = search->order;
@@ -88,10 +88,10 @@ static uint32_t* break_ring(leaf_search* search, uint32_t* top, uint32_t last)
   return least;
 }
 
-/* All that a cell has to wait for, and itself. */
+/* Lists a cell after all that it waits for. */
 static void bring(leaf_search* search, uint32_t cell)
 {
-  uint8_t* const waiting = search->waiting; /* bytes might be anything's: what is not a local is read again after each */
+  uint8_t* const waiting = search->waiting; /* a local: stores to bytes may alias the struct, which would be read again after each */
   const int32_t* const neighbours = search->neighbours;
   uint32_t *top = search->bottom, *out = search->out + search->emitted;
   uint32_t* const bottom = top;
@@ -118,7 +118,7 @@ static void bring(leaf_search* search, uint32_t cell)
       cell = *top++;
       continue;
     }
-    waiting[cell] = (uint8_t)((waits & GATES) | STARTED | (pending & (pending - 1))); /* not to be asked for again */
+    waiting[cell] = (uint8_t)((waits & GATES) | STARTED | (pending & (pending - 1))); /* the neighbour now looked at is no longer pending */
     *--top = cell;
     cell = before;
     if (waiting[cell] & STARTED) {
@@ -135,7 +135,7 @@ static void begin_leaf(leaf_search* search, int32_t leaf)
   for (int64_t i = 0; i < search->count; ++i) {
     const uint32_t cell = search->first + (uint32_t)i;
     search->waiting[cell] = (uint8_t)stratus_order_before(order, cell);
-    if (i % 4 == 0) { /* the whole leaf's are asked for at random soon: now the memory can still be read in a row */
+    if (i % 4 == 0) { /* the search reads the leaf's neighbours in random order: here they are still fetched in sequence */
       STRATUS_FETCH(search->neighbours + 4 * (int64_t)cell);
     }
   }
@@ -162,7 +162,7 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
       }
     }
   }
-  /* One through faces may well lead across gaps in many places. */
+  /* A ring through faces may also cross gaps in many places: rings across gaps count only where there is no other. */
   return (stratus_peel_counts){ .cycles = search.face_rings > 0 ? search.face_rings : search.gap_rings,
     .forced = search.forced,
     .overlaps = search.gap_rings,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Visibility order of a mesh's cells (Williams 1992; Li et al. 2012): neighbours once a mesh, then for each view the signs of all faces, in
- * parallel, and the leaves of the K-D tree peeled one by one, in parallel. */
+ * The visibility order of a mesh's cells (Williams 1992; Li et al. 2012). Neighbours and gaps are found once for a mesh. Each view then
+ * finds the signs of all faces, and peels the leaves of the K-D tree, both in parallel. */
 #include "visibility_order.h"
 
 #include "matrix.h"
@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELLS_PER_GATE 8     /* that take as long as one */
-#define COORDINATE_MAX 1e300 /* so that differences are finite */
+#define CELLS_PER_GATE 8     /* peeling a gate takes about as long as this many cells */
+#define COORDINATE_MAX 1e300 /* so that differences of coordinates are finite */
 
 static stratus_status find_bounds(stratus_visibility_order* order)
 {
@@ -37,7 +37,7 @@ static stratus_status find_bounds(stratus_visibility_order* order)
   return STRATUS_OK;
 }
 
-/* A leaf is one thread's. */
+/* Each leaf is peeled by one thread. */
 static int peeling_threads(const stratus_visibility_order* order)
 {
   return order->leaf_count < order->context->threads ? order->leaf_count : order->context->threads;
@@ -49,7 +49,7 @@ static int compare_work(const void* a, const void* b)
   return (p < q) - (p > q);
 }
 
-/* A thread that finds no more leaves is idle: those that take longest are peeled first. */
+/* Sorts the leaves by the time that they should take. The longest are peeled first, so that threads do not idle at the end. */
 static stratus_status plan_leaves(stratus_visibility_order* order)
 {
   void* memory;
@@ -99,7 +99,7 @@ static stratus_status build_order(stratus_visibility_order* order, const stratus
   TRY(stratus_order_check_leaves(order, leaves));
   TRY(stratus_adjacency_create(context, mesh, &order->adjacency));
   order->side = order->adjacency->orientation;
-  if (order->adjacency->flat > 0) { /* else no cell needs another side than its own */
+  if (order->adjacency->flat > 0) { /* else every cell's side is its orientation, and no copy is needed */
     TRY(stratus_allocate(context, cells, sizeof *order->side, &memory));
     order->side = memcpy(memory, order->adjacency->orientation, cells * sizeof *order->side);
   }
@@ -179,7 +179,7 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order);
 }
 
-/* The eye and direction in the mesh's coordinates: what rounding moves them by is the same for every cell. */
+/* Brings the eye or direction into the mesh's coordinates. Rounding moves it for all cells alike, so relations stay consistent. */
 static stratus_status find_view(stratus_visibility_order* order, const stratus_camera* camera, const double matrix[16], stratus_view* view)
 {
   stratus_context* context = order->context;
@@ -299,7 +299,7 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   const bool leaves_changed = stratus_order_sort_leaves(order, &view), gaps = order->gap_begin[order->leaf_count] > 0;
   if (leaves_changed || !sorted || order->relations_changed || gaps || order->result.forced > 0) {
     peel_leaves(order, peeling, &found);
-  } else { /* what hides what is as it was; across gaps it might not be */
+  } else { /* all relations are those of the last view, and there are no gaps, where relations are not compared */
     found.reused = 1;
     found.layers = order->result.layers;
   }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What both ways of peeling a leaf do alike: they cut one relation of a ring, and take cells that nothing else orders by distance. */
+ * What both methods of peeling share: stratus_order_cut() drops a relation of a ring, and seeds give the order of cells that no relation
+ * decides. */
 #include "visibility_order.h"
 
 void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face)
@@ -15,7 +16,7 @@ void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face)
   }
 }
 
-/* ---- seeds */
+/* ---- seeds: a heap sort, as it needs no memory of its own */
 
 static bool comes_before(const stratus_order_seed* p, const stratus_order_seed* q)
 {

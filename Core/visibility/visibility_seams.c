@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Border faces that coincide though they name different points, as where a grid closes on itself: their cells hide one another as through
- * any face. Points and then faces are found in hash tables, in rising order, so that the lowest number stands for all that coincide. */
+ * Seams: border faces that coincide but name different points, for example where a grid closes on itself. Cells at a seam hide one another
+ * as through a shared face, so they become neighbours. Two hash tables find coincident points, then coincident faces. Both are filled in
+ * ascending order, so the lowest number stands for all that coincide. */
 #include "visibility_order.h"
 
 #include <string.h>
@@ -9,9 +10,9 @@
 
 typedef struct seam_build {
   stratus_visibility_order* order;
-  uint32_t* same;  /* of each point: the lowest border point in its place, NONE where it is not on the border */
-  uint32_t* table; /* of points; then of faces, two a slot: the first and the second of those that coincide. NONE: free */
-  uint64_t mask;   /* slots less 1 */
+  uint32_t* same;  /* for each point: the lowest border point at its position; NONE: it is not on the border */
+  uint32_t* table; /* first of points, a slot each; then of faces, two entries a slot: the first and the second that coincide. NONE: free */
+  uint64_t mask;   /* number of slots, a power of two, less 1 */
   int64_t joined;
 } seam_build;
 
@@ -33,7 +34,7 @@ static uint64_t hash_point(const double* p)
   return hash;
 }
 
-/* Returns how many border points lie where a lower one does. */
+/* Returns how many border points coincide with a lower one. */
 static int64_t find_coincident(seam_build* seam)
 {
   const stratus_visibility_order* order = seam->order;
@@ -60,7 +61,8 @@ static int64_t find_coincident(seam_build* seam)
   return coincident;
 }
 
-/* A border face's points by their lowest numbers, in rising order; the sign of the side on which its cell lies, 0 if it has none. */
+/* A border face's points, each by the lowest number at its position, ascending. Returns the sign of the side on which its cell lies, 0:
+ * flat. */
 static int seam_face(const seam_build* seam, uint32_t face, int32_t points[3])
 {
   const stratus_visibility_order* order = seam->order;
@@ -88,7 +90,7 @@ static void join_face(seam_build* seam, uint32_t face)
       continue;
     }
     int32_t* neighbours = order->adjacency->neighbours;
-    if (seam->table[2 * slot + 1] != NONE) { /* a third: all are borders again */
+    if (seam->table[2 * slot + 1] != NONE) { /* a third coincident face: the pairing would be arbitrary, so all three are borders again */
       const uint32_t second = seam->table[2 * slot + 1];
       seam->joined -= neighbours[candidate] == (int32_t)(second / 4);
       neighbours[candidate] = neighbours[second] = -1;
@@ -105,7 +107,7 @@ static void join_face(seam_build* seam, uint32_t face)
   seam->table[2 * slot] = face;
 }
 
-/* Marks the points of border faces; how many there are. */
+/* Marks the points of border faces, and returns how many there are. */
 static int64_t mark_border(seam_build* seam)
 {
   const stratus_visibility_order* order = seam->order;
@@ -123,7 +125,7 @@ static int64_t mark_border(seam_build* seam)
   return marked;
 }
 
-/* A table of at least twice `entries` slots of `width` numbers. */
+/* Makes the table anew: at least twice as many slots as entries, `width` numbers each. */
 static stratus_status make_table(seam_build* seam, int64_t entries, size_t width)
 {
   void* memory;

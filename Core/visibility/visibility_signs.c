@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which of two neighbours is in front: the side of their face on which the eye is. The four determinants of a cell share their minors in
- * double; where one is smaller than what rounding may have done to it the exact sign decides, so that both owners of a face always agree.
- */
+ * Relations through faces: of two neighbours, the one on the eye's side of their face is in front. A cell's four determinants are computed
+ * in double and share their minors. Where a determinant is smaller than its error bound, exact arithmetic decides its sign, so that both
+ * cells at a face always agree. */
 #include "clones.h"
 #include "visibility_order.h"
 
 #include "face_signs.h"
 
 #define LANES 8
-#define AHEAD 24 /* cells that lie scattered in the mesh are asked for so much earlier than they are read */
+#define AHEAD 24 /* how many cells ahead the vertices of scattered cells are prefetched */
 
-/* The power of two that brings all points, seen from `from`, to at most 1. */
+/* The power of two that scales all points, relative to `from`, to at most 1. */
 static double view_scale(const stratus_visibility_order* order, const double from[3])
 {
   double largest = 0.0;
@@ -20,8 +20,8 @@ static double view_scale(const stratus_visibility_order* order, const double fro
   return stratus_order_scale(largest);
 }
 
-/* Perspective: points as seen from the eye. Parallel: x and y across the direction, so that the determinant with ones for z is the one
- * along the direction; z, which is not part of it, says how far. */
+/* Perspective: `seen` is relative to the eye. Parallel: x and y are across the direction, so that the determinant of three points with ones
+ * for z is the one along the direction. z is the depth, which the determinant does not use. */
 void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view)
 {
   const double* d = view->direction;
@@ -32,7 +32,7 @@ void stratus_order_see_points(stratus_visibility_order* order, const stratus_vie
   const int k = fabs(d[0]) > fabs(d[1]) ? (fabs(d[0]) > fabs(d[2]) ? 0 : 2) : (fabs(d[1]) > fabs(d[2]) ? 1 : 2);
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   const double slope_i = view->parallel ? d[i] / d[k] : 0.0, slope_j = view->parallel ? d[j] / d[k] : 0.0;
-  const int x_at = d[k] > 0.0 ? 0 : 1; /* turned round, x and y change places */
+  const int x_at = d[k] > 0.0 ? 0 : 1; /* facing the other way swaps x and y */
 #pragma omp parallel for schedule(static) num_threads(order->context->threads)
   for (int64_t p = 0; p < order->point_count; ++p) {
     const double* point = order->points + 3 * p;
@@ -65,12 +65,12 @@ int stratus_order_exact_sign(const stratus_visibility_order* order, const stratu
   return parity * (view->parallel ? stratus_orientation_along(a, b, c, view->direction) : -stratus_orientation(a, b, c, view->eye));
 }
 
-/* ---- a few cells at once, one clone for each instruction set: nothing is contracted, so all give the same bits */
+/* ---- LANES cells at once, a clone for each instruction set. No clone contracts operations, so all give the same bits. */
 
 typedef struct cell_lanes {
   const double* seen;
-  int64_t at[4][LANES]; /* of the vertices, in it */
-  int64_t signs[LANES]; /* bit f: face f's determinant is positive, bit 4 + f: negative; neither: rounding may tell */
+  int64_t at[4][LANES]; /* the vertices' places in `seen` */
+  int64_t signs[LANES]; /* bit f: face f's determinant is surely positive; bit 4 + f: surely negative; neither: within its error bound */
 } cell_lanes;
 
 static ALWAYS_INLINE void find_lanes(cell_lanes* lanes, int parallel)
@@ -118,7 +118,8 @@ static find_lanes_function* choose_clone(const stratus_context* context)
 #endif
 }
 
-/* Where rounding may tell between neighbours, the exact sign does; both owners of a face agree by it. */
+/* Sets a cell's state. Exact arithmetic decides faces with a neighbour whose determinant is within its error bound. Returns how many it
+ * decided. */
 static int64_t take_signs(stratus_visibility_order* order, const stratus_view* view, int64_t cell, unsigned signs, bool* changed)
 {
   const int side = stratus_order_side(order, cell);
@@ -132,7 +133,7 @@ static int64_t take_signs(stratus_visibility_order* order, const stratus_view* v
       ++exact;
     }
   }
-  /* A positive determinant has the eye on the negative side: in front of the face for a cell that lies on the positive one. */
+  /* A positive determinant: the eye is on the face's negative side. A cell on the positive side then has its neighbour before it. */
   const unsigned state = side > 0 ? positive << 4 | negative : side < 0 ? negative << 4 | positive : 0;
   *changed = stratus_order_take_state(order, cell, state) || *changed;
   return exact;
@@ -150,7 +151,7 @@ int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_
     cell_lanes lanes;
     lanes.seen = order->seen;
     for (int l = 0; l < LANES; ++l) {
-      const int64_t cell = begin + (l < count ? l : 0); /* the first stands in for those that are missing */
+      const int64_t cell = begin + (l < count ? l : 0); /* the first cell fills the lanes that have none */
       if (order->listed && cell + AHEAD < order->cell_count) {
         STRATUS_FETCH(order->vertices + 4 * (int64_t)order->listed[cell + AHEAD]);
       }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of faces on the context's device. It keeps the cells from view to view; a view brings the points as they are seen, and takes back a
- * word a cell, part by part, so that the host needs no room for all of them. What rounding leaves open is decided exactly by the host. */
+ * Signs of faces on the context's device. The device keeps the cells from view to view. A view sends the points as they are seen, and reads
+ * back a word per cell, in parts, so that the host needs no room for all words. The host decides exactly what the device's rounding leaves
+ * open. */
 #include "device.h"
 #include "visibility_order.h"
 
-#define PART ((int64_t)1 << 17)      /* cells that come back at once */
-#define CELLS_MIN ((int64_t)1 << 14) /* fewer are done before a device has been asked */
+#define PART ((int64_t)1 << 17)      /* cells read back at once */
+#define CELLS_MIN ((int64_t)1 << 14) /* the host has done fewer before a device could begin */
 
 struct stratus_device_signs {
   cl_mem corners, sides, seen, results;
@@ -32,7 +33,7 @@ void stratus_device_signs_destroy(stratus_context* context, stratus_device_signs
   }
 }
 
-/* Corners, as the kernel has them, of a part of the cells. */
+/* Sends a part of the cells: the places in `seen` of their corners. */
 static stratus_status send_corners(
   const stratus_visibility_order* order, stratus_device_signs* signs, int64_t begin, int64_t count, int32_t* corners)
 {
@@ -86,7 +87,7 @@ static stratus_status run_signs(const stratus_visibility_order* order, const str
   return stratus_device_launch(context, "visibility_signs", "", "signs", arguments, COUNT_OF(arguments), items);
 }
 
-/* What the device found of a cell: its state, and what nobody knows in bits 8 to 11. Returns how many of those there were. */
+/* Takes the device's result for a cell. Bits 0 to 7 are its state; a set bit 8 + f leaves face f to the host. Returns how many it left. */
 static int64_t take_result(stratus_visibility_order* order, const stratus_view* view, uint32_t cell, unsigned result, bool* changed)
 {
   unsigned state = result & 255u;
