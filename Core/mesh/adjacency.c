@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Neighbours through faces. Faces are dealt into buckets by their lowest point number, which keeps neighbours in memory together, and each
- * bucket pairs its own in a hash table that fits a cache. Nothing depends on the order in which threads come. */
+ * Neighbours through faces. Each face is a record in the bucket of its lowest point number, so that a bucket holds faces near one another
+ * in memory. A bucket pairs its faces in a hash table that fits a cache. Neither a record's place nor the result depends on the number of
+ * threads. */
 #include "mesh.h"
 
 #include <string.h>
 
-#define FACES_PER_BUCKET 2048 /* records and table of a bucket: 64 KiB */
-#define BUCKETS_MAX 2048      /* more streams than this, and the pass that deals spends its time on pages */
+#define FACES_PER_BUCKET 2048 /* a bucket's records and table then take 64 KiB */
+#define BUCKETS_MAX 2048      /* dealing writes a stream to each bucket, and more would thrash the TLB */
 #define SIDE_BIT 0x80000000u  /* point numbers have 31 bits */
 #define NO_FACE UINT32_MAX
-#define MANY (UINT32_MAX - 1) /* for the second: there were more, which all count as broken */
+#define MANY (UINT32_MAX - 1) /* in face_slot.second: more than two faces coincide, and all count as broken */
 
-/* b's high bit: the cell lies on the positive side of (a, b, c); c's: on the negative; neither: the cell is flat. */
+/* A face's points, ascending. b's high bit: the cell lies on the positive side of (a, b, c); c's: on the negative; neither: the cell is
+ * flat. */
 typedef struct face_record {
   uint32_t a, b, c, face;
 } face_record;
 
-/* Records of one face: the first two. NO_FACE until there is one. */
+/* The first two records of one face; NO_FACE: not seen yet. */
 typedef struct face_slot {
   uint32_t first, second;
 } face_slot;
@@ -26,9 +28,9 @@ typedef struct adjacency_build {
   const stratus_mesh* mesh;
   stratus_adjacency* adjacency;
   face_record* records;
-  size_t* places; /* a row of `buckets` a chunk, then each bucket's end */
+  size_t* places; /* for each chunk of cells a row of each bucket's next place; a last row of the buckets' ends */
   face_slot* tables;
-  size_t largest; /* bucket, in records */
+  size_t largest; /* records of the largest bucket */
   int shift, buckets, chunks, workers;
 } adjacency_build;
 
@@ -62,7 +64,7 @@ static void count_faces(const adjacency_build* build, int chunk)
   memset(counts, 0, (size_t)build->buckets * sizeof *counts);
   for (int64_t cell = chunk_begin(build, chunk); cell < chunk_begin(build, chunk + 1); ++cell) {
     const int32_t* v = build->mesh->vertices + 4 * cell;
-    if (!stratus_names_a_point_twice(v)) { /* the lowest point is the lowest of the three faces that have it */
+    if (!stratus_names_a_point_twice(v)) { /* three faces have the lowest point, and the fourth begins with the second lowest */
       const int32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
       const int32_t other_low = v[2] < v[3] ? v[2] : v[3], other_high = v[2] < v[3] ? v[3] : v[2];
       const int32_t second = low < other_low ? (high < other_low ? high : other_low) : (other_high < low ? other_high : low);
@@ -119,13 +121,13 @@ static inline size_t slot_of(const face_record* record, size_t slots)
   return (size_t)((hash >> 33) * slots >> 31); /* slots below 2^33 */
 }
 
-/* Cells on the same side of a face are no neighbours through it. */
+/* Cells on the same side of a face overlap, and are not neighbours through it. */
 static inline bool is_folded(const face_record* p, const face_record* q)
 {
   return (p->b & q->b & SIDE_BIT) || (p->c & q->c & SIDE_BIT);
 }
 
-/* Slots are 32 bits of a bucket's records: no bucket has more, as there are at most 2^32 faces. */
+/* Pairs the faces of a bucket. Slots index its records with 32 bits, which is enough for the at most 2^32 faces of a mesh. */
 static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, int64_t* broken, int64_t* folded)
 {
   const size_t* ends = build->places + (size_t)build->chunks * (size_t)build->buckets;
@@ -217,7 +219,8 @@ static stratus_status build_adjacency(adjacency_build* build)
     deal_faces(build, chunk);
   }
   TRY(stratus_progress(context, "adjacency", 0.6));
-  /* A table for each thread, unless all cells hang on few points: then one table, lest memory grow with the threads. */
+  /* Each thread has a table. Where all cells share few points, a bucket is so large that one table has to do for all, lest memory grow with
+   * the threads. */
   build->workers = build->largest > 16 * FACES_PER_BUCKET && build->largest > (size_t)faces / 64 ? 1 : build->chunks;
   TRY(stratus_allocate(context, (size_t)build->workers, (build->largest + build->largest / 2 + 1) * sizeof(face_slot), &memory));
   build->tables = memory;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cells sorted by the Morton code of where they are: for the partition's leaves, the order of visibility and the march. */
+ * Sorts cells by the Morton code of their place. The partition's leaves, the visibility order and the march through tetrahedra use it. */
 #include "cell_morton.h"
 
 #include "radix_sort.h"

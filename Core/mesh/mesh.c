@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The view of a mesh of tetrahedra: what must hold before anything reads through its point numbers. */
+ * Checks of a mesh of tetrahedra: they pass before anything is read through its point numbers. */
 #include "mesh.h"
 
 #include "matrix.h"
@@ -66,7 +66,7 @@ static stratus_status check_values(stratus_context* context, const stratus_mesh*
   return stratus_product(context, "mesh bytes (values, stride, size)", (size_t)count, (size_t)mesh->value_stride, size, &bytes);
 }
 
-/* The first that is wrong, so that the message is the same at any thread count. */
+/* Reports the first wrong point, so that the message does not depend on the number of threads. */
 static stratus_status check_points(stratus_context* context, const stratus_mesh* mesh)
 {
   int64_t wrong = INT64_MAX;

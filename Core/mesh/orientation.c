@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * On which side of a plane a point lies, for sure. A determinant in double first, with a bound on what rounding did to it; where the bound
- * does not decide, the same in expansions: sums of doubles that do not overlap, which are exact (Shewchuk 1997). */
+ * The side of a plane on which a point lies, exactly (Shewchuk 1997). A determinant in double with an error bound decides most cases. The
+ * rest are decided by expansions: exact sums, kept as several doubles whose bits do not overlap. */
 #include "mesh.h"
 
 #include <float.h>
 #include <string.h>
 
-/* Of the sum of the six products' magnitudes: of three differences, two products and three sums each rounds by DBL_EPSILON/2 at most; twice
- * that. */
+/* Times the sum of the six products' magnitudes. Three differences, two products and three sums round by at most DBL_EPSILON/2 each; the
+ * bound is twice their sum. */
 #define ERROR_BOUND (8.0 * DBL_EPSILON)
-/* Six products of three numbers, each a head and a tail: 8 terms a product, 4 components a term. */
+/* Six products of three numbers. Each number is a head and a tail, so a product has 8 terms, and a term has 4 components. */
 #define COMPONENTS_MAX (6 * 8 * 4)
 
 typedef struct expansion {
-  double part[COMPONENTS_MAX]; /* from the smallest, none of them 0 */
+  double part[COMPONENTS_MAX]; /* ascending in magnitude, none 0 */
   int count;
 } expansion;
 
-/* a + b = *sum + *rest, without error. */
+/* a + b == *sum + *rest exactly. */
 static inline void add_exactly(double a, double b, double* sum, double* rest)
 {
   const double s = a + b, b_part = s - a, a_part = s - b_part;
@@ -54,14 +54,14 @@ static void expansion_add_product(expansion* e, double a, double b, double c)
   expansion_add(e, high);
 }
 
-/* rows: three vectors, head[r][axis] + tail[r][axis]. */
+/* The sign of the determinant whose rows r are the vectors head[r] + tail[r]. */
 static int exact_sign(double head[3][3], double tail[3][3])
 {
   static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 0, 2, 1 }, { 2, 1, 0 },
-    { 1, 0, 2 } }; /* three even, three odd */
+    { 1, 0, 2 } }; /* three even permutations, three odd */
   expansion sum = { .count = 0 };
   for (int a = 0; a < 3; ++a) {
-    /* An axis may be scaled without a change of sign: by a power of two, lest a product underflow. */
+    /* A power of two scales each axis, lest a product underflow. It does not change the sign. */
     double largest = 0.0;
     int exponent;
     for (int r = 0; r < 3; ++r) {
@@ -89,7 +89,7 @@ static int exact_sign(double head[3][3], double tail[3][3])
   return sum.count == 0 ? 0 : sum.part[sum.count - 1] > 0.0 ? 1 : -1;
 }
 
-/* The determinant of three rows and how large the terms are that it is made of. */
+/* The determinant of three rows. *size: the sum of its terms' magnitudes. */
 static inline double determinant(const double u[3], const double v[3], const double w[3], double* size)
 {
   const double yz = v[1] * w[2], zy = v[2] * w[1], zx = v[2] * w[0], xz = v[0] * w[2], xy = v[0] * w[1], yx = v[1] * w[0];
@@ -97,7 +97,7 @@ static inline double determinant(const double u[3], const double v[3], const dou
   return (yz - zy) * u[0] + (zx - xz) * u[1] + (xy - yx) * u[2];
 }
 
-/* 0 undecided. Below DBL_MIN's neighbourhood products lose digits without a bound on their share. */
+/* The sign, or 0: undecided. Near DBL_MIN products underflow, where no relative error bound holds; hence 1e-290. */
 static inline int filtered_sign(double value, double size)
 {
   const double bound = ERROR_BOUND * size + 1e-290;
@@ -130,15 +130,15 @@ int stratus_orientation(const double a[3], const double b[3], const double c[3],
   return exact_sign(head, tail);
 }
 
-/* The axis that a direction is along, -1: none. */
+/* The axis that a direction is parallel to; -1: none. */
 static int axis_of(const double direction[3])
 {
   const bool x = direction[0] != 0.0, y = direction[1] != 0.0, z = direction[2] != 0.0;
   return x && !y && !z ? 0 : y && !x && !z ? 1 : z && !x && !y ? 2 : -1;
 }
 
-/* Whether p*q > r*s or less, if no product comes near the ends of what a double can hold: else *sure is false. Rounding keeps the order of
- * what it does not make equal, and what it took off each is a double. */
+/* The sign of p*q - r*s. Rounding is monotone, so products that round to different doubles are in the right order; for equal ones the
+ * errors, which are doubles, decide. *sure is false if a product is so small or large that this may not hold. */
 static int compare_products(double p, double q, double r, double s, bool* sure)
 {
   const double pq = p * q, rs = r * s;
@@ -151,8 +151,8 @@ static int compare_products(double p, double q, double r, double s, bool* sure)
   return (pq_rest > rs_rest) - (pq_rest < rs_rest);
 }
 
-/* Views along an axis see most planes of a grid edge-on: many determinants are 0, which takes an expansion long to find out. This takes
- * two products. False: differences are not exact, or too large or small. */
+/* A view along an axis sees most faces of a grid edge-on. Their determinants are 0, which expansions are slow to find; this takes two
+ * products. Returns false if it cannot decide: a difference is not exact, or a product is too small or large. */
 static bool find_sign_along_axis(const double a[3], const double b[3], const double c[3], const double direction[3], int axis, int* sign)
 {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;

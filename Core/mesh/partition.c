@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partition of a mesh by a K-D tree (Li et al. 2012, section 2): level by level, so that leaves beside a cut are all there. */
+ * Partitions a mesh by a K-D tree (Li et al. 2012, section 2). A cut also divides cells of the leaves beside it, so cutting goes level by
+ * level: those leaves exist by then. */
 #include "partition_build.h"
 
 #include <string.h>
@@ -42,7 +43,7 @@ static stratus_status check_options(stratus_context* context, const stratus_part
   return STRATUS_OK;
 }
 
-/* Rotation 0 is none. Angles that no small multiple of brings back: every try is another one. */
+/* The frame of a rotation; 0 is the identity. No small multiple of the angles is a full turn, so every rotation is a new one. */
 static void make_frame(int rotation, double frame[9])
 {
   const double a = 0.7 * rotation, b = 0.43 * rotation;
@@ -71,7 +72,7 @@ static stratus_status see_in_frame(stratus_partition* partition, int rotation)
   return STRATUS_OK;
 }
 
-/* Of the points that count: others may lie anywhere. */
+/* The largest coordinate of the cells' points. Other points may lie anywhere. */
 static double largest_coordinate(const stratus_mesh* mesh)
 {
   double largest = 0.0;
@@ -107,7 +108,7 @@ static stratus_status take_mesh(stratus_partition* partition, const stratus_mesh
   return see_in_frame(partition, 0);
 }
 
-/* The root's plane, after as many rotations as it takes. */
+/* Chooses the root's plane, turning the frame until there is an admissible one. */
 static stratus_status choose_root_plane(stratus_partition* partition, stratus_kdtree_plane* plane)
 {
   for (int rotation = 0; rotation <= partition->options.rotations; ++rotation) {

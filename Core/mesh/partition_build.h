@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the files of the partition share: nodes that hold their cells while the mesh is being cut. */
+ * What the files of the partition share. While the mesh is being cut, the leaves of the K-D tree hold their cells. */
 #ifndef STRATUS_PARTITION_BUILD_H
 #define STRATUS_PARTITION_BUILD_H
 
@@ -11,10 +11,10 @@ typedef struct stratus_kdtree_cell {
 } stratus_kdtree_cell;
 
 typedef struct stratus_kdtree_node {
-  stratus_kdtree_cell* cells; /* of a leaf */
+  stratus_kdtree_cell* cells; /* a leaf's; NULL in inner nodes */
   int64_t count;
   size_t capacity;
-  double box[6]; /* what the planes above leave, in the frame */
+  double box[6]; /* bounds by the planes above it, in the frame */
   stratus_partition_node plane;
 } stratus_kdtree_node;
 
@@ -28,7 +28,7 @@ struct stratus_partition {
 
   double* points;
   double* along;    /* the points in the frame; `points` itself while the frame is the identity */
-  double tolerance; /* points so near a plane are on it */
+  double tolerance; /* points at most this far from a plane are on it */
   size_t point_capacity, along_capacity;
   int64_t point_count, old_points;
   int32_t* ends;
@@ -36,7 +36,7 @@ struct stratus_partition {
   double* weights;
   size_t weights_capacity;
 
-  uint8_t* cut; /* a flag for each of the mesh's cells; released when all is cut */
+  uint8_t* cut; /* for each of the mesh's cells: it has been cut. Released when the tree is done */
   int64_t tiny_pieces, cut_cells;
   int rotations;
 
@@ -52,14 +52,14 @@ typedef struct stratus_kdtree_plane {
   double growth, imbalance; /* beta, alpha */
 } stratus_kdtree_plane;
 
-/* How far a point is above a plane, 0 if it is on it: a point's own business, so that all cells and faces at it agree. */
+/* A point's height above a plane, 0 if it is on it. It depends on the point alone, so that all cells at the point agree. */
 static inline double stratus_kdtree_above(double coordinate, double value, double tolerance)
 {
   const double above = coordinate - value;
   return fabs(above) <= tolerance ? 0.0 : above;
 }
 
-/* Pieces below and above a plane of a cell with so many vertices below and above it: 0 and 0 of a cell that is not cut. */
+/* How many pieces a cell has below and above a plane, from its vertices below and above it. A cell that is not cut has 0 and 0. */
 static inline void stratus_kdtree_pieces(int below, int above, int* pieces_below, int* pieces_above)
 {
   static const int8_t pieces[4][4] = { { 0, 0, 0, 0 }, { 0, 1, 1, 1 }, { 0, 2, 3, 0 }, { 0, 3, 0, 0 } }; /* [this side][other side] */
@@ -71,13 +71,13 @@ static inline void stratus_kdtree_pieces(int below, int above, int* pieces_below
 stratus_status stratus_kdtree_choose_plane(
   const stratus_partition* partition, const stratus_kdtree_node* node, stratus_kdtree_plane* plane);
 
-/* ---- partition_cut.c: two children for a node. Cells of other nodes that share an edge with one that is cut are divided along. */
+/* ---- partition_cut.c: gives a node two children, and divides those cells of other leaves that share a cut edge. */
 stratus_status stratus_kdtree_cut(stratus_partition* partition, int32_t node, const stratus_kdtree_plane* plane);
 
-/* ---- partition_leaves.c: a leaf's cells near one another where they are so in space. */
+/* ---- partition_leaves.c: lists a leaf's cells so that those near in space are near in memory. */
 stratus_status stratus_kdtree_list_cells(const stratus_partition* partition, stratus_kdtree_node* node);
 
-/* ---- partition_storage.c: room for at least `needed`, keeping `used`. */
+/* ---- partition_storage.c: grows an array to hold at least `needed` elements, and keeps the first `used`. */
 stratus_status stratus_kdtree_reserve(stratus_context* context, void** memory, size_t* capacity, size_t needed, size_t used, size_t size);
 
 #endif

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cutting. Every edge that crosses the plane gets one point, found by its ends; then each cell is halved at its new points in rising order
- * of their numbers. Two cells that share a face halve it in the same order, so the pieces meet in the same triangles, without any table of
- * cases: a cell becomes the 2, 3, 4 or 6 pieces of Li et al. 2012, figure 2, and one of another leaf that only shares an edge or a face
- * with what is cut becomes 2 or 3. */
+ * Cuts a node's cells by a plane. Every edge that crosses the plane gets one new point, which a table finds by the edge's ends. Each cell
+ * is then halved at its new points, in ascending order of their numbers. Two cells that share a face halve it in the same order, so their
+ * pieces meet in the same triangles, and no table of cases is needed. A cell becomes the 2, 3, 4 or 6 pieces of Li et al. 2012, figure 2. A
+ * cell of another leaf that only shares an edge or a face with a cut cell becomes 2 or 3. */
 #include "partition_build.h"
 
 #include <string.h>
 
 #define PIECES_MAX 6
 
-/* Points on cut edges by the edge's ends. */
+/* A hash table from edges that are cut to their new points. */
 typedef struct edge_table {
-  uint64_t* edges; /* lower end << 32 | higher end; 0: free, as no edge has the same ends */
+  uint64_t* edges; /* lower end << 32 | higher end; 0: a free slot, as no edge joins point 0 to itself */
   int32_t* points;
   uint64_t mask;
 } edge_table;
@@ -34,7 +34,7 @@ static bool crosses(const cut_task* task, const int32_t v[4])
   return fmin(fmin(a, b), fmin(c, d)) < 0.0 && fmax(fmax(a, b), fmax(c, d)) > 0.0;
 }
 
-/* Where the edge is or would be. */
+/* The slot of an edge, or the free one where it belongs. */
 static uint64_t edge_slot(const edge_table* table, int32_t p, int32_t q)
 {
   const uint64_t low = (uint32_t)(p < q ? p : q), high = (uint32_t)(p < q ? q : p), edge = low << 32 | high;
@@ -49,7 +49,7 @@ static stratus_status make_edge_table(cut_task* task, int64_t cells)
 {
   stratus_context* context = task->partition->context;
   void* memory;
-  /* A cell has at most 4 edges that cross. */
+  /* At most 4 edges of a cell cross the plane; half of the slots stay free. */
   for (task->table.mask = 1; task->table.mask < 8 * (uint64_t)cells; task->table.mask = 2 * task->table.mask + 1) {}
   TRY(stratus_allocate_zero(context, task->table.mask + 1, sizeof(uint64_t), &memory));
   task->table.edges = memory;
@@ -58,7 +58,7 @@ static stratus_status make_edge_table(cut_task* task, int64_t cells)
   return STRATUS_OK;
 }
 
-/* Not beyond its ends, whatever the rounding: what lies in a plane of the tree stays in it. */
+/* Interpolates, but never beyond the ends, whatever the rounding: an edge in a plane of the tree gets a point in that plane. */
 static double between(double a, double b, double weight)
 {
   return fmin(fmax((1.0 - weight) * a + weight * b, fmin(a, b)), fmax(a, b));
@@ -85,7 +85,7 @@ static stratus_status add_point(cut_task* task, int32_t p, int32_t q, int32_t* n
     context, (void**)&partition->ends, &partition->ends_capacity, count + 1 - old, count - old, 2 * sizeof *partition->ends));
   TRY(stratus_kdtree_reserve(
     context, (void**)&partition->weights, &partition->weights_capacity, count + 1 - old, count - old, sizeof *partition->weights));
-  const int32_t a = p < q ? p : q, b = p < q ? q : p; /* one order for all that ask */
+  const int32_t a = p < q ? p : q, b = p < q ? q : p; /* the same point from whichever end */
   const double from = side_of(task, a), to = side_of(task, b);
   const double weight = fmin(fmax(from / (from - to), 0x1p-1022), 1.0 - 0x1p-53);
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -102,7 +102,7 @@ static stratus_status add_point(cut_task* task, int32_t p, int32_t q, int32_t* n
   return STRATUS_OK;
 }
 
-/* Points for all edges of the node's cells that cross. */
+/* Makes the points of all edges of the node's cells that cross the plane. */
 static stratus_status cut_edges(cut_task* task, const stratus_kdtree_node* node)
 {
   static const int8_t ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
@@ -121,7 +121,7 @@ static stratus_status cut_edges(cut_task* task, const stratus_kdtree_node* node)
   return STRATUS_OK;
 }
 
-/* A cell's edges that have a point: the points in rising order, and the ends of each. Returns how many. */
+/* Fills cuts[] with the new points on a cell's edges, ascending, each with its edge's ends. Returns how many. */
 static int find_cuts(const cut_task* task, const int32_t v[4], int32_t cuts[4][3])
 {
   int count = 0;
@@ -154,8 +154,8 @@ static bool is_flat(const stratus_partition* partition, const int32_t v[4])
   return stratus_orientation(x + 3 * (int64_t)v[0], x + 3 * (int64_t)v[1], x + 3 * (int64_t)v[2], x + 3 * (int64_t)v[3]) == 0;
 }
 
-/* The pieces of a cell, itself if it has no cut edge. Rounding may leave one without volume, which is no piece; those of a flat cell are,
- * as orders pass through them. */
+/* Divides a cell into pieces, or copies it if no edge is cut, and returns how many. Rounding may leave a piece without volume, which is
+ * dropped. Pieces of a flat cell are kept, as the visibility order passes through them. */
 static int divide(cut_task* task, const stratus_kdtree_cell* cell, stratus_kdtree_cell pieces[PIECES_MAX])
 {
   stratus_partition* partition = task->partition;
@@ -196,7 +196,7 @@ static stratus_status append(stratus_context* context, stratus_kdtree_node* node
   return STRATUS_OK;
 }
 
-/* Cells of a leaf beside the one that is cut: those that share a cut edge are divided, and stay. */
+/* Divides the cells of another leaf that share a cut edge. Their pieces stay in the leaf. */
 static stratus_status divide_beside(cut_task* task, stratus_kdtree_node* node)
 {
   stratus_kdtree_cell pieces[PIECES_MAX];
@@ -217,14 +217,14 @@ static stratus_status divide_beside(cut_task* task, stratus_kdtree_node* node)
       }
     }
   }
-  if (node->count > count) { /* what was left out, if anything was: the pieces behind move up */
+  if (node->count > count) { /* pieces behind the last cell move up, where a cell left no piece */
     memmove(node->cells + kept, node->cells + count, (size_t)(node->count - count) * sizeof *node->cells);
   }
   node->count -= count - kept;
   return STRATUS_OK;
 }
 
-/* Cells may reach out of their boxes by the tolerance. */
+/* Whether two boxes touch. Cells may reach out of their boxes by the tolerance. */
 static bool boxes_touch(const double p[6], const double q[6], double tolerance)
 {
   for (int a = 0; a < 6; a += 2) {

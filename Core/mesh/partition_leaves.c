@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A leaf's cells as they are listed. A mesher's cells come in any order; what then goes over a leaf's cells, neighbour by neighbour, spends
- * its time on memory. So cells that lie scattered are listed in Morton order; all others stay as they come. */
+ * The order of a leaf's cells in memory. Mesh generators write cells in any order, and code that goes from neighbour to neighbour then
+ * waits for memory. So cells that lie scattered are listed in Morton order. All others stay as they are. */
 #include "cell_morton.h"
 #include "partition_build.h"
 
 #include <string.h>
 
-#define SCATTERED 0.1 /* of the leaf's size from one cell to the next, in the mean */
+#define SCATTERED 0.1 /* of the leaf's size: mean distance from one cell to the next */
 #define AXIS_BITS 10
 
-/* Four times the middle. */
+/* The sum of a cell's corners: four times its middle. */
 static void add_corners(const stratus_partition* partition, const stratus_kdtree_cell* cell, double sum[3])
 {
   sum[0] = sum[1] = sum[2] = 0.0;
@@ -18,7 +18,7 @@ static void add_corners(const stratus_partition* partition, const stratus_kdtree
   }
 }
 
-/* low, and the largest extent, of the sums. */
+/* Sets low[] to the least of the leaf's sums of corners, and returns their largest extent along an axis. */
 static double find_extent(const stratus_partition* partition, const stratus_kdtree_node* node, double low[3])
 {
   double high[3] = { -INFINITY, -INFINITY, -INFINITY }, sum[3];
@@ -33,7 +33,7 @@ static double find_extent(const stratus_partition* partition, const stratus_kdtr
   return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
-/* Of a leaf's cells, before anybody knows neighbours: told by how far it is from a cell to the next. */
+/* Samples distances from one cell to the next in memory, as neighbours are not known yet. */
 static bool is_scattered(const stratus_partition* partition, const stratus_kdtree_node* node, double extent)
 {
   double distance = 0.0, here[3], next[3];
@@ -46,7 +46,7 @@ static bool is_scattered(const stratus_partition* partition, const stratus_kdtre
   return node->count > STRATUS_MORTON_FEW_CELLS && distance > SCATTERED * extent * (double)asked;
 }
 
-/* A leaf, as the curve asks for its cells' places. */
+/* What place_cell() needs to place a cell on the curve. */
 typedef struct leaf_places {
   const stratus_partition* partition;
   const stratus_kdtree_cell* cells;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The plane that a node is cut by: every candidate's new cells (the paper's beta) and balance (alpha) are counted, none is estimated. Of
- * the median rule the candidates pass through points of the mesh: a grid, however bent, often has planes of faces that cut nothing. */
+ * Chooses the plane that cuts a node. Each candidate's new cells (the paper's beta) and imbalance (alpha) are counted, not estimated. The
+ * median rule's candidates pass through points of the mesh: even bent grids often have planes of faces, which cut no cell. */
 #include "radix_sort.h"
 #include "partition_build.h"
 
 #include <string.h>
 
-#define MIDDLE_LOW 0.4 /* quantiles of cells between which a median plane lies */
+#define MIDDLE_LOW 0.4 /* a median plane lies between these quantiles of the cells */
 #define MIDDLE_HIGH 0.6
 
 typedef struct candidate_set {
-  double* values; /* rising */
-  int64_t* below; /* cells and pieces on this side */
+  double* values; /* ascending */
+  int64_t* below; /* cells and pieces below each candidate */
   int64_t* above;
   int64_t* added; /* new cells */
   int count;
@@ -22,7 +22,7 @@ static double coordinate(const stratus_partition* partition, int axis, int32_t p
   return partition->along[3 * (int64_t)point + axis];
 }
 
-/* The first candidate that the coordinate is below, or is not above. */
+/* If `below`, the first candidate that x is below; else the first that x is not above. */
 static int find_candidate(const candidate_set* set, double x, double tolerance, bool below)
 {
   int low = 0, high = set->count;
@@ -38,7 +38,8 @@ static int find_candidate(const candidate_set* set, double x, double tolerance, 
   return low;
 }
 
-/* below: first the change from candidate to candidate of cells that are wholly below; above: the same from the other end. */
+/* Counts cells below and above all candidates in one pass over the cells: each cell adds changes from one candidate to the next, which are
+ * then summed up. */
 static void count_sides(const stratus_partition* partition, const stratus_kdtree_node* node, int axis, candidate_set* set)
 {
   const double tolerance = partition->tolerance;
@@ -52,7 +53,7 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
       low = fmin(low, x[v]);
       high = fmax(high, x[v]);
     }
-    /* A cell within the plane is below it. */
+    /* A cell that lies in the plane counts as below it. */
     const int first_cut = find_candidate(set, low, tolerance, true), first_below = find_candidate(set, high, tolerance, false);
     ++set->below[first_below];
     set->above[first_cut < first_below ? first_cut : first_below]++;
@@ -65,14 +66,14 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
       }
       stratus_kdtree_pieces(below, above, &pieces_below, &pieces_above);
       set->added[c] += pieces_below + pieces_above - 1;
-      /* Counted for this candidate alone. */
+      /* The pieces count for this candidate alone. */
       set->below[c] += pieces_below;
       set->below[c + 1] -= pieces_below;
       set->above[c] -= pieces_above;
       set->above[c + 1] += pieces_above;
     }
   }
-  /* above[c] so far holds the cells that are no longer above from candidate c on. */
+  /* So far above[c] counts the cells that are above candidates before c, but not above c. */
   int64_t below = 0, gone = 0;
   for (int c = 0; c < set->count; ++c) {
     below += set->below[c];
@@ -114,7 +115,7 @@ static void evenly_spaced(const stratus_partition* partition, const stratus_kdtr
   }
 }
 
-/* Bits that rise with the number, and back. */
+/* Maps doubles to integers in the same order, for the radix sort; number_of() is the inverse. */
 static uint64_t bits_of(double value)
 {
   uint64_t bits;
@@ -131,8 +132,8 @@ static double number_of(uint64_t bits)
   return value;
 }
 
-/* keys: the middle of the sorted coordinates, `count` of them. Half of the candidates are the values that come most often, the others
- * evenly spread: where each comes once, those alone. */
+/* Chooses candidates among sorted coordinates, keys[0..count). A run is a stretch of equal keys. At most half of the candidates are the
+ * longest runs, where a plane may follow many faces; the others are spread evenly over the runs. */
 static void through_points(const uint64_t* keys, int64_t count, int planes, candidate_set* set)
 {
   int64_t runs = 0, longest = 1, least = 1;
@@ -143,7 +144,7 @@ static void through_points(const uint64_t* keys, int64_t count, int planes, cand
       begin = i + 1;
     }
   }
-  /* The least length of which no more than half of what is asked for are as long: by doubling, as only the long ones matter. */
+  /* Find the smallest power-of-two run length that at most planes/2 runs reach. Doubling is precise enough: only long runs matter. */
   for (int64_t longer = runs; longer > planes / 2 && least <= longest; least *= 2) {
     longer = 0;
     for (int64_t i = 0, begin = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The memory of a partition: arrays that grow while cells are cut, what callers read of them in the end, and their release. */
+ * The memory of a partition: arrays that grow while cells are cut, the result as callers read it, and the release of both. */
 #include "partition_build.h"
 
 #include <string.h>
