@@ -9,8 +9,6 @@
 #include <stdatomic.h>
 #include <string.h>
 
-_Static_assert(sizeof(stratus_hit_arguments) == 4 * STRATUS_HIT_ARGUMENTS_WORDS, "arguments must have no padding");
-
 /* One chunk's answers; false if ray *bad of it can't be used. more: rays behind the chunk's. */
 static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count,
   size_t more, stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)

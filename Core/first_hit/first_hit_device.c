@@ -12,6 +12,9 @@
 #define CHUNKS 128 /* a launch */
 #define GROUP 64   /* work items a group, one ray each */
 
+/* The kernel's compiler is told the arguments' size, and asserts the same. */
+_Static_assert(_Alignof(stratus_hit_arguments) == sizeof(float), "arguments must be scalars of four bytes");
+
 typedef enum buffer_name { ARGUMENTS, ENTRIES, ROWS, MASKS, RAYS, RESULTS, BUFFERS } buffer_name;
 
 typedef struct launch {
@@ -93,7 +96,7 @@ static stratus_status begin(launch* l, size_t most)
   const stratus_tree* tree = l->batch->tree;
   const stratus_tree_field* field = &tree->fields[0];
   const stratus_device* device = l->context->device;
-  char defines[160];
+  char defines[192];
   void* memory;
   l->packets = stratus_device_is_cpu(device);
   l->arguments = (stratus_hit_arguments){ .at = { field->at[0], field->at[1], field->at[2] },
@@ -104,8 +107,9 @@ static stratus_status begin(launch* l, size_t most)
     .cell_log2 = tree->cell_log2,
     .slack = l->batch->slack };
   snprintf(defines, sizeof defines,
-    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d", l->packets ? 16 : 1,
-    tree->octants, tree->entry_bytes, tree->cell_log2);
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d "
+    "-DSTRATUS_ARGUMENTS_BYTES=%zu",
+    l->packets ? 16 : 1, tree->octants, tree->entry_bytes, tree->cell_log2, sizeof(stratus_hit_arguments));
   TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;

@@ -10,7 +10,12 @@
 /* Pixels along each side of a work item's tile where it marches packets: PoCL hands out the last 64 groups in one piece. */
 #define TILE 16
 
-_Static_assert(sizeof(stratus_ray_cast_arguments) == 4 * STRATUS_RAY_CAST_ARGUMENTS_WORDS, "arguments must have no padding");
+/* Parts of 4-byte scalars need no padding between them; the kernel's compiler is told the size, and asserts the same. */
+_Static_assert(sizeof(stratus_ray_cast_arguments) ==
+    sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
+      sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_map) + sizeof(stratus_table_arguments) +
+      sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) + sizeof(stratus_ray_media),
+  "arguments must have no padding");
 
 typedef enum buffer_name { VALUES, HIDDEN, MAP, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
 
@@ -171,11 +176,12 @@ static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_
     [STRATUS_VARIANT_ISOSURFACE] = STRATUS_RAY_ISOSURFACE,
     [STRATUS_VARIANT_SHADING_MIDPOINT] = STRATUS_RAY_SHADING,
     [STRATUS_VARIANT_SHADING_PREINTEGRATED] = STRATUS_RAY_SHADING };
-  char defines[192];
-  int used =
-    snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d%s",
-      type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1, TILE,
-      stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+  char defines[256];
+  int used = snprintf(defines, sizeof defines,
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d "
+    "-DSTRATUS_ARGUMENTS_BYTES=%zu%s",
+    type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1, TILE,
+    sizeof(stratus_ray_cast_arguments), stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
   }
@@ -188,7 +194,7 @@ static stratus_status draw(
 {
   static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   const stratus_ray_cast_arguments* a = frame->arguments;
-  const size_t width = (size_t)a->width, height = (size_t)a->height, pixels = width * height;
+  const size_t width = (size_t)a->picture.width, height = (size_t)a->picture.height, pixels = width * height;
   TRY(send(caster, ARGUMENTS, CL_MEM_READ_ONLY, a, sizeof *a));
   TRY(send(caster, OPAQUE, CL_MEM_READ_ONLY, frame->opaque_depth, pixels * sizeof(float)));
   TRY(lend(caster, RGBA, CL_MEM_WRITE_ONLY, frame->rgba, pixels * 4 * sizeof(float)));
@@ -225,7 +231,7 @@ static stratus_status draw_and_count(
 {
   stratus_context* context = caster->context;
   const bool packets = stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
-  const size_t width = (size_t)frame->arguments->width, height = (size_t)frame->arguments->height;
+  const size_t width = (size_t)frame->arguments->picture.width, height = (size_t)frame->arguments->picture.height;
   const size_t parts = packets ? ((width + TILE - 1) / TILE) * ((height + TILE - 1) / TILE) : height;
   cl_kernel kernel;
   void* memory = NULL;

@@ -32,7 +32,7 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_
 /* rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
 static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1)
 {
-  const size_t width = (size_t)frame->arguments->width, count = 4 * (size_t)(x1 - x0);
+  const size_t width = (size_t)frame->arguments->picture.width, count = 4 * (size_t)(x1 - x0);
   for (int y = y0; frame->rgba8 && y < y1; ++y) {
     const size_t first = 4 * ((size_t)y * width + (size_t)x0);
     const float* restrict rgba = frame->rgba + first;
@@ -47,7 +47,7 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts)
 {
-  const int width = frame->arguments->width, height = frame->arguments->height;
+  const int width = frame->arguments->picture.width, height = frame->arguments->picture.height;
   const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);
   stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(context->isa, type, variant);
   stratus_ray_counts sum = { 0 };

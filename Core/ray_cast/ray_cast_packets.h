@@ -27,8 +27,8 @@ static void store_pixels(const stratus_ray_cast_frame* frame, const stratus_pack
   v_store(color[3], v_set(1.0f) - k->transparency);
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     const int px = x + lane % PACKET_X, py = y + lane / PACKET_X;
-    if (px < a->width && py < a->height) {
-      float* pixel = frame->rgba + 4 * ((size_t)py * (size_t)a->width + (size_t)px);
+    if (px < a->picture.width && py < a->picture.height) {
+      float* pixel = frame->rgba + 4 * ((size_t)py * (size_t)a->picture.width + (size_t)px);
       for (int c = 0; c < 4; ++c) {
         pixel[c] = color[c][lane];
       }
@@ -40,7 +40,7 @@ static void store_pixels(const stratus_ray_cast_frame* frame, const stratus_pack
 /* The same for a packet wholly inside the picture: a row of four pixels is a quarter of the registers. */
 static void store_rows(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
 {
-  const size_t row = 4 * (size_t)frame->arguments->width;
+  const size_t row = 4 * (size_t)frame->arguments->picture.width;
   float* pixel = frame->rgba + (size_t)y * row + 4 * (size_t)x;
   const __m512 alpha = v_set(1.0f) - k->transparency;
   const __m512d rg0 = _mm512_castps_pd(_mm512_unpacklo_ps(k->red, k->green)), rg1 = _mm512_castps_pd(_mm512_unpackhi_ps(k->red, k->green));
@@ -58,7 +58,7 @@ static void store_rows(const stratus_ray_cast_frame* frame, const stratus_packet
 /* Depth and samples of one, where they are wanted. */
 static void store_extra_rows(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
 {
-  const size_t width = (size_t)frame->arguments->width, pixel = (size_t)y * width + (size_t)x;
+  const size_t width = (size_t)frame->arguments->picture.width, pixel = (size_t)y * width + (size_t)x;
   if (frame->depth) {
     const __m512 depth = v_select(v_le(v_set(LARGEST_FLOAT), k->depth), v_set(INFINITY), k->depth);
     _mm_storeu_ps(frame->depth + pixel, _mm512_extractf32x4_ps(depth, 0));
@@ -85,8 +85,8 @@ static void store_extras(const stratus_ray_cast_frame* frame, const stratus_pack
   vi_store(samples, k->samples);
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     const int px = x + lane % PACKET_X, py = y + lane / PACKET_X;
-    if (px < a->width && py < a->height) {
-      const size_t pixel = (size_t)py * (size_t)a->width + (size_t)px;
+    if (px < a->picture.width && py < a->picture.height) {
+      const size_t pixel = (size_t)py * (size_t)a->picture.width + (size_t)px;
       if (frame->depth) {
         frame->depth[pixel] = depth[lane] >= LARGEST_FLOAT ? INFINITY : depth[lane];
       }
@@ -100,7 +100,7 @@ static void store_extras(const stratus_ray_cast_frame* frame, const stratus_pack
 static void store_packet(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y, tile_counts* counts)
 {
 #if STRATUS_ISA == 2
-  if (x + PACKET_X <= frame->arguments->width && y + PACKET_Y <= frame->arguments->height) {
+  if (x + PACKET_X <= frame->arguments->picture.width && y + PACKET_Y <= frame->arguments->picture.height) {
     store_rows(frame, k, x, y);
     store_extra_rows(frame, k, x, y);
   } else

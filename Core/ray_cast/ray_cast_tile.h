@@ -17,7 +17,7 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
 {
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
-  const int pieces = a->crop_regions ? CROP_PIECES : 1;
+  const int pieces = a->crop.regions ? CROP_PIECES : 1;
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
       stratus_packet k[PACKETS_TOGETHER];
@@ -26,7 +26,7 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
         RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
       }
       for (int piece = 0; piece < pieces; ++piece) {
-        for (int i = 0; a->crop_regions && i < PACKETS_TOGETHER; ++i) {
+        for (int i = 0; a->crop.regions && i < PACKETS_TOGETHER; ++i) {
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2

@@ -103,7 +103,7 @@ static stratus_status audit(
   stratus_status status;
 
   stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
-  plain.want_samples = plain.want_bytes = 0;
+  plain.picture.want_samples = plain.picture.want_bytes = 0;
   march.samples = NULL;
   march.rgba8 = NULL;
   TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
@@ -176,13 +176,13 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->occupancy->count > 0;
-    arguments.has_hidden = caster->hides;
+    arguments.values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
-      report_window(arguments.window, report->window);
+      report_window(arguments.camera.window, report->window);
     } else {
       stratus_image_clear(image);
       memset(report->window, 0, sizeof report->window);

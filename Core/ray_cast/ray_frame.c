@@ -5,6 +5,7 @@
 #include "vector.h"
 #include "camera.h"
 #include "matrix.h"
+#include "table_fill.h"
 
 #include <string.h>
 
@@ -40,11 +41,11 @@ static double farthest_point(const stratus_volume* volume, const stratus_camera*
 static void set_camera(const stratus_camera* camera, const double world_to_index[16], stratus_ray_cast_arguments* a)
 {
   const double* vectors[3] = { camera->forward, camera->right, camera->up };
-  stratus_pair* targets[3] = { a->forward, a->right, a->up };
+  stratus_pair* targets[3] = { a->camera.forward, a->camera.right, a->camera.up };
   double point[3];
   stratus_matrix_point(world_to_index, camera->eye, point);
   for (int axis = 0; axis < 3; ++axis) {
-    a->eye[axis] = stratus_pair_of(point[axis]);
+    a->camera.eye[axis] = stratus_pair_of(point[axis]);
   }
   for (int v = 0; v < 3; ++v) {
     double vector[3];
@@ -53,16 +54,16 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
       targets[v][axis] = stratus_pair_of(vector[axis]);
     }
   }
-  a->metric[0] = stratus_pair_of(stratus_vector_dot(camera->forward, camera->forward));
-  a->metric[1] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->right));
-  a->metric[2] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->up));
-  a->metric[3] = stratus_pair_of(stratus_vector_dot(camera->right, camera->right));
-  a->metric[4] = stratus_pair_of(2.0 * stratus_vector_dot(camera->right, camera->up));
-  a->metric[5] = stratus_pair_of(stratus_vector_dot(camera->up, camera->up));
-  a->near_k = stratus_pair_of(camera->near_k);
-  a->has_far = isfinite(camera->far_k);
-  a->far_k = stratus_pair_of(a->has_far ? camera->far_k : 0.0);
-  a->parallel = camera->parallel != 0;
+  a->camera.metric[0] = stratus_pair_of(stratus_vector_dot(camera->forward, camera->forward));
+  a->camera.metric[1] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->right));
+  a->camera.metric[2] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->up));
+  a->camera.metric[3] = stratus_pair_of(stratus_vector_dot(camera->right, camera->right));
+  a->camera.metric[4] = stratus_pair_of(2.0 * stratus_vector_dot(camera->right, camera->up));
+  a->camera.metric[5] = stratus_pair_of(stratus_vector_dot(camera->up, camera->up));
+  a->camera.near_k = stratus_pair_of(camera->near_k);
+  a->camera.has_far = isfinite(camera->far_k);
+  a->camera.far_k = stratus_pair_of(a->camera.has_far ? camera->far_k : 0.0);
+  a->camera.parallel = camera->parallel != 0;
 }
 
 /* Bounds in index coordinates, crop included; false if nothing is left. */
@@ -80,9 +81,9 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
     if (!(lo < hi)) {
       return false;
     }
-    a->box[0][axis] = stratus_pair_of(lo);
-    a->box[1][axis] = stratus_pair_of(hi);
-    a->last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`: the cell there, and its block, must exist */
+    a->crop.box[0][axis] = stratus_pair_of(lo);
+    a->crop.box[1][axis] = stratus_pair_of(hi);
+    a->values.last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`: the cell there, and its block, must exist */
   }
   return true;
 }
@@ -94,12 +95,12 @@ static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_opt
   if (!options->crop || options->crop_regions == STRATUS_CROP_INSIDE || options->crop_regions == STRATUS_CROP_ALL) {
     return true;
   }
-  a->crop_regions = (int)options->crop_regions;
+  a->crop.regions = (int)options->crop_regions;
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
-    a->crop_plane[axis][side % 2] = stratus_pair_of((options->crop_bounds[side] - volume->origin[axis]) / volume->spacing[axis] - half);
+    a->crop.plane[axis][side % 2] = stratus_pair_of((options->crop_bounds[side] - volume->origin[axis]) / volume->spacing[axis] - half);
   }
-  return a->crop_regions != 0;
+  return a->crop.regions != 0;
 }
 
 static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* a)
@@ -109,9 +110,9 @@ static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* 
   stratus_volume_owned(volume, lo, hi);
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t cells = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
-    a->piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? (double)lo[axis] - half : -(double)UNBOUNDED);
-    a->piece[1][axis] = stratus_pair_of(hi[axis] < cells ? (double)hi[axis] - half : (double)UNBOUNDED);
-    a->has_piece |= lo[axis] > 0 || hi[axis] < cells;
+    a->crop.piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? (double)lo[axis] - half : -(double)UNBOUNDED);
+    a->crop.piece[1][axis] = stratus_pair_of(hi[axis] < cells ? (double)hi[axis] - half : (double)UNBOUNDED);
+    a->crop.has_piece |= lo[axis] > 0 || hi[axis] < cells;
     if (lo[axis] >= hi[axis]) {
       return false;
     }
@@ -122,7 +123,7 @@ static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* 
 /* World planes to index coordinates: n . (M x + t) + d. */
 static void set_clip_planes(const stratus_ray_cast_options* options, const double m[16], stratus_ray_cast_arguments* a)
 {
-  a->clip_count = options->clip_plane_count;
+  a->crop.clip_count = options->clip_plane_count;
   for (int p = 0; p < options->clip_plane_count; ++p) {
     const double* plane = options->clip_planes[p];
     double result[4] = { 0.0, 0.0, 0.0, plane[3] };
@@ -134,7 +135,7 @@ static void set_clip_planes(const stratus_ray_cast_options* options, const doubl
     /* brought to length 1: only its sign counts, and small or large spacings shall not leave the floats' range */
     const double length = sqrt(stratus_vector_dot(result, result));
     for (int i = 0; i < 4; ++i) {
-      a->clip[p][i] = stratus_pair_of(length > 0.0 ? result[i] / length : result[i]);
+      a->crop.clip[p][i] = stratus_pair_of(length > 0.0 ? result[i] / length : result[i]);
     }
   }
 }
@@ -144,15 +145,15 @@ static void set_addressing(const stratus_volume* volume, stratus_ray_cast_argume
   const uint64_t stride = (uint64_t)volume->value_stride, row = (uint64_t)volume->dimensions[0] * stride;
   const uint64_t slice = row * (uint64_t)volume->dimensions[1], values = slice * (uint64_t)volume->dimensions[2];
   for (int axis = 0; axis < 3; ++axis) {
-    a->dimensions[axis] = (int)volume->dimensions[axis];
+    a->values.dimensions[axis] = (int)volume->dimensions[axis];
   }
-  a->row = (int)(uint32_t)row;
-  a->row_high = (int)(uint32_t)(row >> 32);
-  a->slice = (int)(uint32_t)slice;
-  a->slice_high = (int)(uint32_t)(slice >> 32);
-  a->tail = values > 4 && values < INT32_MAX ? (int)(values - 4) : 0;
-  a->type = (int)volume->type;
-  a->stride = (int)stride;
+  a->values.row = (int)(uint32_t)row;
+  a->values.row_high = (int)(uint32_t)(row >> 32);
+  a->values.slice = (int)(uint32_t)slice;
+  a->values.slice_high = (int)(uint32_t)(slice >> 32);
+  a->values.tail = values > 4 && values < INT32_MAX ? (int)(values - 4) : 0;
+  a->values.type = (int)volume->type;
+  a->values.stride = (int)stride;
 }
 
 static stratus_status check_samples(
@@ -196,49 +197,50 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   }
   TRY(check_samples(context, index_to_world, world_to_index, volume, sample_distance));
   set_camera(camera, world_to_index, a);
-  a->per_step = stratus_pair_of(1.0 / sample_distance);
-  a->reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
-  a->world_step = (float)sample_distance;
-  a->pixel[0] = stratus_pair_of(1.0 / image->width);
-  a->pixel[1] = stratus_pair_of(1.0 / image->height);
-  a->width = image->width;
-  a->height = image->height;
-  a->has_depth = image->opaque_depth != NULL;
-  a->want_depth = image->depth != NULL;
-  a->want_samples = image->samples != NULL;
-  a->want_bytes = image->rgba8 != NULL;
-  a->nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
-  a->clamp = volume->cell_centered != 0;
+  a->lattice.per_step = stratus_pair_of(1.0 / sample_distance);
+  a->lattice.reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
+  a->lattice.step = (float)sample_distance;
+  a->camera.pixel[0] = stratus_pair_of(1.0 / image->width);
+  a->camera.pixel[1] = stratus_pair_of(1.0 / image->height);
+  a->picture.width = image->width;
+  a->picture.height = image->height;
+  a->camera.has_opaque_depth = image->opaque_depth != NULL;
+  a->picture.want_depth = image->depth != NULL;
+  a->picture.want_samples = image->samples != NULL;
+  a->picture.want_bytes = image->rgba8 != NULL;
+  a->values.nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+  a->values.clamp = volume->cell_centered != 0;
   a->termination = (float)(1.0 - options->termination);
   set_clip_planes(options, index_to_world, a);
   set_addressing(volume, a);
   const double bias = stratus_volume_bias(volume);
   uint64_t bits;
   memcpy(&bits, &bias, sizeof bits);
-  a->bias_low = (int)(uint32_t)bits;
-  a->bias_high = (int)(uint32_t)(bits >> 32);
-  a->jitter = options->jitter != 0;
-  a->seed = (int)options->jitter_seed;
+  a->values.bias_low = (int)(uint32_t)bits;
+  a->values.bias_high = (int)(uint32_t)(bits >> 32);
+  a->lattice.jitter = options->jitter != 0;
+  a->lattice.seed = (int)options->jitter_seed;
   *empty = !set_box(volume, options, a) || !set_piece(volume, a) || !set_regions(volume, options, a);
   return STRATUS_OK;
 }
 
 static void set_map(const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
-  a->blocks_pitch = (int)map->pitch;
-  a->blocks_rows = (int)map->blocks[1];
-  a->octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
-  a->tree = map->tree_nodes;
-  a->bounds_at = (int)(map->bounds_at / 64);
-  a->bounds_across = (int)occupancy->blocks[0];
-  a->bounds_rows = (int)occupancy->blocks[1];
-  a->block_log2 = 0;
-  while (1 << a->block_log2 < map->block_size) {
-    ++a->block_log2;
+  a->map.pitch = (int)map->pitch;
+  a->map.rows = (int)map->blocks[1];
+  a->map.octant_stride = map->kind == STRATUS_DISTANCE_OCTANT ? (int)map->map_bytes : 0;
+  a->map.tree = map->tree_nodes;
+  a->map.bounds_at = (int)(map->bounds_at / 64);
+  a->map.bounds_across = (int)occupancy->blocks[0];
+  a->map.bounds_rows = (int)occupancy->blocks[1];
+  a->map.block_log2 = 0;
+  while (1 << a->map.block_log2 < map->block_size) {
+    ++a->map.block_log2;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    a->occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * occupancy->block_size) : -UNBOUNDED;
-    a->occupied[1][axis] = occupancy->hi[axis] < occupancy->blocks[axis] ? (float)(occupancy->hi[axis] * occupancy->block_size) : UNBOUNDED;
+    a->map.occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * occupancy->block_size) : -UNBOUNDED;
+    a->map.occupied[1][axis] =
+      occupancy->hi[axis] < occupancy->blocks[axis] ? (float)(occupancy->hi[axis] * occupancy->block_size) : UNBOUNDED;
   }
 }
 
@@ -258,33 +260,26 @@ void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
   if (table) {
-    a->table_scale = table->scale;
-    a->table_offset = table->offset;
-    a->table_last = (float)(table->size - 1);
-    a->shown_first = (float)table->next_shown[0];
-    a->shown_beyond = (float)(table->last_shown + 1);
-    a->tau_scale = table->sum_scale;
-    a->color_slope = table->color_slope;
-    a->has_opaque = table->has_opaque;
+    a->table = stratus_table_arguments_of(table);
   }
-  a->structure = map != NULL;
+  a->map.structure = map != NULL;
   double lo[3], hi[3];
   for (int axis = 0; axis < 3; ++axis) {
-    lo[axis] = pair_value(a->box[0][axis]);
-    hi[axis] = pair_value(a->box[1][axis]);
+    lo[axis] = pair_value(a->crop.box[0][axis]);
+    hi[axis] = pair_value(a->crop.box[1][axis]);
   }
   if (map) {
     set_map(occupancy, map, a);
-    for (int axis = 0; axis < 3 && !a->sum; ++axis) {
-      lo[axis] = fmax(lo[axis], (double)a->occupied[0][axis]);
-      hi[axis] = fmin(hi[axis], (double)a->occupied[1][axis]);
+    for (int axis = 0; axis < 3 && !a->mode.sum; ++axis) {
+      lo[axis] = fmax(lo[axis], (double)a->map.occupied[0][axis]);
+      hi[axis] = fmin(hi[axis], (double)a->map.occupied[1][axis]);
     }
   }
   double eye[3], right[3], up[3], forward[3];
-  const int sides[2] = { a->width, a->height };
-  pair_values(a->eye, eye);
-  pair_values(a->right, right);
-  pair_values(a->up, up);
-  pair_values(a->forward, forward);
-  stratus_camera_window(eye, right, up, forward, a->parallel, lo, hi, sides, a->window);
+  const int sides[2] = { a->picture.width, a->picture.height };
+  pair_values(a->camera.eye, eye);
+  pair_values(a->camera.right, right);
+  pair_values(a->camera.up, up);
+  pair_values(a->camera.forward, forward);
+  stratus_camera_window(eye, right, up, forward, a->camera.parallel, lo, hi, sides, a->camera.window);
 }

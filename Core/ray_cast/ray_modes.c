@@ -184,21 +184,21 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   const stratus_value_range* ranges = caster->ranges;
   const double lo = (double)ranges->whole_lo, hi = (double)ranges->whole_hi, extent = hi - lo;
   const bool additive = options->mode == STRATUS_MODE_ADDITIVE;
-  a->sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
-  a->top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
-  a->sum = is_sum(options->mode);
+  a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
+  a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
+  a->mode.sum = is_sum(options->mode);
   /* outward: no value in the range may be left out */
-  a->counted_first = additive ? -INFINITY : stratus_float_below(options->average_range[0] - ranges->bias);
-  a->counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
-  a->grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
-  a->grey_offset = a->grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
-  a->sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
-  a->contour_count = 0;
+  a->mode.counted_first = additive ? -INFINITY : stratus_float_below(options->average_range[0] - ranges->bias);
+  a->mode.counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
+  a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
+  a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
+  a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
+  a->mode.contour_count = 0;
   for (int n = 0; n < caster->shown.contour_count; ++n) {
     double rgba[4];
     stratus_transfer_at(caster->transfers, caster->shown.contours[n], rgba);
     if (rgba[3] > 0.0) { /* one that is transparent is none */
-      float* contour = a->contour[a->contour_count++];
+      float* contour = a->mode.contour[a->mode.contour_count++];
       contour[0] = (float)(caster->shown.contours[n] - ranges->bias);
       contour[4] = (float)rgba[3];
       for (int c = 0; c < 3; ++c) {

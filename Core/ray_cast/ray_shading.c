@@ -40,16 +40,16 @@ static void set_light(const stratus_light* light, const double index_to_world[16
   }
   const double length = near ? 1.0 : length_of(vector);
   for (int axis = 0; axis < 3; ++axis) {
-    a->light[number][axis] = (float)(vector[axis] / length);
-    a->light_color[number][axis] = (float)light->color[axis];
+    a->light.vector[number][axis] = (float)(vector[axis] / length);
+    a->light.color[number][axis] = (float)light->color[axis];
   }
-  a->light_positional[number] = near;
+  a->light.positional[number] = near;
 }
 
 static void set_lights(
   const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge, stratus_ray_cast_arguments* a)
 {
-  a->light_count = shading->light_count;
+  a->light.count = shading->light_count;
   for (int i = 0; i < shading->light_count; ++i) {
     set_light(&shading->lights[i], index_to_world, edge, i, a);
   }
@@ -59,7 +59,7 @@ static void set_lights(
       light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
     }
     set_light(&light, index_to_world, edge, 0, a);
-    a->light_count = 1;
+    a->light.count = 1;
   }
 }
 
@@ -68,22 +68,22 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
   const stratus_ray_shading_tables* shading = &caster->shading_tables;
   const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
-  a->components = shading->components;
-  a->dependent = caster->dependent;
-  a->label_first = shading->label_first;
-  a->label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
-  a->component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
+  a->media.components = shading->components;
+  a->media.dependent = caster->dependent;
+  a->media.label_first = shading->label_first;
+  a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
+  a->media.component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
   for (int c = 0; c < 4; ++c) {
     const stratus_table* table = shading->tables[c];
     const bool has = caster->shades && c < shading->components;
-    a->factor_first[c] = has ? shading->factor_first[c] : -1;
-    a->factor_scale[c] = shading->factor_scale[c];
-    a->factor_last[c] = (float)STRATUS_SHADING_FACTORS;
-    a->shading_first[c] = shading->first[c];
-    a->shading_scale[c] = table ? table->scale : 0.0f;
-    a->shading_offset[c] = table ? table->offset : 0.0f;
-    a->shading_last[c] = table ? (float)(table->size - 1) : 0.0f;
-    a->component_weight[c] =
+    a->media.factor_first[c] = has ? shading->factor_first[c] : -1;
+    a->media.factor_scale[c] = shading->factor_scale[c];
+    a->media.factor_last[c] = (float)STRATUS_SHADING_FACTORS;
+    a->media.first[c] = shading->first[c];
+    a->media.scale[c] = table ? table->scale : 0.0f;
+    a->media.offset[c] = table ? table->offset : 0.0f;
+    a->media.last[c] = table ? (float)(table->size - 1) : 0.0f;
+    a->media.weight[c] =
       c < shading->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
   }
 }
@@ -102,24 +102,24 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   }
   for (int row = 0; row < 3; ++row) {
     for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's transposed, against the gradient */
-      a->normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge);
-      a->place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
+      a->light.normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge);
+      a->light.place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
     }
   }
   const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
   for (int axis = 0; axis < 3; ++axis) {
-    a->gradient_length[axis] = (float)(mean / volume->spacing[axis]);
+    a->media.gradient_length[axis] = (float)(mean / volume->spacing[axis]);
   }
   set_tables(caster, a);
   if (!options->shade) { /* nobody has checked the lights, and nothing asks for them */
     return;
   }
   const stratus_shading* shading = &options->shading;
-  a->shade = 1;
-  a->two_sided = !shading->one_sided;
-  a->material[0] = (float)shading->ambient;
-  a->material[1] = (float)shading->diffuse;
-  a->material[2] = (float)shading->specular;
-  a->material[3] = (float)shading->specular_power;
+  a->light.on = 1;
+  a->light.two_sided = !shading->one_sided;
+  a->light.material[0] = (float)shading->ambient;
+  a->light.material[1] = (float)shading->diffuse;
+  a->light.material[2] = (float)shading->specular;
+  a->light.material[3] = (float)shading->specular_power;
   set_lights(camera, shading, index_to_world, edge, a);
 }

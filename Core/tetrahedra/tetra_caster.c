@@ -5,6 +5,7 @@
 
 #include "picture.h"
 #include "camera.h"
+#include "table_fill.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -153,21 +154,13 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 static void set_shading(
   const stratus_table* table, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_arguments* arguments)
 {
-  stratus_ray_cast_arguments* a = &arguments->table;
-  a->table_scale = table->scale;
-  a->table_offset = table->offset;
-  a->table_last = (float)(table->size - 1);
-  a->shown_first = (float)table->next_shown[0];
-  a->shown_beyond = (float)(table->last_shown + 1);
-  a->tau_scale = table->sum_scale;
-  a->color_slope = PIECES * table->color_slope;
-  a->has_opaque = table->has_opaque;
-  a->want_depth = image->depth != NULL;
-  a->want_samples = image->samples != NULL;
-  a->want_bytes = image->rgba8 != NULL;
-  a->world_step = 1.0f;
+  arguments->table = stratus_table_arguments_of(table);
+  arguments->table.color_slope *= PIECES;
+  arguments->picture.want_depth = image->depth != NULL;
+  arguments->picture.want_samples = image->samples != NULL;
+  arguments->picture.want_bytes = image->rgba8 != NULL;
   arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
-  a->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
+  arguments->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
 }
 
 /* On the device if there is one that can. */

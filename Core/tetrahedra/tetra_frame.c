@@ -411,8 +411,8 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   }
   frame->cells = tetra->cells;
   frame->cell_values = tetra->cell_values;
-  frame->arguments.table.width = image->width;
-  frame->arguments.table.height = image->height;
+  frame->arguments.picture.width = image->width;
+  frame->arguments.picture.height = image->height;
   frame->arguments.columns = frame->columns;
   frame->arguments.cell_values = tetra->values == NULL;
   frame->arguments.steps_most = (int)(tetra->cell_count + 1);

@@ -12,8 +12,8 @@
 #define PIXELS ((size_t)TETRA_TILE * TETRA_TILE)
 #define GROUP 64 /* work items where each is a pixel */
 
-/* 4-byte scalars throughout: no padding in either language. */
-_Static_assert(sizeof(stratus_tetra_arguments) == sizeof(stratus_ray_cast_arguments) + 4 * 19, "arguments must have no padding");
+/* The kernel's compiler is told the arguments' size, and asserts the same. */
+_Static_assert(_Alignof(stratus_tetra_arguments) == sizeof(float), "arguments must be scalars of four bytes");
 _Static_assert(sizeof(stratus_tetra_border_face) == 4 * TETRA_FACE, "a face must have no padding");
 
 typedef enum buffer_name {
@@ -178,9 +178,10 @@ static stratus_status send_frame(device_march* m, size_t point_count)
 
 static stratus_status launch(device_march* m, const char* name, const buffer_name* order, unsigned arguments)
 {
-  char defines[64];
+  char defines[96];
   cl_kernel kernel;
-  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d", m->packets ? 16 : 1);
+  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu", m->packets ? 16 : 1,
+    sizeof(stratus_tetra_arguments));
   TRY(stratus_device_kernel(m->context, "tetra_march", defines, name, &kernel));
   for (unsigned i = 0; i < arguments; ++i) {
     TRY(stratus_device_argument(m->context, kernel, i, sizeof(cl_mem), &m->device->buffers[order[i]]));

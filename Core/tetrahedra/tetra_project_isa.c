@@ -15,7 +15,7 @@
 static vmask transparent(const stratus_tetra_projection* projection, vmask mask, vfloat lo, vfloat hi)
 {
   const stratus_table* table = projection->frame->table;
-  const stratus_ray_cast_arguments* a = &projection->frame->arguments.table;
+  const stratus_table_arguments* a = &projection->frame->arguments.table;
   /* widened by more than interpolation can round, as in stratus_table_shows() */
   const vfloat slack = v_set(1e-6f) * v_max(v_abs(lo), v_abs(hi));
   const vint first = table_entry(a, lo - slack), last = table_entry(a, hi + slack);

@@ -163,7 +163,7 @@ INLINE void shade_pieces(project_tile* t, int i, layers* out)
     last = v_select(cut, v_fma(slope, end - at, start), last);
   }
   vi_store(out->visible, vi_select(mask, vi_set(1), vi_set(0)));
-  if (a->table.want_depth || a->maximum) {
+  if (a->picture.want_depth || a->maximum) {
     near = v_fma(begin, length, gather_floats(t->offset, pixel, mask));
   }
   if (a->maximum) {
@@ -193,7 +193,7 @@ static void find_wrong(project_tile* t, tile_pixel* p)
 static void composite_pieces(project_tile* t, int i, int count, const layers* layer)
 {
   const stratus_tetra_arguments* a = &t->projection->frame->arguments;
-  const float termination = a->table.termination;
+  const float termination = a->termination;
   for (int l = 0; l < count; ++l) {
     tile_pixel* p = t->pixels + t->pixel[i + l];
     const float clear = p->light[3];
@@ -206,7 +206,7 @@ static void composite_pieces(project_tile* t, int i, int count, const layers* la
     p->light += clear * layer->light[l];
     p->back = layer->to[l] > p->back ? layer->to[l] : p->back;
     ++p->samples;
-    if (a->table.want_depth && p->depth >= LARGEST_FLOAT) {
+    if (a->picture.want_depth && p->depth >= LARGEST_FLOAT) {
       p->depth = layer->depth[l];
     }
     if (p->light[3] < termination) {

@@ -104,4 +104,63 @@ INLINE vmask vi_outside(vint a, vint n) { return vi_lt(a, vi_set(0)) | vi_ge(a, 
 INLINE vmask vi_zero(vint a) { return (vmask)(a == vi_set(0)); }
 #endif
 
+/* Four consecutive floats (as bits) from table + 4 entry; 0 in other lanes. */
+INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
+{
+#if STRATUS_WIDTH == 1
+  for (int c = 0; c < 4; ++c) {
+    out[c] = mask ? table[4 * entry + c] : 0.0f;
+  }
+#elif defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  const int16 twice = entry + entry;
+  for (int c = 0; c < 4; c += 2) {
+    const int16 low = STRATUS_GATHER_LONG(table + c, twice.lo, (uchar)mask, 8),
+                high = STRATUS_GATHER_LONG(table + c, twice.hi, (uchar)(mask >> 8), 8);
+    out[c] = as_float16((int16)(low.even, high.even));
+    out[c + 1] = as_float16((int16)(low.odd, high.odd));
+  }
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  const __m512i zero = _mm512_setzero_si512(), twice = (__m512i)(entry + entry);
+  for (int c = 0; c < 4; c += 2) {
+    const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256(twice), table + c, 8);
+    const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64(twice, 1), table + c, 8);
+    out[c] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
+    out[c + 1] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
+  }
+#else
+  int li[STRATUS_WIDTH];
+  float lv[4][STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, entry, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    for (int c = 0; c < 4; ++c) {
+      lv[c][lane] = li[lane] >= 0 ? table[4 * li[lane] + c] : 0.0f;
+    }
+  }
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_load(lv[c]);
+  }
+#endif
+}
+
+/* One int of each lane from table[index], 0 in other lanes. */
+INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
+{
+#if STRATUS_WIDTH == 1
+  return mask ? table[index] : 0;
+#elif defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+  return STRATUS_GATHER(table, index, mask, 4);
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  return (vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)index, table, 4);
+#else
+  int li[STRATUS_WIDTH], lv[STRATUS_WIDTH];
+  vi_store(li, vi_select(mask, index, vi_set(-1)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    lv[lane] = li[lane] >= 0 ? table[li[lane]] : 0;
+  }
+  return vi_load(lv);
+#endif
+}
+
 #endif

@@ -18,6 +18,11 @@
 
 #include "first_hit.h"
 
+#ifdef STRATUS_ARGUMENTS_BYTES
+/* An array of negative size, which does not compile, where the host lays the arguments out otherwise. */
+typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
+#endif
+
 /* rays: arrays of `count` floats: origin x y z, direction x y z, its inverse x y z, end; then of ints: cell x y z. results: arrays of
  * `count` ints: what became of the ray, voxel x y z, steps. */
 __kernel void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,

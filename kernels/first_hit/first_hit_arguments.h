@@ -11,7 +11,6 @@ typedef struct stratus_hit_arguments {
   int count; /* rays */
   float slack;
 } stratus_hit_arguments;
-#define STRATUS_HIT_ARGUMENTS_WORDS 12
 
 /* What became of a ray. */
 #define STRATUS_HIT_NONE 0

@@ -37,7 +37,7 @@
 
 INLINE float load_any(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
 {
-  switch (a->type) {
+  switch (a->values.type) {
 #ifdef STRATUS_DEVICE
     case 0:
       return (float)((GLOBAL const char*)values)[index];
@@ -79,9 +79,9 @@ INLINE float load_any(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 
 INLINE stratus_index generic_index(CONSTANT stratus_ray_cast_arguments* a, int i, int j, int k)
 {
-  const stratus_index row = ((stratus_index)(uint)a->row_high << 32) | (stratus_index)(uint)a->row;
-  const stratus_index slice = ((stratus_index)(uint)a->slice_high << 32) | (stratus_index)(uint)a->slice;
-  return (stratus_index)i * (stratus_index)a->stride + (stratus_index)j * row + (stratus_index)k * slice;
+  const stratus_index row = ((stratus_index)(uint)a->values.row_high << 32) | (stratus_index)(uint)a->values.row;
+  const stratus_index slice = ((stratus_index)(uint)a->values.slice_high << 32) | (stratus_index)(uint)a->values.slice;
+  return (stratus_index)i * (stratus_index)a->values.stride + (stratus_index)j * row + (stratus_index)k * slice;
 }
 
 INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
@@ -98,7 +98,8 @@ INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
       if (lm[lane]) {
         const int x = li[lane] + (corner & 1), y = lj[lane] + (corner >> 1 & 1), z = lk[lane] + (corner >> 2);
         lv[corner][lane] = load_any(a, values,
-          generic_index(a, x < a->dimensions[0] ? x : x - 1, y < a->dimensions[1] ? y : y - 1, z < a->dimensions[2] ? z : z - 1));
+          generic_index(
+            a, x < a->values.dimensions[0] ? x : x - 1, y < a->values.dimensions[1] ? y : y - 1, z < a->values.dimensions[2] ? z : z - 1));
       }
     }
   }
@@ -191,7 +192,7 @@ INLINE vint gather_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
 {
 #if STRATUS_TYPE <= 1
   if (end) { /* the last four bytes are read from further left and shifted, so that nothing beyond them is */
-    const vint from = vi_min(index, vi_set(a->tail));
+    const vint from = vi_min(index, vi_set(a->values.tail));
     return LOGICAL_RIGHT(GATHER_DWORD(values, from, mask, DWORD_LOG2), (index - from) << vi_set(3));
   }
 #else
@@ -257,16 +258,16 @@ INLINE void fetch_pair(
 
 INLINE vint fixed_index(CONSTANT stratus_ray_cast_arguments* a, vint i, vint j, vint k)
 {
-  return i + j * vi_set(a->row) + k * vi_set(a->slice);
+  return i + j * vi_set(a->values.row) + k * vi_set(a->values.slice);
 }
 
 INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
 {
   const vint index = fixed_index(a, i, j, k);
   fetch_pair(a, values, index, mask, 0, &v[0], &v[1]);
-  fetch_pair(a, values, index + vi_set(a->row), mask, 0, &v[2], &v[3]);
-  fetch_pair(a, values, index + vi_set(a->slice), mask, 0, &v[4], &v[5]);
-  fetch_pair(a, values, index + vi_set(a->row + a->slice), mask, 1, &v[6], &v[7]);
+  fetch_pair(a, values, index + vi_set(a->values.row), mask, 0, &v[2], &v[3]);
+  fetch_pair(a, values, index + vi_set(a->values.slice), mask, 0, &v[4], &v[5]);
+  fetch_pair(a, values, index + vi_set(a->values.row + a->values.slice), mask, 1, &v[6], &v[7]);
 }
 
 INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)

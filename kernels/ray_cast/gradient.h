@@ -25,7 +25,7 @@ INLINE void fetch_two(
 {
 #if STRATUS_TYPE == -1
   *v0 = fetch_nearest(a, values, i, j, k, mask);
-  *v1 = fetch_nearest(a, values, vi_min(i + vi_set(1), vi_set(a->dimensions[0] - 1)), j, k, mask);
+  *v1 = fetch_nearest(a, values, vi_min(i + vi_set(1), vi_set(a->values.dimensions[0] - 1)), j, k, mask);
 #else
   fetch_pair(a, values, fixed_index(a, i, j, k), mask, 1, v0, v1);
 #endif
@@ -37,8 +37,8 @@ INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   vint at[3];
   for (int axis = 0; axis < 3; ++axis) {
     vfloat place = x[axis];
-    if (a->clamp) {
-      place = v_clamp(place, 0.0f, a->last[axis]);
+    if (a->values.clamp) {
+      place = v_clamp(place, 0.0f, a->values.last[axis]);
     }
     at[axis] = v_to_int(place + v_set(0.5f));
   }
@@ -48,9 +48,9 @@ INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     side[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
     const vfloat low = fetch_nearest(a, values, side[0], side[1], side[2], mask);
     const vmask lower = v_finite(low) & vi_ge(at[axis], vi_set(1));
-    side[axis] = vi_min(at[axis] + vi_set(1), vi_set(a->dimensions[axis] - 1));
+    side[axis] = vi_min(at[axis] + vi_set(1), vi_set(a->values.dimensions[axis] - 1));
     const vfloat high = fetch_nearest(a, values, side[0], side[1], side[2], mask);
-    const vmask upper = v_finite(high) & vi_lt(at[axis], vi_set(a->dimensions[axis] - 1));
+    const vmask upper = v_finite(high) & vi_lt(at[axis], vi_set(a->values.dimensions[axis] - 1));
     const vfloat difference = v_select(upper, high, here) - v_select(lower, low, here);
     g[axis] = v_select(lower & upper, difference * v_set(0.5f), v_select(lower | upper, difference, zero));
   }
@@ -59,7 +59,7 @@ INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
 /* g: value a voxel along each axis at index coordinates x, in the lanes of `mask`; where the mask is not set, any number. */
 INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
-  if (a->nearest) {
+  if (a->values.nearest) {
     voxel_gradient(a, values, x, mask, g);
     return;
   }
@@ -67,10 +67,10 @@ INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
   vfloat t[3], v[8], line[3][4];
   vmask lower[3], upper[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const int end = a->dimensions[axis] - 1;
+    const int end = a->values.dimensions[axis] - 1;
     vfloat place = x[axis];
-    if (a->clamp) {
-      place = v_clamp(place, 0.0f, a->last[axis]);
+    if (a->values.clamp) {
+      place = v_clamp(place, 0.0f, a->values.last[axis]);
     }
     at[axis] = vi_max(vi_min(v_to_int(place), vi_set(end - 1)), vi_set(0));
     t[axis] = place - v_from_int(at[axis]);
@@ -82,13 +82,13 @@ INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
   fetch_cell(a, values, at[0], at[1], at[2], mask, v);
   for (int row = 0; row < 4; ++row) { /* along x, at the cell's four edges */
     const vint j = at[1] + vi_set(row & 1), k = at[2] + vi_set(row >> 1);
-    const vint y = vi_min(j, vi_set(a->dimensions[1] - 1)), z = vi_min(k, vi_set(a->dimensions[2] - 1));
+    const vint y = vi_min(j, vi_set(a->values.dimensions[1] - 1)), z = vi_min(k, vi_set(a->values.dimensions[2] - 1));
     const vfloat left = fetch_nearest(a, values, before[0], y, z, mask), right = fetch_nearest(a, values, after[0], y, z, mask);
     line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
   }
   for (int side = 0; side < 2; ++side) { /* along y at both ends of z, along z at both ends of y */
-    const vint j = vi_min(at[1] + vi_set(side), vi_set(a->dimensions[1] - 1)),
-               k = vi_min(at[2] + vi_set(side), vi_set(a->dimensions[2] - 1));
+    const vint j = vi_min(at[1] + vi_set(side), vi_set(a->values.dimensions[1] - 1)),
+               k = vi_min(at[2] + vi_set(side), vi_set(a->values.dimensions[2] - 1));
     vfloat low[2], high[2];
     fetch_two(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
     fetch_two(a, values, at[0], after[1], k, mask, &high[0], &high[1]);

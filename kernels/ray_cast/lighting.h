@@ -4,7 +4,7 @@
 #ifndef STRATUS_SHADING_H
 #define STRATUS_SHADING_H
 
-#include "transfer_table.h"
+#include "ray_composite.h"
 
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
 
@@ -61,26 +61,26 @@ INLINE vfloat v_power(vfloat a, float power)
 /* The entry of component c's table that a value falls in. */
 INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, int c, vfloat value)
 {
-  return v_to_int(v_clamp(v_fma(value, v_set(a->shading_scale[c]), v_set(a->shading_offset[c])), 0.0f, a->shading_last[c]));
+  return v_to_int(v_clamp(v_fma(value, v_set(a->media.scale[c]), v_set(a->media.offset[c])), 0.0f, a->media.last[c]));
 }
 
 /* What component c's gradient opacity makes of its optical depth where its index gradient is g; 1 without such a function. */
 INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const vfloat g[3], vmask mask)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const float last = a->factor_last[c];
+  const float last = a->media.factor_last[c];
   vfloat v[3];
-  if (a->factor_first[c] < 0) {
+  if (a->media.factor_first[c] < 0) {
     return one;
   }
   for (int axis = 0; axis < 3; ++axis) { /* in entries; a component beyond the last one is as good as at it, and its square is finite */
-    v[axis] = v_clamp(g[axis] * v_set(a->gradient_length[axis]) * v_set(a->factor_scale[c]), -last, last);
+    v[axis] = v_clamp(g[axis] * v_set(a->media.gradient_length[axis]) * v_set(a->media.factor_scale[c]), -last, last);
   }
   const vfloat square = v_dot3(v, v);
   const vmask steep = v_le(v_set(1e-28f), square); /* below it the first entry's */
   const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
   const vint entry = v_to_int(place);
-  GLOBAL const int* factors = (GLOBAL const int*)table + a->factor_first[c];
+  GLOBAL const int* factors = (GLOBAL const int*)table + a->media.factor_first[c];
   const vfloat low = v_from_bits(gather_int32(factors, entry, mask)), high = v_from_bits(gather_int32(factors + 1, entry, mask));
   return v_lerp(low, high, place - v_from_int(entry));
 }
@@ -94,25 +94,25 @@ INLINE void ray_light(
   vfloat normal[3], eye[3], place[3];
   vfloat steep[3] = { g[0], g[1], g[2] };
   v_scale3(steep);
-  v_transform3(a->normal, steep, normal);
+  v_transform3(a->light.normal, steep, normal);
   v_normalize3(normal, 0.0f); /* a field that is flat has no normal: ambient light only */
-  v_transform3(a->place, d, eye);
+  v_transform3(a->light.place, d, eye);
   v_normalize3(eye, 0.0f);
-  v_transform3(a->place, x, place);
+  v_transform3(a->light.place, x, place);
   const vmask away = v_lt(zero, v_dot3(normal, eye));
   for (int axis = 0; axis < 3; ++axis) {
     eye[axis] = zero - eye[axis];
-    if (a->two_sided) {
+    if (a->light.two_sided) {
       normal[axis] = v_select(away, zero - normal[axis], normal[axis]);
     }
-    diffuse[axis] = v_set(a->material[0]);
+    diffuse[axis] = v_set(a->light.material[0]);
     specular[axis] = zero;
   }
-  for (int i = 0; i < a->light_count; ++i) {
+  for (int i = 0; i < a->light.count; ++i) {
     vfloat light[3], half_way[3];
     for (int axis = 0; axis < 3; ++axis) {
-      light[axis] = v_set(a->light[i][axis]);
-      if (a->light_positional[i]) {
+      light[axis] = v_set(a->light.vector[i][axis]);
+      if (a->light.positional[i]) {
         light[axis] = light[axis] - place[axis];
       }
     }
@@ -123,14 +123,14 @@ INLINE void ray_light(
     v_normalize3(half_way, 1e-6f); /* light and eye opposite: what is left is rounding */
     const vfloat cosine = v_max(v_dot3(normal, light), zero), gloss = v_dot3(normal, half_way);
     const vmask lit = v_lt(zero, cosine), shines = lit & v_lt(v_set(1e-9f), gloss);
-    const vfloat matt = cosine * v_set(a->material[1]);
+    const vfloat matt = cosine * v_set(a->light.material[1]);
     vfloat shine = zero;
-    if (a->material[2] > 0.0f && m_any(shines)) {
-      shine = v_select(shines, v_power(v_select(shines, gloss, v_set(1.0f)), a->material[3]) * v_set(a->material[2]), zero);
+    if (a->light.material[2] > 0.0f && m_any(shines)) {
+      shine = v_select(shines, v_power(v_select(shines, gloss, v_set(1.0f)), a->light.material[3]) * v_set(a->light.material[2]), zero);
     }
     for (int c = 0; c < 3; ++c) {
-      diffuse[c] = v_fma(matt, v_set(a->light_color[i][c]), diffuse[c]);
-      specular[c] = v_fma(shine, v_set(a->light_color[i][c]), specular[c]);
+      diffuse[c] = v_fma(matt, v_set(a->light.color[i][c]), diffuse[c]);
+      specular[c] = v_fma(shine, v_set(a->light.color[i][c]), specular[c]);
     }
   }
 }

@@ -25,6 +25,11 @@
 
 #include "ray_cast.h"
 
+#ifdef STRATUS_ARGUMENTS_BYTES
+/* An array of negative size, which does not compile, where the host lays the arguments out otherwise. */
+typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
+#endif
+
 typedef struct stratus_pixels {
   __global float* rgba;
   __global uchar* rgba8;
@@ -35,17 +40,17 @@ typedef struct stratus_pixels {
 static void store_pixel(
   __constant stratus_ray_cast_arguments* a, const stratus_pixels* to, int x, int y, float4 color, float far, uint taken)
 {
-  if (x < a->width && y < a->height) {
-    const size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
+  if (x < a->picture.width && y < a->picture.height) {
+    const size_t pixel = (size_t)y * (size_t)a->picture.width + (size_t)x;
     vstore4(color, pixel, to->rgba);
-    if (a->want_bytes) {
+    if (a->picture.want_bytes) {
       const float4 bytes = color * 255.0f + 0.5f;
       vstore4(convert_uchar4(min(bytes, 255.0f)), pixel, to->rgba8);
     }
-    if (a->want_depth) {
+    if (a->picture.want_depth) {
       to->depth[pixel] = far >= LARGEST_FLOAT ? INFINITY : far;
     }
-    if (a->want_samples) {
+    if (a->picture.want_samples) {
       to->samples[pixel] = taken;
     }
   }
@@ -59,17 +64,17 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
-  if (x >= a->width || y >= a->height) {
+  if (x >= a->picture.width || y >= a->picture.height) {
     return;
   }
   stratus_packet k;
   packet_nothing(&k);
   if (!packet_outside(a, x, y)) {
     stratus_crop crop;
-    const int pieces = a->crop_regions ? CROP_PIECES : 1;
+    const int pieces = a->crop.regions ? CROP_PIECES : 1;
     kernel_ray_load(a, opaque_depth, x, y, &k, &crop);
     for (int piece = 0; piece < pieces; ++piece) {
-      if (a->crop_regions) {
+      if (a->crop.regions) {
         crop_enter(a, &crop, piece, &k);
       }
       if (m_any(k.live)) {
@@ -98,14 +103,14 @@ static void store_four(__constant stratus_ray_cast_arguments* a, const stratus_p
   const float16 row = (float16)(red.x, green.x, blue.x, alpha.x, red.y, green.y, blue.y, alpha.y, red.z, green.z, blue.z, alpha.z, red.w,
     green.w, blue.w, alpha.w);
   vstore16(row, 0, to->rgba + 4 * pixel);
-  if (a->want_bytes) {
+  if (a->picture.want_bytes) {
     const float16 bytes = row * 255.0f + 0.5f;
     vstore16(convert_uchar16(v_min(bytes, v_set(255.0f))), 0, to->rgba8 + 4 * pixel);
   }
-  if (a->want_depth) {
+  if (a->picture.want_depth) {
     vstore4(select(far, (float4)(INFINITY), far >= LARGEST_FLOAT), 0, to->depth + pixel);
   }
-  if (a->want_samples) {
+  if (a->picture.want_samples) {
     vstore4(as_uint4(taken), 0, to->samples + pixel);
   }
 }
@@ -113,8 +118,8 @@ static void store_four(__constant stratus_ray_cast_arguments* a, const stratus_p
 static void store_packet(__constant stratus_ray_cast_arguments* a, const stratus_pixels* to, const stratus_packet* k, int x, int y)
 {
   const vfloat opacity = v_set(1.0f) - k->transparency;
-  if (x + PACKET_X <= a->width && y + PACKET_Y <= a->height) {
-    const size_t width = (size_t)a->width, pixel = (size_t)y * width + (size_t)x;
+  if (x + PACKET_X <= a->picture.width && y + PACKET_Y <= a->picture.height) {
+    const size_t width = (size_t)a->picture.width, pixel = (size_t)y * width + (size_t)x;
     store_four(a, to, pixel, k->red.s0123, k->green.s0123, k->blue.s0123, opacity.s0123, k->depth.s0123, k->samples.s0123);
     store_four(a, to, pixel + width, k->red.s4567, k->green.s4567, k->blue.s4567, opacity.s4567, k->depth.s4567, k->samples.s4567);
     store_four(a, to, pixel + 2 * width, k->red.s89ab, k->green.s89ab, k->blue.s89ab, opacity.s89ab, k->depth.s89ab, k->samples.s89ab);
@@ -150,8 +155,8 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
-  const int x1 = min(x0 + RAY_TILE, a->width), y1 = min(y0 + RAY_TILE, a->height);
-  const int pieces = a->crop_regions ? CROP_PIECES : 1;
+  const int x1 = min(x0 + RAY_TILE, a->picture.width), y1 = min(y0 + RAY_TILE, a->picture.height);
+  const int pieces = a->crop.regions ? CROP_PIECES : 1;
   vint taken = vi_set(0), skipped = vi_set(0), lookups = vi_set(0);
   uint rays = 0;
   for (int y = y0; y < y1; y += PACKET_Y) {
@@ -167,7 +172,7 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
         }
       }
       for (int piece = 0; piece < pieces; ++piece) {
-        for (int i = 0; a->crop_regions && i < PACKETS_TOGETHER; ++i) {
+        for (int i = 0; a->crop.regions && i < PACKETS_TOGETHER; ++i) {
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2

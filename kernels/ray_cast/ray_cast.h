@@ -10,7 +10,7 @@
 #endif
 
 #include "ray_crop.h"
-#include "transfer_table.h"
+#include "ray_composite.h"
 #include "tree_map.h"
 
 #ifndef STRATUS_RAY_MODE
@@ -60,13 +60,13 @@ INLINE vfloat ray_value(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
 {
   vfloat x[3] = { position[0], position[1], position[2] };
-  if (a->clamp) {
+  if (a->values.clamp) {
     for (int axis = 0; axis < 3; ++axis) {
-      x[axis] = v_clamp(x[axis], 0.0f, a->last[axis]);
+      x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
   vfloat value;
-  if (a->nearest) {
+  if (a->values.nearest) {
     const vfloat half_one = v_set(0.5f);
     value = fetch_nearest(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
   } else {
@@ -76,7 +76,7 @@ INLINE vfloat ray_value(
     fetch_cell(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
-  if (a->has_hidden & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
+  if (a->values.has_hidden & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
     value = ray_hide(a, hidden, x, mask, value);
   }
   return value;
@@ -95,14 +95,14 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
     vint block[3];
     for (int axis = 0; axis < 3; ++axis) {
       vfloat x = v_fma(s, k->d[axis], k->p[axis]);
-      if (a->clamp) {
-        x = v_clamp(x, 0.0f, a->last[axis]);
+      if (a->values.clamp) {
+        x = v_clamp(x, 0.0f, a->values.last[axis]);
       }
-      block[axis] = v_to_int(x) >> vi_set(a->block_log2);
+      block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
     }
-    const vint index = block[0] + (block[1] + block[2] * vi_set(a->blocks_rows)) * vi_set(a->blocks_pitch) + k->octant;
+    const vint index = block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant;
     vint byte;
-    if (a->tree) {
+    if (a->map.tree) {
       byte = tree_bytes(a, map, block, need);
     } else {
       byte = gather_map(map, index, need);
@@ -196,7 +196,7 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 /* Asks the structure where enough rays need it. False if that was the end of all of them. */
 INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
-  if (a->structure) {
+  if (a->map.structure) {
     const vmask need = lanes_to_skip(k);
     if (m_any(need)) {
       ray_skip(a, map, k, need);
@@ -240,25 +240,25 @@ INLINE void ray_load(
   stratus_rays rays;
   v_store(fx, v_from_int(px));
   v_store(fy, v_from_int(py));
-  if (a->has_depth) {
+  if (a->camera.has_opaque_depth) {
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       const int lx = x + (lane & (PACKET_X - 1)), ly = y + (lane >> PACKET_X_LOG2);
-      fz[lane] = lx < a->width && ly < a->height ? opaque_depth[(size_t)ly * (size_t)a->width + (size_t)lx] : 1.0f;
+      fz[lane] = lx < a->picture.width && ly < a->picture.height ? opaque_depth[(size_t)ly * (size_t)a->picture.width + (size_t)lx] : 1.0f;
     }
   }
-  if (a->jitter) {
+  if (a->lattice.jitter) {
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->seed);
+      fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->lattice.seed);
     }
   }
   for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
     ray_setup_part(a, fx + part, fy + part, fz + part, fw + part, part, &rays);
   }
-  packet_begin(a, &rays, vi_lt(px, vi_set(a->width)) & vi_lt(py, vi_set(a->height)), k);
+  packet_begin(a, &rays, vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height)), k);
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
-  if (a->crop_regions) {
+  if (a->crop.regions) {
     crop_begin(a, &rays, k, crop);
   }
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES

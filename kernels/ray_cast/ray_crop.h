@@ -25,7 +25,7 @@ INLINE int crop_shows(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays
     const int below = forward ? s < low : s > low, above = forward ? s > high : s < high;
     region = 3 * region + (below ? 0 : above ? 2 : 1);
   }
-  return a->crop_regions >> region & 1;
+  return a->crop.regions >> region & 1;
 }
 
 /* The pieces of each ray that are shown: from..to, empty ones behind. */
@@ -97,7 +97,7 @@ static
   k->end = v_select(mask, end, v_set(0.0f));
   k->i = vi_max(v_to_int(v_min(k->begin, v_set(8e6f))), crop->first);
   k->last = vi_select(mask, vi_min(beyond, crop->last), vi_set(0));
-  k->run = vi_set(a->structure ? 0 : 0x7fffffff);
+  k->run = vi_set(a->map.structure ? 0 : 0x7fffffff);
   k->live = mask & vi_lt(k->i, k->last);
   k->fresh = k->live;
 }

@@ -51,7 +51,7 @@ INLINE void surface_cell(const stratus_packet* k, surface_walk* w)
 /* The cell whose values are read: the border's own where positions are clamped. */
 INLINE vint surface_inside(CONSTANT stratus_ray_cast_arguments* a, const surface_walk* w, int axis)
 {
-  return vi_max(vi_min(w->cell[axis], vi_set(a->dimensions[axis] - 2)), vi_set(0));
+  return vi_max(vi_min(w->cell[axis], vi_set(a->values.dimensions[axis] - 2)), vi_set(0));
 }
 
 /* Fraction of the cell along an axis at point s of the ray; on a plane that is met there exactly 0 or 1. */
@@ -69,12 +69,12 @@ INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uc
   while (m_any(need)) {
     vint block[3], byte;
     for (int axis = 0; axis < 3; ++axis) {
-      block[axis] = surface_inside(a, w, axis) >> vi_set(a->block_log2);
+      block[axis] = surface_inside(a, w, axis) >> vi_set(a->map.block_log2);
     }
-    if (a->tree) {
+    if (a->map.tree) {
       byte = tree_bytes(a, map, block, need);
     } else {
-      byte = gather_map(map, block[0] + (block[1] + block[2] * vi_set(a->blocks_rows)) * vi_set(a->blocks_pitch) + k->octant, need);
+      byte = gather_map(map, block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant, need);
     }
     k->lookups -= mask_int(need);
     const vmask occupied = need & vi_ge(byte, vi_set(128));
@@ -83,7 +83,7 @@ INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uc
     for (int axis = 0; axis < 3; ++axis) {
       const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
       const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-      leave = v_min(plane_met(k, axis, face << vi_set(a->block_log2)), leave);
+      leave = v_min(plane_met(k, axis, face << vi_set(a->map.block_log2)), leave);
     }
     const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* none in the volume's rim, where values are clamped */
     w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
@@ -109,8 +109,8 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
     hi = v_max(hi, v[corner]);
   }
   vmask any = m_none();
-  for (int n = 0; n < a->contour_count; ++n) {
-    any = any | (v_lt(lo, v_set(a->contour[n][0])) & v_le(v_set(a->contour[n][0]), hi));
+  for (int n = 0; n < a->mode.contour_count; ++n) {
+    any = any | (v_lt(lo, v_set(a->mode.contour[n][0])) & v_le(v_set(a->mode.contour[n][0]), hi));
   }
   return mask & any;
 }
@@ -128,14 +128,14 @@ SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
   vfloat x[3];
   for (int axis = 0; axis < 3; ++axis) {
     x[axis] = v_fma(s, k->d[axis], k->p[axis]);
-    if (a->clamp) {
-      x[axis] = v_clamp(x[axis], 0.0f, a->last[axis]);
+    if (a->values.clamp) {
+      x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
-  if (a->has_hidden & HIDDEN_BY_MASK) {
+  if (a->values.has_hidden & HIDDEN_BY_MASK) {
     mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_BY_MASK, x, mask, v_set(0.0f)));
   }
-  if (a->shade) {
+  if (a->light.on) {
     vfloat g[3];
     stratus_lit_sample lighting;
     ray_gradient(a, values, x, mask, g);
@@ -157,8 +157,8 @@ SURFACE_OUTLINE void surface_roots(CONSTANT stratus_ray_cast_arguments* a, GLOBA
   for (int piece = 0; piece < 3; ++piece) {
     const vfloat from = cubic->value[piece], to = cubic->value[piece + 1];
     const vmask rising = v_lt(from, to);
-    for (int n = 0; n < a->contour_count; ++n) {
-      CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
+    for (int n = 0; n < a->mode.contour_count; ++n) {
+      CONSTANT float *up = a->mode.contour[n], *down = a->mode.contour[a->mode.contour_count - 1 - n];
       const vfloat level = v_select(rising, v_set(up[0]), v_set(down[0]));
       const vmask below = v_lt(from, level), ends_below = v_lt(to, level);
       const vmask meets = mask & k->live & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
@@ -186,7 +186,7 @@ INLINE void surface_visit(
   fetch_cell(a, values, inside[0], inside[1], inside[2], k->live, v);
   k->samples -= mask_int(k->live);
   vmask crosses = surface_crosses(a, v, k->live);
-  if (m_any(crosses) && (a->has_hidden & HIDDEN_CELLS)) {
+  if (m_any(crosses) && (a->values.has_hidden & HIDDEN_CELLS)) {
     vfloat x[3];
     for (int axis = 0; axis < 3; ++axis) {
       x[axis] = v_from_int(inside[axis]);
@@ -223,7 +223,7 @@ INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
   w.end = v_select(k->live, w.end, v_set(0.0f));
   while (m_any(k->live)) {
     surface_cell(k, &w);
-    if (a->structure) {
+    if (a->map.structure) {
       surface_skip(a, map, k, &w);
     }
     surface_visit(a, values, hidden, k, &w);

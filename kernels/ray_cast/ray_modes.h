@@ -12,13 +12,13 @@ INLINE void ray_advance(stratus_packet* k, vmask done)
 /* Keeps the best value and where it was first met. Minima are maxima of minus the values. */
 INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
-  const vfloat value = v_set(a->sign) * sample->value;
+  const vfloat value = v_set(a->mode.sign) * sample->value;
   const vmask better = k->live & v_finite(value) & v_lt(k->front, value);
   (void)table;
   k->samples -= mask_int(k->live);
   k->front = v_select(better, value, k->front);
-  k->depth = v_select(better, (sample->lo + k->first) * v_set(a->world_step), k->depth);
-  ray_advance(k, v_le(v_set(a->top), k->front)); /* nothing can be better */
+  k->depth = v_select(better, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
+  ray_advance(k, v_le(v_set(a->mode.top), k->front)); /* nothing can be better */
 }
 
 /* The colour of the best value; nothing where that is transparent. */
@@ -26,7 +26,7 @@ INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 {
   const vmask found = k->hits & v_lt(v_set(-LARGEST_FLOAT), k->front);
   vfloat layer[4];
-  gather_four((GLOBAL const float*)table, table_entry(a, v_set(a->sign) * k->front), found, layer);
+  gather_four((GLOBAL const float*)table, table_entry(&a->table, v_set(a->mode.sign) * k->front), found, layer);
   k->red = layer[0];
   k->green = layer[1];
   k->blue = layer[2];
@@ -39,15 +39,15 @@ INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat value = sample->value;
-  const vmask counts = k->live & v_finite(value) & v_le(v_set(a->counted_first), value) & v_le(value, v_set(a->counted_last));
+  const vmask counts = k->live & v_finite(value) & v_le(v_set(a->mode.counted_first), value) & v_le(value, v_set(a->mode.counted_last));
   vfloat layer[4];
-  gather_four((GLOBAL const float*)table, table_entry(a, value), counts, layer);
-  const vfloat grey = v_fma(value, v_set(a->grey_scale), v_set(a->grey_offset)) * layer[3];
+  gather_four((GLOBAL const float*)table, table_entry(&a->table, value), counts, layer);
+  const vfloat grey = v_fma(value, v_set(a->mode.grey_scale), v_set(a->mode.grey_offset)) * layer[3];
   k->samples -= mask_int(k->live);
   k->front = v_select(counts, v_fma(grey, sample->weight, k->front), k->front);
   k->red = v_select(counts, k->red + sample->weight, k->red);
   const vmask first = counts & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
-  k->depth = v_select(first, (sample->lo + k->first) * v_set(a->world_step), k->depth);
+  k->depth = v_select(first, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
   ray_advance(k, m_none());
 }
 
@@ -56,8 +56,8 @@ INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vmask shown = k->hits;
-  vfloat scale = v_set(a->sum_scale);
-  if (a->sum_scale == 0.0f) {
+  vfloat scale = v_set(a->mode.sum_scale);
+  if (a->mode.sum_scale == 0.0f) {
     shown = shown & v_lt(zero, k->red);
     scale = v_reciprocal(v_max(k->red, v_set(1e-30f)));
   }

@@ -13,12 +13,12 @@
 
 /* What wide types are relative to, and an index into any volume. */
 #ifdef STRATUS_DEVICE
-#define BIAS_OF(a) as_double(((ulong)(uint)(a)->bias_high << 32) | (ulong)(uint)(a)->bias_low)
+#define BIAS_OF(a) as_double(((ulong)(uint)(a)->values.bias_high << 32) | (ulong)(uint)(a)->values.bias_low)
 typedef ulong stratus_index;
 #else
 INLINE double stratus_bias(const stratus_ray_cast_arguments* a)
 {
-  const uint64_t bits = ((uint64_t)(uint32_t)a->bias_high << 32) | (uint64_t)(uint32_t)a->bias_low;
+  const uint64_t bits = ((uint64_t)(uint32_t)a->values.bias_high << 32) | (uint64_t)(uint32_t)a->values.bias_low;
   double bias;
   memcpy(&bias, &bits, sizeof bias);
   return bias;
@@ -95,7 +95,7 @@ INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
   for (int axis = 0; axis < 3; ++axis) {
     const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
     const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-    const vfloat plane = v_from_int(face << vi_set(a->block_log2));
+    const vfloat plane = v_from_int(face << vi_set(a->map.block_log2));
     leave = v_min((plane - k->p[axis]) * k->inverse[axis], leave);
   }
   return v_max(v_fma(leave, v_set(-0x1p-21f), leave - v_set(0x1p-10f)), v_set(0.0f));
@@ -104,7 +104,7 @@ INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
 /* No ray of the packet at pixel (x, y) can meet anything. */
 INLINE int packet_outside(CONSTANT stratus_ray_cast_arguments* a, int x, int y)
 {
-  return x + PACKET_X <= a->window[0] || x >= a->window[1] || y + PACKET_Y <= a->window[2] || y >= a->window[3];
+  return x + PACKET_X <= a->camera.window[0] || x >= a->camera.window[1] || y + PACKET_Y <= a->camera.window[2] || y >= a->camera.window[3];
 }
 
 /* What a packet that has seen nothing holds. */
@@ -137,12 +137,12 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     k->d[axis] = v_load(rays->d[axis]);
     k->inverse[axis] = v_load(rays->inverse[axis]);
     const vmask forward = v_lt(zero, k->inverse[axis]);
-    k->octant = k->octant + vi_select(forward, vi_set(a->octant_stride << axis), vi_set(0));
+    k->octant = k->octant + vi_select(forward, vi_set(a->map.octant_stride << axis), vi_set(0));
   }
   const vint whole = v_to_int(v_min(k->end, most));
   k->last = vi_select(k->live & v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole);
   k->i = vi_set(0);
-  if (a->has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
+  if (a->crop.has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
     const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f),
                  to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
     const vint i0 = v_to_int(from), i1 = v_to_int(to);
@@ -151,11 +151,11 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     k->last = vi_min(k->last, vi_select(v_lt(v_from_int(i1), to), i1, i1 - vi_set(1)));
   }
   k->run = vi_set(0x7fffffff);
-  if (a->structure) {
+  if (a->map.structure) {
     vfloat enter = zero, leave = most;
     for (int axis = 0; axis < 3; ++axis) {
-      const vfloat lo = (v_set(a->occupied[0][axis]) - k->p[axis]) * k->inverse[axis];
-      const vfloat hi = (v_set(a->occupied[1][axis]) - k->p[axis]) * k->inverse[axis];
+      const vfloat lo = (v_set(a->map.occupied[0][axis]) - k->p[axis]) * k->inverse[axis];
+      const vfloat hi = (v_set(a->map.occupied[1][axis]) - k->p[axis]) * k->inverse[axis];
       enter = v_max(enter, v_min(lo, hi));
       leave = v_min(v_max(lo, hi), leave);
     }
@@ -179,7 +179,8 @@ INLINE size_t hidden_place(CONSTANT stratus_ray_cast_arguments* a, int by_value,
   const float place[3] = { x, y, z };
   size_t cell = 0;
   for (int axis = 2; axis >= 0; --axis) {
-    const int between = a->dimensions[axis] > 1 ? a->dimensions[axis] - 1 : 1, cells = by_value ? a->dimensions[axis] : between;
+    const int between = a->values.dimensions[axis] > 1 ? a->values.dimensions[axis] - 1 : 1,
+              cells = by_value ? a->values.dimensions[axis] : between;
     const int at = (int)(by_value ? place[axis] + 0.5f : place[axis]);
     cell = cell * (size_t)cells + (size_t)(at < cells ? at : cells - 1);
   }
@@ -201,14 +202,14 @@ INLINE vfloat ray_hide_by(
     if (lm[lane]) {
       const float x0 = lx[0][lane], x1 = lx[1][lane], x2 = lx[2][lane];
       size_t masked = 0; /* bytes of the mask, which come first */
-      if (a->has_hidden & (HIDDEN_BY_MASK | HIDDEN_LABELS)) {
-        masked = (size_t)a->dimensions[0] * (size_t)a->dimensions[1] * (size_t)a->dimensions[2];
+      if (a->values.has_hidden & (HIDDEN_BY_MASK | HIDDEN_LABELS)) {
+        masked = (size_t)a->values.dimensions[0] * (size_t)a->values.dimensions[1] * (size_t)a->values.dimensions[2];
       }
       if (what & HIDDEN_BY_MASK) {
         lv[lane] = hidden[hidden_place(a, 1, x0, x1, x2)] ? lv[lane] : NAN;
       }
       if (what & HIDDEN_CELLS) { /* a byte a cell between values; a byte a value where those of cells are taken as they are */
-        lv[lane] = hidden[masked + hidden_place(a, a->clamp && a->nearest, x0, x1, x2)] ? NAN : lv[lane];
+        lv[lane] = hidden[masked + hidden_place(a, a->values.clamp && a->values.nearest, x0, x1, x2)] ? NAN : lv[lane];
       }
     }
   }
@@ -217,7 +218,7 @@ INLINE vfloat ray_hide_by(
 
 INLINE vfloat ray_hide(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask, vfloat value)
 {
-  return ray_hide_by(a, hidden, a->has_hidden, x, mask, value);
+  return ray_hide_by(a, hidden, a->values.has_hidden, x, mask, value);
 }
 
 #endif

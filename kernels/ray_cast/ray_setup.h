@@ -66,37 +66,39 @@ INLINE void ray_setup_part(
   CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
 {
   const real zero = r_number(0.0f), half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
-  const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->pixel[0])), one);
-  const real v = r_sub(r_mul(r_mul(r_add(r_load(y), half_one), two), r_of(a->pixel[1])), one);
+  const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->camera.pixel[0])), one);
+  const real v = r_sub(r_mul(r_mul(r_add(r_load(y), half_one), two), r_of(a->camera.pixel[1])), one);
   real origin[3], direction[3];
-  real length = r_of(a->metric[0]);
+  real length = r_of(a->camera.metric[0]);
   for (int axis = 0; axis < 3; ++axis) {
-    const real offset = r_add(r_mul(u, r_of(a->right[axis])), r_mul(v, r_of(a->up[axis])));
-    origin[axis] = a->parallel ? r_add(r_of(a->eye[axis]), offset) : r_of(a->eye[axis]);
-    direction[axis] = a->parallel ? r_of(a->forward[axis]) : r_add(r_of(a->forward[axis]), offset);
+    const real offset = r_add(r_mul(u, r_of(a->camera.right[axis])), r_mul(v, r_of(a->camera.up[axis])));
+    origin[axis] = a->camera.parallel ? r_add(r_of(a->camera.eye[axis]), offset) : r_of(a->camera.eye[axis]);
+    direction[axis] = a->camera.parallel ? r_of(a->camera.forward[axis]) : r_add(r_of(a->camera.forward[axis]), offset);
   }
-  if (!a->parallel) {
-    length = r_add(length, r_mul(u, r_add(r_of(a->metric[1]), r_add(r_mul(u, r_of(a->metric[3])), r_mul(v, r_of(a->metric[4]))))));
-    length = r_add(length, r_mul(v, r_add(r_of(a->metric[2]), r_mul(v, r_of(a->metric[5])))));
+  if (!a->camera.parallel) {
+    length = r_add(
+      length, r_mul(u, r_add(r_of(a->camera.metric[1]), r_add(r_mul(u, r_of(a->camera.metric[3])), r_mul(v, r_of(a->camera.metric[4]))))));
+    length = r_add(length, r_mul(v, r_add(r_of(a->camera.metric[2]), r_mul(v, r_of(a->camera.metric[5])))));
   }
   length = r_sqrt(length);
-  const real samples_per_k = r_mul(length, r_of(a->per_step)), k_per_sample = r_div(one, samples_per_k);
+  const real samples_per_k = r_mul(length, r_of(a->lattice.per_step)), k_per_sample = r_div(one, samples_per_k);
 
-  real begin = r_mul(r_of(a->near_k), samples_per_k), end = r_of(a->reach);
-  if (a->has_far) {
-    end = r_min(end, r_mul(r_of(a->far_k), samples_per_k));
+  real begin = r_mul(r_of(a->camera.near_k), samples_per_k), end = r_of(a->lattice.reach);
+  if (a->camera.has_far) {
+    end = r_min(end, r_mul(r_of(a->camera.far_k), samples_per_k));
   }
-  if (a->has_depth) {
-    const real depth = r_load(z), near_k = r_of(a->near_k), far_k = r_of(a->far_k), extent = r_mul(depth, r_sub(far_k, near_k));
-    const real k = a->parallel ? r_add(near_k, extent) : r_div(r_mul(near_k, far_k), r_sub(far_k, extent));
+  if (a->camera.has_opaque_depth) {
+    const real depth = r_load(z), near_k = r_of(a->camera.near_k), far_k = r_of(a->camera.far_k),
+               extent = r_mul(depth, r_sub(far_k, near_k));
+    const real k = a->camera.parallel ? r_add(near_k, extent) : r_div(r_mul(near_k, far_k), r_sub(far_k, extent));
     end = r_min(end, r_mul(k, samples_per_k));
   }
-  for (int plane = 0; plane < a->clip_count; ++plane) {
+  for (int plane = 0; plane < a->crop.clip_count; ++plane) {
     real step[3];
     for (int axis = 0; axis < 3; ++axis) {
       step[axis] = r_mul(direction[axis], k_per_sample);
     }
-    ray_clip_plane(a->clip[plane], origin, step, &begin, &end);
+    ray_clip_plane(a->crop.clip[plane], origin, step, &begin, &end);
   }
   real inverse[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -108,10 +110,10 @@ INLINE void ray_setup_part(
   inverse[1] = r_mul(per_xyz, r_mul(direction[0], direction[2]));
   inverse[2] = r_mul(per_xyz, xy);
   for (int axis = 0; axis < 3; ++axis) {
-    ray_clip_slab(origin[axis], inverse[axis], a->box[0][axis], a->box[1][axis], &begin, &end);
+    ray_clip_slab(origin[axis], inverse[axis], a->crop.box[0][axis], a->crop.box[1][axis], &begin, &end);
   }
   real shift = zero;
-  if (a->jitter) { /* the same line, counted from a shorter way off */
+  if (a->lattice.jitter) { /* the same line, counted from a shorter way off */
     shift = r_load(w);
     begin = r_add(begin, shift);
     end = r_add(end, shift);
@@ -126,18 +128,18 @@ INLINE void ray_setup_part(
   const real first = r_floor(begin);
   r_store(rays->begin + part, r_sub(begin, first));
   r_store(rays->end + part, r_sub(end, first));
-  r_store(rays->first + part, a->jitter ? r_sub(first, shift) : first);
-  for (int side = 0; a->crop_regions && side < 6; ++side) {
+  r_store(rays->first + part, a->lattice.jitter ? r_sub(first, shift) : first);
+  for (int side = 0; a->crop.regions && side < 6; ++side) {
     const int axis = side / 2;
-    const real crossing = r_mul(r_sub(r_of(a->crop_plane[axis][side % 2]), origin[axis]), inverse[axis]);
+    const real crossing = r_mul(r_sub(r_of(a->crop.plane[axis][side % 2]), origin[axis]), inverse[axis]);
     r_store(rays->crossing[axis][side % 2] + part, r_sub(crossing, first));
   }
-  if (a->has_piece) {
+  if (a->crop.has_piece) {
     real piece_begin = r_neg(one), piece_end = r_add(r_sub(end, first), one);
     piece_begin = r_add(piece_begin, first);
     piece_end = r_add(piece_end, first);
     for (int axis = 0; axis < 3; ++axis) {
-      ray_clip_slab(origin[axis], inverse[axis], a->piece[0][axis], a->piece[1][axis], &piece_begin, &piece_end);
+      ray_clip_slab(origin[axis], inverse[axis], a->crop.piece[0][axis], a->crop.piece[1][axis], &piece_begin, &piece_end);
     }
     r_store(rays->piece_begin + part, r_sub(piece_begin, first));
     r_store(rays->piece_end + part, r_sub(piece_end, first));

@@ -10,7 +10,7 @@
 #define OUTLINE static __attribute__((noinline))
 #endif
 
-#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->component_bytes)
+#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 
 /* What samples at s on their rays show beside their values, in the lanes of `mask`, by the gradient of component c. */
 OUTLINE void ray_light_sample(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
@@ -18,11 +18,11 @@ OUTLINE void ray_light_sample(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 {
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
-  if (a->shade || a->factor_first[c] >= 0) {
+  if (a->light.on || a->media.factor_first[c] >= 0) {
     ray_gradient(a, COMPONENT_VALUES(a, values, c), x, mask, g);
   }
   lighting->factor = gradient_factor(a, table, c, g, mask);
-  if (a->shade) {
+  if (a->light.on) {
     ray_light(a, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ OUTLINE void ray_add_medium(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
     ray_light_sample(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &lighting);
     light_layer(&lighting, layer);
     for (int i = 0; i < 4; ++i) {
-      sum[i] = v_select(shows, v_fma(layer[i], lighting.factor * v_set(a->component_weight[c]), sum[i]), sum[i]);
+      sum[i] = v_select(shows, v_fma(layer[i], lighting.factor * v_set(a->media.weight[c]), sum[i]), sum[i]);
     }
   }
 }
@@ -61,10 +61,10 @@ OUTLINE vfloat component_value(
 INLINE void add_independent(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
-  for (int c = 0; c < a->components; ++c) {
+  for (int c = 0; c < a->media.components; ++c) {
     const vfloat value = component_value(a, k, sample, c, k->live);
     vfloat layer[4];
-    gather_four((GLOBAL const float*)table + a->shading_first[c], shading_entry(a, c, value), k->live & v_finite(value), layer);
+    gather_four((GLOBAL const float*)table + a->media.first[c], shading_entry(a, c, value), k->live & v_finite(value), layer);
     ray_add_medium(a, table, c, k, sample, k->live, layer, sum);
   }
 }
@@ -73,10 +73,10 @@ INLINE void add_independent(
 INLINE void add_dependent(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
-  const int last = a->components - 1;
+  const int last = a->media.components - 1;
   vfloat value = component_value(a, k, sample, last, k->live), layer[4], color[4];
   vmask valid = k->live & v_finite(value);
-  gather_four((GLOBAL const float*)table + a->shading_first[last], shading_entry(a, last, value), valid, layer);
+  gather_four((GLOBAL const float*)table + a->media.first[last], shading_entry(a, last, value), valid, layer);
   valid = valid & v_lt(v_set(0.0f), layer[3]);
   if (!m_any(valid)) {
     return;
@@ -84,7 +84,7 @@ INLINE void add_dependent(
   if (last == 1) {
     value = component_value(a, k, sample, 0, valid);
     valid = valid & v_finite(value);
-    gather_four((GLOBAL const float*)table + a->shading_first[0], shading_entry(a, 0, value), valid, color);
+    gather_four((GLOBAL const float*)table + a->media.first[0], shading_entry(a, 0, value), valid, color);
   } else {
     for (int c = 0; c < 3; ++c) {
       color[c] = component_value(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
@@ -101,7 +101,7 @@ OUTLINE void shade_components(
 {
   const vfloat zero = v_set(0.0f);
   vfloat sum[4] = { zero, zero, zero, zero };
-  if (a->dependent) {
+  if (a->media.dependent) {
     add_dependent(a, table, k, sample, sum);
   } else {
     add_independent(a, table, k, sample, sum);
@@ -126,14 +126,14 @@ OUTLINE vint label_at(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
   vi_store(wanted, vi_select(mask, vi_set(1), vi_set(0)));
   for (int axis = 0; axis < 3; ++axis) {
     vfloat at = x[axis];
-    if (a->clamp) {
-      at = v_clamp(at, 0.0f, a->last[axis]);
+    if (a->values.clamp) {
+      at = v_clamp(at, 0.0f, a->values.last[axis]);
     }
     v_store(place[axis], at);
   }
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     label[lane] = wanted[lane] ? (int)hidden[hidden_place(a, 1, place[0][lane], place[1][lane], place[2][lane])] : 0;
-    label[lane] = label[lane] <= a->label_count ? label[lane] : 0;
+    label[lane] = label[lane] <= a->media.label_count ? label[lane] : 0;
   }
   return vi_load(label);
 }
@@ -146,7 +146,7 @@ OUTLINE void shade_labels(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
   vfloat of[4], layer[4];
-  gather_four(floats + a->label_first, label_at(a, sample->hidden, x, valid), valid, of);
+  gather_four(floats + a->media.label_first, label_at(a, sample->hidden, x, valid), valid, of);
   const vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2])) + v_to_int(of[3]);
   gather_four(floats, entry, valid, layer);
   const vmask shows = valid & v_lt(zero, layer[3]);
@@ -187,12 +187,12 @@ OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
   k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
   k->fresh = m_none();
 #else
-  if (a->components > 1) {
+  if (a->media.components > 1) {
     shade_components(a, table, k, sample);
-  } else if (a->label_count > 0) {
+  } else if (a->media.label_count > 0) {
     shade_labels(a, table, k, sample);
   } else {
-    const vint entry = table_entry(a, value);
+    const vint entry = table_entry(&a->table, value);
     vfloat layer[4];
     gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
     const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);

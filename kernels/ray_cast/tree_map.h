@@ -60,7 +60,7 @@ INLINE int tree_byte(GLOBAL const uchar* map, int nodes, int x, int y, int z)
 INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vmask mask)
 {
   GLOBAL const int* records = (GLOBAL const int*)map;
-  if (a->tree == 1) {
+  if (a->map.tree == 1) {
     GLOBAL const int* leaf = records + 8;
     vint away = vi_set(0), in[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -79,7 +79,7 @@ INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
   vi_store(z, block[2]);
   vi_store(on, vi_select(mask, vi_set(1), vi_set(0)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    x[lane] = on[lane] ? tree_byte(map, a->tree, x[lane], y[lane], z[lane]) : 127;
+    x[lane] = on[lane] ? tree_byte(map, a->map.tree, x[lane], y[lane], z[lane]) : 127;
   }
   return vi_load(x);
 }

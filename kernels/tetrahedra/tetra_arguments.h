@@ -6,7 +6,8 @@
 #ifndef STRATUS_TETRA_ARGUMENTS_H
 #define STRATUS_TETRA_ARGUMENTS_H
 
-#include "ray_cast_arguments.h"
+#include "picture_arguments.h"
+#include "table_arguments.h"
 
 /* Pixels of a tile's edge. */
 #define TETRA_TILE 16
@@ -19,12 +20,14 @@
 #define TETRA_FACE 8
 
 typedef struct stratus_tetra_arguments {
-  stratus_ray_cast_arguments table; /* of it only what shading reads: table, termination, depth, and the picture's sides */
-  float middle;                     /* w where z is 0 */
-  float shear;                      /* dw/dz: 1, parallel 0 */
-  float begin, end;                 /* what is seen, in z, of the ray through the window's middle */
-  float lean[2];                    /* parallel: by how much z of one k rises over u and v; else 0 */
-  float square[6]; /* of a ray's length a unit of c: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5], over the square of `forward`'s */
+  stratus_picture_arguments picture;
+  stratus_table_arguments table;
+  float termination; /* of transparency: 1 - alpha */
+  float middle;      /* w where z is 0 */
+  float shear;       /* dw/dz: 1, parallel 0 */
+  float begin, end;  /* what is seen, in z, of the ray through the window's middle */
+  float lean[2];     /* parallel: by how much z of one k rises over u and v; else 0 */
+  float square[6];   /* of a ray's length a unit of c: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5], over the square of `forward`'s */
   float per_z, per_frame; /* world lengths of one z and of the middle's c along `forward` */
   int columns;            /* of tiles */
   int cell_values;

@@ -33,7 +33,7 @@ typedef struct stratus_tetra_border {
 
 INLINE void border_columns(const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, int x, stratus_tetra_border* b)
 {
-  const int padded = a->table.width + TETRA_PADDING;
+  const int padded = a->picture.width + TETRA_PADDING;
   const vfloat us = v_load_global(v->lines + x), uw = v_load_global(v->lines + padded + x);
   for (int i = 0; i < 3; ++i) {
     b->x[i] = v_fma(-us, v_set(b->point[i][2]), v_set(b->point[i][0]) - uw);
@@ -45,8 +45,8 @@ INLINE void border_columns(const stratus_tetra_view* v, CONSTANT stratus_tetra_a
 INLINE vmask border_row(const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, const stratus_tetra_border* b, int y, vfloat* at)
 {
   const vfloat zero = v_set(0.0f);
-  GLOBAL const float* lines = v->lines + 2 * (a->table.width + TETRA_PADDING) + y;
-  const vfloat vs = v_set(lines[0]), vw = v_set(lines[a->table.height + TETRA_PADDING]);
+  GLOBAL const float* lines = v->lines + 2 * (a->picture.width + TETRA_PADDING) + y;
+  const vfloat vs = v_set(lines[0]), vw = v_set(lines[a->picture.height + TETRA_PADDING]);
   vfloat py[3], edge[3], z[3], value[3], unused;
   for (int i = 0; i < 3; ++i) {
     z[i] = value[i] = v_set(b->point[i][2]);
@@ -85,7 +85,7 @@ INLINE void find_entries(
   const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, int tile, int from, int beyond, int counting, GLOBAL uint* found)
 {
   const int x0 = tile % a->columns * TETRA_TILE, y0 = tile / a->columns * TETRA_TILE;
-  const int rows = a->table.height - y0 < TETRA_TILE ? a->table.height - y0 : TETRA_TILE;
+  const int rows = a->picture.height - y0 < TETRA_TILE ? a->picture.height - y0 : TETRA_TILE;
   const int row_from = from / TETRA_TILE, row_beyond = (beyond - 1) / TETRA_TILE + 1 < rows ? (beyond - 1) / TETRA_TILE + 1 : rows;
   const int column_from = from % TETRA_TILE, column_beyond = (beyond - 1) % TETRA_TILE + 1;
   for (int pixel = from; pixel < beyond; ++pixel) {
@@ -116,7 +116,7 @@ INLINE void find_entries(
         }
         vi_store(hit, vi_select(mask, vi_set(1), vi_set(0)));
         v_store(z, at);
-        for (int lane = 0; lane < STRATUS_WIDTH && x0 + x + lane < a->table.width; ++lane) {
+        for (int lane = 0; lane < STRATUS_WIDTH && x0 + x + lane < a->picture.width; ++lane) {
           const int pixel = y * TETRA_TILE + x + lane;
           if (hit[lane] && !counting) {
             insert_entry(v->entries + 2 * (size_t)v->first[TETRA_PIXELS * tile + pixel], found[pixel], scalar_bits(z[lane]), number);

@@ -11,6 +11,11 @@
 
 #include "tetra_tile.h"
 
+#ifdef STRATUS_ARGUMENTS_BYTES
+/* An array of negative size, which does not compile, where the host lays the arguments out otherwise. */
+typedef char stratus_arguments_agree[sizeof(stratus_tetra_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
+#endif
+
 /* The tile and the pixels of it that are this work item's; false: beyond the picture. */
 static bool my_pixels(__constant stratus_tetra_arguments* a, int* tile, int* from, int* beyond)
 {
@@ -25,7 +30,7 @@ static bool my_pixels(__constant stratus_tetra_arguments* a, int* tile, int* fro
   *beyond = TETRA_PIXELS;
 #endif
   *tile = y * a->columns + column;
-  return column < a->columns && y * TETRA_TILE < a->table.height;
+  return column < a->columns && y * TETRA_TILE < a->picture.height;
 }
 
 __kernel void tetra_count(__constant stratus_tetra_arguments* a, __global const float* points, __global const float* lines,

@@ -182,7 +182,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     }
     tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
   }
-  return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->table.termination)) | v_le(r->end, passage->to));
+  return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));
 }
 
 /* A ray comes in by a face whose points it has: what it finds there. */

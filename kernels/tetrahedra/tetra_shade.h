@@ -4,6 +4,7 @@
 #ifndef STRATUS_TETRA_SHADE_H
 #define STRATUS_TETRA_SHADE_H
 
+#include "packet_math.h"
 #include "tetra_arguments.h"
 #include "tetra_gather.h"
 #include "transfer_table.h"
@@ -74,7 +75,7 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
   if (m_any(level)) { /* within one entry: that entry, so that what is transparent stays so beside what is not */
     vint own[4];
-    gather_four_ints(sums, to->entry + vi_set((int)a->table.table_last + 1), level, own);
+    gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
     for (int c = 0; c < 4; ++c) {
       span[c] = vi_select(level, own[c], span[c]);
     }
@@ -92,7 +93,7 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   light->blue = v_fma(scale, v_abs(v_from_int(span[2])), light->blue);
   const vfloat alpha = v_select(mask, v_min(depth * share, v_set(1.0f)), v_set(0.0f));
   light->transparency = v_fma(-light->transparency, alpha, light->transparency);
-  if (a->table.want_depth) {
+  if (a->picture.want_depth) {
     const vmask hit = v_lt(v_set(0.0f), alpha) & v_le(v_set(LARGEST_FLOAT), light->depth);
     light->depth = v_select(hit, near, light->depth);
   }
@@ -132,14 +133,14 @@ INLINE void tetra_end(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
 {
   vint own[4];
-  gather_four_ints(sums, entry + vi_set((int)a->table.table_last + 1), mask, own);
+  gather_four_ints(sums, entry + vi_set((int)a->table.last + 1), mask, own);
   const vfloat zero = v_set(0.0f), per_tau = v_reciprocal(v_max(v_from_int(own[3]), v_set(1.0f)));
   const vfloat scale = v_select(mask, light->transparency * per_tau, zero);
   light->red = v_fma(scale, v_from_int(own[0]), light->red);
   light->green = v_fma(scale, v_from_int(own[1]), light->green);
   light->blue = v_fma(scale, v_from_int(own[2]), light->blue);
   light->transparency = v_select(mask, zero, light->transparency);
-  if (a->table.want_depth) {
+  if (a->picture.want_depth) {
     light->depth = v_select(mask & v_le(v_set(LARGEST_FLOAT), light->depth), near, light->depth);
   }
 }
@@ -152,7 +153,7 @@ INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   vint entry = to->entry;
   vmask opaque = m_none();
   if (a->table.has_opaque) {
-    GLOBAL const int* rows = sums + 8 * ((int)a->table.table_last + 1);
+    GLOBAL const int* rows = sums + 8 * ((int)a->table.last + 1);
     opaque = opaque_on_the_way(&a->table, rows, from->entry, to->entry, mask & v_lt(v_set(0.0f), length), &entry);
     if (m_any(opaque)) {
       const vint one = vi_set(1), steps = vi_max(entry, from->entry) - vi_min(entry, from->entry);

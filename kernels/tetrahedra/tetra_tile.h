@@ -49,11 +49,11 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   stratus_tetra_ray* r = &k->ray;
   const vint zero = vi_set(0), row = pixel >> vi_set(TETRA_TILE_LOG2);
   const vint x = pixel - (row << vi_set(TETRA_TILE_LOG2)) + vi_set(t->x0), y = row + vi_set(t->y0);
-  GLOBAL const float* rows = v->lines + 2 * (a->table.width + TETRA_PADDING);
+  GLOBAL const float* rows = v->lines + 2 * (a->picture.width + TETRA_PADDING);
   r->us = v_select(mask, gather_float(v->lines, x, mask), r->us);
-  r->uw = v_select(mask, gather_float(v->lines + a->table.width + TETRA_PADDING, x, mask), r->uw);
+  r->uw = v_select(mask, gather_float(v->lines + a->picture.width + TETRA_PADDING, x, mask), r->uw);
   r->vs = v_select(mask, gather_float(rows, y, mask), r->vs);
-  r->vw = v_select(mask, gather_float(rows + a->table.height + TETRA_PADDING, y, mask), r->vw);
+  r->vw = v_select(mask, gather_float(rows + a->picture.height + TETRA_PADDING, y, mask), r->vw);
   const vfloat u = r->us, w = r->vs;
   const vfloat square = v_fma(u, v_fma(u, v_set(a->square[3]), v_fma(w, v_set(a->square[4]), v_set(a->square[1]))),
     v_fma(w, v_fma(w, v_set(a->square[5]), v_set(a->square[2])), v_set(a->square[0])));
@@ -64,7 +64,7 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   r->offset = v_select(mask, length * v_fma(-lean, v_set(a->per_z), v_set(a->per_frame)), r->offset);
   r->begin = v_select(mask, lean + v_set(a->begin), r->begin);
   if (a->has_ends) {
-    r->end = v_select(mask, gather_float(v->ends, x + y * vi_set(a->table.width), mask), r->end);
+    r->end = v_select(mask, gather_float(v->ends, x + y * vi_set(a->picture.width), mask), r->end);
   } else {
     r->end = v_select(mask, lean + v_set(a->end), r->end);
   }
@@ -112,19 +112,19 @@ INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba
 {
   const stratus_tetra_view* v = t->view;
   const int x = t->x0 + pixel % TETRA_TILE, y = t->y0 + pixel / TETRA_TILE;
-  const size_t at = (size_t)y * (size_t)t->arguments->table.width + (size_t)x;
+  const size_t at = (size_t)y * (size_t)t->arguments->picture.width + (size_t)x;
   depth = t->arguments->shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: what begins at the eye, rounded to behind it */
   for (int c = 0; c < 4; ++c) {
     v->rgba[4 * at + (size_t)c] = rgba[c];
   }
-  for (int c = 0; c < 4 && t->arguments->table.want_bytes; ++c) {
+  for (int c = 0; c < 4 && t->arguments->picture.want_bytes; ++c) {
     const float value = rgba[c] * 255.0f + 0.5f;
     v->rgba8[4 * at + (size_t)c] = (uchar)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
   }
-  if (t->arguments->table.want_depth) {
+  if (t->arguments->picture.want_depth) {
     v->depth[at] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;
   }
-  if (t->arguments->table.want_samples) {
+  if (t->arguments->picture.want_samples) {
     v->samples[at] = (uint)segments;
   }
 }
@@ -171,7 +171,7 @@ INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   const vmask stuck = k->done & (vi_lt(k->ray.cell, vi_set(-1)) | (vi_ge(k->ray.cell, none) & vi_ge(k->steps, vi_set(a->steps_most))));
   t->found.stuck += (uint)m_count(stuck);
   k->segments = vi_select(k->done, k->segments + k->steps, k->segments);
-  vmask again = m_andnot(k->done & vi_lt(k->entry, k->beyond), v_lt(k->light.transparency, v_set(a->table.termination)));
+  vmask again = m_andnot(k->done & vi_lt(k->entry, k->beyond), v_lt(k->light.transparency, v_set(a->termination)));
   if (m_any(again)) {
     gather_pair(t->view->entries, k->entry + k->entry, again, entry);
     again = again & v_lt(v_from_bits(entry[0]), k->ray.end);
@@ -294,7 +294,7 @@ INLINE stratus_tetra_found draw_tile(
   t.found.entries = t.found.segments = t.found.stuck = 0;
   for (int pixel = from; pixel < beyond; ++pixel) {
     const int place = TETRA_PIXELS * tile + pixel;
-    if (t.x0 + pixel % TETRA_TILE >= arguments->table.width || t.y0 + pixel / TETRA_TILE >= arguments->table.height) {
+    if (t.x0 + pixel % TETRA_TILE >= arguments->picture.width || t.y0 + pixel / TETRA_TILE >= arguments->picture.height) {
       continue;
     }
     if (view->first[place] < view->first[place + 1]) {

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What kernels are told of a transfer function's table. */
+#ifndef STRATUS_TABLE_FILL_H
+#define STRATUS_TABLE_FILL_H
+
+#include "volume.h"
+#include "table_arguments.h"
+
+static inline stratus_table_arguments stratus_table_arguments_of(const stratus_table* table)
+{
+  return (stratus_table_arguments){ .scale = table->scale,
+    .offset = table->offset,
+    .last = (float)(table->size - 1),
+    .shown_first = (float)table->next_shown[0],
+    .shown_beyond = (float)(table->last_shown + 1),
+    .tau_scale = table->sum_scale,
+    .color_slope = table->color_slope,
+    .has_opaque = table->has_opaque };
+}
+
+#endif

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * From samples and segments to light: layers by the transfer function's table, composited front to back. */
+#ifndef STRATUS_RAY_COMPOSITE_H
+#define STRATUS_RAY_COMPOSITE_H
+
+#include "packet_math.h"
+#include "ray_segment.h"
+#include "transfer_table.h"
+
+/* Puts a layer of colour (times alpha) and alpha behind what the rays have gathered. lo: where its segment begins. */
+INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, const vfloat layer[4], vfloat lo)
+{
+  if (a->picture.want_depth) {
+    const vmask hit = mask & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
+    k->depth = v_select(hit, (lo + k->first) * v_set(a->lattice.step), k->depth);
+  }
+  k->red = v_fma(k->transparency, layer[0], k->red);
+  k->green = v_fma(k->transparency, layer[1], k->green);
+  k->blue = v_fma(k->transparency, layer[2], k->blue);
+  k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
+}
+
+/* Layers of whole segments made those of a part of the optical depth: `weight` of it. */
+INLINE void shorten_layer(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])
+{
+  const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
+  if (m_any(part)) { /* the ends of a ray */
+    vfloat last[4];
+    gather_four(table + 4 * ((int)a->table.last + 1), entry, part, last);
+    const vfloat alpha = v_absorbed(last[0] * weight),
+                 ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
+    for (int c = 0; c < 4; ++c) {
+      layer[c] = layer[c] * ratio;
+    }
+  }
+}
+
+/* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A
+ * specular. */
+typedef struct stratus_lit_sample {
+  vfloat factor, diffuse[3], specular[3];
+} stratus_lit_sample;
+
+INLINE void light_layer(const stratus_lit_sample* lighting, vfloat layer[4])
+{
+  for (int c = 0; c < 3; ++c) {
+    layer[c] = v_fma(layer[c], lighting->diffuse[c], layer[3] * lighting->specular[c]);
+  }
+}
+
+/* Midpoint rule. table: colour times alpha and alpha of a whole segment, an entry each; then the entries' optical depths. */
+INLINE void shade_sample(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  const vint entry = table_entry(&a->table, value);
+  vfloat layer[4];
+  gather_four(table, entry, mask, layer);
+  shorten_layer(a, table, entry, mask, weight, layer);
+  composite(a, k, mask, layer, lo);
+}
+
+/* Of lanes in the mask, those whose segments show anything. */
+INLINE vmask segment_shows(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
+{
+  const vint entry = table_entry(&a->table, value), front = table_entry(&a->table, k->front);
+  return mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
+}
+
+/* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
+ * green, blue times tau, and tau. lighting: 0 where there is no more to a sample than its value. */
+INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
+  vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  const vfloat place = table_place(&a->table, value), front_place = table_place(&a->table, k->front);
+  /* most segments, even of occupied blocks, pass beside all that shows: they need not read the sums */
+  mask =
+    mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
+  if (!m_any(mask)) {
+    return;
+  }
+  const vint front = v_to_int(front_place);
+  vint entry = v_to_int(place);
+  vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
+  vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front;
+  vint opaque_entry = front;
+  vmask opaque = m_none();
+  if (a->table.has_opaque) {
+    opaque = opaque_on_the_way(&a->table, sums + 4 * ((int)a->table.last + 2), front, entry, mask & v_lt(zero, weight), &opaque_entry);
+    if (m_any(opaque)) { /* the segment ends before that entry, which is put behind it */
+      const vint before = vi_max(opaque_entry, front) - vi_min(opaque_entry, front);
+      const vfloat part = v_from_int(before) * v_reciprocal(v_from_int(beyond - low));
+      depth_scale = v_select(opaque, depth_scale * part, depth_scale);
+      rise = v_select(opaque, rise * part, rise);
+      entry = vi_select(opaque, vi_select(vi_ge(opaque_entry, front), opaque_entry - vi_set(1), opaque_entry + vi_set(1)), entry);
+      mask = m_andnot(mask, opaque & vi_ge(vi_set(0), before));
+      low = vi_select(mask, vi_min(entry, front), low);
+      beyond = vi_select(mask, vi_max(entry, front) + vi_set(1), beyond);
+    }
+  }
+  vfloat tau = sum_between(&a->table, sums, 3, low, beyond, mask);
+  mask = mask & v_lt(zero, tau);
+  if (!m_any(mask | opaque)) {
+    return;
+  }
+  vfloat entries = v_from_int(beyond - low);
+  const vfloat pieces = segment_pieces(&a->table, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
+  const vmask several = mask & v_lt(one, pieces);
+  vfloat share = one, piece = zero;
+  vint from = front;
+  if (m_any(several)) {
+    share = v_select(several, v_reciprocal(pieces), one);
+  }
+  do {
+    vint to = entry;
+    if (m_any(several)) { /* of several pieces, this one; the last ends where the segment does */
+      piece = piece + one;
+      to = vi_select(v_lt(piece, pieces), table_entry(&a->table, v_fma(rise, piece * share, k->front)), entry);
+      low = vi_min(from, to);
+      beyond = vi_max(from, to) + vi_set(1);
+      entries = v_from_int(beyond - low);
+      tau = sum_between(&a->table, sums, 3, low, beyond, mask);
+      from = to;
+    }
+    const vmask lit = mask & v_lt(zero, tau);
+    if (m_any(lit)) {
+      vfloat layer[4];
+      const vfloat depth = tau * (depth_scale * share) * v_reciprocal(v_max(entries, one));
+      layer[3] = v_select(lit, v_absorbed(v_select(lit, depth, zero)), zero);
+      const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(tau, one)), zero);
+      for (int c = 0; c < 3; ++c) {
+        layer[c] = sum_between(&a->table, sums, c, low, beyond, lit) * per_tau;
+      }
+      if (lighting) {
+        light_layer(lighting, layer);
+      }
+      composite(a, k, lit, layer, lo);
+    }
+    mask = mask & several & v_lt(piece, pieces);
+  } while (m_any(mask));
+  if (m_any(opaque)) {
+    vfloat layer[4];
+    const vint next = opaque_entry + vi_set(1);
+    const vfloat per_tau = v_reciprocal(v_max(sum_between(&a->table, sums, 3, opaque_entry, next, opaque), one));
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = sum_between(&a->table, sums, c, opaque_entry, next, opaque) * per_tau;
+    }
+    layer[3] = v_select(opaque, one, zero);
+    if (lighting) {
+      light_layer(lighting, layer);
+    }
+    composite(a, k, opaque, layer, lo);
+  }
+}
+
+INLINE void integrate_segment(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
+{
+  integrate_lit(a, sums, k, mask, value, weight, lo, 0);
+}
+
+#endif
