@@ -163,4 +163,16 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 #endif
 }
 
+/* Gathers of one instruction, where there is one: four bytes from base + (index << scale_log2); and bits moved right, 0 moved in. */
+#if defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
+#define GATHER_DWORD(base, index, mask, scale_log2) STRATUS_GATHER(base, index, mask, 1 << (scale_log2))
+#define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))
+#define LOGICAL_RIGHT(a, n) as_int16(as_uint16(a) >> as_uint16(n))
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+#define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
+  ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
+#define GATHER_FLOAT(base, index, mask) _mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (__m512i)(index), (base), 4)
+#define LOGICAL_RIGHT(a, n) ((vint)_mm512_srlv_epi32((__m512i)(a), (__m512i)(n)))
+#endif
+
 #endif

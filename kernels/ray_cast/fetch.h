@@ -35,7 +35,7 @@
 /* ------------------------------------------------------------------------------------------------ generic */
 #if STRATUS_TYPE == -1
 
-INLINE float load_any(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
+INLINE float RAY_NAME(load_any)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
 {
   switch (a->values.type) {
 #ifdef STRATUS_DEVICE
@@ -77,14 +77,15 @@ INLINE float load_any(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
   }
 }
 
-INLINE stratus_index generic_index(CONSTANT stratus_ray_cast_arguments* a, int i, int j, int k)
+INLINE stratus_index RAY_NAME(generic_index)(CONSTANT stratus_ray_cast_arguments* a, int i, int j, int k)
 {
   const stratus_index row = ((stratus_index)(uint)a->values.row_high << 32) | (stratus_index)(uint)a->values.row;
   const stratus_index slice = ((stratus_index)(uint)a->values.slice_high << 32) | (stratus_index)(uint)a->values.slice;
   return (stratus_index)i * (stratus_index)a->values.stride + (stratus_index)j * row + (stratus_index)k * slice;
 }
 
-INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+INLINE void RAY_NAME(fetch_cell)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
 {
   int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
   float lv[8][STRATUS_WIDTH];
@@ -97,8 +98,8 @@ INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
       lv[corner][lane] = 0.0f;
       if (lm[lane]) {
         const int x = li[lane] + (corner & 1), y = lj[lane] + (corner >> 1 & 1), z = lk[lane] + (corner >> 2);
-        lv[corner][lane] = load_any(a, values,
-          generic_index(
+        lv[corner][lane] = RAY_NAME(load_any)(a, values,
+          RAY_NAME(generic_index)(
             a, x < a->values.dimensions[0] ? x : x - 1, y < a->values.dimensions[1] ? y : y - 1, z < a->values.dimensions[2] ? z : z - 1));
       }
     }
@@ -108,7 +109,7 @@ INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
   }
 }
 
-INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
+INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
 {
   int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
   float lv[STRATUS_WIDTH];
@@ -117,7 +118,7 @@ INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
   vi_store(lk, k);
   vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    lv[lane] = lm[lane] ? load_any(a, values, generic_index(a, li[lane], lj[lane], lk[lane])) : 0.0f;
+    lv[lane] = lm[lane] ? RAY_NAME(load_any)(a, values, RAY_NAME(generic_index)(a, li[lane], lj[lane], lk[lane])) : 0.0f;
   }
   return v_load(lv);
 }
@@ -130,17 +131,8 @@ INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 #define FETCH_DWORD 1 /* small types: one gather of four bytes holds a pair */
 #endif
 
-#if defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
-#define GATHER_DWORD(base, index, mask, scale_log2) STRATUS_GATHER(base, index, mask, 1 << (scale_log2))
-#define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))
-#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
-#define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
-  ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
-#define GATHER_FLOAT(base, index, mask) _mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (__m512i)(index), (base), 4)
-#endif
-
 #ifndef FETCH_DWORD
-INLINE float load_one(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, int index)
+INLINE float RAY_NAME(load_one)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, int index)
 {
 #if VALUE_WIDE
   return (float)((double)VALUES[index] - BIAS_OF(a));
@@ -150,16 +142,16 @@ INLINE float load_one(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 #endif
 }
 
-INLINE vfloat fetch_lanes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask)
+INLINE vfloat RAY_NAME(fetch_lanes)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask)
 {
 #if STRATUS_WIDTH == 1
-  return mask ? load_one(a, values, index) : 0.0f;
+  return mask ? RAY_NAME(load_one)(a, values, index) : 0.0f;
 #else
   int li[STRATUS_WIDTH];
   float lv[STRATUS_WIDTH];
   vi_store(li, vi_select(mask, index, vi_set(0)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    lv[lane] = load_one(a, values, li[lane]);
+    lv[lane] = RAY_NAME(load_one)(a, values, li[lane]);
   }
   return v_load(lv);
 #endif
@@ -174,13 +166,8 @@ INLINE vfloat fetch_lanes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
 #define DWORD_LOG2 1
 #define DWORD_SHIFT 16
 #endif
-#ifdef STRATUS_DEVICE
-#define LOGICAL_RIGHT(a, n) as_int16(as_uint16(a) >> as_uint16(n))
-#else
-#define LOGICAL_RIGHT(a, n) ((vint)_mm512_srlv_epi32((__m512i)(a), (__m512i)(n)))
-#endif
 /* Element `which` of the dword, signed or not. */
-INLINE vint dword_part(vint dword, int which)
+INLINE vint RAY_NAME(dword_part)(vint dword, int which)
 {
 #if STRATUS_TYPE == 0 || STRATUS_TYPE == 2
   return (dword << vi_set(32 - DWORD_SHIFT * (which + 1))) >> vi_set(32 - DWORD_SHIFT);
@@ -188,7 +175,7 @@ INLINE vint dword_part(vint dword, int which)
   return LOGICAL_RIGHT(dword, vi_set(DWORD_SHIFT * which)) & vi_set((1 << DWORD_SHIFT) - 1);
 #endif
 }
-INLINE vint gather_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end)
+INLINE vint RAY_NAME(gather_bytes)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end)
 {
 #if STRATUS_TYPE <= 1
   if (end) { /* the last four bytes are read from further left and shifted, so that nothing beyond them is */
@@ -204,13 +191,13 @@ INLINE vint gather_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
 #endif
 
 /* values[index] and values[index+1]; end: the pair may be the volume's last. */
-INLINE void fetch_pair(
+INLINE void RAY_NAME(fetch_pair)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end, vfloat* v0, vfloat* v1)
 {
 #ifdef FETCH_DWORD
-  const vint dword = gather_bytes(a, values, index, mask, end);
-  *v0 = v_from_int(dword_part(dword, 0));
-  *v1 = v_from_int(dword_part(dword, 1));
+  const vint dword = RAY_NAME(gather_bytes)(a, values, index, mask, end);
+  *v0 = v_from_int(RAY_NAME(dword_part)(dword, 0));
+  *v1 = v_from_int(RAY_NAME(dword_part)(dword, 1));
 #elif STRATUS_TYPE == 8 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
   const __m512i zero = _mm512_setzero_si512();
   const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
@@ -250,42 +237,43 @@ INLINE void fetch_pair(
   (void)a;
   (void)end;
 #else
-  *v0 = fetch_lanes(a, values, index, mask);
-  *v1 = fetch_lanes(a, values, index + vi_set(1), mask);
+  *v0 = RAY_NAME(fetch_lanes)(a, values, index, mask);
+  *v1 = RAY_NAME(fetch_lanes)(a, values, index + vi_set(1), mask);
   (void)end;
 #endif
 }
 
-INLINE vint fixed_index(CONSTANT stratus_ray_cast_arguments* a, vint i, vint j, vint k)
+INLINE vint RAY_NAME(fixed_index)(CONSTANT stratus_ray_cast_arguments* a, vint i, vint j, vint k)
 {
   return i + j * vi_set(a->values.row) + k * vi_set(a->values.slice);
 }
 
-INLINE void fetch_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+INLINE void RAY_NAME(fetch_cell)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
 {
-  const vint index = fixed_index(a, i, j, k);
-  fetch_pair(a, values, index, mask, 0, &v[0], &v[1]);
-  fetch_pair(a, values, index + vi_set(a->values.row), mask, 0, &v[2], &v[3]);
-  fetch_pair(a, values, index + vi_set(a->values.slice), mask, 0, &v[4], &v[5]);
-  fetch_pair(a, values, index + vi_set(a->values.row + a->values.slice), mask, 1, &v[6], &v[7]);
+  const vint index = RAY_NAME(fixed_index)(a, i, j, k);
+  RAY_NAME(fetch_pair)(a, values, index, mask, 0, &v[0], &v[1]);
+  RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.row), mask, 0, &v[2], &v[3]);
+  RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.slice), mask, 0, &v[4], &v[5]);
+  RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.row + a->values.slice), mask, 1, &v[6], &v[7]);
 }
 
-INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
+INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
 {
-  const vint index = fixed_index(a, i, j, k);
+  const vint index = RAY_NAME(fixed_index)(a, i, j, k);
 #ifdef FETCH_DWORD
 #if STRATUS_TYPE <= 1
-  return v_from_int(dword_part(gather_bytes(a, values, index, mask, 1), 0));
+  return v_from_int(RAY_NAME(dword_part)(RAY_NAME(gather_bytes)(a, values, index, mask, 1), 0));
 #else
   /* the pair that ends with the last value, never one beyond it */
   const vint from = vi_max(index - vi_set(1), vi_set(0));
   const vint dword = GATHER_DWORD(values, from, mask, DWORD_LOG2);
-  return v_from_int(vi_select(vi_lt(from, index), dword_part(dword, 1), dword_part(dword, 0)));
+  return v_from_int(vi_select(vi_lt(from, index), RAY_NAME(dword_part)(dword, 1), RAY_NAME(dword_part)(dword, 0)));
 #endif
 #elif STRATUS_TYPE == 8 && defined(GATHER_FLOAT)
   return GATHER_FLOAT(VALUES, index, mask);
 #else
-  return fetch_lanes(a, values, index, mask);
+  return RAY_NAME(fetch_lanes)(a, values, index, mask);
 #endif
 }
 #endif
@@ -296,6 +284,3 @@ INLINE vfloat fetch_nearest(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 #undef FETCH_DWORD
 #undef DWORD_LOG2
 #undef DWORD_SHIFT
-#undef LOGICAL_RIGHT
-#undef GATHER_DWORD
-#undef GATHER_FLOAT

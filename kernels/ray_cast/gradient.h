@@ -20,19 +20,20 @@ INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_
 #endif
 
 /* values[i..i+1] of row (j, k): at the volume's end the last one twice. */
-INLINE void fetch_two(
+INLINE void RAY_NAME(fetch_two)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
 {
 #if STRATUS_TYPE == -1
-  *v0 = fetch_nearest(a, values, i, j, k, mask);
-  *v1 = fetch_nearest(a, values, vi_min(i + vi_set(1), vi_set(a->values.dimensions[0] - 1)), j, k, mask);
+  *v0 = RAY_NAME(fetch_nearest)(a, values, i, j, k, mask);
+  *v1 = RAY_NAME(fetch_nearest)(a, values, vi_min(i + vi_set(1), vi_set(a->values.dimensions[0] - 1)), j, k, mask);
 #else
-  fetch_pair(a, values, fixed_index(a, i, j, k), mask, 1, v0, v1);
+  RAY_NAME(fetch_pair)(a, values, RAY_NAME(fixed_index)(a, i, j, k), mask, 1, v0, v1);
 #endif
 }
 
 /* Where values are taken as they are: the differences at the voxel itself. */
-INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+INLINE void RAY_NAME(voxel_gradient)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   vint at[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,14 +43,14 @@ INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     }
     at[axis] = v_to_int(place + v_set(0.5f));
   }
-  const vfloat here = fetch_nearest(a, values, at[0], at[1], at[2], mask), zero = v_set(0.0f);
+  const vfloat here = RAY_NAME(fetch_nearest)(a, values, at[0], at[1], at[2], mask), zero = v_set(0.0f);
   for (int axis = 0; axis < 3; ++axis) {
     vint side[3] = { at[0], at[1], at[2] };
     side[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
-    const vfloat low = fetch_nearest(a, values, side[0], side[1], side[2], mask);
+    const vfloat low = RAY_NAME(fetch_nearest)(a, values, side[0], side[1], side[2], mask);
     const vmask lower = v_finite(low) & vi_ge(at[axis], vi_set(1));
     side[axis] = vi_min(at[axis] + vi_set(1), vi_set(a->values.dimensions[axis] - 1));
-    const vfloat high = fetch_nearest(a, values, side[0], side[1], side[2], mask);
+    const vfloat high = RAY_NAME(fetch_nearest)(a, values, side[0], side[1], side[2], mask);
     const vmask upper = v_finite(high) & vi_lt(at[axis], vi_set(a->values.dimensions[axis] - 1));
     const vfloat difference = v_select(upper, high, here) - v_select(lower, low, here);
     g[axis] = v_select(lower & upper, difference * v_set(0.5f), v_select(lower | upper, difference, zero));
@@ -57,10 +58,11 @@ INLINE void voxel_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
 }
 
 /* g: value a voxel along each axis at index coordinates x, in the lanes of `mask`; where the mask is not set, any number. */
-INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+INLINE void RAY_NAME(ray_gradient)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   if (a->values.nearest) {
-    voxel_gradient(a, values, x, mask, g);
+    RAY_NAME(voxel_gradient)(a, values, x, mask, g);
     return;
   }
   vint at[3], before[3], after[3];
@@ -79,24 +81,25 @@ INLINE void ray_gradient(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const vo
     before[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
     after[axis] = vi_min(at[axis] + vi_set(2), vi_set(end));
   }
-  fetch_cell(a, values, at[0], at[1], at[2], mask, v);
+  RAY_NAME(fetch_cell)(a, values, at[0], at[1], at[2], mask, v);
   for (int row = 0; row < 4; ++row) { /* along x, at the cell's four edges */
     const vint j = at[1] + vi_set(row & 1), k = at[2] + vi_set(row >> 1);
     const vint y = vi_min(j, vi_set(a->values.dimensions[1] - 1)), z = vi_min(k, vi_set(a->values.dimensions[2] - 1));
-    const vfloat left = fetch_nearest(a, values, before[0], y, z, mask), right = fetch_nearest(a, values, after[0], y, z, mask);
+    const vfloat left = RAY_NAME(fetch_nearest)(a, values, before[0], y, z, mask),
+                 right = RAY_NAME(fetch_nearest)(a, values, after[0], y, z, mask);
     line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
   }
   for (int side = 0; side < 2; ++side) { /* along y at both ends of z, along z at both ends of y */
     const vint j = vi_min(at[1] + vi_set(side), vi_set(a->values.dimensions[1] - 1)),
                k = vi_min(at[2] + vi_set(side), vi_set(a->values.dimensions[2] - 1));
     vfloat low[2], high[2];
-    fetch_two(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
-    fetch_two(a, values, at[0], after[1], k, mask, &high[0], &high[1]);
+    RAY_NAME(fetch_two)(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
+    RAY_NAME(fetch_two)(a, values, at[0], after[1], k, mask, &high[0], &high[1]);
     for (int i = 0; i < 2; ++i) {
       line[1][i + 2 * side] = gradient_between(low[i], v[i + 4 * side], v[i + 2 + 4 * side], high[i], t[1], lower[1], upper[1]);
     }
-    fetch_two(a, values, at[0], j, before[2], mask, &low[0], &low[1]);
-    fetch_two(a, values, at[0], j, after[2], mask, &high[0], &high[1]);
+    RAY_NAME(fetch_two)(a, values, at[0], j, before[2], mask, &low[0], &low[1]);
+    RAY_NAME(fetch_two)(a, values, at[0], j, after[2], mask, &high[0], &high[1]);
     for (int i = 0; i < 2; ++i) {
       line[2][i + 2 * side] = gradient_between(low[i], v[i + 2 * side], v[i + 2 * side + 4], high[i], t[2], lower[2], upper[2]);
     }

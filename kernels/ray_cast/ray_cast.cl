@@ -72,18 +72,18 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
   if (!packet_outside(a, x, y)) {
     stratus_crop crop;
     const int pieces = a->crop.regions ? CROP_PIECES : 1;
-    kernel_ray_load(a, opaque_depth, x, y, &k, &crop);
+    RAY_NAME(ray_load)(a, opaque_depth, x, y, &k, &crop);
     for (int piece = 0; piece < pieces; ++piece) {
       if (a->crop.regions) {
         crop_enter(a, &crop, piece, &k);
       }
       if (m_any(k.live)) {
-        kernel_ray_march(a, values, hidden, map, table, &k);
+        RAY_NAME(ray_march)(a, values, hidden, map, table, &k);
       }
     }
   }
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
-  kernel_ray_finish(a, table, &k);
+  RAY_NAME(ray_finish)(a, table, &k);
 #endif
   store_pixel(a, &to, x, y, (float4)(k.red, k.green, k.blue, 1.0f - k.transparency), k.depth, (uint)k.samples);
   if (k.hits) {
@@ -168,7 +168,7 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
           packet_nothing(&k[i]);
           crop[i].all = m_none();
         } else {
-          kernel_ray_load(a, opaque_depth, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
+          RAY_NAME(ray_load)(a, opaque_depth, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
         }
       }
       for (int piece = 0; piece < pieces; ++piece) {
@@ -176,14 +176,14 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2
-        kernel_ray_march_two(a, values, hidden, map, table, &k[0], &k[1]);
+        RAY_NAME(ray_march_two)(a, values, hidden, map, table, &k[0], &k[1]);
 #else
-        kernel_ray_march(a, values, hidden, map, table, &k[0]);
+        RAY_NAME(ray_march)(a, values, hidden, map, table, &k[0]);
 #endif
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
-        kernel_ray_finish(a, table, &k[i]);
+        RAY_NAME(ray_finish)(a, table, &k[i]);
 #endif
         store_packet(a, &to, &k[i], x + i * PACKET_X, y);
         rays += (uint)m_count(k[i].hits);

@@ -18,45 +18,13 @@
 #define RAY_MODE_OPEN 1
 #endif
 
-#define fetch_pair RAY_NAME(fetch_pair)
-#define fetch_cell RAY_NAME(fetch_cell)
-#define fetch_nearest RAY_NAME(fetch_nearest)
-#define fetch_lanes RAY_NAME(fetch_lanes)
-#define fixed_index RAY_NAME(fixed_index)
-#define load_one RAY_NAME(load_one)
-#define load_any RAY_NAME(load_any)
-#define generic_index RAY_NAME(generic_index)
-#define dword_part RAY_NAME(dword_part)
-#define gather_bytes RAY_NAME(gather_bytes)
-#define ray_value RAY_NAME(ray_value)
-#define ray_skip RAY_NAME(ray_skip)
-#define ray_sample RAY_NAME(ray_sample)
-#define ray_shade RAY_NAME(ray_shade)
-#define ray_finish RAY_NAME(ray_finish)
-#define ray_advance RAY_NAME(ray_advance)
-#define fetch_two RAY_NAME(fetch_two)
-#define voxel_gradient RAY_NAME(voxel_gradient)
-#define ray_gradient RAY_NAME(ray_gradient)
-#define ray_light_sample RAY_NAME(ray_light_sample)
-#define shade_labels RAY_NAME(shade_labels)
-#define label_at RAY_NAME(label_at)
-#define shade_components RAY_NAME(shade_components)
-#define add_dependent RAY_NAME(add_dependent)
-#define add_independent RAY_NAME(add_independent)
-#define component_value RAY_NAME(component_value)
-#define ray_add_medium RAY_NAME(ray_add_medium)
-#define ray_leap RAY_NAME(ray_leap)
-#define ray_march RAY_NAME(ray_march)
-#define ray_march_two RAY_NAME(ray_march_two)
-#define ray_load RAY_NAME(ray_load)
-
 #include "fetch.h"
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 #include "ray_extremes.h"
 #endif
 
 /* The field at index coordinates x: not finite where a corner is not, or the cell is hidden. */
-INLINE vfloat ray_value(
+INLINE vfloat RAY_NAME(ray_value)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
 {
   vfloat x[3] = { position[0], position[1], position[2] };
@@ -68,12 +36,12 @@ INLINE vfloat ray_value(
   vfloat value;
   if (a->values.nearest) {
     const vfloat half_one = v_set(0.5f);
-    value = fetch_nearest(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
+    value = RAY_NAME(fetch_nearest)(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
   } else {
     const vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
     const vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
     vfloat v[8];
-    fetch_cell(a, values, i, j, k, mask, v);
+    RAY_NAME(fetch_cell)(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
   if (a->values.has_hidden & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
@@ -83,7 +51,7 @@ INLINE vfloat ray_value(
 }
 
 /* Moves rays that need it over transparent segments, and tells those in occupied blocks how far they may go unasked. */
-INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need)
+INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need)
 {
   do {
     const vfloat fi = v_from_int(k->i);
@@ -139,7 +107,7 @@ INLINE void ray_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar*
 
 /* The next sample of every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended
  * hangs on the last sample's colour, and the next fetch need not wait for that. */
-INLINE stratus_sample ray_sample(
+INLINE stratus_sample RAY_NAME(ray_sample)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {
   const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
@@ -152,7 +120,7 @@ INLINE stratus_sample ray_sample(
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   stratus_sample sample;
-  sample.value = ray_value(a, values, hidden, x, inside);
+  sample.value = RAY_NAME(ray_value)(a, values, hidden, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
   sample.values = values;
@@ -173,7 +141,8 @@ INLINE stratus_sample ray_sample(
 #include "ray_modes.h"
 #else
 /* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
-INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+INLINE void RAY_NAME(ray_shade)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
   k->samples -= mask_int(k->live);
@@ -194,45 +163,45 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 
 #if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE
 /* Asks the structure where enough rays need it. False if that was the end of all of them. */
-INLINE int ray_leap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
+INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
   if (a->map.structure) {
     const vmask need = lanes_to_skip(k);
     if (m_any(need)) {
-      ray_skip(a, map, k, need);
+      RAY_NAME(ray_skip)(a, map, k, need);
       return m_any(k->live);
     }
   }
   return 1;
 }
 
-INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
 {
-  while (m_any(k->live) && ray_leap(a, map, k)) {
-    const stratus_sample sample = ray_sample(a, values, hidden, k);
-    ray_shade(a, table, k, &sample);
+  while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
+    const stratus_sample sample = RAY_NAME(ray_sample)(a, values, hidden, k);
+    RAY_NAME(ray_shade)(a, table, k, &sample);
   }
 }
 
 #if PACKETS_TOGETHER == 2
 /* Two packets side by side: while one waits for its values, the other computes. Each does what it would do alone. */
-INLINE void ray_march_two(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
-  while (m_any(left->live) && m_any(right->live) && ray_leap(a, map, left) && ray_leap(a, map, right)) {
-    const stratus_sample one = ray_sample(a, values, hidden, left), other = ray_sample(a, values, hidden, right);
-    ray_shade(a, table, left, &one);
-    ray_shade(a, table, right, &other);
+  while (m_any(left->live) && m_any(right->live) && RAY_NAME(ray_leap)(a, map, left) && RAY_NAME(ray_leap)(a, map, right)) {
+    const stratus_sample one = RAY_NAME(ray_sample)(a, values, hidden, left), other = RAY_NAME(ray_sample)(a, values, hidden, right);
+    RAY_NAME(ray_shade)(a, table, left, &one);
+    RAY_NAME(ray_shade)(a, table, right, &other);
   }
-  ray_march(a, values, hidden, map, table, m_any(left->live) ? left : right);
+  RAY_NAME(ray_march)(a, values, hidden, map, table, m_any(left->live) ? left : right);
 }
 #endif
 #endif
 
 /* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look; `crop` is set where the frame
  * has any. */
-INLINE void ray_load(
+INLINE void RAY_NAME(ray_load)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
   const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
@@ -266,37 +235,6 @@ INLINE void ray_load(
 #endif
 }
 
-#undef fetch_pair
-#undef fetch_cell
-#undef fetch_nearest
-#undef fetch_lanes
-#undef fixed_index
-#undef load_one
-#undef load_any
-#undef generic_index
-#undef dword_part
-#undef gather_bytes
-#undef ray_value
-#undef ray_skip
-#undef ray_sample
-#undef ray_shade
-#undef ray_finish
-#undef ray_advance
-#undef fetch_two
-#undef voxel_gradient
-#undef ray_gradient
-#undef ray_light_sample
-#undef shade_labels
-#undef label_at
-#undef shade_components
-#undef add_dependent
-#undef add_independent
-#undef component_value
-#undef ray_add_medium
-#undef ray_leap
-#undef ray_march
-#undef ray_march_two
-#undef ray_load
 #ifdef RAY_MODE_OPEN
 #undef RAY_MODE_OPEN
 #undef STRATUS_RAY_MODE

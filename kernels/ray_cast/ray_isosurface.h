@@ -117,12 +117,8 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 
 #endif
 
-#define surface_show RAY_NAME(surface_show)
-#define surface_roots RAY_NAME(surface_roots)
-#define surface_visit RAY_NAME(surface_visit)
-
 /* Puts the surface at point s of the rays behind what they have gathered. */
-SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
   vfloat x[3];
@@ -138,7 +134,7 @@ SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
   if (a->light.on) {
     vfloat g[3];
     stratus_lit_sample lighting;
-    ray_gradient(a, values, x, mask, g);
+    RAY_NAME(ray_gradient)(a, values, x, mask, g);
     ray_light(a, x, k->d, g, lighting.diffuse, lighting.specular);
     light_layer(&lighting, layer);
   }
@@ -151,7 +147,7 @@ SURFACE_OUTLINE void surface_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
 
 /* All surfaces in the cells of the rays in `mask`, in the order that the rays meet them: piece by piece, within one by rising or falling
  * values. */
-SURFACE_OUTLINE void surface_roots(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   stratus_packet* k, const surface_walk* w, const stratus_cubic* cubic, vmask mask)
 {
   for (int piece = 0; piece < 3; ++piece) {
@@ -168,14 +164,14 @@ SURFACE_OUTLINE void surface_roots(CONSTANT stratus_ray_cast_arguments* a, GLOBA
         for (int c = 0; c < 4; ++c) {
           layer[c] = v_select(rising, v_set(up[1 + c]), v_set(down[1 + c]));
         }
-        surface_show(a, values, hidden, k, meets, v_fma(at, w->leave - w->s, w->s), layer);
+        RAY_NAME(surface_show)(a, values, hidden, k, meets, v_fma(at, w->leave - w->s, w->s), layer);
       }
     }
   }
 }
 
 /* One cell of every live ray. */
-INLINE void surface_visit(
+INLINE void RAY_NAME(surface_visit)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, stratus_packet* k, const surface_walk* w)
 {
   vint inside[3];
@@ -183,7 +179,7 @@ INLINE void surface_visit(
   for (int axis = 0; axis < 3; ++axis) {
     inside[axis] = surface_inside(a, w, axis);
   }
-  fetch_cell(a, values, inside[0], inside[1], inside[2], k->live, v);
+  RAY_NAME(fetch_cell)(a, values, inside[0], inside[1], inside[2], k->live, v);
   k->samples -= mask_int(k->live);
   vmask crosses = surface_crosses(a, v, k->live);
   if (m_any(crosses) && (a->values.has_hidden & HIDDEN_CELLS)) {
@@ -203,11 +199,11 @@ INLINE void surface_visit(
       f[axis] = surface_fraction(k, axis, inside[axis], w->leave, w->leave_at[axis], vi_select(forward, high, low));
     }
     cubic_of_cell(v, e, f, &cubic);
-    surface_roots(a, values, hidden, k, w, &cubic, crosses);
+    RAY_NAME(surface_roots)(a, values, hidden, k, w, &cubic, crosses);
   }
 }
 
-INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
 {
   surface_walk w;
@@ -226,7 +222,7 @@ INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
     if (a->map.structure) {
       surface_skip(a, map, k, &w);
     }
-    surface_visit(a, values, hidden, k, &w);
+    RAY_NAME(surface_visit)(a, values, hidden, k, &w);
     /* planes nearer to each other than numbers can tell must not hold a ray up */
     w.s = v_select(k->live, v_select(v_lt(w.s, w.leave), w.leave, v_fma(w.s, v_set(1e-6f), w.s + v_set(1e-6f))), w.s);
     k->live = k->live & v_lt(w.s, w.end);
@@ -234,21 +230,17 @@ INLINE void ray_march(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
 }
 
 #if PACKETS_TOGETHER == 2
-INLINE void ray_march_two(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
-  ray_march(a, values, hidden, map, table, left);
-  ray_march(a, values, hidden, map, table, right);
+  RAY_NAME(ray_march)(a, values, hidden, map, table, left);
+  RAY_NAME(ray_march)(a, values, hidden, map, table, right);
 }
 #endif
 
-INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   (void)a;
   (void)table;
   (void)k;
 }
-
-#undef surface_show
-#undef surface_roots
-#undef surface_visit

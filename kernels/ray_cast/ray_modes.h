@@ -2,7 +2,7 @@
  * What a ray makes of its samples where it does not gather light: the largest or smallest value, or a sum. Included by ray_cast.h with
  * STRATUS_RAY_MODE set. A segment that the structure left out would have changed nothing: skipping is as exact as it is for light. */
 
-INLINE void ray_advance(stratus_packet* k, vmask done)
+INLINE void RAY_NAME(ray_advance)(stratus_packet* k, vmask done)
 {
   k->i = k->i + vi_set(1);
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | done);
@@ -10,7 +10,8 @@ INLINE void ray_advance(stratus_packet* k, vmask done)
 
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 /* Keeps the best value and where it was first met. Minima are maxima of minus the values. */
-INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+INLINE void RAY_NAME(ray_shade)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat value = v_set(a->mode.sign) * sample->value;
   const vmask better = k->live & v_finite(value) & v_lt(k->front, value);
@@ -18,11 +19,11 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
   k->samples -= mask_int(k->live);
   k->front = v_select(better, value, k->front);
   k->depth = v_select(better, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
-  ray_advance(k, v_le(v_set(a->mode.top), k->front)); /* nothing can be better */
+  RAY_NAME(ray_advance)(k, v_le(v_set(a->mode.top), k->front)); /* nothing can be better */
 }
 
 /* The colour of the best value; nothing where that is transparent. */
-INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   const vmask found = k->hits & v_lt(v_set(-LARGEST_FLOAT), k->front);
   vfloat layer[4];
@@ -36,7 +37,8 @@ INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 
 #else
 /* Adds opacity times value, the value as a part of the range that is shown from black to white. */
-INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+INLINE void RAY_NAME(ray_shade)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat value = sample->value;
   const vmask counts = k->live & v_finite(value) & v_le(v_set(a->mode.counted_first), value) & v_le(value, v_set(a->mode.counted_last));
@@ -48,11 +50,11 @@ INLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void*
   k->red = v_select(counts, k->red + sample->weight, k->red);
   const vmask first = counts & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
   k->depth = v_select(first, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
-  ray_advance(k, m_none());
+  RAY_NAME(ray_advance)(k, m_none());
 }
 
 /* Grey, opaque wherever something was added up: the sum, or (sum_scale 0) the mean. */
-INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vmask shown = k->hits;

@@ -4,6 +4,7 @@
 #ifndef STRATUS_RAY_SEGMENT_H
 #define STRATUS_RAY_SEGMENT_H
 
+#include "gather.h"
 #include "ray_setup.h"
 
 /* When the structure is asked: as soon as so many lanes need it, all that are left do, or one has waited so many samples. A lane that waits

@@ -13,13 +13,13 @@
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 
 /* What samples at s on their rays show beside their values, in the lanes of `mask`, by the gradient of component c. */
-OUTLINE void ray_light_sample(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
+OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
   const stratus_packet* k, vfloat s, vmask mask, stratus_lit_sample* lighting)
 {
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
   if (a->light.on || a->media.factor_first[c] >= 0) {
-    ray_gradient(a, COMPONENT_VALUES(a, values, c), x, mask, g);
+    RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), x, mask, g);
   }
   lighting->factor = gradient_factor(a, table, c, g, mask);
   if (a->light.on) {
@@ -34,13 +34,13 @@ OUTLINE void ray_light_sample(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 
 #if !STRATUS_PREINTEGRATED
 /* Adds the medium whose optical depth is layer[3] and whose light is layer[0..2], both over a whole sample, by component c's gradient. */
-OUTLINE void ray_add_medium(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
+OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
   const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[4])
 {
   const vmask shows = mask & v_lt(v_set(0.0f), layer[3]);
   stratus_lit_sample lighting;
   if (m_any(shows)) {
-    ray_light_sample(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &lighting);
     light_layer(&lighting, layer);
     for (int i = 0; i < 4; ++i) {
       sum[i] = v_select(shows, v_fma(layer[i], lighting.factor * v_set(a->media.weight[c]), sum[i]), sum[i]);
@@ -49,32 +49,32 @@ OUTLINE void ray_add_medium(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 }
 
 /* The value of component c where the sample is. */
-OUTLINE vfloat component_value(
+OUTLINE vfloat RAY_NAME(component_value)(
   CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
 {
   const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  return ray_value(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
+  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
 }
 
 /* Each component a medium: their optical depths add up, and their light. */
-INLINE void add_independent(
+INLINE void RAY_NAME(add_independent)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
   for (int c = 0; c < a->media.components; ++c) {
-    const vfloat value = component_value(a, k, sample, c, k->live);
+    const vfloat value = RAY_NAME(component_value)(a, k, sample, c, k->live);
     vfloat layer[4];
     gather_four((GLOBAL const float*)table + a->media.first[c], shading_entry(a, c, value), k->live & v_finite(value), layer);
-    ray_add_medium(a, table, c, k, sample, k->live, layer, sum);
+    RAY_NAME(ray_add_medium)(a, table, c, k, sample, k->live, layer, sum);
   }
 }
 
 /* Colour from all components but the last, opacity from that. */
-INLINE void add_dependent(
+INLINE void RAY_NAME(add_dependent)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
   const int last = a->media.components - 1;
-  vfloat value = component_value(a, k, sample, last, k->live), layer[4], color[4];
+  vfloat value = RAY_NAME(component_value)(a, k, sample, last, k->live), layer[4], color[4];
   vmask valid = k->live & v_finite(value);
   gather_four((GLOBAL const float*)table + a->media.first[last], shading_entry(a, last, value), valid, layer);
   valid = valid & v_lt(v_set(0.0f), layer[3]);
@@ -82,29 +82,29 @@ INLINE void add_dependent(
     return;
   }
   if (last == 1) {
-    value = component_value(a, k, sample, 0, valid);
+    value = RAY_NAME(component_value)(a, k, sample, 0, valid);
     valid = valid & v_finite(value);
     gather_four((GLOBAL const float*)table + a->media.first[0], shading_entry(a, 0, value), valid, color);
   } else {
     for (int c = 0; c < 3; ++c) {
-      color[c] = component_value(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
+      color[c] = RAY_NAME(component_value)(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
     }
   }
   for (int c = 0; c < 3; ++c) {
     layer[c] = color[c] * layer[3];
   }
-  ray_add_medium(a, table, last, k, sample, valid, layer, sum);
+  RAY_NAME(ray_add_medium)(a, table, last, k, sample, valid, layer, sum);
 }
 
-OUTLINE void shade_components(
+OUTLINE void RAY_NAME(shade_components)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat zero = v_set(0.0f);
   vfloat sum[4] = { zero, zero, zero, zero };
   if (a->media.dependent) {
-    add_dependent(a, table, k, sample, sum);
+    RAY_NAME(add_dependent)(a, table, k, sample, sum);
   } else {
-    add_independent(a, table, k, sample, sum);
+    RAY_NAME(add_independent)(a, table, k, sample, sum);
   }
   const vmask shows = k->live & v_lt(zero, sum[3]);
   if (m_any(shows)) {
@@ -119,7 +119,7 @@ OUTLINE void shade_components(
 }
 
 /* Labels at index coordinates x: of the nearest value; 0 where it has no functions of its own. */
-OUTLINE vint label_at(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
+OUTLINE vint RAY_NAME(label_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
 {
   float place[3][STRATUS_WIDTH];
   int wanted[STRATUS_WIDTH], label[STRATUS_WIDTH];
@@ -139,20 +139,21 @@ OUTLINE vint label_at(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
 }
 
 /* One value, in the colour and opacity of its label. */
-OUTLINE void shade_labels(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+OUTLINE void RAY_NAME(shade_labels)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   GLOBAL const float* floats = (GLOBAL const float*)table;
   const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
   vfloat of[4], layer[4];
-  gather_four(floats + a->media.label_first, label_at(a, sample->hidden, x, valid), valid, of);
+  gather_four(floats + a->media.label_first, RAY_NAME(label_at)(a, sample->hidden, x, valid), valid, of);
   const vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2])) + v_to_int(of[3]);
   gather_four(floats, entry, valid, layer);
   const vmask shows = valid & v_lt(zero, layer[3]);
   if (m_any(shows)) {
     stratus_lit_sample lighting;
-    ray_light_sample(a, sample->values, table, 0, k, s, shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, s, shows, &lighting);
     const vfloat thick = sample->weight * lighting.factor;
     const vmask part = shows & v_lt(thick, v_set(1.0f));
     if (m_any(part)) { /* as shorten_layer() */
@@ -171,7 +172,8 @@ OUTLINE void shade_labels(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
 #endif
 
 /* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
-OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+OUTLINE void RAY_NAME(ray_shade)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
   stratus_lit_sample lighting;
@@ -180,7 +182,7 @@ OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
   const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
   const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
   if (m_any(shows)) {
-    ray_light_sample(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
     integrate_lit(a, (GLOBAL const int*)table, k, shows, value, weight * lighting.factor, lo, &lighting);
   }
   k->front = value;
@@ -188,16 +190,16 @@ OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
   k->fresh = m_none();
 #else
   if (a->media.components > 1) {
-    shade_components(a, table, k, sample);
+    RAY_NAME(shade_components)(a, table, k, sample);
   } else if (a->media.label_count > 0) {
-    shade_labels(a, table, k, sample);
+    RAY_NAME(shade_labels)(a, table, k, sample);
   } else {
     const vint entry = table_entry(&a->table, value);
     vfloat layer[4];
     gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
     const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);
     if (m_any(shows)) {
-      ray_light_sample(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+      RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
       shorten_layer(a, (GLOBAL const float*)table, entry, shows, weight * lighting.factor, layer);
       light_layer(&lighting, layer);
       composite(a, k, shows, layer, lo);
@@ -211,7 +213,7 @@ OUTLINE void ray_shade(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void
 #undef OUTLINE
 #undef COMPONENT_VALUES
 
-INLINE void ray_finish(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   (void)a;
   (void)table;
