@@ -4,9 +4,7 @@
 
 #include "ray_caster.h"
 #include "instruction_set.h"
-
-#include <omp.h>
-#include <stdatomic.h>
+#include "tiles.h"
 
 /* Pixels a tile: small enough to share out evenly, large enough that its rays meet the same voxels. */
 #define TILE 32
@@ -44,39 +42,35 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
   }
 }
 
+typedef struct cast_job {
+  const stratus_ray_cast_frame* frame;
+  stratus_ray_cast_tile* draw;
+  int columns; /* of tiles */
+} cast_job;
+
+static void cast_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  const cast_job* job = data;
+  const int width = job->frame->arguments->picture.width, height = job->frame->arguments->picture.height;
+  const int x0 = tile % job->columns * TILE, x1 = x0 + TILE < width ? x0 + TILE : width;
+  const int y0 = tile / job->columns * TILE, y1 = y0 + TILE < height ? y0 + TILE : height;
+  stratus_ray_counts mine = { 0 };
+  job->draw(job->frame, x0, y0, x1, y1, &mine);
+  round_pixels(job->frame, x0, y0, x1, y1); /* while the tile is in the cache */
+  counts[0] += mine.rays;
+  counts[1] += mine.samples;
+  counts[2] += mine.skipped;
+  counts[3] += mine.lookups;
+}
+
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts)
 {
   const int width = frame->arguments->picture.width, height = frame->arguments->picture.height;
-  const int columns = (width + TILE - 1) / TILE, tiles = columns * ((height + TILE - 1) / TILE);
-  stratus_ray_cast_tile* const draw = stratus_ray_cast_tile_for(context->isa, type, variant);
-  stratus_ray_counts sum = { 0 };
-  atomic_int next = 0, cancelled = 0;
-  stratus_status status = STRATUS_OK;
-
-#pragma omp parallel num_threads(context->threads)
-  {
-    stratus_ray_counts mine = { 0 };
-    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
-      const int x0 = tile % columns * TILE, x1 = x0 + TILE < width ? x0 + TILE : width;
-      const int y0 = tile / columns * TILE, y1 = y0 + TILE < height ? y0 + TILE : height;
-      draw(frame, x0, y0, x1, y1, &mine);
-      round_pixels(frame, x0, y0, x1, y1); /* while the tile is in the cache */
-      if (omp_get_thread_num() == 0 && context->options.progress) {
-        status = stratus_progress(context, "ray cast", (double)(tile + 1) / tiles);
-        if (status != STRATUS_OK) {
-          atomic_store(&cancelled, 1);
-        }
-      }
-    }
-#pragma omp critical(stratus_ray_counts)
-    {
-      sum.rays += mine.rays;
-      sum.samples += mine.samples;
-      sum.skipped += mine.skipped;
-      sum.lookups += mine.lookups;
-    }
-  }
-  *counts = sum;
+  const int columns = (width + TILE - 1) / TILE, rows = (height + TILE - 1) / TILE;
+  const cast_job job = { frame, stratus_ray_cast_tile_for(context->isa, type, variant), columns };
+  uint64_t sums[STRATUS_TILE_COUNTS];
+  const stratus_status status = stratus_each_tile(context, "ray cast", columns * rows, cast_tile, &job, sums);
+  *counts = (stratus_ray_counts){ .rays = sums[0], .samples = sums[1], .skipped = sums[2], .lookups = sums[3] };
   return status;
 }

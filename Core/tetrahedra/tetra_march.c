@@ -3,9 +3,8 @@
 #include "tetra_caster.h"
 
 #include "instruction_set.h"
+#include "tiles.h"
 
-#include <omp.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #define PIXELS ((size_t)TETRA_TILE * TETRA_TILE)
@@ -16,34 +15,30 @@ static stratus_tetra_tile* tile_for(int isa)
   return tiles[stratus_isa_at_most(isa)];
 }
 
+typedef struct march_job {
+  const stratus_tetra_frame* frame;
+  stratus_tetra_tile* work;
+  bool counting;
+} march_job;
+
+static void march_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  const march_job* job = data;
+  stratus_tetra_counts mine = { 0 };
+  job->work(job->frame, tile, job->counting, &mine);
+  counts[0] += mine.rays;
+  counts[1] += mine.entries;
+  counts[2] += mine.segments;
+  counts[3] += mine.stuck;
+}
+
 static stratus_status each_tile(stratus_context* context, const stratus_tetra_frame* frame, bool counting, stratus_tetra_counts* counts)
 {
-  const int tiles = frame->columns * frame->rows;
-  stratus_tetra_tile* const work = tile_for(context->isa);
-  stratus_tetra_counts sum = { 0 };
-  atomic_int next = 0, cancelled = 0;
-  stratus_status status = STRATUS_OK;
-#pragma omp parallel num_threads(context->threads)
-  {
-    stratus_tetra_counts mine = { 0 };
-    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
-      work(frame, tile, counting, &mine);
-      if (omp_get_thread_num() == 0 && context->options.progress) {
-        status = stratus_progress(context, counting ? "entry faces" : "march", (double)(tile + 1) / tiles);
-        if (status != STRATUS_OK) {
-          atomic_store(&cancelled, 1);
-        }
-      }
-    }
-#pragma omp critical(stratus_tetra_counts)
-    {
-      sum.rays += mine.rays;
-      sum.entries += mine.entries;
-      sum.segments += mine.segments;
-      sum.stuck += mine.stuck;
-    }
-  }
-  *counts = sum;
+  const march_job job = { frame, tile_for(context->isa), counting };
+  uint64_t sums[STRATUS_TILE_COUNTS];
+  const stratus_status status =
+    stratus_each_tile(context, counting ? "entry faces" : "march", frame->columns * frame->rows, march_tile, &job, sums);
+  *counts = (stratus_tetra_counts){ .rays = sums[0], .entries = sums[1], .segments = sums[2], .stuck = sums[3] };
   return status;
 }
 

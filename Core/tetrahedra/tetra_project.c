@@ -5,9 +5,8 @@
 
 #include "mesh.h"
 #include "instruction_set.h"
+#include "tiles.h"
 
-#include <omp.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #define CELLS_AT_ONCE 4096
@@ -201,30 +200,27 @@ static stratus_status bin_cells(
   return STRATUS_OK;
 }
 
+typedef struct project_job {
+  const stratus_tetra_projection* projection;
+  stratus_tetra_project_tile* work;
+} project_job;
+
+static void project_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  const project_job* job = data;
+  stratus_tetra_project_counts mine = { 0 };
+  job->work(job->projection, tile, &mine);
+  counts[0] += mine.rays;
+  counts[1] += mine.segments;
+  counts[2] += mine.again;
+}
+
 static stratus_status draw_tiles(stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
 {
-  const int tiles = projection->columns * projection->rows;
-  stratus_tetra_project_tile* const work = tile_for(context);
-  uint64_t rays = 0, segments = 0, again = 0;
-  atomic_int next = 0, cancelled = 0;
-  stratus_status status = STRATUS_OK;
-#pragma omp parallel num_threads(context->threads) reduction(+ : rays, segments, again)
-  {
-    stratus_tetra_project_counts mine = { 0 };
-    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
-      work(projection, tile, &mine);
-      if (omp_get_thread_num() == 0 && context->options.progress) {
-        status = stratus_progress(context, "project", (double)(tile + 1) / tiles);
-        if (status != STRATUS_OK) {
-          atomic_store(&cancelled, 1);
-        }
-      }
-    }
-    rays += mine.rays;
-    segments += mine.segments;
-    again += mine.again;
-  }
-  *counts = (stratus_tetra_project_counts){ rays, segments, again };
+  const project_job job = { projection, tile_for(context) };
+  uint64_t sums[STRATUS_TILE_COUNTS];
+  const stratus_status status = stratus_each_tile(context, "project", projection->columns * projection->rows, project_tile, &job, sums);
+  *counts = (stratus_tetra_project_counts){ .rays = sums[0], .segments = sums[1], .again = sums[2] };
   return status;
 }
 

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The tiles of a picture, shared out among the host's threads. */
+#include "tiles.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+
+stratus_status stratus_each_tile(
+  stratus_context* context, const char* stage, int tiles, stratus_tile_work* work, const void* job, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  uint64_t sums[STRATUS_TILE_COUNTS] = { 0 };
+  atomic_int next = 0, cancelled = 0;
+  stratus_status status = STRATUS_OK;
+
+#pragma omp parallel num_threads(context->threads)
+  {
+    uint64_t mine[STRATUS_TILE_COUNTS] = { 0 };
+    for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
+      work(job, tile, mine);
+      if (omp_get_thread_num() == 0 && context->options.progress) {
+        status = stratus_progress(context, stage, (double)(tile + 1) / tiles);
+        if (status != STRATUS_OK) {
+          atomic_store(&cancelled, 1);
+        }
+      }
+    }
+#pragma omp critical(stratus_tile_counts)
+    for (int i = 0; i < STRATUS_TILE_COUNTS; ++i) {
+      sums[i] += mine[i];
+    }
+  }
+  for (int i = 0; i < STRATUS_TILE_COUNTS; ++i) {
+    counts[i] = sums[i];
+  }
+  return status;
+}
