@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The OpenCL device's way through the traversal: copies of what was built, kept until it is built anew, and the launch. */
-#include "device.h"
+#include "device_frame.h"
 #include "ray_caster.h"
 
 #include <stdio.h>
@@ -20,9 +20,7 @@ _Static_assert(sizeof(stratus_ray_cast_arguments) ==
 typedef enum buffer_name { VALUES, HIDDEN, MAP, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
 
 struct stratus_ray_device {
-  cl_mem buffers[BUFFERS];
-  size_t sizes[BUFFERS];
-  bool lent[BUFFERS]; /* over the memory of the frame at hand: gone when it is done */
+  stratus_device_slot slots[BUFFERS];
   uint64_t data_serial, table_serial, map_serial;
 };
 
@@ -30,35 +28,17 @@ void stratus_ray_device_destroy(stratus_ray_caster* caster)
 {
   if (caster->device) {
     for (int b = 0; b < BUFFERS; ++b) {
-      stratus_device_buffer_release(caster->device->buffers[b]);
+      stratus_slot_drop(&caster->device->slots[b]);
     }
     stratus_release(caster->context, caster->device);
     caster->device = NULL;
   }
 }
 
-/* A buffer of at least `bytes`, made anew only when it has to grow. */
-static stratus_status reserve(stratus_ray_caster* caster, buffer_name name, cl_mem_flags access, size_t bytes)
-{
-  stratus_ray_device* d = caster->device;
-  if (d->buffers[name] && d->sizes[name] >= bytes) {
-    return STRATUS_OK;
-  }
-  stratus_device_buffer_release(d->buffers[name]);
-  d->buffers[name] = NULL;
-  TRY(stratus_device_buffer(caster->context, access, bytes, NULL, false, &d->buffers[name]));
-  d->sizes[name] = bytes;
-  return STRATUS_OK;
-}
-
-/* Copies (or borrows) what was built; `host` NULL leaves a buffer of one byte, since a kernel argument must be something. */
+/* Copies (or borrows) what was built. */
 static stratus_status replace(stratus_ray_caster* caster, buffer_name name, const void* host, size_t bytes)
 {
-  stratus_ray_device* d = caster->device;
-  stratus_device_buffer_release(d->buffers[name]);
-  d->buffers[name] = NULL;
-  TRY(stratus_device_buffer(caster->context, CL_MEM_READ_ONLY, host ? bytes : 16, host, host != NULL, &d->buffers[name]));
-  d->sizes[name] = host ? bytes : 16;
+  TRY(stratus_slot_keep(caster->context, &caster->device->slots[name], host, bytes));
   ++caster->uploads;
   return STRATUS_OK;
 }
@@ -97,58 +77,11 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     d->table_serial = table_serial;
   }
   const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* without a map, none may stay borrowed */
-  if (!d->buffers[MAP] || d->map_serial != map_serial) {
+  if (!d->slots[MAP].memory || d->map_serial != map_serial) {
     TRY(replace(caster, MAP, frame->map, frame->map ? caster->map->bytes_size : 0));
     d->map_serial = map_serial;
   }
   return STRATUS_OK;
-}
-
-/* A buffer for one frame: over the host's own memory where the device lends it, so that nothing is copied. `host` NULL: not wanted. */
-static stratus_status lend(stratus_ray_caster* caster, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
-{
-  stratus_ray_device* d = caster->device;
-  if (!host || !stratus_device_lends(caster->context->device, host)) {
-    return reserve(caster, name, access, host ? bytes : 16);
-  }
-  stratus_device_buffer_release(d->buffers[name]);
-  d->buffers[name] = NULL;
-  d->sizes[name] = 0;
-  TRY(stratus_device_buffer(caster->context, access, bytes, host, true, &d->buffers[name]));
-  d->lent[name] = true;
-  return STRATUS_OK;
-}
-
-/* The same with what the host has written there. */
-static stratus_status send(stratus_ray_caster* caster, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
-{
-  TRY(lend(caster, name, access, host, bytes));
-  return !host || caster->device->lent[name] ? STRATUS_OK
-                                             : stratus_device_write(caster->context, caster->device->buffers[name], 0, bytes, host);
-}
-
-/* What the kernel has written, once it is done. */
-static stratus_status receive(stratus_ray_caster* caster, buffer_name name, void* host, size_t bytes)
-{
-  const stratus_ray_device* d = caster->device;
-  if (!host) {
-    return STRATUS_OK;
-  }
-  return d->lent[name] ? stratus_device_settle(caster->context, d->buffers[name], bytes)
-                       : stratus_device_read(caster->context, d->buffers[name], 0, bytes, host);
-}
-
-/* The host's memory is its own again. */
-static void return_lent(stratus_ray_caster* caster)
-{
-  stratus_ray_device* d = caster->device;
-  for (int b = 0; b < BUFFERS; ++b) {
-    if (d->lent[b]) {
-      stratus_device_buffer_release(d->buffers[b]);
-      d->buffers[b] = NULL;
-      d->lent[b] = false;
-    }
-  }
 }
 
 /* Why the device can't draw this volume, or NULL. */
@@ -193,26 +126,28 @@ static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
   static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  stratus_context* context = caster->context;
+  stratus_device_slot* slots = caster->device->slots;
   const stratus_ray_cast_arguments* a = frame->arguments;
   const size_t width = (size_t)a->picture.width, height = (size_t)a->picture.height, pixels = width * height;
-  TRY(send(caster, ARGUMENTS, CL_MEM_READ_ONLY, a, sizeof *a));
-  TRY(send(caster, OPAQUE, CL_MEM_READ_ONLY, frame->opaque_depth, pixels * sizeof(float)));
-  TRY(lend(caster, RGBA, CL_MEM_WRITE_ONLY, frame->rgba, pixels * 4 * sizeof(float)));
-  TRY(lend(caster, RGBA8, CL_MEM_WRITE_ONLY, frame->rgba8, pixels * 4));
-  TRY(lend(caster, DEPTH, CL_MEM_WRITE_ONLY, frame->depth, pixels * sizeof(float)));
-  TRY(lend(caster, SAMPLES, CL_MEM_WRITE_ONLY, frame->samples, pixels * sizeof(uint32_t)));
-  TRY(send(caster, COUNTS, CL_MEM_READ_WRITE, counts, counts_bytes));
+  TRY(stratus_slot_send(context, slots + ARGUMENTS, CL_MEM_READ_ONLY, a, sizeof *a));
+  TRY(stratus_slot_send(context, slots + OPAQUE, CL_MEM_READ_ONLY, frame->opaque_depth, pixels * sizeof(float)));
+  TRY(stratus_slot_lend(context, slots + RGBA, CL_MEM_WRITE_ONLY, frame->rgba, pixels * 4 * sizeof(float)));
+  TRY(stratus_slot_lend(context, slots + RGBA8, CL_MEM_WRITE_ONLY, frame->rgba8, pixels * 4));
+  TRY(stratus_slot_lend(context, slots + DEPTH, CL_MEM_WRITE_ONLY, frame->depth, pixels * sizeof(float)));
+  TRY(stratus_slot_lend(context, slots + SAMPLES, CL_MEM_WRITE_ONLY, frame->samples, pixels * sizeof(uint32_t)));
+  TRY(stratus_slot_send(context, slots + COUNTS, CL_MEM_READ_WRITE, counts, counts_bytes));
   for (unsigned i = 0; i < sizeof order / sizeof *order; ++i) {
-    TRY(stratus_device_argument(caster->context, kernel, i, sizeof(cl_mem), &caster->device->buffers[order[i]]));
+    TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &slots[order[i]].memory));
   }
   const size_t side = packets ? TILE : 1, group = packets ? 1 : LOCAL_SIDE;
   const size_t global[2] = { (width + side - 1) / side, (height + side - 1) / side }, local[2] = { group, group };
-  TRY(stratus_device_run(caster->context, kernel, 2, global, local));
-  TRY(receive(caster, RGBA, frame->rgba, pixels * 4 * sizeof(float)));
-  TRY(receive(caster, RGBA8, frame->rgba8, pixels * 4));
-  TRY(receive(caster, DEPTH, frame->depth, pixels * sizeof(float)));
-  TRY(receive(caster, SAMPLES, frame->samples, pixels * sizeof(uint32_t)));
-  return receive(caster, COUNTS, counts, counts_bytes);
+  TRY(stratus_device_run(context, kernel, 2, global, local));
+  TRY(stratus_slot_receive(context, slots + RGBA, frame->rgba, pixels * 4 * sizeof(float)));
+  TRY(stratus_slot_receive(context, slots + RGBA8, frame->rgba8, pixels * 4));
+  TRY(stratus_slot_receive(context, slots + DEPTH, frame->depth, pixels * sizeof(float)));
+  TRY(stratus_slot_receive(context, slots + SAMPLES, frame->samples, pixels * sizeof(uint32_t)));
+  return stratus_slot_receive(context, slots + COUNTS, counts, counts_bytes);
 }
 
 static void add_counts(const cl_uint* part, size_t parts, stratus_ray_counts* counts)
@@ -238,7 +173,7 @@ static stratus_status draw_and_count(
   TRY(find_kernel(caster, type, variant, packets, &kernel));
   TRY(stratus_allocate_zero(context, parts, 4 * sizeof(cl_uint), &memory));
   const stratus_status status = draw(caster, frame, kernel, packets, memory, parts * 4 * sizeof(cl_uint));
-  return_lent(caster);
+  stratus_slots_return(caster->device->slots, BUFFERS);
   if (status == STRATUS_OK) {
     add_counts(memory, parts, counts);
   }

@@ -3,7 +3,7 @@
  * launches. */
 #include "tetra_march_device.h"
 
-#include "device.h"
+#include "device_frame.h"
 #include "tetra_caster.h"
 
 #include <stdio.h>
@@ -40,33 +40,24 @@ typedef enum buffer_name {
 } buffer_name;
 
 struct stratus_tetra_device {
-  cl_mem buffers[BUFFERS];
-  size_t sizes[BUFFERS];
-  bool lent[BUFFERS]; /* over the memory of the frame at hand: gone when it is done */
+  stratus_device_slot slots[BUFFERS];
   uint64_t mesh, table;
 };
 
 typedef struct device_march {
   stratus_context* context;
   stratus_tetra_device* device;
+  stratus_device_slot* slots; /* the device's */
   stratus_tetra_frame* frame;
   bool packets;
   size_t tiles, pixels;
 } device_march;
 
-static void drop(stratus_tetra_device* device, buffer_name name)
-{
-  stratus_device_buffer_release(device->buffers[name]);
-  device->buffers[name] = NULL;
-  device->sizes[name] = 0;
-  device->lent[name] = false;
-}
-
 void stratus_tetra_device_drop_table(stratus_tetra_device* device)
 {
   if (device) {
-    drop(device, SUMS);
-    drop(device, COLORS);
+    stratus_slot_drop(&device->slots[SUMS]);
+    stratus_slot_drop(&device->slots[COLORS]);
     device->table = 0;
   }
 }
@@ -75,70 +66,9 @@ void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device
 {
   if (device) {
     for (int name = 0; name < BUFFERS; ++name) {
-      drop(device, (buffer_name)name);
+      stratus_slot_drop(&device->slots[name]);
     }
     stratus_release(context, device);
-  }
-}
-
-/* ---- buffers */
-
-/* At least `bytes`, made anew only when it has to grow. */
-static stratus_status reserve(device_march* m, buffer_name name, cl_mem_flags access, size_t bytes)
-{
-  if (m->device->buffers[name] && m->device->sizes[name] >= bytes) {
-    return STRATUS_OK;
-  }
-  drop(m->device, name);
-  TRY(stratus_device_buffer(m->context, access, bytes, NULL, false, &m->device->buffers[name]));
-  m->device->sizes[name] = bytes;
-  return STRATUS_OK;
-}
-
-/* Copies (or borrows) what was built; `host` NULL leaves a few bytes, since a kernel argument must be something. */
-static stratus_status replace(device_march* m, buffer_name name, const void* host, size_t bytes)
-{
-  drop(m->device, name);
-  return stratus_device_buffer(m->context, CL_MEM_READ_ONLY, host ? bytes : 16, host, host != NULL, &m->device->buffers[name]);
-}
-
-/* Of one frame: over the host's own memory where the device lends it, so that nothing is copied. `host` NULL: not wanted. */
-static stratus_status lend(device_march* m, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
-{
-  if (!host || bytes == 0 || !stratus_device_lends(m->context->device, host)) {
-    return reserve(m, name, access, host && bytes > 0 ? bytes : 16);
-  }
-  drop(m->device, name);
-  TRY(stratus_device_buffer(m->context, access, bytes, host, true, &m->device->buffers[name]));
-  m->device->lent[name] = true;
-  return STRATUS_OK;
-}
-
-/* The same with what the host has written there. */
-static stratus_status send(device_march* m, buffer_name name, cl_mem_flags access, const void* host, size_t bytes)
-{
-  TRY(lend(m, name, access, host, bytes));
-  return !host || bytes == 0 || m->device->lent[name] ? STRATUS_OK
-                                                      : stratus_device_write(m->context, m->device->buffers[name], 0, bytes, host);
-}
-
-/* What kernels have written, once they are done. */
-static stratus_status receive(device_march* m, buffer_name name, void* host, size_t bytes)
-{
-  if (!host) {
-    return STRATUS_OK;
-  }
-  return m->device->lent[name] ? stratus_device_settle(m->context, m->device->buffers[name], bytes)
-                               : stratus_device_read(m->context, m->device->buffers[name], 0, bytes, host);
-}
-
-/* The host's memory is its own again. */
-static void return_lent(stratus_tetra_device* device)
-{
-  for (int name = 0; name < BUFFERS; ++name) {
-    if (device->lent[name]) {
-      drop(device, (buffer_name)name);
-    }
   }
 }
 
@@ -150,13 +80,13 @@ static stratus_status upload(device_march* m, const stratus_tetra_device_source*
   const stratus_tetra_frame* frame = m->frame;
   const size_t cells = (size_t)source->cell_count, entries = (size_t)frame->table->size;
   if (d->mesh != source->mesh) {
-    TRY(replace(m, CELLS, frame->cells, cells * TETRA_CELL * sizeof(int32_t)));
-    TRY(replace(m, CELL_VALUES, frame->cell_values, cells * sizeof(float)));
+    TRY(stratus_slot_keep(m->context, m->slots + CELLS, frame->cells, cells * TETRA_CELL * sizeof(int32_t)));
+    TRY(stratus_slot_keep(m->context, m->slots + CELL_VALUES, frame->cell_values, cells * sizeof(float)));
     d->mesh = source->mesh;
   }
   if (d->table != source->table) {
-    TRY(replace(m, SUMS, frame->march_sums, STRATUS_TETRA_SUMS * entries * sizeof(int32_t)));
-    TRY(replace(m, COLORS, frame->table->rgba, 4 * entries * sizeof(float)));
+    TRY(stratus_slot_keep(m->context, m->slots + SUMS, frame->march_sums, STRATUS_TETRA_SUMS * entries * sizeof(int32_t)));
+    TRY(stratus_slot_keep(m->context, m->slots + COLORS, frame->table->rgba, 4 * entries * sizeof(float)));
     d->table = source->table;
   }
   return STRATUS_OK;
@@ -167,13 +97,14 @@ static stratus_status send_frame(device_march* m, size_t point_count)
   const stratus_tetra_frame* frame = m->frame;
   const stratus_image* image = &frame->image;
   const size_t lines = 2 * ((size_t)image->width + (size_t)image->height + 2 * TETRA_PADDING);
-  TRY(send(m, ARGUMENTS, CL_MEM_READ_ONLY, &frame->arguments, sizeof frame->arguments));
-  TRY(send(m, POINTS, CL_MEM_READ_ONLY, frame->places, point_count * 4 * sizeof(float)));
-  TRY(send(m, LINES, CL_MEM_READ_ONLY, frame->us, lines * sizeof(float)));
-  TRY(send(m, ENDS, CL_MEM_READ_ONLY, frame->ends, (size_t)image->width * (size_t)image->height * sizeof(float)));
-  TRY(send(m, FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));
-  TRY(send(m, BIN_BEGIN, CL_MEM_READ_ONLY, frame->bin_begin, (m->tiles + 1) * sizeof *frame->bin_begin));
-  return send(m, BINS, CL_MEM_READ_ONLY, frame->bins, frame->bin_begin[m->tiles] * sizeof *frame->bins);
+  TRY(stratus_slot_send(m->context, m->slots + ARGUMENTS, CL_MEM_READ_ONLY, &frame->arguments, sizeof frame->arguments));
+  TRY(stratus_slot_send(m->context, m->slots + POINTS, CL_MEM_READ_ONLY, frame->places, point_count * 4 * sizeof(float)));
+  TRY(stratus_slot_send(m->context, m->slots + LINES, CL_MEM_READ_ONLY, frame->us, lines * sizeof(float)));
+  TRY(stratus_slot_send(
+    m->context, m->slots + ENDS, CL_MEM_READ_ONLY, frame->ends, (size_t)image->width * (size_t)image->height * sizeof(float)));
+  TRY(stratus_slot_send(m->context, m->slots + FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));
+  TRY(stratus_slot_send(m->context, m->slots + BIN_BEGIN, CL_MEM_READ_ONLY, frame->bin_begin, (m->tiles + 1) * sizeof *frame->bin_begin));
+  return stratus_slot_send(m->context, m->slots + BINS, CL_MEM_READ_ONLY, frame->bins, frame->bin_begin[m->tiles] * sizeof *frame->bins);
 }
 
 static stratus_status launch(device_march* m, const char* name, const buffer_name* order, unsigned arguments)
@@ -184,7 +115,7 @@ static stratus_status launch(device_march* m, const char* name, const buffer_nam
     sizeof(stratus_tetra_arguments));
   TRY(stratus_device_kernel(m->context, "tetra_march", defines, name, &kernel));
   for (unsigned i = 0; i < arguments; ++i) {
-    TRY(stratus_device_argument(m->context, kernel, i, sizeof(cl_mem), &m->device->buffers[order[i]]));
+    TRY(stratus_device_argument(m->context, kernel, i, sizeof(cl_mem), &m->slots[order[i]].memory));
   }
   const size_t global[2] = { (size_t)m->frame->columns * (m->packets ? 1 : PIXELS), (size_t)m->frame->rows };
   const size_t local[2] = { m->packets ? 1 : GROUP, 1 };
@@ -197,11 +128,11 @@ static stratus_status count_entries(device_march* m, stratus_tetra_buffers* buff
   const size_t bytes = (m->pixels + 1) * sizeof(uint32_t);
   TRY(stratus_tetra_reserve(m->context, &buffers->first, m->pixels + 1, sizeof(uint32_t)));
   m->frame->first = buffers->first.memory;
-  TRY(lend(m, FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes));
+  TRY(stratus_slot_lend(m->context, m->slots + FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes));
   TRY(launch(m, "tetra_count", order, sizeof order / sizeof *order));
-  TRY(receive(m, FIRST, m->frame->first, bytes));
+  TRY(stratus_slot_receive(m->context, m->slots + FIRST, m->frame->first, bytes));
   TRY(stratus_tetra_sum_entries(m->context, m->frame, m->pixels, total));
-  return send(m, FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes);
+  return stratus_slot_send(m->context, m->slots + FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes);
 }
 
 /* sums: four numbers a tile, 0 before. */
@@ -211,19 +142,19 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
     ENTRIES, FOUND, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   const stratus_image* image = &m->frame->image;
   const size_t pixels = (size_t)image->width * (size_t)image->height, sums_bytes = m->tiles * 4 * sizeof *sums;
-  TRY(reserve(m, ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
-  TRY(reserve(m, FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t)));
-  TRY(lend(m, RGBA, CL_MEM_WRITE_ONLY, image->rgba, pixels * 4 * sizeof(float)));
-  TRY(lend(m, RGBA8, CL_MEM_WRITE_ONLY, image->rgba8, pixels * 4));
-  TRY(lend(m, DEPTH, CL_MEM_WRITE_ONLY, image->depth, pixels * sizeof(float)));
-  TRY(lend(m, SAMPLES, CL_MEM_WRITE_ONLY, image->samples, pixels * sizeof(uint32_t)));
-  TRY(send(m, COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
+  TRY(stratus_slot_reserve(m->context, m->slots + ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
+  TRY(stratus_slot_reserve(m->context, m->slots + FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t)));
+  TRY(stratus_slot_lend(m->context, m->slots + RGBA, CL_MEM_WRITE_ONLY, image->rgba, pixels * 4 * sizeof(float)));
+  TRY(stratus_slot_lend(m->context, m->slots + RGBA8, CL_MEM_WRITE_ONLY, image->rgba8, pixels * 4));
+  TRY(stratus_slot_lend(m->context, m->slots + DEPTH, CL_MEM_WRITE_ONLY, image->depth, pixels * sizeof(float)));
+  TRY(stratus_slot_lend(m->context, m->slots + SAMPLES, CL_MEM_WRITE_ONLY, image->samples, pixels * sizeof(uint32_t)));
+  TRY(stratus_slot_send(m->context, m->slots + COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
   TRY(launch(m, "tetra_march", order, sizeof order / sizeof *order));
-  TRY(receive(m, RGBA, image->rgba, pixels * 4 * sizeof(float)));
-  TRY(receive(m, RGBA8, image->rgba8, pixels * 4));
-  TRY(receive(m, DEPTH, image->depth, pixels * sizeof(float)));
-  TRY(receive(m, SAMPLES, image->samples, pixels * sizeof(uint32_t)));
-  return receive(m, COUNTS, sums, sums_bytes);
+  TRY(stratus_slot_receive(m->context, m->slots + RGBA, image->rgba, pixels * 4 * sizeof(float)));
+  TRY(stratus_slot_receive(m->context, m->slots + RGBA8, image->rgba8, pixels * 4));
+  TRY(stratus_slot_receive(m->context, m->slots + DEPTH, image->depth, pixels * sizeof(float)));
+  TRY(stratus_slot_receive(m->context, m->slots + SAMPLES, image->samples, pixels * sizeof(uint32_t)));
+  return stratus_slot_receive(m->context, m->slots + COUNTS, sums, sums_bytes);
 }
 
 static stratus_status draw(device_march* m, const stratus_tetra_device_source* source, stratus_tetra_buffers* buffers,
@@ -246,8 +177,8 @@ static stratus_status draw(device_march* m, const stratus_tetra_device_source* s
     counts->segments += sums[4 * tile + 2];
     counts->stuck += sums[4 * tile + 3];
   }
-  if (status != STRATUS_OK || m->device->lent[COUNTS]) {
-    drop(m->device, COUNTS);
+  if (status != STRATUS_OK || m->slots[COUNTS].lent) {
+    stratus_slot_drop(&m->slots[COUNTS]);
   }
   stratus_release(m->context, memory);
   *entries_ms += marching - start;
@@ -284,9 +215,9 @@ stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetr
     *device = memory;
   }
   const size_t tiles = (size_t)frame->columns * (size_t)frame->rows;
-  device_march m = { context, *device, frame, stratus_device_is_cpu(context->device), tiles, tiles * PIXELS };
+  device_march m = { context, *device, (*device)->slots, frame, stratus_device_is_cpu(context->device), tiles, tiles * PIXELS };
   const stratus_status status = draw(&m, source, buffers, counts, entries_ms, march_ms);
-  return_lent(*device);
+  stratus_slots_return(m.slots, BUFFERS);
   TRY(status);
   *drawn = true;
   return stratus_progress(context, "march", 1.0);
