@@ -5,9 +5,10 @@
  * follows, is computed here from the ray and the voxel, so that the picture is the same by every way. */
 #include "first_hit_picture.h"
 
-#include "picture.h"
 #include "camera.h"
 #include "matrix.h"
+#include "picture.h"
+#include "ray_caster.h"
 
 #include <string.h>
 

@@ -16,6 +16,12 @@ struct stratus_first_hit {
   stratus_tree_method method;
 };
 
+/* The mode of first hits; dropping what it built; the whole of it. */
+stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
+void stratus_first_hit_release(stratus_ray_caster* caster);
+void stratus_first_hit_destroy(stratus_ray_caster* caster);
+
 /* What a picture looks through. */
 typedef struct stratus_first_hit_scene {
   const stratus_tree* tree;     /* NULL: walk */

@@ -2,6 +2,9 @@
  * What first-hit pictures are drawn from: data and opacity -> voxels -> tree, each kept until what it was built from changes. */
 #include "first_hit_picture.h"
 
+#include "ray_caster.h"
+#include "ray_tree.h"
+
 #include <stdio.h>
 #include <string.h>
 

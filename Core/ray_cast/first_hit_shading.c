@@ -2,8 +2,8 @@
  * The colour of a hit: the transfer function's at the voxel's value, in the light that falls on the face, the field or the cut. */
 #include "first_hit_picture.h"
 
-#include "vector.h"
 #include "matrix.h"
+#include "vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The OpenCL device's way through the traversal: copies of what was built, kept until it is built anew, and the launch. */
+#include "ray_cast_device.h"
+
 #include "device_frame.h"
+#include "ray_cast_host.h"
 #include "ray_caster.h"
+#include "ray_mask.h"
+#include "ray_shading_table.h"
 
 #include <stdio.h>
 #include <string.h>

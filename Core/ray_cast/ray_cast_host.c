@@ -2,7 +2,6 @@
  * The host's way through the traversal: which instruction set, which tiles, which threads. */
 #include "ray_cast_host.h"
 
-#include "ray_caster.h"
 #include "instruction_set.h"
 #include "tiles.h"
 

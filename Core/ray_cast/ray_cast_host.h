@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_CAST_HOST_H
 #define STRATUS_RAY_CAST_HOST_H
 
+#include "base.h"
 #include "instruction_set.h"
 #include "ray_cast_arguments.h"
 
@@ -58,5 +59,9 @@ stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa2(int type, stratus_ray_variant variant);
+
+/* All tiles on the host. */
+stratus_status stratus_ray_cast_host(
+  stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
 
 #endif

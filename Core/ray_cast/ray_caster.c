@@ -2,6 +2,11 @@
  * The ray caster's life. */
 #include "ray_caster.h"
 
+#include "first_hit_picture.h"
+#include "ray_cast_device.h"
+#include "ray_fetched.h"
+#include "ray_shading_table.h"
+
 stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** out)
 {
   void* memory = NULL;

@@ -2,7 +2,15 @@
  * A render of the ray caster: checks what it is given, has rebuilt what changed, draws on device or host, audits, reports. */
 #include "ray_caster.h"
 
+#include "first_hit_picture.h"
 #include "picture.h"
+#include "ray_cast_device.h"
+#include "ray_cast_host.h"
+#include "ray_fetched.h"
+#include "ray_frame.h"
+#include "ray_modes_render.h"
+#include "ray_shading_render.h"
+#include "ray_shading_table.h"
 
 #include <stdio.h>
 #include <string.h>

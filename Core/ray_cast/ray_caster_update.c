@@ -2,6 +2,14 @@
  * What a ray caster builds anew when: data -> ranges; transfer function -> table, occupancy and map; camera -> nothing. */
 #include "ray_caster.h"
 
+#include "ray_fetched.h"
+#include "ray_mask.h"
+#include "ray_modes_render.h"
+#include "ray_sampling.h"
+#include "ray_shading_render.h"
+#include "ray_shading_table.h"
+#include "ray_tree.h"
+
 #include <stdio.h>
 #include <string.h>
 

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The values that rays read: the volume's own, or, once rays have read more values than there are, those of a type that is slow to read as
  * floats, fetched once and for all. The bits of the picture stay the same. */
+#include "ray_fetched.h"
+
+#include "ray_cast_host.h"
 #include "ray_caster.h"
+#include "ray_shading_table.h"
 
 /* Fetched values are kept up to this many bytes. */
 #define FETCHED_BYTES_MOST ((size_t)1 << 31)

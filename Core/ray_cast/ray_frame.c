@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * From camera, volume and options to the numbers that every ray of a frame shares. */
-#include "ray_caster.h"
+#include "ray_frame.h"
 
-#include "vector.h"
 #include "camera.h"
 #include "matrix.h"
 #include "table_fill.h"
+#include "vector.h"
 
 #include <string.h>
 

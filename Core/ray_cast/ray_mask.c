@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What is taken out of the picture: cells that are hidden, and values by a mask, a byte each. */
+#include "ray_mask.h"
+
 #include "ray_caster.h"
 
 #include <string.h>

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Modes of the ray cast beside light: which values matter to them, how they are sampled, and what their rays are told. */
+#include "ray_modes_render.h"
+
+#include "ray_cast_host.h"
 #include "ray_caster.h"
+#include "ray_sampling.h"
 
 #include <string.h>
 

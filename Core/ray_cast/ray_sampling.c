@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How a scene is sampled when the user leaves it open: how far the transfer function bends over one step of the field, and how
  * much of the opacity changes from voxel to voxel. */
-#include "ray_caster.h"
+#include "ray_sampling.h"
 
 #include <string.h>
 

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Samples that are more than their value's colour and opacity: what of a render's input asks for them, and what their rays are told. */
-#include "ray_caster.h"
+#include "ray_shading_render.h"
 
 #include "first_hit_picture.h"
 #include "matrix.h"
+#include "ray_caster.h"
+#include "ray_sampling.h"
+#include "ray_shading_table.h"
 
 _Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
 

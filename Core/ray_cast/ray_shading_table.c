@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What shaded samples are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a
  * table each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
+#include "ray_shading_table.h"
+
 #include "ray_caster.h"
+#include "ray_sampling.h"
 
 #include <float.h>
 #include <string.h>

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Structure HYBRID: the tree that came with the data, where it serves, or one of the caster's own. */
+#include "ray_tree.h"
+
 #include "ray_caster.h"
-#include "tree_map_build.h"
+#include "ray_shading_table.h"
 #include "tree.h"
+#include "tree_map_build.h"
 #include "volume_hash.h"
 
 #include <string.h>

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Samples that are more than their value's colour and opacity: whether a render has any, and what their rays are told. */
+#ifndef STRATUS_RAY_SHADING_RENDER_H
+#define STRATUS_RAY_SHADING_RENDER_H
+
+#include "ray_caster.h"
+
+stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options);
+bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
+
+#endif
