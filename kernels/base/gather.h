@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Loads from a place a lane, beside what packet.h has. Lanes outside the mask read nothing and get 0. */
+ * Gathers beside those of packet.h: each lane loads from an index of its own. A lane outside the mask reads nothing and gets 0. */
 #ifndef STRATUS_GATHER_H
 #define STRATUS_GATHER_H
 
 #include "packet.h"
 
-/* Four bytes from base + at[lane], whatever the alignment; and the int base[at[lane]]. */
+/* v_gather_bytes loads four bytes at base + at[lane], which need not be aligned; v_gather_ints loads base[at[lane]]. vi_outside tells the
+ * lanes whose a is not in 0..n-1, vi_zero those whose a is 0. */
 #if STRATUS_WIDTH == 1
 #ifdef STRATUS_DEVICE
 INLINE vint v_gather_bytes(GLOBAL const uchar* base, vint at, vmask mask)
@@ -104,7 +105,7 @@ INLINE vmask vi_outside(vint a, vint n) { return vi_lt(a, vi_set(0)) | vi_ge(a, 
 INLINE vmask vi_zero(vint a) { return (vmask)(a == vi_set(0)); }
 #endif
 
-/* Four consecutive floats (as bits) from table + 4 entry; 0 in other lanes. */
+/* The four floats from table[4 entry] on, bit by bit as they are. */
 INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
 {
 #if STRATUS_WIDTH == 1
@@ -144,7 +145,7 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
 #endif
 }
 
-/* One int of each lane from table[index], 0 in other lanes. */
+/* The int table[index]. */
 INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 {
 #if STRATUS_WIDTH == 1
@@ -163,7 +164,8 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 #endif
 }
 
-/* Gathers of one instruction, where there is one: four bytes from base + (index << scale_log2); and bits moved right, 0 moved in. */
+/* What AVX-512 has an instruction for. GATHER_DWORD loads four bytes at base + (index << scale_log2), GATHER_FLOAT a float; LOGICAL_RIGHT
+ * shifts to the right and fills with zeros. */
 #if defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
 #define GATHER_DWORD(base, index, mask, scale_log2) STRATUS_GATHER(base, index, mask, 1 << (scale_log2))
 #define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Morton codes of boxes and the hierarchy over sorted codes (Karras 2012), once for host and device: integers only, so the same tree either
- * way. A code has 63 bits, 21 an axis, of twice the box's middle (lo + hi) less the least of all boxes, shifted right until 21 bits hold
- * it. */
+ * Morton codes of boxes, and the hierarchy over sorted codes (Karras 2012). Host and device compile the same integer arithmetic, so they
+ * build the same tree. A code interleaves 21 bits of each axis: of the box's lo + hi, which is twice its middle, less the least lo + hi of
+ * all boxes, shifted right until 21 bits hold it. */
 #ifndef STRATUS_MORTON_H
 #define STRATUS_MORTON_H
 
@@ -24,9 +24,9 @@
 #define MORTON_INLINE static inline
 #endif
 
-#define MORTON_LEAF 0x80000000u /* a child that is a box; else it is an inner node */
+#define MORTON_LEAF 0x80000000u /* set in a child's number where the child is a box, clear where it is an inner node */
 
-/* Two zero bits between the 21 bits of x. */
+/* Puts two zero bits between neighbouring bits of x, which has 21. */
 MORTON_INLINE MORTON_ULONG morton_spread(MORTON_ULONG x)
 {
   x = (x | x << 32) & 0x001f00000000fffful;
@@ -42,7 +42,8 @@ MORTON_INLINE MORTON_ULONG morton_code(MORTON_UINT x, MORTON_UINT y, MORTON_UINT
   return morton_spread(x >> shift) | morton_spread(y >> shift) << 1 | morton_spread(z >> shift) << 2;
 }
 
-/* Leading bits that codes i and j share, -1 beyond the ends. Equal codes are told apart by their places. */
+/* How many leading bits codes i and j share, or -1 if j is beyond the array. Equal codes count on with the leading bits of their indices,
+ * so that no two codes are the same. */
 MORTON_INLINE int morton_shared(MORTON_GLOBAL const MORTON_ULONG* codes, MORTON_LONG count, MORTON_LONG i, MORTON_LONG j)
 {
   if (j < 0 || j >= count) {
@@ -51,7 +52,8 @@ MORTON_INLINE int morton_shared(MORTON_GLOBAL const MORTON_ULONG* codes, MORTON_
   return codes[i] != codes[j] ? MORTON_ZEROS_64(codes[i] ^ codes[j]) : 64 + MORTON_ZEROS_32((MORTON_UINT)i ^ (MORTON_UINT)j);
 }
 
-/* Children of inner node i, 0 <= i < count - 1: node i has code i at one end of its range. Node 0 is the root. */
+/* The two children of inner node i, 0 <= i < count - 1. A node covers a run of sorted codes, and code i stands at one end of node i's run.
+ * Node 0 is the root. */
 MORTON_INLINE void morton_children(
   MORTON_GLOBAL const MORTON_ULONG* codes, MORTON_LONG count, MORTON_LONG i, MORTON_UINT* left, MORTON_UINT* right)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One packet of rays: the vector words that traversal is written in, for each dialect.
+ * The vector types and operations that traversal is written in. A packet holds STRATUS_WIDTH rays, one in each lane.
  *
  *   C11      STRATUS_ISA 2: 16 lanes of AVX-512; 1: 8 lanes of AVX2; 0: 4 lanes of the compiler's vectors; STRATUS_WIDTH 1: scalar
  *   OpenCL C STRATUS_DEVICE, STRATUS_WIDTH 16 (a CPU: a packet a work item) or 1 (a GPU: one ray a work item)
  *
  * vfloat, vint and vmask hold a lane a ray. Masks combine by & and |, and m_andnot. Every function here is a single correctly rounded
- * operation, or a selection, so that all dialects give the same bits. v_min and v_max give b where a or b is no number. */
+ * operation, or a selection, so that all dialects give the same bits. v_min and v_max give b where a or b is a NaN. */
 #ifndef STRATUS_PACKET_H
 #define STRATUS_PACKET_H
 
@@ -119,7 +119,7 @@ typedef int16 vint;
 #if defined(__AVX512F__) && __has_builtin(__builtin_ia32_cmpps512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask) &&                   \
   __has_builtin(__builtin_ia32_minps512) && __has_builtin(__builtin_ia32_maxps512) && __has_builtin(__builtin_ia32_selectps_512) &&        \
   __has_builtin(__builtin_ia32_selectd_512) && __has_builtin(__builtin_ia32_gathersiv16si)
-/* PoCL on a CPU with AVX-512: clang's own builtins, since OpenCL C has no word for a mask register or a gather. */
+/* OpenCL C has no type for a mask register and no gather, so that PoCL on a CPU with AVX-512 uses clang's builtins. */
 #define STRATUS_DEVICE_AVX512 1
 #endif
 
@@ -309,7 +309,7 @@ INLINE vint vi_load(const int* p)
 }
 #endif
 
-/* Packets that march side by side: two where registers are many and gathers wait long. */
+/* How many packets march side by side. AVX-512 has registers for two, and one computes while the other waits for its gathers. */
 #if STRATUS_WIDTH == 16 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
 #define PACKETS_TOGETHER 2
 #else

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Functions of a lane that no single operation gives, out of + - * fma and bits: the same bits in every dialect, which a device's own
- * division and exponential are not. */
+ * Reciprocal, inverse square root and exponential, from + - * fma and operations on bits alone. They give the same bits in every dialect,
+ * which a device's own division and exponential do not. */
 #ifndef STRATUS_PACKET_MATH_H
 #define STRATUS_PACKET_MATH_H
 
 #include "packet.h"
 
-/* 1/a to a rounding or two, by Newton's iteration from the bits: the same on every device, as a division is not. a > 0. */
+/* 1/a for a > 0, off by one or two roundings: Newton's iteration from a guess by the bits. */
 INLINE vfloat v_reciprocal(vfloat a)
 {
-  const vint bits = v_to_bits(a), magnitude = bits & vi_set(0x7fffffff); /* lanes that count for nothing may be negative */
+  const vint bits = v_to_bits(a), magnitude = bits & vi_set(0x7fffffff); /* lanes outside the mask may be negative */
   vfloat r = v_from_bits((vi_set(0x7ef311c7) - magnitude) | (bits - magnitude));
   for (int iteration = 0; iteration < 3; ++iteration) {
     r = v_fma(r, v_fma(v_set(0.0f) - a, r, v_set(1.0f)), r);
@@ -17,7 +17,7 @@ INLINE vfloat v_reciprocal(vfloat a)
   return r;
 }
 
-/* The same of 1/sqrt(a). a > 0. */
+/* 1/sqrt(a) for a > 0, in the same way. */
 INLINE vfloat v_inverse_root(vfloat a)
 {
   const vfloat half_a = v_set(0.5f) * a;
@@ -28,10 +28,11 @@ INLINE vfloat v_inverse_root(vfloat a)
   return r;
 }
 
-/* 1 - exp(-x), x >= 0, to some 3e-7 of its value: x = n ln 2 + t, a series in t, 2^-n by its bits. */
+/* 1 - exp(-x) for x >= 0, with a relative error of about 3e-7. x is n ln 2 + t: a series gives exp(-t), and the bits of an exponent 2^-n.
+ */
 INLINE vfloat v_absorbed(vfloat x)
 {
-  x = v_min(x, v_set(80.0f)); /* beyond, nothing is left, and the series would leave its range */
+  x = v_min(x, v_set(80.0f)); /* beyond 80 the result is 1 as a float, and n would leave the exponent's range */
   const vint n = v_to_int(x * v_set(1.44269504f));
   const vfloat t = v_max(v_fma(v_from_int(n), v_set(-0.69314718f), x), v_set(0.0f)), minus = v_set(0.0f) - t;
   vfloat series = v_set(1.0f / 40320.0f);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Double precision for the set-up of rays, REAL_WIDTH rays at once: the dialect's doubles, or, where a device has none (STRATUS_REAL_PAIR),
- * an unevaluated sum of two floats (Dekker 1971, with fma), which keeps 48 bits. Arguments come as such pairs in both, so that host and
- * device start from the same numbers. */
+ * Double precision for the set-up of rays, REAL_WIDTH rays at once. A real is the dialect's double. On a device that has none
+ * (STRATUS_REAL_PAIR) it is an unevaluated sum of two floats (Dekker 1971, with fma), which keeps 48 bits. Arguments are such pairs in
+ * both cases, so that host and device start from the same numbers. */
 #ifndef STRATUS_REAL_H
 #define STRATUS_REAL_H
 
@@ -18,7 +18,7 @@ INLINE stratus_pair stratus_pair_of(double a)
   p.hi = (float)a;
   p.lo = (float)(a - (double)p.hi);
   if (!(fabsf(p.hi) <= LARGEST_FLOAT)) {
-    p.hi = a > 0 ? LARGEST_FLOAT : -LARGEST_FLOAT; /* as far as any ray goes */
+    p.hi = a > 0 ? LARGEST_FLOAT : -LARGEST_FLOAT; /* clamped to the largest float: no ray goes as far */
     p.lo = 0.0f;
   }
   return p;
@@ -129,7 +129,7 @@ INLINE real r_sqrt(real a) { return sqrt(a); }
 INLINE real r_floor(real a) { return floor(a); }
 
 #else
-/* As wide as one register: wider vectors the compiler would compare lane by lane. */
+/* A real fills one register: the compiler would compare wider vectors lane by lane. */
 #if STRATUS_ISA == 2
 #define REAL_WIDTH 8
 #elif STRATUS_ISA == 1

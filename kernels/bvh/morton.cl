@@ -5,7 +5,7 @@
 #endif
 #include "morton.h"
 
-/* boxes: six numbers each, lo then hi. least: of lo + hi over all boxes. */
+/* boxes: lo, then hi, of each. least_x, least_y, least_z: the least lo + hi of all boxes. */
 __kernel void codes(__global const int* boxes, uint count, int least_x, int least_y, int least_z, int shift, __global ulong* result)
 {
   const size_t b = get_global_id(0);

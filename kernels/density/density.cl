@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Density of bricks of voxels: the sums of Core/density_rows.c, whole numbers, so that their order does not matter and the host's are met
- * to the bit. Bricks are in ascending order of (z, y, x); a row of neighbours is found by halving. */
+ * Density of bricks of voxels: the sums of density_rows.c. They are sums of whole numbers, so that their order does not matter and the
+ * results are the host's to the bit. Bricks are sorted by (z, y, x), and a binary search finds the first brick of a row. */
 #ifndef GROUP
-#define GROUP 64 /* items to a brick: one a voxel */
+#define GROUP 64 /* work items of a group, which has one brick: an item for each of its voxels */
 #endif
 
 typedef struct brick {
@@ -32,8 +32,8 @@ static ulong first_brick(__global const brick* bricks, ulong count, ulong key)
   return low;
 }
 
-/* The rows of bits in reach of brick b: bit x of rows[z*side + y]. Each of the group's items fills the sixteen rows of some rows of bricks.
- */
+/* Gathers the voxels within reach of brick b as bits: bit x of rows[z*side + y]. Each item of the group takes rows of bricks in turn; a
+ * row of bricks is sixteen rows of voxels. */
 static void gather(__global const brick* bricks, ulong count, ulong b, int reach, __local ulong* rows)
 {
   const int n = 2 * reach + 1, side = 4 * n;
@@ -53,7 +53,7 @@ static void gather(__global const brick* bricks, ulong count, ulong b, int reach
   }
 }
 
-/* A group a brick: sums[start[b] ..] of its voxels. rows: 16 (2 reach + 1)^2 of the group's own. */
+/* One group does one brick and writes its voxels' sums from sums[start[b]] on. rows: memory of the group, 16 (2 reach + 1)^2 words. */
 __kernel void exact(__global const brick* bricks, ulong count, __global const ulong* start, int reach, int radius, int width, int row_count,
   __global const row* offsets, __global const uint* table, __global ulong* sums, __local ulong* rows)
 {
@@ -80,7 +80,7 @@ __kernel void exact(__global const brick* bricks, ulong count, __global const ul
   sums[start[b] + popcount(bricks[b].mask & ((1UL << bit) - 1))] = sum;
 }
 
-/* An item a brick. */
+/* One item does one brick, as if all of its voxels lay in one place: neighbours weigh by their distance in bricks. */
 __kernel void binned(__global const brick* bricks, ulong count, int reach, __global const uint* table, __global ulong* sums)
 {
   const ulong b = get_global_id(0);

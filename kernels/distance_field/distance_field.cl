@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The exact Euclidean transform, a signed squared distance a voxel: positive outside effective voxels, negative inside (where the field is
- * signed; else 0). Along y each item walks a column of bits up and down; along x and z each voxel searches outward for itself, no farther
- * than the best so far. Whole numbers: the host's results. */
+ * The exact Euclidean distance transform. The field holds a squared distance for each voxel: positive outside effective voxels; inside
+ * them negative where the field is signed, else 0. Along y an item walks a column of bits up and down; along x and z each voxel searches
+ * outward, no farther than the best distance found so far. All numbers are integers, so that the results are the host's. */
 #ifndef WIDE
 #define WIDE 0
 #endif
@@ -14,7 +14,7 @@ typedef int value;
 #endif
 #define FAR (FAR_LINE * FAR_LINE)
 
-/* Distance along y to the last one of the other kind, with its sign. */
+/* Distance along y to the last voxel of the opposite kind, with the sign of this one. before: that of the voxel before. */
 static value step_on(value before, int inside, int is_signed)
 {
   const value same = inside ? -before : before;
@@ -48,7 +48,7 @@ __kernel void columns(__global const ulong* bits, long nx, long ny, long nz, lon
   }
 }
 
-/* Along axis 0 or 2. */
+/* Takes the least over voxels along axis 0 or 2, of distances that hold for the axes done before. */
 __kernel void search(__global const value* from, long nx, long ny, long nz, int axis, __global value* to)
 {
   const long at[3] = { (long)get_global_id(0), (long)get_global_id(1), (long)get_global_id(2) };
@@ -58,7 +58,7 @@ __kernel void search(__global const value* from, long nx, long ny, long nz, int 
   const long here = (at[2] * ny + at[1]) * nx + at[0], step = axis == 0 ? 1 : nx * ny, last = (axis == 0 ? nx : nz) - 1;
   const int inside = from[here] < 0;
   value best = inside ? -from[here] : from[here];
-  /* What is of the other kind is what is looked for: 0 away from itself. */
+  /* Voxels of the opposite sign are the targets. Their own distance is 0, so negate and clamp. */
   for (long n = 1; n * n < (long)best && (n <= at[axis] || n <= last - at[axis]); ++n) {
     value nearest = FAR;
     if (n <= at[axis]) {
@@ -69,7 +69,7 @@ __kernel void search(__global const value* from, long nx, long ny, long nz, int 
       const value other = from[here + n * step];
       nearest = min(nearest, max(inside ? -other : other, (value)0));
     }
-    const value square = (value)(n * n); /* not added before it is known that the sum fits */
+    const value square = (value)(n * n); /* added only once the sum is known to fit */
     best = nearest < best - square ? nearest + square : best;
   }
   to[here] = inside ? -best : best;

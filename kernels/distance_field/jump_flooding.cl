@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A pass of jump flooding (Rong & Tan 2006): each voxel asks itself and 26 others `step` away what they know, and keeps the nearest, of
- * equally near ones the one of the smallest index: so the order of asking does not matter, and host and device agree to the bit. */
+ * A pass of jump flooding (Rong & Tan 2006). Each voxel looks at the nearest effective voxel that it knows, and at those known to 26
+ * others `step` away, and keeps the nearest of all. Of equally near ones it keeps the one of the smallest index, so that the order of
+ * looking does not matter and host and device agree to the bit. */
 #include "jump_flooding.h"
 
 #ifndef WIDE
@@ -28,7 +29,8 @@ static squared_length squared_distance(uint position, const int at[3], int shift
   return x * x + y * y + z * z;
 }
 
-/* Groups are GROUP items along x; group g leaves in sums[2 g] how many of its voxels came nearer and in sums[2 g + 1] their ratios' sum. */
+/* A group is GROUP items along x. Group g writes to sums[2 g] how many of its voxels came nearer, and to sums[2 g + 1] the sum of their
+ * ratios. */
 __kernel void flood(
   __global const uint* from, long nx, long ny, long nz, int step, int shift_y, int shift_z, __global uint* to, __global uint* sums)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Jump flooding (Rong & Tan 2006) as host and device share it, C11 and OpenCL C: how a voxel remembers the nearest effective one, and how
- * much nearer a pass brought it, from operations that both round alike. */
+ * Jump flooding (Rong & Tan 2006), the parts that host and device share: how a voxel remembers the nearest effective one, and how much
+ * nearer a pass brought it. Both dialects round these operations alike. */
 #ifndef STRATUS_JUMP_FLOODING_H
 #define STRATUS_JUMP_FLOODING_H
 
@@ -15,12 +15,12 @@ typedef uint flood_position;
 typedef uint32_t flood_position;
 #endif
 
-/* Position (i,j,k) is k << shift_z | j << shift_y | i: in the order of the voxels' indices. At most 31 bits. */
+/* Position (i,j,k) is k << shift_z | j << shift_y | i, of at most 31 bits. Positions compare as the voxels' indices do. */
 #define FLOOD_UNKNOWN 0xffffffffu
-#define FLOOD_RATIO_ONE 65536.0f /* of the whole numbers that ratios are added up in, so that their order does not matter */
+#define FLOOD_RATIO_ONE 65536.0f /* ratios are summed as integers in units of 1/65536, so that their order does not matter */
 
-/* 1/sqrt(a) for a >= 1 to some 1e-7, by Newton's steps from a guess in the exponent: a device's own root is not rounded as the host's is.
- */
+/* 1/sqrt(a) for a >= 1, with an error of about 1e-7, by Newton's steps from a guess by the bits: a device's own root may round otherwise
+ * than the host's. */
 FLOOD_INLINE float flood_inverse_root(float a)
 {
   float r;
@@ -37,7 +37,7 @@ FLOOD_INLINE float flood_inverse_root(float a)
   return r * (1.5f - 0.5f * a * r * r);
 }
 
-/* New over old distance from their squares, 1 <= now < before, in units of 1/FLOOD_RATIO_ONE. */
+/* The new distance over the old one, from their squares, 1 <= now < before; in units of 1/FLOOD_RATIO_ONE. */
 FLOOD_INLINE int flood_ratio(float now, float before)
 {
   return (int)(now * flood_inverse_root(now) * flood_inverse_root(before) * FLOOD_RATIO_ONE + 0.5f);

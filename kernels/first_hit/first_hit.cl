@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Entry point of first hits in one distance field: STRATUS_WIDTH neighbouring rays a work item. */
+ * First hits in one distance field. Each work item walks STRATUS_WIDTH neighbouring rays. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -23,8 +23,8 @@
 typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
 #endif
 
-/* rays: arrays of `count` floats: origin x y z, direction x y z, its inverse x y z, end; then of ints: cell x y z. results: arrays of
- * `count` ints: what became of the ray, voxel x y z, steps. */
+/* rays: arrays of `count` floats, in the order origin x y z, direction x y z, inverse direction x y z, end; then arrays of `count` ints,
+ * cell x y z. results: arrays of `count` ints, in the order state (STRATUS_HIT_*), voxel x y z, steps. */
 __kernel void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,
   __global const int* masks, __global const float* rays, __global int* results)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Rays through one distance field, a packet at a time, up to the first occupied voxel. Positions are voxels: voxel i is i .. i+1.
+ * Walks rays through one distance field, a packet at a time, up to the first occupied voxel. Positions are in voxels: voxel i is i .. i+1.
  *
- * A ray's position is known to within `slack`. It leaps from cell to cell; where it lands it is in no doubt about its cell, unless
- * it lands near an edge of the lattice (two coordinates within slack of an integer). Only there can it miss, or wrongly meet, a voxel, and
- * only one that touches the edge. So a ray that lands near an edge with an occupied voxel about it is given up as doubtful, and its caller
- * walks it again in double precision: the answer is exact, and float does nearly all of the work. */
+ * A position in float is off by up to `slack`. A ray leaps from cell to cell, and the cell where it lands is certain unless it lands near
+ * an edge of the lattice, where two coordinates are within slack of an integer. Only there can it miss a voxel or meet a wrong one, and
+ * only a voxel that touches the edge. So a ray that lands near an edge with an occupied voxel about it is given up as doubtful, and the
+ * caller walks it again in double precision. The answer is exact, and float does nearly all of the work. */
 #ifndef STRATUS_FIRST_HIT_H
 #define STRATUS_FIRST_HIT_H
 
@@ -13,15 +13,15 @@
 
 typedef struct stratus_hit_packet {
   vfloat o[3], d[3], inverse[3];
-  vfloat end; /* of the ray, in lengths of d */
+  vfloat end; /* where the ray ends, in lengths of d */
   vint cell[3];
-  vint octant_shift; /* to the octant's code in an entry */
+  vint octant_shift; /* bits to shift an entry by to reach the code of the ray's octant */
   vmask up[3];       /* directions >= 0 */
   vmask live, hit, doubtful;
   vint visited;
 } stratus_hit_packet;
 
-/* 1 if voxel (x,y,z) of the field is occupied; 0 beyond it. */
+/* 1 if voxel (x,y,z) of the field is occupied, 0 if it is not or lies beyond the field. */
 INLINE int hit_occupied(
   CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks, int x, int y, int z)
 {
@@ -42,7 +42,7 @@ INLINE int hit_occupied(
   return (masks[2 * (rows[a->row_start + row] + (int)(entry >> a->entry_bytes)) + (bit >> 5)] >> (bit & 31)) & 1;
 }
 
-/* Of lanes that landed near an edge: those that have an occupied voxel about it. */
+/* 1 if one of the voxels that touch the edge at `position` is occupied. */
 INLINE int hit_doubt(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks,
   const float position[3], const int cell[3])
 {
@@ -63,8 +63,8 @@ INLINE int hit_doubt(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entr
   return 0;
 }
 
-/* Sets hit where a live ray's cell is an occupied voxel, else moves it on and ends it where it leaves. The last three are the arguments'
- * own, which the compiler should see as constants. */
+/* One step of every live ray. A ray whose cell is an occupied voxel is hit; any other moves on, and ends where it leaves the field. The
+ * last three parameters repeat fields of the arguments, so that the compiler sees them as constants. */
 INLINE void hit_step(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entries, GLOBAL const int* rows, GLOBAL const int* masks,
   stratus_hit_packet* k, const int octants, const int entry_bytes, const int cell_log2)
 {
@@ -91,7 +91,7 @@ INLINE void hit_step(CONSTANT stratus_hit_arguments* a, GLOBAL const uchar* entr
     leap = (entry & vi_set(0xffff)) >> vi_set(2);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    const vint first = vi_set(a->at[axis]), beyond = vi_set(a->at[axis] + a->cells[axis]); /* nor farther than the field's border */
+    const vint first = vi_set(a->at[axis]), beyond = vi_set(a->at[axis] + a->cells[axis]); /* no leap goes beyond the field's border */
     far[axis] = vi_select(k->up[axis], vi_min(block[axis] + leap, beyond), vi_max(block[axis] + one - leap, first)) << vi_set(cell_log2);
     near[axis] = vi_select(k->up[axis], block[axis] << vi_set(cell_log2), ((block[axis] + one) << vi_set(cell_log2)) - one);
   }

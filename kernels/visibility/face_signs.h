@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which side of a tetrahedron's faces is seen, once for host and device: doubles in one order of operations and never contracted, so the
- * same bits either way. Points are as Core/visibility_signs.c sees them. */
+ * Which side of a tetrahedron's faces the eye sees. Host and device compile the same operations on doubles in the same order, never
+ * contracted, so that they give the same bits. Points are as visibility_signs.c transforms them. */
 #ifndef STRATUS_FACE_SIGNS_H
 #define STRATUS_FACE_SIGNS_H
 
@@ -12,8 +12,8 @@
 #define FACE_SIGNS_GLOBAL
 #endif
 
-/* Coordinates are brought to 1 at most. Perspective: differences with the eye, products of three, six of them: under 100 roundings of
- * 2^-53. Parallel: projected coordinates up to twice as large, with four roundings each: under 250. */
+/* Coordinates are scaled to 1 at most. Perspective: a determinant sums six products of three differences with the eye, fewer than 100
+ * roundings of 2^-53. Parallel: projected coordinates are up to twice as large, with four roundings each, fewer than 250 in all. */
 #define FACE_SIGNS_ERROR_BOUND 0x1p-44
 
 typedef struct face_point {
@@ -26,7 +26,7 @@ static inline face_point face_point_at(FACE_SIGNS_GLOBAL const double* p)
   return point;
 }
 
-/* Of the triples (1 3 2), (0 2 3), (0 3 1), (0 1 2), one a face, as in stratus_face_points(). */
+/* Determinants of the triples (1 3 2), (0 2 3), (0 3 1), (0 1 2): one for each face, in the order of stratus_face_points(). */
 static inline void face_determinants(face_point p0, face_point p1, face_point p2, face_point p3, int parallel, double det[4])
 {
   const double m01 = p0.x * p1.y - p0.y * p1.x, m02 = p0.x * p2.y - p0.y * p2.x, m03 = p0.x * p3.y - p0.y * p3.x;
@@ -38,7 +38,7 @@ static inline void face_determinants(face_point p0, face_point p1, face_point p2
   det[3] = m01 * z2 - m02 * z1 + m12 * z0;
 }
 
-/* 0: exact arithmetic has to tell. */
+/* The sign of a determinant, or 0 where rounding may have changed it and exact arithmetic has to tell. */
 static inline int face_sign(double det) { return (det > FACE_SIGNS_ERROR_BOUND) - (det < -FACE_SIGNS_ERROR_BOUND); }
 
 #endif

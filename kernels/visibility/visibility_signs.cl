@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of cells' faces in a view: see face_signs.h. What rounding may have changed is told apart, for the host to find exactly. */
+ * Signs of cells' faces in a view, by face_signs.h. Signs that rounding may have changed are marked, and the host computes them exactly. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
 #include "face_signs.h"
 
-/* corners: where in `seen` each of a cell's points is. sides: bit f: the cell has a neighbour behind face f; from bit 4 on the side of its
- * faces on which it lies, plus 1. results: bit f: what is behind face f comes after the cell, bit 4 + f: before it, bit 8 + f: of a
- * neighbour nobody knows. */
+/* corners: of each of a cell's points, its number in `seen`. sides: bit f is set where the cell has a neighbour behind face f; the bits
+ * from 4 on hold the side of its faces on which the cell lies, plus 1. results: bit f is set where the neighbour behind face f comes after
+ * the cell, bit 4 + f where it comes before, bit 8 + f where that is not known. */
 __kernel void signs(__global const double* seen, __global const int* corners, __global const uchar* sides, ulong count, int parallel,
   __global ushort* results)
 {

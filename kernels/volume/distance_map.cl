@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance maps where there are thousands of items to feed. Sweeps would leave them idle; here every block searches for itself: running
- * sums of the occupancy along all axes (Crow 1984) tell the occupied blocks of any box from eight reads, and the distance is the half-width
- * of the smallest box that holds one, found by halving. All octants share the sums.
+ * Distance maps on a device that has thousands of work items to feed. The host's sweeps would leave most of them idle, so every block
+ * searches for itself here. Running sums of the occupancy along all axes (Crow 1984) tell from eight reads how many blocks of a box are
+ * occupied. A block's distance is the half-width of the smallest box about it that holds an occupied block, and a binary search finds it.
+ * All octants share the sums.
  *
  * The paper's transform (Deakin & Knackstedt 2019) is below, as the baseline. */
 #define DISTANCE_MAX 127
 #define DISTANCE_OCCUPIED 128
 
-/* sums[(K (ny+1) + J) (nx+1) + I] will be the occupied blocks with i < I, j < J, k < K: here along x alone, one row an item. */
+/* sum_x and sum_axis make sums[(K (ny+1) + J) (nx+1) + I] the number of occupied blocks with i < I, j < J, k < K. sum_x runs along x; each
+ * work item does one row. */
 __kernel void sum_x(__global const uchar* occupied, long nx, long ny, long nz, __global uint* sums)
 {
   const long J = (long)get_global_id(0), K = (long)get_global_id(1);
@@ -23,7 +25,7 @@ __kernel void sum_x(__global const uchar* occupied, long nx, long ny, long nz, _
   }
 }
 
-/* The running sums along another axis: `length` of them `step` apart, one line an item. */
+/* Runs along another axis: `length` sums, `step` apart. Each work item does one line. */
 __kernel void sum_axis(__global uint* sums, long n0, long step0, long n1, long step1, long length, long step)
 {
   const long a = (long)get_global_id(0), b = (long)get_global_id(1);
@@ -45,7 +47,8 @@ static uint count_box(__global const uint* sums, long nx, long ny, const long lo
     sums[z0 + y1 + lo[0]] + sums[z0 + y0 + hi[0]] - sums[z0 + y0 + lo[0]];
 }
 
-/* Whether a block of occupancy `target` is within `distance` of `at`, on side -1, 0 (both) or +1 of each axis. */
+/* Whether a block of occupancy `target` lies within `distance` of `at`. side: along each axis -1 looks below `at`, +1 above, 0 both ways.
+ */
 static int found(__global const uint* sums, const long n[3], const long at[3], const int side[3], long distance, int target)
 {
   long lo[3], hi[3];
@@ -57,7 +60,7 @@ static int found(__global const uint* sums, const long n[3], const long at[3], c
   return target ? count > 0 : count < (uint)((hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2]));
 }
 
-/* One map: side_x, side_y, side_z are the octant's, or 0. */
+/* One map. side_x, side_y, side_z: the octant's sides, or 0 in a map for all directions. */
 __kernel void search(__global const uchar* occupied, __global const uint* sums, long nx, long ny, long nz, int side_x, int side_y,
   int side_z, long pitch, __global uchar* bytes)
 {
@@ -68,7 +71,7 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
   }
   const long row = at[2] * ny + at[1];
   const int inside = occupied[row * nx + at[0]];
-  /* The depth of occupied blocks counts in all directions. */
+  /* An occupied block's distance to the nearest empty one counts in all directions. */
   const int side[3] = { inside ? 0 : side_x, inside ? 0 : side_y, inside ? 0 : side_z };
   int least = 1, most = DISTANCE_MAX;
   while (least < most) {
@@ -82,7 +85,7 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
   bytes[row * pitch + at[0]] = (uchar)(least + (inside ? DISTANCE_OCCUPIED : 0));
 }
 
-/* ---- the paper's */
+/* ---- the paper's transform */
 
 __kernel void paper_seed(__global const uchar* occupied, int target, ulong count, __global uchar* distance)
 {
@@ -92,7 +95,7 @@ __kernel void paper_seed(__global const uchar* occupied, int target, ulong count
   }
 }
 
-/* One axis: the least over k of max(|k|, from[.. + k]), looking no farther than the distance found so far. */
+/* One axis: the least over k of max(|k|, the distance k blocks on), for k below the distance found so far. */
 __kernel void paper_axis(__global const uchar* from, long nx, long ny, long nz, int axis, __global uchar* to)
 {
   const long at[3] = { (long)get_global_id(0), (long)get_global_id(1), (long)get_global_id(2) };
@@ -113,7 +116,7 @@ __kernel void paper_axis(__global const uchar* from, long nx, long ny, long nz, 
   to[b] = (uchar)nearest;
 }
 
-/* The map from the distances of empty blocks and of occupied ones. */
+/* Makes the map: distances of empty blocks, and of occupied ones with DISTANCE_OCCUPIED added. */
 __kernel void paper_merge(__global const uchar* outer, __global const uchar* inner, long nx, long rows, long pitch, __global uchar* bytes)
 {
   const long i = (long)get_global_id(0), row = (long)get_global_id(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Occupancy of blocks: stratus_table_shows(), a block an item. */
+ * Occupancy of blocks, one work item a block: what stratus_table_shows() does on the host. */
 #pragma OPENCL FP_CONTRACT OFF
 
 static int table_entry(float value, int size, float scale, float offset)

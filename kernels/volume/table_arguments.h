@@ -5,10 +5,10 @@
 
 typedef struct stratus_table_arguments {
   float scale, offset, last; /* a value's entry is value * scale + offset, within 0..last */
-  /* the rest only where the table is pre-integrated */
+  /* the rest is set only for a pre-integrated table */
   float shown_first, shown_beyond; /* entries outside [shown_first, shown_beyond) are transparent */
-  float tau_scale;                 /* optical depth of one unit of the sums */
-  float color_slope;               /* most that a colour changes from entry to entry, over the error allowed */
+  float tau_scale;                 /* optical depth of one unit of the running sums */
+  float color_slope;               /* the most that a colour changes between neighbouring entries, over the error allowed */
   int has_opaque;                  /* 1: an entry has opacity 1, and rows behind the sums tell where: opaque_on_the_way() */
 } stratus_table_arguments;
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Value ranges of blocks, as Core/value_range.c builds them. First every column of values shared by a row of blocks, so that neighbouring
- * items read neighbouring values; then the few columns of each block.
+ * Value ranges of blocks, the same as value_range.c builds. The kernel `columns` reduces, for a row of blocks, each column of values (all
+ * y and z of one x), so that neighbouring work items read neighbouring values. The kernel `blocks` then reduces the few columns of each
+ * block.
  *
- * VALUE: the type of a value. WIDE 1: fetched in double, less the bias. */
+ * VALUE: the type of a value. WIDE 1: the value less the bias, computed in double, becomes the float. */
 #ifndef VALUE
 #define VALUE float
 #endif
@@ -19,7 +20,8 @@ typedef float bias_type; /* 0 */
 #endif
 #pragma OPENCL FP_CONTRACT OFF
 
-/* Of values (x, j size .. (j+1) size, k size .. (k+1) size), cut at the volume. Columns are indexed like rows of blocks, x fastest. */
+/* The column of block row (j, k) at x: values (x, j size .. (j+1) size, k size .. (k+1) size), as far as the volume goes. Columns are
+ * indexed as blocks are, x fastest. */
 __kernel void columns(__global const VALUE* values, bias_type bias, long nx, long ny, long nz, long stride, long size, long blocks_y,
   long blocks_z, __global float* lo, __global float* hi, __global uchar* bad)
 {
@@ -27,7 +29,7 @@ __kernel void columns(__global const VALUE* values, bias_type bias, long nx, lon
   if (x >= nx || j >= blocks_y || k >= blocks_z) {
     return;
   }
-  (void)bias; /* narrow types have none */
+  (void)bias; /* narrow types have no bias */
   float least = INFINITY, most = -INFINITY;
   uchar odd = 0;
   const long y1 = min((j + 1) * size, ny - 1), z1 = min((k + 1) * size, nz - 1);
@@ -64,7 +66,7 @@ __kernel void blocks(__global const float* column_lo, __global const float* colu
     most = column_hi[column] > most ? column_hi[column] : most;
     odd |= column_bad[column];
   }
-  /* -0 becomes 0: which zero comes first must not show in the bits. */
+  /* -0 becomes 0, so that the order of comparisons does not show in the bits. */
   lo[row * blocks_x + i] = least == 0.0f ? 0.0f : least;
   hi[row * blocks_x + i] = most == 0.0f ? 0.0f : most;
   gaps[row * blocks_x + i] = odd;
