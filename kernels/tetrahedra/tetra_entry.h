@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where the rays of a tile of pixels come into the mesh: which border faces they meet, nearest first. */
+ * Finds the border faces by which the rays of a tile enter the mesh, nearest first. */
 #ifndef STRATUS_TETRA_ENTRY_H
 #define STRATUS_TETRA_ENTRY_H
 
@@ -7,25 +7,24 @@
 
 #define TETRA_PIXELS (TETRA_TILE * TETRA_TILE)
 
-/* What a frame has besides the scene. Tile t's pixel p comes in by entries first[TETRA_PIXELS t + p] .. first[TETRA_PIXELS t + p + 1] -
- * 1. */
+/* The arrays of a frame. Pixel p of tile t has the entries first[TETRA_PIXELS t + p] .. first[TETRA_PIXELS t + p + 1] - 1. */
 typedef struct stratus_tetra_view {
   stratus_tetra_scene scene;
-  GLOBAL const float* lines;    /* us, uw of all columns, vs, vw of all rows */
-  GLOBAL const float* ends;     /* a pixel each, in z; read only if the arguments say so */
+  GLOBAL const float* lines;    /* us and uw of all columns, then vs and vw of all rows */
+  GLOBAL const float* ends;     /* one a pixel, in z: where its ray ends; read only if has_ends */
   GLOBAL const int* faces;      /* TETRA_FACE ints each */
   GLOBAL const uint* bin_begin; /* faces that may cover tile t: bins[bin_begin[t]] .. bins[bin_begin[t + 1] - 1] */
   GLOBAL const int* bins;
   GLOBAL const uint* first;
-  GLOBAL int* entries;        /* z's bits and the face, nearest first */
-  GLOBAL const float* colors; /* maximum: of the table's entries */
+  GLOBAL int* entries;        /* two ints an entry: the bits of its z, and the face; nearest first */
+  GLOBAL const float* colors; /* maximum: colours of the table's entries */
   GLOBAL float* rgba;
-  GLOBAL uchar* rgba8; /* with the next two: written only if the arguments want them */
+  GLOBAL uchar* rgba8; /* rgba8, depth and samples: written only if the arguments want them */
   GLOBAL float* depth;
   GLOBAL uint* samples;
 } stratus_tetra_view;
 
-/* Of one border face: what all rows of a tile share, for the rays of one packet's columns. */
+/* A border face in the coordinates of one packet's columns, which all rows of a tile share. */
 typedef struct stratus_tetra_border {
   float point[3][4];
   vfloat x[3], wide;
@@ -41,7 +40,7 @@ INLINE void border_columns(const stratus_tetra_view* v, CONSTANT stratus_tetra_a
   b->wide = v_max(v_abs(b->x[1] - b->x[0]), v_abs(b->x[2] - b->x[0]));
 }
 
-/* The rays of row y that come in by the face, and where. */
+/* The rays of row y that enter by the face; *at: the z where they do. */
 INLINE vmask border_row(const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, const stratus_tetra_border* b, int y, vfloat* at)
 {
   const vfloat zero = v_set(0.0f);
@@ -58,7 +57,7 @@ INLINE vmask border_row(const stratus_tetra_view* v, CONSTANT stratus_tetra_argu
     edge[i] = tetra_edge(b->x[p], py[p], b->x[q], py[q]);
     outside = outside | tetra_negative(edge[i], b->x[p], py[p], b->x[q], py[q]);
   }
-  /* three points in one count as no face */
+  /* a face whose three points coincide counts as none */
   const vfloat wide = v_max(b->wide, v_max(v_abs(py[1] - py[0]), v_abs(py[2] - py[0])));
   const vmask met = m_andnot(v_lt(zero, wide), outside);
   if (m_any(met)) {
@@ -79,8 +78,8 @@ INLINE void insert_entry(GLOBAL int* entries, uint count, int z, int face)
   entries[2 * count + 1] = face;
 }
 
-/* Of the tile's pixels from..beyond-1 (whole rows, or one pixel where packets are as wide), each one's entries are counted, or put in
- * order of depth, then of the face's number. found: a number for each pixel of the tile. */
+/* Counts, or stores, the entries of the tile's pixels from..beyond-1, which are whole rows, or one pixel where a packet is one ray.
+ * Entries are sorted by depth, and by the face's number where depths are equal. found: how many entries each pixel of the tile has. */
 INLINE void find_entries(
   const stratus_tetra_view* v, CONSTANT stratus_tetra_arguments* a, int tile, int from, int beyond, int counting, GLOBAL uint* found)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray through tetrahedra reads, several ints from one place a lane: a lane's ints lie in one cache line, and two of them come with
- * one load. Lanes outside the mask read nothing and get 0. */
+ * Gathers of several ints or floats that lie side by side, a place for each lane: they share a cache line, and one instruction loads two.
+ * A lane outside the mask reads nothing and gets 0. */
 #ifndef STRATUS_TETRA_GATHER_H
 #define STRATUS_TETRA_GATHER_H
 
@@ -50,7 +50,7 @@ INLINE void gather_pair(GLOBAL const int* base, vint at, vmask mask, vint out[2]
 #endif
 }
 
-/* Asks for the cache lines of base[at], so that they are there when a step later they are read. */
+/* Prefetches the cache lines of base[at], which the next step reads. */
 INLINE void prefetch_ints(GLOBAL const int* base, vint at)
 {
 #if STRATUS_WIDTH == 16 && (!defined(STRATUS_DEVICE) || defined(STRATUS_DEVICE_AVX512))
@@ -65,7 +65,7 @@ INLINE void prefetch_ints(GLOBAL const int* base, vint at)
 #endif
 }
 
-/* One float a lane. */
+/* The float base[at]. */
 INLINE vfloat gather_float(GLOBAL const float* base, vint at, vmask mask)
 {
 #if STRATUS_WIDTH == 16

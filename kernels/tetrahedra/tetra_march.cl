@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Entry points of the march through tetrahedra: a tile of pixels a work item, in packets, as on the host, where STRATUS_WIDTH is 16 (a
- * CPU); else a pixel (a GPU). First the faces by which rays come in are counted, then, their places known, they are put in order and rays
- * march. */
+ * The march through tetrahedra on a device. Where STRATUS_WIDTH is 16 (a CPU) a work item does a tile of pixels in packets, as the host
+ * does; else (a GPU) it does one pixel. The kernel tetra_count counts the faces by which each ray enters. The host turns counts into
+ * places, and the kernel tetra_march sorts the entries into them and marches. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -16,7 +16,7 @@
 typedef char stratus_arguments_agree[sizeof(stratus_tetra_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
 #endif
 
-/* The tile and the pixels of it that are this work item's; false: beyond the picture. */
+/* The tile of this work item, and which of its pixels; false: beyond the picture. */
 static bool my_pixels(__constant stratus_tetra_arguments* a, int* tile, int* from, int* beyond)
 {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -43,7 +43,7 @@ __kernel void tetra_count(__constant stratus_tetra_arguments* a, __global const 
   }
 }
 
-/* found: as many numbers as pixels of tiles, to work with. counts: rays, entries, segments, stuck of each tile, 0 before. */
+/* found: scratch memory, a number for each pixel of the tiles. counts: of each tile rays, entries, segments and stuck rays; 0 before. */
 __kernel void tetra_march(__constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values,
   __global const int* sums, __global const float* colors, __global const float* points, __global const float* lines,
   __global const float* ends, __global const int* faces, __global const uint* bin_begin, __global const int* bins,

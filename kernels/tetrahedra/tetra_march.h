@@ -1,51 +1,52 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Rays that march from cell to cell through faces. A ray holds the three points of the face by which it entered, in its own coordinates
- * (tetra_arguments.h), and knows the fourth point of the cell: with it the face by which it leaves, and by that the next cell and its
- * fourth point.
+ * Marches rays from cell to cell through their faces. A ray holds the three points of the face by which it entered a cell, in coordinates
+ * of its own (tetra_arguments.h), and the name of the cell's fourth point. The fourth point tells by which face the ray leaves; that face
+ * tells the next cell and its fourth point.
  *
- * Whether a ray passes a face depends on the signs of its edges alone, found exactly and the same from either side; zero counts as if all
- * points were moved by (e, e^2), e vanishing. So a ray passes none or two faces of each cell, whatever its shape, and a way through cells
- * that begins at a border face ends at another. */
+ * Whether a ray passes a face depends on the signs of its edges alone. Signs are exact, and the same seen from the cells on either side.
+ * An edge of exactly zero gets the sign that it would have if all points were moved by (e, e^2) for a vanishing e. So a ray passes none or
+ * two of the faces of a cell of any shape, and a way that begins at a border face ends at another. */
 #ifndef STRATUS_TETRA_MARCH_H
 #define STRATUS_TETRA_MARCH_H
 
 #include "tetra_shade.h"
 
-/* What all rays read. */
+/* The mesh and the sums, which all rays read. */
 typedef struct stratus_tetra_scene {
-  GLOBAL const int* cells; /* eight ints a cell: for each of its points, lowest name first, the next cell opposite and its fourth point */
-  GLOBAL const float* points;      /* x, y, z, value each */
-  GLOBAL const int* sums;          /* stratus_tetra_sums(): up to each entry's middle, then each entry's own, then opaque ones */
-  GLOBAL const float* cell_values; /* if the arguments say so */
+  GLOBAL const int* cells; /* eight ints a cell: for each of its points, lowest name first, the next cell behind the opposite face, and that
+                              cell's fourth point */
+  GLOBAL const float* points; /* x, y, z and value of each */
+  GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
+  GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
   vfloat us, uw, vs, vw;         /* x = (a - uw) - us z, y = (b - vw) - vs z */
-  vfloat begin, end;             /* what is seen of it, in z */
+  vfloat begin, end;             /* the part of the ray that is seen, in z */
   vfloat length, offset;         /* world distance = offset + length z */
-  vfloat x[3], y[3], z[3], s[3]; /* the face's points, and their values; turning from the first to the second and third is positive */
-  vfloat edge[3];                /* opposite each: twice the area that the others and the ray span, >= 0 */
+  vfloat x[3], y[3], z[3], s[3]; /* the face's points and their values; the turn from the first point to the second and third is positive */
+  vfloat edge[3];                /* opposite each point: twice the area of the triangle of the other two and the ray, >= 0 */
   vint name[3], fourth;
-  vint cell;                 /* where its ints begin; negative: outside */
-  vfloat at, value;          /* where the ray entered the cell, and the field there */
-  stratus_tetra_place place; /* of the value in the table */
+  vint cell;                 /* where the cell's ints begin; negative: the ray is outside */
+  vfloat at, value;          /* z where the ray entered the cell, and the field there */
+  stratus_tetra_place place; /* place of that value in the table */
 } stratus_tetra_ray;
 
-/* A cell that was passed: where the ray leaves it, and the field there. */
+/* The passage of one cell: where the ray leaves it, and the field there. */
 typedef struct stratus_tetra_passage {
   vfloat to, last;
   vmask seen; /* lanes that found a face to leave by */
   vfloat from, first;
 } stratus_tetra_passage;
 
-/* px qy - py qx with a sign that is exact (Kahan's way: both products' roundings are known). */
+/* px qy - py qx, with an exact sign: fma gives the rounding errors of both products (Kahan). */
 INLINE vfloat tetra_edge(vfloat px, vfloat py, vfloat qx, vfloat qy)
 {
   const vfloat product = py * qx, rounding = v_fma(py, qx, -product);
   return v_fma(px, qy, -product) - rounding;
 }
 
-/* Of edges that are zero: whether they count as negative. */
+/* Which of the edges that are zero count as negative. */
 INLINE vmask tetra_tie(vmask zero, vfloat px, vfloat py, vfloat qx, vfloat qy)
 {
   const vmask below = v_lt(py, qy), level = m_andnot(v_le(py, qy), below);
@@ -63,8 +64,8 @@ INLINE vmask tetra_negative(vfloat edge, vfloat px, vfloat py, vfloat qx, vfloat
   return negative;
 }
 
-/* Where the ray passes the face, and the field there: weights are the edges, with a hair of each so that a face seen edge-on has a
- * middle. */
+/* Where the ray passes the face (*at, in z), and the field there. The edges are the weights of the opposite points. A tiny number is added
+ * to each, so that a face seen edge-on is passed at its middle. */
 INLINE void tetra_cross(const vfloat edge[3], const vfloat z[3], const vfloat s[3], vfloat* at, vfloat* value)
 {
   const vfloat zero = v_set(0.0f), hair = v_set(1e-30f);
@@ -74,7 +75,8 @@ INLINE void tetra_cross(const vfloat edge[3], const vfloat z[3], const vfloat s[
   *value = v_fma(p, s[0], v_fma(q, s[1], r * s[2])) * share;
 }
 
-/* Replaces one of the face's points by the fourth: `mask[i]` lanes drop point i. d: x, y, z, value; e: edges from d to each point. */
+/* Replaces one of the face's points by the fourth point: lanes of `mask[i]` drop point i. d: the fourth point's x, y, z and value; e:
+ * edges from it to each point. */
 INLINE void tetra_turn(stratus_tetra_ray* r, const vmask mask[3], const vfloat d[4], const vfloat e[3])
 {
   const vfloat m0 = -e[0], m1 = -e[1], m2 = -e[2];
@@ -93,7 +95,7 @@ INLINE void tetra_turn(stratus_tetra_ray* r, const vmask mask[3], const vfloat d
   }
 }
 
-/* Through one cell, to its next face. */
+/* Moves the rays through one cell to its next face. */
 INLINE stratus_tetra_passage tetra_pass(
   CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r, vmask live)
 {
@@ -144,7 +146,7 @@ INLINE stratus_tetra_passage tetra_pass(
   return passage;
 }
 
-/* The largest value so far, and where it is. */
+/* Keeps the largest value so far, and where it is. */
 INLINE void tetra_maximum(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
 {
   const vfloat larger = v_max(first, last);
@@ -153,8 +155,8 @@ INLINE void tetra_maximum(stratus_tetra_light* light, vmask mask, vfloat first, 
   light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
 }
 
-/* Light of a cell that was passed, cut to what is seen. Returns the lanes that are done with their way: outside, hidden by what lies in
- * front, or beyond what is seen. */
+/* Adds the light of a cell that was passed, cut to the part that is seen. Returns the lanes whose way has ended: those that are outside,
+ * hidden by what lies in front, or beyond what is seen. */
 INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vmask live)
 {
@@ -185,7 +187,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
   return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));
 }
 
-/* A ray comes in by a face whose points it has: what it finds there. */
+/* Starts rays at a face whose points they hold: finds where they enter, and the field there. */
 INLINE void tetra_enter(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r, vmask mask)
 {
   vfloat at, value, edge[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light of a stretch of a ray between two values, the field taken as linear in between: from running sums over the table's entries, of
- * which a ray keeps those at the value where it is, so that each cell reads them at one place only. */
+ * Light of a stretch of a ray along which the field is taken as linear between two values. It comes from running sums over the table's
+ * entries. A ray keeps the sums at its present value, so that each cell reads them at one place only. */
 #ifndef STRATUS_TETRA_SHADE_H
 #define STRATUS_TETRA_SHADE_H
 
@@ -9,17 +9,18 @@
 #include "tetra_gather.h"
 #include "transfer_table.h"
 
-/* Most that a stretch's length weighs, so that long ones do not overflow: 1, the least sum of a stretch that shows, over 2^16 entries and
- * 16 pieces is an optical depth of 2^20 then. */
+/* The most that a stretch's weight is, so that long stretches do not overflow. At this weight a stretch that shows is opaque in any case:
+ * the least sum, 1, spread over 2^16 entries and 16 pieces, is an optical depth of 2^20. */
 #define OPAQUE_WEIGHT 0x1p40f
 
-/* What a ray has gathered. */
+/* The light that a ray has gathered. */
 typedef struct stratus_tetra_light {
   vfloat red, green, blue, transparency, depth;
   vfloat most; /* maximum: the largest value */
 } stratus_tetra_light;
 
-/* A value in the table: the entry nearest to it, and the sums (red, green, blue times tau, and tau) up to that entry's middle. */
+/* A value's place in the table: the entry nearest to it, and the sums of red, green and blue times tau, and of tau, up to that entry's
+ * middle. */
 typedef struct stratus_tetra_place {
   vint entry, sum[4];
 } stratus_tetra_place;
@@ -42,7 +43,8 @@ INLINE stratus_tetra_place tetra_place_select(vmask mask, const stratus_tetra_pl
   return place;
 }
 
-/* (1 - exp(-x)) / x, x >= 0: what each bit of optical depth absorbs, on the mean, of the light that comes in. To 4e-7 of its value. */
+/* (1 - exp(-x)) / x for x >= 0, with a relative error of 4e-7: the mean transparency of a medium of optical depth x to light from its
+ * front. */
 INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
 {
   const vfloat one = v_set(1.0f), minus = -v_min(x, one);
@@ -62,18 +64,17 @@ INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
   return share;
 }
 
-/* Puts the light between two places of the table behind what the rays have; weight: length times the optical depth of one unit of the
- * sums. */
+/* Composites the light between two places of the table. weight: length times the optical depth of one unit of the sums. */
 INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near)
 {
   const vint rise = to->entry - from->entry, one = vi_set(1);
   const vmask level = mask & vi_zero(rise);
-  vint span[4]; /* sums never fall: these have the sign of `rise` */
+  vint span[4]; /* running sums never fall, so that these have the sign of `rise` */
   for (int c = 0; c < 4; ++c) {
     span[c] = to->sum[c] - from->sum[c];
   }
-  if (m_any(level)) { /* within one entry: that entry, so that what is transparent stays so beside what is not */
+  if (m_any(level)) { /* a stretch within one entry takes that entry, so that a transparent entry stays so beside one that is not */
     vint own[4];
     gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
     for (int c = 0; c < 4; ++c) {
@@ -99,13 +100,13 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
 }
 
-/* A stretch from `first` at place `from` to `last` at place `to` that meets nothing opaque, in pieces where averaging colours would show.
- */
+/* A stretch that meets nothing opaque, from value `first` at place `from` to `last` at place `to`, cut into pieces where averaging its
+ * colours would show. */
 INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
   const vfloat one = v_set(1.0f), weight = v_min(length * v_set(a->table.tau_scale), v_set(OPAQUE_WEIGHT));
-  const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* of as many entries as the stretch spans */
+  const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* times the number of entries that the stretch spans */
   const vmask several = mask & v_lt(one, depth * v_set(a->table.color_slope));
   if (!m_any(several)) {
     tetra_composite(a, sums, light, mask, from, to, weight, near);
@@ -128,7 +129,7 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
   } while (m_any(mask));
 }
 
-/* Entry `entry` of opacity 1 behind what the rays have. */
+/* Composites entry `entry`, of opacity 1. */
 INLINE void tetra_end(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
 {
@@ -145,7 +146,7 @@ INLINE void tetra_end(
   }
 }
 
-/* Any stretch: up to the entry before the first opaque one, then that one. */
+/* Any stretch: the part before the first opaque entry, then that entry. */
 INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   vfloat first, vfloat last, const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The march of a tile's rays. A lane whose ray has ended takes another pixel, so that packets stay full; what a ray does depends on
+ * Marches the rays of a tile. A lane whose ray has ended takes the next pixel, so that packets stay full. A ray's result depends on
  * nothing but the ray. */
 #ifndef STRATUS_TETRA_TILE_H
 #define STRATUS_TETRA_TILE_H
 
 #include "tetra_entry.h"
 
-/* So many lanes wait before new rays are taken: that costs as much for one as for all. */
+/* How many lanes wait before new rays are loaded: loading costs as much for one lane as for all. */
 #define TETRA_REFILL (STRATUS_WIDTH / 4 > 0 ? STRATUS_WIDTH / 4 : 1)
 
 typedef struct stratus_tetra_found {
@@ -18,17 +18,17 @@ typedef struct stratus_tetra_found {
 typedef struct stratus_tetra_lanes {
   stratus_tetra_ray ray;
   stratus_tetra_light light;
-  vint pixel, entry, beyond; /* entries that the ray has not come in by */
-  vint steps, segments;      /* of this way, of all ways before */
-  vmask live, done;          /* done: their way has ended; neither: there is no pixel for them */
+  vint pixel, entry, beyond; /* the next entry of the ray, and the end of its entries */
+  vint steps, segments;      /* cells passed since the last entry; cells passed in all */
+  vmask live, done;          /* done: the lane's way has ended; neither live nor done: there is no pixel for it */
 } stratus_tetra_lanes;
 
 typedef struct stratus_tetra_walk {
   const stratus_tetra_view* view;
   CONSTANT stratus_tetra_arguments* arguments;
-  int tile, x0, y0, next, count; /* of `pixels` */
+  int tile, x0, y0, next, count; /* next, count: of `pixels` */
   stratus_tetra_found found;
-  ushort pixels[STRATUS_WIDTH > 1 ? TETRA_PIXELS : 1]; /* that cells cover */
+  ushort pixels[STRATUS_WIDTH > 1 ? TETRA_PIXELS : 1]; /* pixels of the tile that have an entry */
 } stratus_tetra_walk;
 
 INLINE vfloat v_root(vfloat a)
@@ -41,7 +41,7 @@ INLINE vfloat v_root(vfloat a)
   return a * r;
 }
 
-/* The rays of lanes that have a new pixel. */
+/* Loads the rays of lanes that have a new pixel. */
 INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
 {
   const stratus_tetra_view* v = t->view;
@@ -58,7 +58,7 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   const vfloat square = v_fma(u, v_fma(u, v_set(a->square[3]), v_fma(w, v_set(a->square[4]), v_set(a->square[1]))),
     v_fma(w, v_fma(w, v_set(a->square[5]), v_set(a->square[2])), v_set(a->square[0])));
   const vfloat length = v_root(square);
-  /* where there is a lean rays are parallel: uw and vw are u and v */
+  /* only parallel rays lean, whose uw and vw are u and v */
   const vfloat lean = v_fma(r->uw, v_set(a->lean[0]), r->vw * v_set(a->lean[1]));
   r->length = v_select(mask, length * v_set(a->per_z), r->length);
   r->offset = v_select(mask, length * v_fma(-lean, v_set(a->per_z), v_set(a->per_frame)), r->offset);
@@ -82,7 +82,7 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   k->light.most = v_select(mask, v_set(-LARGEST_FLOAT), k->light.most);
 }
 
-/* Rays come in by their next entry. */
+/* Starts rays at their next entry. */
 INLINE void lanes_enter(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
 {
   const stratus_tetra_view* v = t->view;
@@ -113,7 +113,7 @@ INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba
   const stratus_tetra_view* v = t->view;
   const int x = t->x0 + pixel % TETRA_TILE, y = t->y0 + pixel / TETRA_TILE;
   const size_t at = (size_t)y * (size_t)t->arguments->picture.width + (size_t)x;
-  depth = t->arguments->shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: what begins at the eye, rounded to behind it */
+  depth = t->arguments->shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: a depth at the eye may be rounded to behind it */
   for (int c = 0; c < 4; ++c) {
     v->rgba[4 * at + (size_t)c] = rgba[c];
   }
@@ -129,12 +129,12 @@ INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba
   }
 }
 
-/* Pixels of lanes whose ray has ended. */
+/* Stores the pixels of lanes whose ray has ended. */
 INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vmask mask)
 {
   float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], most[STRATUS_WIDTH];
   int pixel[STRATUS_WIDTH], segments[STRATUS_WIDTH], entry[STRATUS_WIDTH];
-  const vfloat one = v_set(1.0f); /* sums may have been rounded up */
+  const vfloat one = v_set(1.0f); /* rounding may take a sum above 1 */
   v_store(channel[0], v_min(k->light.red, one));
   v_store(channel[1], v_min(k->light.green, one));
   v_store(channel[2], v_min(k->light.blue, one));
@@ -162,7 +162,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   }
 }
 
-/* Lanes whose way has ended: their next way if there is one that they can see, else the next pixel. */
+/* Lanes whose way has ended start their ray at its next entry if it can still see that; else they store the pixel and take another. */
 INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
 {
   CONSTANT stratus_tetra_arguments* a = t->arguments;
@@ -220,7 +220,7 @@ INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
 
 INLINE int lanes_ready(const stratus_tetra_lanes* k) { return m_any(k->done) && (m_count(k->done) >= TETRA_REFILL || !m_any(k->live)); }
 
-/* Ends the ways that have passed as many cells as there are. Returns in how many steps the first of the others may. */
+/* Ends ways that have passed as many cells as there are: no way can. Returns the number of steps after which another may have. */
 INLINE int lanes_give_up(stratus_tetra_lanes* k, int most)
 {
   int steps[STRATUS_WIDTH], least = most;
