@@ -1,34 +1,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The trilinear field along a ray through one cell: a cubic, cut where it turns, and its roots.
+ * The trilinear field along a ray through one cell is a cubic. It is cut where it turns, and its roots are found piece by piece.
  *
- * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept, their search is not:
- * halving needs no division and ends after the same number of steps in every lane.
- * Neighbouring cells have the very same bits where a ray passes from one to the other, so that a root there is found in one of them, once.
- */
+ * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept. Their search is
+ * replaced by bisection, which needs no division and ends after the same number of steps in every lane. Where a ray passes from a cell to
+ * the next, both cells compute the very same bits, so that a root there is found in exactly one of them. */
 #ifndef STRATUS_CELL_CUBIC_H
 #define STRATUS_CELL_CUBIC_H
 
 #include "packet_math.h"
 #include "ray_segment.h"
 
-/* After so many halvings what is left is taken as straight. */
+/* Steps of bisection, after which the piece is taken as straight. */
 #define CUBIC_HALVINGS 12
 
-/* The field at w in 0..1 is k[0] + k[1] w + k[2] w^2 + k[3] w^3. It is monotone between cut[i] and cut[i + 1], where it is value[i] and [i
- * + 1]. */
+/* The field at w in 0..1 is k[0] + k[1] w + k[2] w^2 + k[3] w^3. Between cut[i] and cut[i + 1] it is monotone, from value[i] to value[i +
+ * 1]. */
 typedef struct stratus_cubic {
   vfloat k[4];
   vfloat cut[4], value[4];
 } stratus_cubic;
 
-/* Between a and b, exactly those at t = 0 and 1, and never beyond them. */
+/* Interpolates: exactly a at t = 0, exactly b at t = 1, and never outside a..b. */
 INLINE vfloat v_between(vfloat a, vfloat b, vfloat t)
 {
   const vfloat value = v_fma(t, b, v_fma(v_set(0.0f) - t, a, a));
   return v_min(v_max(value, v_min(a, b)), v_max(a, b));
 }
 
-/* The field at fractions e of a cell with corners v. */
+/* The field at the fractions e of a cell with corners v. */
 INLINE vfloat cell_value(const vfloat v[8], const vfloat e[3])
 {
   const vfloat near = v_between(v_between(v[0], v[1], e[0]), v_between(v[2], v[3], e[0]), e[1]);
@@ -38,14 +37,14 @@ INLINE vfloat cell_value(const vfloat v[8], const vfloat e[3])
 
 INLINE vfloat cubic_at(const stratus_cubic* c, vfloat w) { return v_fma(v_fma(v_fma(c->k[3], w, c->k[2]), w, c->k[1]), w, c->k[0]); }
 
-/* 1/a for any a but next to none, whose reciprocal stays finite. */
+/* 1/a for a of either sign. Where a is next to zero the result stays finite. */
 INLINE vfloat v_signed_reciprocal(vfloat a)
 {
   const vfloat size = v_reciprocal(v_max(v_abs(a), v_set(1e-30f)));
   return v_select(v_lt(a, v_set(0.0f)), v_set(0.0f) - size, size);
 }
 
-/* Coefficients of the cubic from fractions e to fractions e + d. */
+/* Coefficients of the cubic on the way from the fractions e to the fractions e + d. */
 INLINE void cubic_coefficients(const vfloat v[8], const vfloat e[3], const vfloat d[3], vfloat k[4])
 {
   vfloat q[2][3];
@@ -65,7 +64,7 @@ INLINE void cubic_coefficients(const vfloat v[8], const vfloat e[3], const vfloa
   k[3] = d[2] * up[2];
 }
 
-/* Where the cubic turns within 0..1, the nearer first; 0 or 1 in place of turns elsewhere, or of none. */
+/* Where the cubic turns within 0..1, the nearer turn first. A turn that is elsewhere, or none, becomes 0 or 1. */
 INLINE void cubic_turns(const vfloat k[4], vfloat* first, vfloat* second)
 {
   const vfloat zero = v_set(0.0f), largest = v_max(v_max(v_abs(k[1]), v_abs(k[2])), v_abs(k[3]));
@@ -74,14 +73,15 @@ INLINE void cubic_turns(const vfloat k[4], vfloat* first, vfloat* second)
   const vfloat square = v_fma(c2, c2, zero - c3 * c1);
   const vmask any = v_lt(zero, square);
   const vfloat root = v_select(any, square * v_inverse_root(v_max(square, v_set(1e-30f))), zero);
-  const vfloat sum = v_select(v_lt(c2, zero), root - c2, zero - (root + c2)); /* no cancellation */
+  const vfloat sum =
+    v_select(v_lt(c2, zero), root - c2, zero - (root + c2)); /* the sum of two numbers of the same sign, so that no digits cancel */
   const vfloat one_turn = v_select(any, v_clamp(sum * v_signed_reciprocal(c3), 0.0f, 1.0f), zero);
   const vfloat other_turn = v_select(any, v_clamp(c1 * v_signed_reciprocal(sum), 0.0f, 1.0f), zero);
   *first = v_min(one_turn, other_turn);
   *second = v_max(one_turn, other_turn);
 }
 
-/* The field of a cell with corners v along the way from fractions e to fractions f. */
+/* The cubic of a cell with corners v, on the way from the fractions e to the fractions f. */
 INLINE void cubic_of_cell(const vfloat v[8], const vfloat e[3], const vfloat f[3], stratus_cubic* c)
 {
   const vfloat d[3] = { f[0] - e[0], f[1] - e[1], f[2] - e[2] }, zero = v_set(0.0f), one = v_set(1.0f);
@@ -97,8 +97,8 @@ INLINE void cubic_of_cell(const vfloat v[8], const vfloat e[3], const vfloat f[3
   }
 }
 
-/* Where the cubic passes `level` in its piece number `piece`; `below`: the piece begins below the level. It passes it, or the answer is
- * somewhere in the piece. */
+/* Where the cubic passes `level` in piece number `piece`. below: whether the piece begins below the level. In a piece that does not pass
+ * the level, the result is anywhere. */
 INLINE vfloat cubic_root(const stratus_cubic* c, int piece, vfloat level, vmask below)
 {
   vfloat lo = c->cut[piece], hi = c->cut[piece + 1];

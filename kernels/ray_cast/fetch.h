@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Values of the volume for a packet, as floats. Included once for each STRATUS_TYPE (stratus_type's number) with 32-bit indices, and with
- * STRATUS_TYPE -1 for the generic fetch: any type, stride and size, axes of one value; slow and always right.
+ * Loads the volume's values for a packet, as floats. Included once for each STRATUS_TYPE (the number of a stratus_type) with 32-bit
+ * indices, and once with STRATUS_TYPE -1 for the generic fetch. That takes any type, stride and size, and axes of one value; it is slow.
  *
- *   fetch_pair(a, index, mask, tail, &v0, &v1)   values[index], values[index+1]
- *   fetch_cell(a, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
- *   fetch_nearest(a, i, j, k, mask)              one value */
+ *   fetch_pair(a, values, index, mask, end, &v0, &v1)   values[index] and values[index+1]; not in the generic fetch
+ *   fetch_cell(a, values, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
+ *   fetch_nearest(a, values, i, j, k, mask)              the value (i,j,k) */
 #ifndef STRATUS_TYPE
 #error "STRATUS_TYPE is not set"
 #endif
@@ -128,7 +128,7 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
 #define VALUES ((GLOBAL const VALUE*)values)
 
 #if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
-#define FETCH_DWORD 1 /* small types: one gather of four bytes holds a pair */
+#define FETCH_DWORD 1 /* values of one or two bytes: one gather of four bytes loads a pair */
 #endif
 
 #ifndef FETCH_DWORD
@@ -166,7 +166,7 @@ INLINE vfloat RAY_NAME(fetch_lanes)(CONSTANT stratus_ray_cast_arguments* a, GLOB
 #define DWORD_LOG2 1
 #define DWORD_SHIFT 16
 #endif
-/* Element `which` of the dword, signed or not. */
+/* Value number `which` of the dword, with its sign if the type has one. */
 INLINE vint RAY_NAME(dword_part)(vint dword, int which)
 {
 #if STRATUS_TYPE == 0 || STRATUS_TYPE == 2
@@ -178,7 +178,7 @@ INLINE vint RAY_NAME(dword_part)(vint dword, int which)
 INLINE vint RAY_NAME(gather_bytes)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end)
 {
 #if STRATUS_TYPE <= 1
-  if (end) { /* the last four bytes are read from further left and shifted, so that nothing beyond them is */
+  if (end) { /* near the volume's end the four bytes begin further left and are shifted, so that none beyond the end is read */
     const vint from = vi_min(index, vi_set(a->values.tail));
     return LOGICAL_RIGHT(GATHER_DWORD(values, from, mask, DWORD_LOG2), (index - from) << vi_set(3));
   }
@@ -190,7 +190,7 @@ INLINE vint RAY_NAME(gather_bytes)(CONSTANT stratus_ray_cast_arguments* a, GLOBA
 }
 #endif
 
-/* values[index] and values[index+1]; end: the pair may be the volume's last. */
+/* values[index] and values[index+1]. end: 1 where the pair may be the last of the volume. */
 INLINE void RAY_NAME(fetch_pair)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint index, vmask mask, int end, vfloat* v0, vfloat* v1)
 {
@@ -265,7 +265,7 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
 #if STRATUS_TYPE <= 1
   return v_from_int(RAY_NAME(dword_part)(RAY_NAME(gather_bytes)(a, values, index, mask, 1), 0));
 #else
-  /* the pair that ends with the last value, never one beyond it */
+  /* gathers the pair that ends with this value: a pair that begins with it may reach beyond the volume */
   const vint from = vi_max(index - vi_set(1), vi_set(0));
   const vint dword = GATHER_DWORD(values, from, mask, DWORD_LOG2);
   return v_from_int(vi_select(vi_lt(from, index), RAY_NAME(dword_part)(dword, 1), RAY_NAME(dword_part)(dword, 0)));

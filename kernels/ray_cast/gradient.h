@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The field's gradient at a sample. Included after fetch.h, once for each STRATUS_TYPE.
  *
- * The trilinear interpolation of the eight corners' central differences, which is the central difference of the interpolated field: 32
- * values of the 4x4x4 about the cell. A corner without a neighbour (the volume ends, or the value there is no number) takes the difference
- * to the other one. */
+ * It interpolates the central differences at the cell's eight corners, which is the central difference of the interpolated field. It reads
+ * 32 of the 4x4x4 values about the cell. A corner that lacks a neighbour, because the volume ends or the value there is not finite, takes
+ * the one-sided difference. */
 #ifndef STRATUS_GRADIENT_H
 #define STRATUS_GRADIENT_H
-/* Differences at `from` and `to`, which lie side by side, at t between them. lower, upper: where `before` and `after` are beyond the
- * volume. */
+/* Interpolates, at t, the central differences at the neighbouring values `from` and `to`. lower, upper: lanes where `before`, or `after`,
+ * lies beyond the volume. */
 INLINE vfloat gradient_between(vfloat before, vfloat from, vfloat to, vfloat after, vfloat t, vmask lower, vmask upper)
 {
   const vfloat inner = to - from, half_one = v_set(0.5f);
@@ -19,7 +19,7 @@ INLINE vfloat gradient_between(vfloat before, vfloat from, vfloat to, vfloat aft
 INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g); }
 #endif
 
-/* values[i..i+1] of row (j, k): at the volume's end the last one twice. */
+/* The values i and i+1 of row (j, k). At the volume's end both are the last value. */
 INLINE void RAY_NAME(fetch_two)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
 {
@@ -31,7 +31,7 @@ INLINE void RAY_NAME(fetch_two)(
 #endif
 }
 
-/* Where values are taken as they are: the differences at the voxel itself. */
+/* The gradient for nearest interpolation: differences at the voxel itself. */
 INLINE void RAY_NAME(voxel_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
@@ -57,7 +57,7 @@ INLINE void RAY_NAME(voxel_gradient)(
   }
 }
 
-/* g: value a voxel along each axis at index coordinates x, in the lanes of `mask`; where the mask is not set, any number. */
+/* g: change of the value per voxel along each axis, at index coordinates x. Lanes outside `mask` get any number. */
 INLINE void RAY_NAME(ray_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
@@ -82,14 +82,14 @@ INLINE void RAY_NAME(ray_gradient)(
     after[axis] = vi_min(at[axis] + vi_set(2), vi_set(end));
   }
   RAY_NAME(fetch_cell)(a, values, at[0], at[1], at[2], mask, v);
-  for (int row = 0; row < 4; ++row) { /* along x, at the cell's four edges */
+  for (int row = 0; row < 4; ++row) { /* along x, on the four edges of the cell that run along x */
     const vint j = at[1] + vi_set(row & 1), k = at[2] + vi_set(row >> 1);
     const vint y = vi_min(j, vi_set(a->values.dimensions[1] - 1)), z = vi_min(k, vi_set(a->values.dimensions[2] - 1));
     const vfloat left = RAY_NAME(fetch_nearest)(a, values, before[0], y, z, mask),
                  right = RAY_NAME(fetch_nearest)(a, values, after[0], y, z, mask);
     line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
   }
-  for (int side = 0; side < 2; ++side) { /* along y at both ends of z, along z at both ends of y */
+  for (int side = 0; side < 2; ++side) { /* along y on the edges at both ends of z, along z on the edges at both ends of y */
     const vint j = vi_min(at[1] + vi_set(side), vi_set(a->values.dimensions[1] - 1)),
                k = vi_min(at[2] + vi_set(side), vi_set(a->values.dimensions[2] - 1));
     vfloat low[2], high[2];

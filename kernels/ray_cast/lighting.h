@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The light that falls on a sample, as VTK's volume mappers shade: ambient, diffuse by N L, specular by (N H)^power with H half way between
- * the light and the eye (Blinn 1977), N against the gradient and, where both sides are lit, turned towards the eye. */
+ * The light that falls on a sample, as VTK's volume mappers compute it: ambient light, diffuse by N L, specular by (N H)^power with H half
+ * way between the light and the eye (Blinn 1977). N points against the gradient; where both sides are lit it is turned towards the eye. */
 #ifndef STRATUS_SHADING_H
 #define STRATUS_SHADING_H
 
@@ -8,7 +8,7 @@
 
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
 
-/* rows of m times v */
+/* The product of the 3x3 matrix m, row by row, and v. */
 INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
 {
   for (int row = 0; row < 3; ++row) {
@@ -16,13 +16,13 @@ INLINE void v_transform3(CONSTANT float* m, const vfloat v[3], vfloat result[3])
   }
 }
 
-/* By the power of 2 that takes the largest component to 1..4, exactly: squares then neither overflow nor vanish, be the values' range what
- * it may. The largest as it was. */
+/* Scales v by the power of 2 that brings its largest component to 1..4. That is exact, and squares then neither overflow nor vanish,
+ * whatever the range of the values. Returns the largest component as it was. */
 INLINE vfloat v_scale3(vfloat v[3])
 {
   const vfloat largest = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));
   const vint exponent =
-    v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is a normal number's */
+    v_to_bits(v_clamp(largest, 0.0f, 1e38f)) & vi_set(0x7f800000); /* at most 253, so that 254 less it is the exponent of a normal number */
   const vfloat scale = v_from_bits(vi_set(0x7f000000) - exponent);
   for (int axis = 0; axis < 3; ++axis) {
     v[axis] = v[axis] * scale;
@@ -30,7 +30,7 @@ INLINE vfloat v_scale3(vfloat v[3])
   return largest;
 }
 
-/* To length 1; 0 where no component is above `least` or one is no number. */
+/* Scales v to length 1. Makes it 0 where no component is above `least`, or where one is not finite. */
 INLINE void v_normalize3(vfloat v[3], float least)
 {
   const vfloat largest = v_scale3(v), square = v_dot3(v, v), zero = v_set(0.0f);
@@ -41,10 +41,11 @@ INLINE void v_normalize3(vfloat v[3], float least)
   }
 }
 
-/* a^power for 0 < a <= 1, to some 1e-6: the series of the logarithm about 1 after the exponent is taken off, and v_absorbed(). */
+/* a^power for 0 < a <= 1, with an error of about 1e-6. The exponent and a series about 1 give the logarithm, v_absorbed() the exponential.
+ */
 INLINE vfloat v_power(vfloat a, float power)
 {
-  const vint bits = v_to_bits(a) - vi_set(0x3f3504f3); /* from sqrt(1/2) on */
+  const vint bits = v_to_bits(a) - vi_set(0x3f3504f3); /* so that the exponent changes at sqrt(1/2), not at 1 */
   const vint exponent = bits >> vi_set(23);
   const vfloat m = v_from_bits((bits & vi_set(0x7fffff)) + vi_set(0x3f3504f3)), one = v_set(1.0f);
   const vfloat s = (m - one) * v_reciprocal(m + one), square = s * s;
@@ -58,13 +59,13 @@ INLINE vfloat v_power(vfloat a, float power)
   return one - v_absorbed(depth);
 }
 
-/* The entry of component c's table that a value falls in. */
+/* The entry of a value in component c's table. */
 INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, int c, vfloat value)
 {
   return v_to_int(v_clamp(v_fma(value, v_set(a->media.scale[c]), v_set(a->media.offset[c])), 0.0f, a->media.last[c]));
 }
 
-/* What component c's gradient opacity makes of its optical depth where its index gradient is g; 1 without such a function. */
+/* What component c's gradient opacity multiplies its optical depth by, where its index gradient is g; 1 without such a function. */
 INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const vfloat g[3], vmask mask)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
@@ -73,11 +74,12 @@ INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
   if (a->media.factor_first[c] < 0) {
     return one;
   }
-  for (int axis = 0; axis < 3; ++axis) { /* in entries; a component beyond the last one is as good as at it, and its square is finite */
+  for (int axis = 0; axis < 3; ++axis) { /* in entries. Beyond the last entry the factor is constant, so that components are clamped there,
+                                            and their squares stay finite */
     v[axis] = v_clamp(g[axis] * v_set(a->media.gradient_length[axis]) * v_set(a->media.factor_scale[c]), -last, last);
   }
   const vfloat square = v_dot3(v, v);
-  const vmask steep = v_le(v_set(1e-28f), square); /* below it the first entry's */
+  const vmask steep = v_le(v_set(1e-28f), square); /* a shorter gradient takes the first entry */
   const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
   const vint entry = v_to_int(place);
   GLOBAL const int* factors = (GLOBAL const int*)table + a->media.factor_first[c];
@@ -85,8 +87,8 @@ INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
   return v_lerp(low, high, place - v_from_int(entry));
 }
 
-/* Of the samples at index coordinates x with the index gradient g, on rays of index direction d: a colour C of opacity A becomes
- * C diffuse + A specular. diffuse holds the ambient light, too. */
+/* Lights samples at index coordinates x with the index gradient g, on rays of index direction d. A colour C of opacity A becomes C diffuse
+ * + A specular. diffuse includes the ambient light. */
 INLINE void ray_light(
   CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
 {
@@ -95,7 +97,7 @@ INLINE void ray_light(
   vfloat steep[3] = { g[0], g[1], g[2] };
   v_scale3(steep);
   v_transform3(a->light.normal, steep, normal);
-  v_normalize3(normal, 0.0f); /* a field that is flat has no normal: ambient light only */
+  v_normalize3(normal, 0.0f); /* where the field is flat the normal is 0, and only ambient light remains */
   v_transform3(a->light.place, d, eye);
   v_normalize3(eye, 0.0f);
   v_transform3(a->light.place, x, place);
@@ -120,7 +122,7 @@ INLINE void ray_light(
     for (int axis = 0; axis < 3; ++axis) {
       half_way[axis] = light[axis] + eye[axis];
     }
-    v_normalize3(half_way, 1e-6f); /* light and eye opposite: what is left is rounding */
+    v_normalize3(half_way, 1e-6f); /* where light and eye lie opposite, half_way is nothing but rounding */
     const vfloat cosine = v_max(v_dot3(normal, light), zero), gloss = v_dot3(normal, half_way);
     const vmask lit = v_lt(zero, cosine), shines = lit & v_lt(v_set(1e-9f), gloss);
     const vfloat matt = cosine * v_set(a->light.material[1]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Entry point of the ray cast: one ray a work item where STRATUS_WIDTH is 1 (a GPU), else a tile of packets, as on the host (a CPU). */
+ * The ray cast on a device. Where STRATUS_WIDTH is 1 (a GPU) a work item does one ray; else (a CPU) it does a tile in packets, as the host
+ * does. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -57,7 +58,7 @@ static void store_pixel(
 }
 
 #if STRATUS_WIDTH == 1
-/* counts: rays, samples, skipped, lookups, a row of pixels each, so that 32 bits hold them. */
+/* counts: rays, samples, skipped, lookups of each row of pixels, so that 32 bits hold them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
   __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
   __global float* depth, __global uint* samples, __global uint* counts)
@@ -148,7 +149,7 @@ static uint sum_lanes(vint lanes)
   return c.x + c.y;
 }
 
-/* counts: rays, samples, skipped, lookups, a tile each, so that 32 bits hold them and nobody else adds to them. */
+/* counts: rays, samples, skipped, lookups of each tile. 32 bits hold a tile's, and no other work item adds to them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
   __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
   __global float* depth, __global uint* samples, __global uint* counts)
@@ -168,7 +169,8 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
           packet_nothing(&k[i]);
           crop[i].all = m_none();
         } else {
-          RAY_NAME(ray_load)(a, opaque_depth, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
+          RAY_NAME(ray_load)
+          (a, opaque_depth, x + i * PACKET_X, y, &k[i], &crop[i]); /* a packet beyond the picture has no live ray and stores nothing */
         }
       }
       for (int piece = 0; piece < pieces; ++piece) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The march of one packet of rays through a volume, front to back, leaping over what a distance map tells to be transparent.
- * Included once for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite); RAY_NAME(x) gives each
- * inclusion its own names.
+ * The march of a packet of rays through a volume, front to back. It leaps over what the structure tells to be transparent. Included once
+ * for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite). RAY_NAME(x) is the inclusion's own name of
+ * the function x.
  *
- * Every structure meets the same samples: the structure only tells which segments need none, and a segment left out would have added
- * exactly zero, so the bits of the picture do not depend on it. */
+ * Every structure meets the same samples. The structure only tells which segments need none; such a segment would have added exactly zero,
+ * so that the bits of the picture do not depend on the structure. */
 #ifndef RAY_NAME
 #error "RAY_NAME is not set"
 #endif
@@ -23,7 +23,7 @@
 #include "ray_extremes.h"
 #endif
 
-/* The field at index coordinates x: not finite where a corner is not, or the cell is hidden. */
+/* The field at index coordinates: not finite where a corner is not, or where the cell or the value is hidden. */
 INLINE vfloat RAY_NAME(ray_value)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
 {
@@ -50,7 +50,8 @@ INLINE vfloat RAY_NAME(ray_value)(
   return value;
 }
 
-/* Moves rays that need it over transparent segments, and tells those in occupied blocks how far they may go unasked. */
+/* Moves the rays of `need` over transparent segments. Sets, for those that stay in an occupied block, up to which segment they need not
+ * ask again (run). */
 INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need)
 {
   do {
@@ -77,7 +78,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     }
     vmask occupied = need & vi_ge(byte, vi_set(128));
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
-    /* an occupied block that holds nothing better is passed, too; of its neighbours nothing is known yet */
+    /* a block that holds nothing better is passed like an empty one; nothing is known of its neighbours yet */
     byte = vi_select(occupied, vi_set(1), byte);
     occupied = best_may_be_in(a, map, block, k->front, occupied);
 #endif
@@ -88,7 +89,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     const vmask stay = occupied | (need & vi_ge(k->i, next));
     const vint run = vi_max(next, k->i) + vi_set(1);
 #else
-    const vint next = vi_max(v_to_int(leave + v_set(0.5f)), k->i + vi_set(1)); /* the first whose middle may be outside */
+    const vint next = vi_max(v_to_int(leave + v_set(0.5f)), k->i + vi_set(1)); /* the first segment whose middle may lie outside the cube */
     const vmask stay = occupied;
     const vint run = next;
 #endif
@@ -105,8 +106,8 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
   } while (m_any(need));
 }
 
-/* The next sample of every live ray. The value is fetched for all lanes that are still inside, ended rays too: whether a ray has ended
- * hangs on the last sample's colour, and the next fetch need not wait for that. */
+/* Takes the next sample of every live ray. The value is fetched for all lanes that are inside the volume, those of ended rays too: whether
+ * a ray has ended hangs on the colour of the last sample, and the fetch need not wait for that. */
 INLINE stratus_sample RAY_NAME(ray_sample)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {
@@ -128,7 +129,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
   return sample;
 }
 
-/* Here and not where they are used: a device is sent each header once, in one of the branches below. */
+/* These stand here and not where they are used, for a device is sent each header once, in only one of the branches below. */
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
 #include "gradient.h"
 #include "lighting.h"
@@ -147,7 +148,7 @@ INLINE void RAY_NAME(ray_shade)(
   const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
   k->samples -= mask_int(k->live);
 #if STRATUS_PREINTEGRATED
-  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that know the value at the segment's front */
   const vmask valid = whole & v_finite(value) & v_finite(k->front);
   integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
   k->front = value;
@@ -162,7 +163,7 @@ INLINE void RAY_NAME(ray_shade)(
 #endif
 
 #if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE
-/* Asks the structure where enough rays need it. False if that was the end of all of them. */
+/* Asks the structure once enough rays need it. Returns 0 if no ray is left. */
 INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
   if (a->map.structure) {
@@ -185,7 +186,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
 }
 
 #if PACKETS_TOGETHER == 2
-/* Two packets side by side: while one waits for its values, the other computes. Each does what it would do alone. */
+/* Marches two packets side by side: while one waits for its values, the other computes. The bits are those of each packet alone. */
 INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
@@ -199,8 +200,7 @@ INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOB
 #endif
 #endif
 
-/* Rays of the packet at pixel (x, y), from the pixels' coordinates to the first segment that is worth a look; `crop` is set where the frame
- * has any. */
+/* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
 INLINE void RAY_NAME(ray_load)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
 {

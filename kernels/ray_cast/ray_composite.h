@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From samples and segments to light: layers by the transfer function's table, composited front to back. */
+ * From samples and segments to light: the transfer function's table gives a layer of colour and opacity, and layers are composited front
+ * to back. */
 #ifndef STRATUS_RAY_COMPOSITE_H
 #define STRATUS_RAY_COMPOSITE_H
 
@@ -7,7 +8,7 @@
 #include "ray_segment.h"
 #include "transfer_table.h"
 
-/* Puts a layer of colour (times alpha) and alpha behind what the rays have gathered. lo: where its segment begins. */
+/* Composites a layer, colour times alpha and alpha, behind what the rays have gathered. lo: where its segment begins. */
 INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, const vfloat layer[4], vfloat lo)
 {
   if (a->picture.want_depth) {
@@ -20,12 +21,12 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
   k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
 }
 
-/* Layers of whole segments made those of a part of the optical depth: `weight` of it. */
+/* Makes layers of whole segments those of a part of the optical depth, `weight` of it. */
 INLINE void shorten_layer(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])
 {
   const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
-  if (m_any(part)) { /* the ends of a ray */
+  if (m_any(part)) { /* only the segments at a ray's ends are shorter than a sample distance */
     vfloat last[4];
     gather_four(table + 4 * ((int)a->table.last + 1), entry, part, last);
     const vfloat alpha = v_absorbed(last[0] * weight),
@@ -36,7 +37,7 @@ INLINE void shorten_layer(
   }
 }
 
-/* What a sample shows beside its value's colour and opacity: the optical depth times `factor`; a colour C of opacity A as C diffuse + A
+/* How light and gradient change a sample. `factor` multiplies its optical depth, and a colour C of opacity A becomes C diffuse + A
  * specular. */
 typedef struct stratus_lit_sample {
   vfloat factor, diffuse[3], specular[3];
@@ -49,7 +50,7 @@ INLINE void light_layer(const stratus_lit_sample* lighting, vfloat layer[4])
   }
 }
 
-/* Midpoint rule. table: colour times alpha and alpha of a whole segment, an entry each; then the entries' optical depths. */
+/* The midpoint rule. table: for each entry colour times alpha, and alpha, of a whole segment; behind these each entry's optical depth. */
 INLINE void shade_sample(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
 {
@@ -60,7 +61,7 @@ INLINE void shade_sample(
   composite(a, k, mask, layer, lo);
 }
 
-/* Of lanes in the mask, those whose segments show anything. */
+/* The lanes of the mask whose segments show anything. */
 INLINE vmask segment_shows(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
 {
@@ -68,14 +69,14 @@ INLINE vmask segment_shows(
   return mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
 }
 
-/* Pre-integration between the values at a segment's ends, the field taken as linear in between. sums: running sums over the entries of red,
- * green, blue times tau, and tau. lighting: 0 where there is no more to a sample than its value. */
+/* Pre-integration: the field is taken as linear between the values at a segment's ends. sums: running sums over the entries, of red, green
+ * and blue times tau, and of tau. lighting: NULL where a sample is its value's colour and opacity alone. */
 INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
   vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   const vfloat place = table_place(&a->table, value), front_place = table_place(&a->table, k->front);
-  /* most segments, even of occupied blocks, pass beside all that shows: they need not read the sums */
+  /* most segments, even in occupied blocks, miss all that shows, and need not read the sums */
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
   if (!m_any(mask)) {
@@ -89,7 +90,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vmask opaque = m_none();
   if (a->table.has_opaque) {
     opaque = opaque_on_the_way(&a->table, sums + 4 * ((int)a->table.last + 2), front, entry, mask & v_lt(zero, weight), &opaque_entry);
-    if (m_any(opaque)) { /* the segment ends before that entry, which is put behind it */
+    if (m_any(opaque)) { /* the segment is cut before the opaque entry, which is composited behind it */
       const vint before = vi_max(opaque_entry, front) - vi_min(opaque_entry, front);
       const vfloat part = v_from_int(before) * v_reciprocal(v_from_int(beyond - low));
       depth_scale = v_select(opaque, depth_scale * part, depth_scale);
@@ -115,7 +116,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   }
   do {
     vint to = entry;
-    if (m_any(several)) { /* of several pieces, this one; the last ends where the segment does */
+    if (m_any(several)) { /* the next piece; the last piece ends where the segment does */
       piece = piece + one;
       to = vi_select(v_lt(piece, pieces), table_entry(&a->table, v_fma(rise, piece * share, k->front)), entry);
       low = vi_min(from, to);

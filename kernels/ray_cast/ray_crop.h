@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cropping to any of the 27 regions between two planes along each axis: a ray's way is cut where it passes from a region that is shown to
- * one that is not, and marched piece by piece on its one lattice, so that the march itself knows of no region. */
+ * Cropping to any of the 27 regions that two planes along each axis make. A ray is cut into pieces that pass through shown regions only.
+ * All pieces keep the ray's lattice of samples and are marched one by one, so that the march itself knows of no region. */
 #ifndef STRATUS_RAY_CROP_H
 #define STRATUS_RAY_CROP_H
 
 #include "ray_segment.h"
 
-/* Six planes cut a ray into seven; no two neighbours are kept apart, so four is the most. */
+/* Six planes cut a ray into at most seven parts. Neighbouring parts that are shown are one piece, so that there are at most four. */
 #define CROP_PIECES 4
 
 typedef struct stratus_crop {
   float from[CROP_PIECES][STRATUS_WIDTH], to[CROP_PIECES][STRATUS_WIDTH];
-  vint first, last; /* segments that the whole ray may take */
+  vint first, last; /* the segments that the whole ray may take */
   vmask all;
 } stratus_crop;
 
-/* 1 if the ray of `lane` is in a region that is shown at s. */
+/* 1 if the ray of `lane` is in a shown region at s. */
 INLINE int crop_shows(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, int lane, float s)
 {
   int region = 0;
@@ -28,7 +28,7 @@ INLINE int crop_shows(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays
   return a->crop.regions >> region & 1;
 }
 
-/* The pieces of each ray that are shown: from..to, empty ones behind. */
+/* Finds the pieces of each ray, from..to. Unused pieces are empty and come last. */
 INLINE void crop_pieces(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, float from[CROP_PIECES][STRATUS_WIDTH],
   float to[CROP_PIECES][STRATUS_WIDTH])
 {
@@ -66,7 +66,7 @@ INLINE void crop_pieces(CONSTANT stratus_ray_cast_arguments* a, const stratus_ra
   }
 }
 
-/* Keeps what the pieces of a packet's rays have in common, and cuts them. */
+/* Keeps what all pieces of a packet's rays share, and cuts the rays. */
 INLINE void crop_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, const stratus_packet* k, stratus_crop* crop)
 {
   crop->first = k->i;
@@ -75,8 +75,8 @@ INLINE void crop_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_ray
   crop_pieces(a, rays, crop->from, crop->to);
 }
 
-/* Sends the rays along their piece number `piece`, as far as they have light left. Not inlined: few frames are cropped so, and the march
- * should be compiled as if there were none. */
+/* Starts the rays on piece number `piece`, unless they have ended. Not inlined: few frames are cropped so, and the march should be
+ * compiled as if there were none. */
 #ifdef STRATUS_DEVICE
 static
 #else

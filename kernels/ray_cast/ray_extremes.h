@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What each block holds at best, for rays that look for the largest or smallest value. Behind the map's own bytes lie the bits of a float a
- * block, x fastest: the largest value (times -1 where the smallest is looked for), rounded up by more than interpolation can round. */
+ * The bound of each block, for rays that look for the largest or smallest value. Behind the map's own bytes lie the bits of a float a
+ * block, x fastest: the block's largest value (the negative of its smallest where that is looked for), rounded up by more than
+ * interpolation can round. */
 #ifndef STRATUS_RAY_EXTREMES_H
 #define STRATUS_RAY_EXTREMES_H
 

@@ -1,33 +1,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Isosurfaces along a packet of rays, cell by cell: in each the field is a cubic, whose roots are where the ray meets the surfaces.
- * Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_ISOSURFACE.
+ * Isosurfaces along a packet of rays, cell by cell. Along a ray the field in a cell is a cubic, whose roots are where the ray meets the
+ * surfaces. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_ISOSURFACE.
  *
- * Plane n of an axis is met at (n - p) / d, rounded once, and a ray passes from cell to cell at these numbers only. A leap ends at such a
- * number, too, so the cells behind it are those that a walk without leaps would have come to, and the bits do not depend on the
+ * A ray meets plane n of an axis at (n - p) / d, rounded once, and passes from cell to cell at these numbers only. A leap ends at such a
+ * number, too. So the cells behind a leap are those to which a walk without leaps would have come, and the bits do not depend on the
  * structure. */
 #ifndef STRATUS_RAY_ISOSURFACE_H
 #define STRATUS_RAY_ISOSURFACE_H
 
 #include "cell_cubic.h"
 
-/* Few cells come this far, and the code is long: once for each type. */
+/* Not inlined: few cells come this far, and the code is long. */
 #ifdef STRATUS_DEVICE
 #define SURFACE_OUTLINE static
 #else
 #define SURFACE_OUTLINE static __attribute__((noinline))
 #endif
 
-/* Where the ray is: s, the cell, and the planes by which it came in and will go out of it. */
+/* Where the ray is: s, the cell, and the planes by which it enters and leaves the cell. */
 typedef struct surface_walk {
   vfloat s, leave, end;
   vfloat enter_at[3], leave_at[3];
   vint cell[3];
-  vfloat run; /* the structure need not be asked before */
+  vfloat run; /* up to this s the structure need not be asked */
 } surface_walk;
 
 INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane) { return (v_from_int(plane) - k->p[axis]) * k->inverse[axis]; }
 
-/* The cell behind the point s of each ray. */
+/* The cell that each ray enters at its point s. */
 INLINE void surface_cell(const stratus_packet* k, surface_walk* w)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
@@ -36,7 +36,7 @@ INLINE void surface_cell(const stratus_packet* k, surface_walk* w)
   for (int axis = 0; axis < 3; ++axis) {
     const vmask forward = v_lt(zero, k->inverse[axis]);
     vint cell = v_to_int(v_fma(w->s, k->d[axis], k->p[axis]) + one) - step; /* never below -1 */
-    /* the product has been rounded: one cell off at most */
+    /* the product is rounded, so that the cell may be one off */
     const vfloat before = plane_met(k, axis, vi_select(forward, cell, cell + step));
     cell = cell - vi_select(v_lt(w->s, before), vi_select(forward, step, none - step), none);
     const vfloat after = plane_met(k, axis, vi_select(forward, cell + step, cell));
@@ -48,13 +48,13 @@ INLINE void surface_cell(const stratus_packet* k, surface_walk* w)
   }
 }
 
-/* The cell whose values are read: the border's own where positions are clamped. */
+/* The cell whose values are read. Where positions are clamped that is the border's cell. */
 INLINE vint surface_inside(CONSTANT stratus_ray_cast_arguments* a, const surface_walk* w, int axis)
 {
   return vi_max(vi_min(w->cell[axis], vi_set(a->values.dimensions[axis] - 2)), vi_set(0));
 }
 
-/* Fraction of the cell along an axis at point s of the ray; on a plane that is met there exactly 0 or 1. */
+/* The fraction of the cell along an axis at point s of the ray: exactly 0 or 1 where the ray meets the plane at s. */
 INLINE vfloat surface_fraction(const stratus_packet* k, int axis, vint inside, vfloat s, vfloat met, vint plane)
 {
   const vfloat base = v_from_int(inside), at = v_fma(s, k->d[axis], k->p[axis]) - base, exact = v_from_int(plane) - base;
@@ -62,7 +62,7 @@ INLINE vfloat surface_fraction(const stratus_packet* k, int axis, vint inside, v
   return v_clamp(v_select(there, exact, at), 0.0f, 1.0f);
 }
 
-/* Leaps over cubes of blocks without any contour value. */
+/* Leaps over cubes of blocks that hold no contour value. */
 INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, surface_walk* w)
 {
   vmask need = k->live & v_le(w->run, w->s);
@@ -85,9 +85,9 @@ INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uc
       const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
       leave = v_min(plane_met(k, axis, face << vi_set(a->map.block_log2)), leave);
     }
-    const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* none in the volume's rim, where values are clamped */
+    const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* in the volume's rim, where values are clamped, there is no leap */
     w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
-    leave = v_select(leap, leave, w->s); /* other lanes' planes may be farther than an int can tell */
+    leave = v_select(leap, leave, w->s); /* in other lanes a plane may be farther than an int can hold */
     k->skipped = k->skipped + (v_to_int(leave) - v_to_int(w->s));
     w->s = leave;
     k->live = m_andnot(k->live, leap & v_le(w->end, w->s));
@@ -98,7 +98,7 @@ INLINE void surface_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uc
   }
 }
 
-/* Lanes whose cell has a surface: finite corners on both sides of a contour. */
+/* Lanes whose cell holds a surface: its corners are finite and lie on both sides of a contour value. */
 INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloat v[8], vmask mask)
 {
   vfloat lo = v[0], hi = v[0];
@@ -117,7 +117,7 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 
 #endif
 
-/* Puts the surface at point s of the rays behind what they have gathered. */
+/* Composites the surface at point s of the rays. */
 SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
@@ -145,8 +145,8 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
 }
 
-/* All surfaces in the cells of the rays in `mask`, in the order that the rays meet them: piece by piece, within one by rising or falling
- * values. */
+/* Composites all surfaces in the cells of the rays in `mask`, in the order in which the rays meet them: piece by piece, and within a piece
+ * by rising or falling values. */
 SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   stratus_packet* k, const surface_walk* w, const stratus_cubic* cubic, vmask mask)
 {
@@ -170,7 +170,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments
   }
 }
 
-/* One cell of every live ray. */
+/* Visits the cell of every live ray. */
 INLINE void RAY_NAME(surface_visit)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, stratus_packet* k, const surface_walk* w)
 {
@@ -223,7 +223,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
       surface_skip(a, map, k, &w);
     }
     RAY_NAME(surface_visit)(a, values, hidden, k, &w);
-    /* planes nearer to each other than numbers can tell must not hold a ray up */
+    /* a ray always advances, even where two planes are too near for floats to tell apart */
     w.s = v_select(k->live, v_select(v_lt(w.s, w.leave), w.leave, v_fma(w.s, v_set(1e-6f), w.s + v_set(1e-6f))), w.s);
     k->live = k->live & v_lt(w.s, w.end);
   }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray makes of its samples where it does not gather light: the largest or smallest value, or a sum. Included by ray_cast.h with
- * STRATUS_RAY_MODE set. A segment that the structure left out would have changed nothing: skipping is as exact as it is for light. */
+ * What a ray makes of its samples where it gathers no light: the largest or smallest value, or a sum. Included by ray_cast.h with
+ * STRATUS_RAY_MODE set. A segment that the structure leaves out would have changed nothing, so that skipping is as exact here as it is for
+ * light. */
 
 INLINE void RAY_NAME(ray_advance)(stratus_packet* k, vmask done)
 {
@@ -9,7 +10,7 @@ INLINE void RAY_NAME(ray_advance)(stratus_packet* k, vmask done)
 }
 
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
-/* Keeps the best value and where it was first met. Minima are maxima of minus the values. */
+/* Keeps the best value, and where the ray first met it. Minima are maxima of the negative values. */
 INLINE void RAY_NAME(ray_shade)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
@@ -19,10 +20,10 @@ INLINE void RAY_NAME(ray_shade)(
   k->samples -= mask_int(k->live);
   k->front = v_select(better, value, k->front);
   k->depth = v_select(better, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
-  RAY_NAME(ray_advance)(k, v_le(v_set(a->mode.top), k->front)); /* nothing can be better */
+  RAY_NAME(ray_advance)(k, v_le(v_set(a->mode.top), k->front)); /* no value of the volume is better */
 }
 
-/* The colour of the best value; nothing where that is transparent. */
+/* The colour of the best value; nothing where the table shows it transparent. */
 INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   const vmask found = k->hits & v_lt(v_set(-LARGEST_FLOAT), k->front);
@@ -36,7 +37,7 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 }
 
 #else
-/* Adds opacity times value, the value as a part of the range that is shown from black to white. */
+/* Adds opacity times value, where a value counts as its part of the range that is shown from black to white. */
 INLINE void RAY_NAME(ray_shade)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
@@ -53,7 +54,7 @@ INLINE void RAY_NAME(ray_shade)(
   RAY_NAME(ray_advance)(k, m_none());
 }
 
-/* Grey, opaque wherever something was added up: the sum, or (sum_scale 0) the mean. */
+/* Grey and opaque wherever something was added: the sum, or the mean where sum_scale is 0. */
 INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The state of a packet on its march, and what does not depend on the type of the volume's values: which lanes ask the structure, the exit
- * of an empty cube, what is hidden. */
+ * The state of a packet on its march, and the steps that do not depend on the type of values: which lanes ask the structure, where a ray
+ * leaves an empty cube, what is hidden. */
 #ifndef STRATUS_RAY_SEGMENT_H
 #define STRATUS_RAY_SEGMENT_H
 
 #include "gather.h"
 #include "ray_setup.h"
 
-/* When the structure is asked: as soon as so many lanes need it, all that are left do, or one has waited so many samples. A lane that waits
- * takes samples which add nothing. */
+/* The structure is asked once SKIP_LANES lanes need it, or all that are left do, or one lane has waited for SKIP_PATIENCE samples. A lane
+ * that waits takes samples, which add nothing. */
 #define SKIP_LANES STRATUS_WIDTH
 #define SKIP_PATIENCE 64
 
-/* What wide types are relative to, and an index into any volume. */
+/* BIAS_OF(a): the double that values of wide types are relative to. stratus_index: an index into a volume of any size. */
 #ifdef STRATUS_DEVICE
 #define BIAS_OF(a) as_double(((ulong)(uint)(a)->values.bias_high << 32) | (ulong)(uint)(a)->values.bias_low)
 typedef ulong stratus_index;
@@ -31,19 +31,20 @@ typedef uint64_t stratus_index;
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat transparency, red, green, blue, depth;
-  vfloat front; /* pre-integrated: value at the segment's front; extremes: the best so far; sums: the sum, whose weight is in `red` */
-  vint i, last; /* segment, and the end of the ray in whole segments */
-  vint run;     /* segments below it need not ask the structure */
-  vint octant;  /* offset of the ray's map */
+  vfloat
+    front; /* pre-integrated: the value at the segment's front; extremes: the best value so far; sums: the sum, whose weight is in `red` */
+  vint i, last; /* the current segment, and the first behind the ray's end */
+  vint run;     /* segments before it need not ask the structure */
+  vint octant;  /* offset of the map of the ray's octant */
   vint samples, skipped, lookups;
-  vmask live, hits; /* hits: rays that met the bounds */
-  vmask fresh;      /* the front value is still to be sampled */
+  vmask live, hits; /* hits: rays that meet the bounds */
+  vmask fresh;      /* the value at the segment's front is still to be sampled */
 } stratus_packet;
 
-/* What one sample of every ray finds in the segment [lo, lo + weight]. */
+/* A sample of every ray, in the segment [lo, lo + weight]. */
 typedef struct stratus_sample {
   vfloat value, lo, weight;
-  GLOBAL const void* values; /* of the volume that it is from */
+  GLOBAL const void* values; /* of the volume that the sample is from */
   GLOBAL const uchar* hidden;
 } stratus_sample;
 
@@ -88,8 +89,8 @@ INLINE vint gather_map(GLOBAL const uchar* map, vint index, vmask mask)
 #endif
 }
 
-/* In samples, where the rays leave the cube of blocks nearer than `distance`, told a little early: by more than the roundings of the
- * division and the product can amount to. */
+/* Where the rays leave the cube of blocks nearer than `distance`, in samples. The result is a little too early, by more than division and
+ * product can round. */
 INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const vint block[3], vint distance)
 {
   vfloat leave = v_set(1e7f);
@@ -102,13 +103,13 @@ INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
   return v_max(v_fma(leave, v_set(-0x1p-21f), leave - v_set(0x1p-10f)), v_set(0.0f));
 }
 
-/* No ray of the packet at pixel (x, y) can meet anything. */
+/* 1 if no ray of the packet at pixel (x, y) can meet anything. */
 INLINE int packet_outside(CONSTANT stratus_ray_cast_arguments* a, int x, int y)
 {
   return x + PACKET_X <= a->camera.window[0] || x >= a->camera.window[1] || y + PACKET_Y <= a->camera.window[2] || y >= a->camera.window[3];
 }
 
-/* What a packet that has seen nothing holds. */
+/* A packet that has seen nothing. */
 INLINE void packet_nothing(stratus_packet* k)
 {
   k->samples = vi_set(0);
@@ -120,7 +121,7 @@ INLINE void packet_nothing(stratus_packet* k)
   k->live = k->hits = k->fresh = m_none();
 }
 
-/* Rays to packet: whole segments, the owned part, and the box of what can be seen. */
+/* Makes a packet of its rays: whole segments, the part that this piece owns, and the box of what can be seen. */
 INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, vmask inside, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), most = v_set(8e6f);
@@ -160,7 +161,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
       enter = v_max(enter, v_min(lo, hi));
       leave = v_min(v_max(lo, hi), leave);
     }
-    /* one segment of slack each way, and a miss ends here */
+    /* one segment of slack each way; a ray that misses the box ends here */
     const vint i0 = vi_max(v_to_int(v_min(enter, most)) - vi_set(1), k->i);
     const vint i1 = vi_min(
       vi_select(v_lt(leave, v_fma(enter, v_set(0.999999f), v_set(-1.0f))), vi_set(0), v_to_int(v_max(leave, zero)) + vi_set(2)), k->last);
@@ -174,7 +175,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   k->live = k->live & vi_lt(k->i, k->last);
 }
 
-/* Which byte of one a cell, or (by_value) a value, is that of the cell, or the nearest value, at index coordinates x, y, z. */
+/* The number of the byte at index coordinates x, y, z: of the nearest value where there is a byte a value (by_value), else of the cell. */
 INLINE size_t hidden_place(CONSTANT stratus_ray_cast_arguments* a, int by_value, float x, float y, float z)
 {
   const float place[3] = { x, y, z };
@@ -188,7 +189,7 @@ INLINE size_t hidden_place(CONSTANT stratus_ray_cast_arguments* a, int by_value,
   return cell;
 }
 
-/* value, or a NaN where `what` of HIDDEN_CELLS and HIDDEN_BY_MASK takes it out. */
+/* The value, or a NaN where it is hidden. what: which of HIDDEN_CELLS and HIDDEN_BY_MASK to look at. */
 INLINE vfloat ray_hide_by(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, int what, const vfloat x[3], vmask mask, vfloat value)
 {
@@ -202,14 +203,14 @@ INLINE vfloat ray_hide_by(
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     if (lm[lane]) {
       const float x0 = lx[0][lane], x1 = lx[1][lane], x2 = lx[2][lane];
-      size_t masked = 0; /* bytes of the mask, which come first */
+      size_t masked = 0; /* the mask's bytes come first */
       if (a->values.has_hidden & (HIDDEN_BY_MASK | HIDDEN_LABELS)) {
         masked = (size_t)a->values.dimensions[0] * (size_t)a->values.dimensions[1] * (size_t)a->values.dimensions[2];
       }
       if (what & HIDDEN_BY_MASK) {
         lv[lane] = hidden[hidden_place(a, 1, x0, x1, x2)] ? lv[lane] : NAN;
       }
-      if (what & HIDDEN_CELLS) { /* a byte a cell between values; a byte a value where those of cells are taken as they are */
+      if (what & HIDDEN_CELLS) { /* a byte for each cell; nearest interpolation of cell_centered volumes has a byte for each value */
         lv[lane] = hidden[masked + hidden_place(a, a->values.clamp && a->values.nearest, x0, x1, x2)] ? NAN : lv[lane];
       }
     }

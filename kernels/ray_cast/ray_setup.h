@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From pixels to rays, in double: where a packet's rays meet the bounds, on the one lattice of samples that is anchored at the eye, rebased
- * to floats at the first sample inside. */
+ * From pixels to rays, in double precision: where a packet's rays meet the bounds, on the one lattice of samples that is anchored at the
+ * eye. Positions are rebased at the first sample inside, so that floats hold them from there on. */
 #ifndef STRATUS_RAY_SETUP_H
 #define STRATUS_RAY_SETUP_H
 
 #include "ray_cast_arguments.h"
 
-/* Rays of one packet. Sample position s (in samples from segment 0's start) is at index coordinates p + s d. Segment i spans
+/* The rays of one packet. The sample at s (in samples from the start of segment 0) has the index coordinates p + s d. Segment i spans
  * [max(i, begin), min(i+1, end)]. */
 typedef struct stratus_rays {
   float p[3][STRATUS_WIDTH], d[3][STRATUS_WIDTH], inverse[3][STRATUS_WIDTH];
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
-  float first[STRATUS_WIDTH];                                 /* lattice index of segment 0, for depth */
-  float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* owned part, in samples */
-  float crossing[3][2][STRATUS_WIDTH];                        /* of the planes between the crop's regions, in samples */
+  float first[STRATUS_WIDTH];                                 /* the lattice index of segment 0, for depth */
+  float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* the part that this piece owns, in samples */
+  float crossing[3][2][STRATUS_WIDTH];                        /* where the ray crosses the planes between crop regions, in samples */
 } stratus_rays;
 
-/* Smallest displacement a sample along an axis, voxels: keeps reciprocals finite and moves no ray by a thousandth of a voxel. */
+/* The smallest displacement of a sample along an axis, in voxels. It keeps reciprocals finite and moves no ray by a thousandth of a voxel.
+ */
 #define SMALLEST_STEP 1e-9f
 
 INLINE real ray_away_from_zero(real d)
@@ -32,7 +33,7 @@ INLINE void ray_clip_slab(real origin, real inverse, stratus_pair lo, stratus_pa
   *end = r_min(*end, r_max(a, b));
 }
 
-/* The half space n x + d >= 0 along origin + s direction. */
+/* Clips the ray origin + s direction to the half space n x + d >= 0. */
 INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, const real* direction, real* begin, real* end)
 {
   const real zero = r_number(0.0f);
@@ -42,7 +43,7 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
     slope = r_add(slope, r_mul(r_of(plane[axis]), direction[axis]));
   }
   const rmask rising = r_lt(zero, slope), falling = r_lt(slope, zero);
-  /* where the slope is zero the division's result is not used */
+  /* where the slope is zero the quotient is not used */
   const real crossing = r_neg(r_div(height, slope));
   *begin = r_select(rising, r_max(*begin, crossing), *begin);
   *end = r_select(falling, r_min(*end, crossing), *end);
@@ -50,7 +51,7 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
   *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_number(-1e30f), *end)));
 }
 
-/* How far the lattice of the ray through pixel (x, y) is moved, in 0..1 of a sample: the same wherever it is computed. */
+/* How far the lattice of the ray through pixel (x, y) is moved, in 0..1 of a sample. It depends on pixel and seed alone. */
 INLINE float ray_jitter(int x, int y, int seed)
 {
   uint h = (uint)x * 0x9e3779b1u ^ (uint)y * 0x85ebca77u ^ (uint)seed * 0xc2b2ae3du;
@@ -60,8 +61,8 @@ INLINE float ray_jitter(int x, int y, int seed)
   return (float)(int)(h >> 8) * 0x1p-24f;
 }
 
-/* x, y: pixel coordinates (whole numbers) of REAL_WIDTH rays; z: their opaque depths; w: their jitter; `part` is where they stand in the
- * packet. */
+/* Sets up REAL_WIDTH rays of the packet, from ray number `part` on. x, y: their pixels (whole numbers); z: their opaque depths; w: their
+ * jitter. */
 INLINE void ray_setup_part(
   CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
 {
@@ -104,7 +105,7 @@ INLINE void ray_setup_part(
   for (int axis = 0; axis < 3; ++axis) {
     direction[axis] = ray_away_from_zero(r_mul(direction[axis], k_per_sample));
   }
-  /* three reciprocals for one division */
+  /* three reciprocals by one division */
   const real xy = r_mul(direction[0], direction[1]), per_xyz = r_div(one, r_mul(xy, direction[2]));
   inverse[0] = r_mul(per_xyz, r_mul(direction[1], direction[2]));
   inverse[1] = r_mul(per_xyz, r_mul(direction[0], direction[2]));
@@ -113,7 +114,7 @@ INLINE void ray_setup_part(
     ray_clip_slab(origin[axis], inverse[axis], a->crop.box[0][axis], a->crop.box[1][axis], &begin, &end);
   }
   real shift = zero;
-  if (a->lattice.jitter) { /* the same line, counted from a shorter way off */
+  if (a->lattice.jitter) { /* the same line, with its origin moved against the ray by `shift` samples */
     shift = r_load(w);
     begin = r_add(begin, shift);
     end = r_add(end, shift);
@@ -121,7 +122,7 @@ INLINE void ray_setup_part(
       origin[axis] = r_sub(origin[axis], r_mul(shift, direction[axis]));
     }
   }
-  /* rays that miss may have any numbers, but small ones */
+  /* rays that miss get any numbers, but small ones */
   const rmask miss = r_lt(end, begin);
   begin = r_select(miss, zero, begin);
   end = r_select(miss, r_neg(one), end);

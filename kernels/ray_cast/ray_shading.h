@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components.
- * Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_SHADING. What is looked up beyond the values is so only where something
- * shows, and only thins or colours that: a segment left out would have added exactly zero, here too. */
+ * Samples that show more than one value's colour and opacity: lit, thinned where the field is flat (or steep), of several components, or
+ * labelled. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_SHADING.
+ *
+ * Light and gradient are computed only where something shows, and they only thin or colour that. So a segment that the structure leaves
+ * out would have added exactly zero here, too. */
 
-/* Few samples come this far, and the code is long: once for each type, not wherever it is called. */
+/* Not inlined: few samples come this far, and the code is long. */
 #ifdef STRATUS_DEVICE
 #define OUTLINE static
 #else
@@ -12,7 +14,7 @@
 
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 
-/* What samples at s on their rays show beside their values, in the lanes of `mask`, by the gradient of component c. */
+/* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. */
 OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
   const stratus_packet* k, vfloat s, vmask mask, stratus_lit_sample* lighting)
 {
@@ -33,7 +35,8 @@ OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, 
 }
 
 #if !STRATUS_PREINTEGRATED
-/* Adds the medium whose optical depth is layer[3] and whose light is layer[0..2], both over a whole sample, by component c's gradient. */
+/* Adds a medium to `sum`. layer: its light and, last, its optical depth, both over a whole sample. Component c's gradient lights and thins
+ * it. */
 OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
   const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[4])
 {
@@ -48,7 +51,7 @@ OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GL
   }
 }
 
-/* The value of component c where the sample is. */
+/* The value of component c at the sample. */
 OUTLINE vfloat RAY_NAME(component_value)(
   CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
 {
@@ -57,7 +60,7 @@ OUTLINE vfloat RAY_NAME(component_value)(
   return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
 }
 
-/* Each component a medium: their optical depths add up, and their light. */
+/* Independent components: each is a medium, and both their optical depths and their light add up. */
 INLINE void RAY_NAME(add_independent)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
@@ -69,7 +72,7 @@ INLINE void RAY_NAME(add_independent)(
   }
 }
 
-/* Colour from all components but the last, opacity from that. */
+/* Dependent components: the last has the opacity, and the others the colour. */
 INLINE void RAY_NAME(add_dependent)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
 {
@@ -118,7 +121,7 @@ OUTLINE void RAY_NAME(shade_components)(
   }
 }
 
-/* Labels at index coordinates x: of the nearest value; 0 where it has no functions of its own. */
+/* The labels of the values nearest to the index coordinates x; 0 for labels that have no functions of their own. */
 OUTLINE vint RAY_NAME(label_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
 {
   float place[3][STRATUS_WIDTH];
@@ -138,7 +141,7 @@ OUTLINE vint RAY_NAME(label_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   return vi_load(label);
 }
 
-/* One value, in the colour and opacity of its label. */
+/* Composites samples in the colours and opacities of their labels. */
 OUTLINE void RAY_NAME(shade_labels)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
@@ -171,7 +174,7 @@ OUTLINE void RAY_NAME(shade_labels)(
 }
 #endif
 
-/* Puts what the sample shows behind what the rays have gathered, and moves on to the next segment. */
+/* Composites the sample and moves on to the next segment. */
 OUTLINE void RAY_NAME(ray_shade)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
@@ -179,7 +182,7 @@ OUTLINE void RAY_NAME(ray_shade)(
   stratus_lit_sample lighting;
   k->samples -= mask_int(k->live);
 #if STRATUS_PREINTEGRATED
-  const vmask whole = m_andnot(k->live, k->fresh); /* rays that have the value at the segment's front */
+  const vmask whole = m_andnot(k->live, k->fresh); /* rays that know the value at the segment's front */
   const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
   if (m_any(shows)) {
     RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);

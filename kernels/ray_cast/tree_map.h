@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree as the march asks it: what a distance map tells of a block, found through nodes and leaves. The buffer begins with ints, 8 a
- * record (tree_map_build.c writes them), `nodes` records of nodes, then those of leaves, then the leaves' bytes: node  first block x y z,
- * last block x y z, first child or leaf, 1 if it is a leaf leaf  first block x y z, blocks along x, y, z, place of its bytes, 0 A byte is a
- * distance map's: 1..127, the Chebyshev distance within the leaf; or 128 and more, occupied. */
+ * A tree as the march reads it: what a distance map tells of a block is found through nodes and leaves. tree_map_build.c writes the
+ * buffer. It begins with records of 8 ints, first those of `nodes` nodes, then those of the leaves; the leaves' bytes follow.
+ *
+ *   node: first block x y z; last block x y z; first child, or leaf; 1 if that is a leaf
+ *   leaf: first block x y z; blocks along x, y, z; where its bytes begin; 0
+ *
+ * A byte is that of a distance map: 1..127, the Chebyshev distance to the nearest occupied block of the leaf; 128 or more, occupied. */
 #ifndef STRATUS_TREE_MAP_H
 #define STRATUS_TREE_MAP_H
 
@@ -12,7 +15,7 @@
 
 INLINE int tree_larger(int a, int b) { return a > b ? a : b; }
 
-/* Chebyshev distance from a block to a node's box, 0 inside. */
+/* The Chebyshev distance from a block to a node's box; 0 inside. */
 INLINE int tree_distance(GLOBAL const int* node, int x, int y, int z)
 {
   const int dx = tree_larger(node[0] - x, x - node[3]), dy = tree_larger(node[1] - y, y - node[4]),
@@ -26,7 +29,8 @@ INLINE int tree_leaf_byte(GLOBAL const uchar* map, GLOBAL const int* leaf, int x
   return (int)map[(size_t)leaf[6] + (size_t)row * (size_t)leaf[3] + (size_t)(x - leaf[0])];
 }
 
-/* What is known of one block: of all leaves the nearest thing. Boxes of bricks do not overlap, so one leaf at most holds the block. */
+/* The byte of one block: the nearest of what all leaves tell. Boxes of bricks do not overlap, so that at most one leaf holds the block
+ * itself. */
 INLINE int tree_byte(GLOBAL const uchar* map, int nodes, int x, int y, int z)
 {
   GLOBAL const int* records = (GLOBAL const int*)map;
@@ -56,7 +60,7 @@ INLINE int tree_byte(GLOBAL const uchar* map, int nodes, int x, int y, int z)
   return nearest;
 }
 
-/* The bytes of the packet's blocks. A tree of one leaf is answered for all lanes at once. */
+/* The bytes of the packet's blocks. A tree of one leaf is read for all lanes at once. */
 INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vmask mask)
 {
   GLOBAL const int* records = (GLOBAL const int*)map;
