@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What VTK's own mappers of volumes have and this one has not: each is refused by one error, never drawn wrong. (The table in
-// Rendering/Volume's README.)
+// docs/vtk-parity.md.)
 #include "refusal_testing.h"
 
 #include "vtkExecutive.h"

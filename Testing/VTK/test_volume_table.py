@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The table of Rendering/Volume/README.md: it names every setter that VTK 9.1's volume mappers and property have; what it calls not there is not
+"""The table of docs/vtk-parity.md: it names every setter that VTK 9.1's volume mappers and property have; what it calls not there is not
 there, all else of the mappers is; and the tests that it names are there, with the cases that it names."""
 import os
 import re
@@ -19,7 +19,7 @@ def check(condition, what):
         print("does not hold:", what)
 
 
-with open("Rendering/Volume/README.md", encoding="utf-8") as file:
+with open("docs/vtk-parity.md", encoding="utf-8") as file:
     table = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in file if line.startswith("|")][2:]
 check(len(table) > 30 and all(len(row) == 3 and all(row) for row in table), "rows of three cells")
 words = {word: row for row in table for word in re.findall(r"`(\w+)`", row[0])}
