@@ -26,7 +26,7 @@ bool CheckPoint(vtkIdType cell, vtkIdType point, vtkIdType points, std::string& 
   return true;
 }
 
-// A polyhedron's faces are a run of numbers: how many, then each face's size and points.
+// VTK stores a polyhedron's faces as one run of numbers: the number of faces, then the size and the points of each face.
 bool CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
 {
   vtkIdTypeArray* faces = grid->GetFaces();

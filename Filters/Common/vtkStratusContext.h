@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A context of the core, with VTK's progress and abort. Private to the modules, never installed.
+// A context of the core that reports progress to VTK and honours VTK's abort. Private to the modules, never installed.
 #ifndef vtkStratusContext_h
 #define vtkStratusContext_h
 
@@ -11,18 +11,18 @@
 class VTK_STRATUS_PRIVATE vtkStratusContext
 {
 public:
-  // progress: gets 0..1, returns whether to stop.
+  // `progress` gets the fraction done, 0..1, and returns whether to stop.
   explicit vtkStratusContext(std::function<bool(double)> progress);
   ~vtkStratusContext();
   vtkStratusContext(const vtkStratusContext&) = delete;
   void operator=(const vtkStratusContext&) = delete;
 
-  // Makes it anew for this device and number of threads, or leaves it as it is and tells which devices there are.
+  // Makes a new context for this device and number of threads. On failure the old context stays, and `error` lists the available devices.
   bool Create(const std::string& device, int threads, std::string& error);
   stratus_context* Get() const { return this->Context; }
   const std::string& GetDevice() const { return this->Device; }
   int GetThreads() const { return this->Threads; }
-  // Called before the context goes.
+  // Called before the context is destroyed or replaced.
   std::function<void()> OnRelease;
 
 private:

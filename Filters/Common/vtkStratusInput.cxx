@@ -71,7 +71,7 @@ std::string ArrayName(vtkDataArray* array)
   return array->GetName() ? std::string("'") + array->GetName() + "'" : std::string("without a name");
 }
 
-// Mixes one more modification time into a revision, so that any change of any of them changes it.
+// Mixes a modification time into a revision, so that a change of any of the times changes the revision.
 uint64_t Mix(uint64_t revision, uint64_t time)
 {
   return (revision ^ time) * UINT64_C(0x9E3779B97F4A7C15) + (revision >> 29);
@@ -169,7 +169,7 @@ bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bo
   }
   this->Source = array;
   volume.values = plain->GetVoidPointer(0);
-  // The image's own time counts too: programs that write through a pointer often tell only the image.
+  // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
   return true;
 }
@@ -187,7 +187,7 @@ void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
   for (int a = 0; a < 3; ++a) {
     volume.origin[a] = origin[a];
     for (int b = 0; b < 3; ++b) {
-      // A bad spacing is told as such, not as the origin that it makes.
+      // A start of 0 must not multiply a spacing that is not finite: the core would report the origin, though the spacing is at fault.
       volume.origin[a] += extent[2 * b] == 0 ? 0.0 : direction[3 * a + b] * volume.spacing[b] * extent[2 * b];
     }
   }
@@ -212,7 +212,7 @@ bool vtkStratusImageView::SetGhosts(vtkImageData* image, bool cells, std::string
     volume.point_ghosts = pointGhosts->GetPointer(0);
     volume.revision = Mix(volume.revision, pointGhosts->GetMTime());
   }
-  if (cellGhosts) { // of flat images, too: the core counts their cells as VTK does
+  if (cellGhosts) { // flat images keep their cell flags, because the core counts their cells as VTK does
     volume.cell_ghosts = cellGhosts->GetPointer(0);
     volume.revision = Mix(volume.revision, cellGhosts->GetMTime());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What VTK gives, as what the core takes: views of images and transfer functions. Private to the modules, never installed.
+// Views of VTK's images and transfer functions in the core's terms. Private to the modules, never installed.
 #ifndef vtkStratusInput_h
 #define vtkStratusInput_h
 
@@ -18,23 +18,24 @@ class vtkMatrix4x4;
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
 
-// Hidden, because each module has its own copy.
+// Each module compiles its own copy of these classes, so their symbols stay hidden.
 #if defined(__GNUC__)
 #define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
 #else
 #define VTK_STRATUS_PRIVATE
 #endif
 
-// A view of one array of an image. Keeps a copy where the array's memory is not one plain run of values, and remakes it when it changes.
+// A view of one array of an image. It copies the values where the array's memory is not one plain run, and copies again when they change.
 class VTK_STRATUS_PRIVATE vtkStratusImageView
 {
 public:
-  // False, with the reason in `error`, where the core can't take the array. matrix: of the prop, or nullptr.
+  // Returns false, with the reason in `error`, where the core cannot take the array. `matrix` is the prop's, or nullptr for the identity.
   bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
-  // A filter's input and the array of it that the filter is to process, each nullptr where there is none.
+  // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
   bool SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
-  // What the image calls its origin and start, against what the volume does: crop_bounds = planes + offset.
+  // VTK gives cropping planes along its axes from GetOrigin(); the core takes crop_bounds = planes + offset, from the first value's
+  // position.
   const double* GetCropOffset() const { return this->CropOffset; }
   void Release();
 
@@ -45,7 +46,7 @@ private:
 
   stratus_volume Volume;
   double CropOffset[3] = { 0, 0, 0 };
-  vtkSmartPointer<vtkDataArray> Source; // held, so that no other array can take its address
+  vtkSmartPointer<vtkDataArray> Source; // kept alive, so that no new array can get the same address
   vtkSmartPointer<vtkDataArray> Plain;
   vtkMTimeType PlainTime = 0;
 };
@@ -54,9 +55,10 @@ private:
 class VTK_STRATUS_PRIVATE vtkStratusTransferView
 {
 public:
-  // Of the property's component `index`.
+  // Reads the functions of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
-  // Of a label: what the property does not have for it is component 0's; no gradient opacity.
+  // Reads the functions of a label. Component 0's function replaces one that the property lacks for the label. Labels have no gradient
+  // opacity.
   bool SetLabel(vtkVolumeProperty* property, int label, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
@@ -68,7 +70,7 @@ private:
   std::vector<double> Gradient;
 };
 
-// Which array a mapper or filter means is VTK's business; why there is none is told here.
+// Lists the image's arrays, for the message that the wanted one is missing.
 VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkImageData* image);
 
 #endif

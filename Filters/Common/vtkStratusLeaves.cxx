@@ -11,7 +11,7 @@
 #include <algorithm>
 
 namespace {
-constexpr int HeaderNumbers = 12; // version, nodes, leaves, frame
+constexpr int HeaderNumbers = 12; // version, number of nodes, number of leaves, frame (9)
 constexpr int NodeNumbers = 4;    // axis, below, above, value
 constexpr vtkIdType NumbersMax = 2147483647;
 } // namespace
@@ -30,7 +30,7 @@ bool vtkStratusLeaves::Set(vtkUnstructuredGrid* grid)
     tree->GetNumberOfTuples() != HeaderNumbers + NodeNumbers * static_cast<vtkIdType>(nodes)) {
     return false;
   }
-  // A number that is no int becomes one that the core refuses.
+  // The core refuses -2, which stands for every number outside -1..2^31 - 1.
   const auto number = [&](vtkIdType i) {
     const double value = tree->GetComponent(i, 0);
     return value >= -1.0 && value <= NumbersMax ? static_cast<int32_t>(value) : -2;

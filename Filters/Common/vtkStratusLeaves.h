@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays by which a grid carries its partition. Private to the modules that compile it in.
+// The arrays in which a grid stores its partition. Private to the modules that compile it in.
 #ifndef vtkStratusLeaves_h
 #define vtkStratusLeaves_h
 
@@ -10,17 +10,17 @@
 
 class vtkUnstructuredGrid;
 
-constexpr const char* vtkStratusLeafArray = "StratusLeaf";                 // cell data: the leaf of each
-constexpr const char* vtkStratusOriginalCellArray = "StratusOriginalCell"; // cell data: the cell of the filter's input
-constexpr const char* vtkStratusPartitionArray = "StratusPartition";       // field data: version, nodes, leaves, frame, tree
+constexpr const char* vtkStratusLeafArray = "StratusLeaf";                 // cell data: the leaf of each cell
+constexpr const char* vtkStratusOriginalCellArray = "StratusOriginalCell"; // cell data: the input cell that it comes from
+constexpr const char* vtkStratusPartitionArray = "StratusPartition"; // field data: version, number of nodes, number of leaves, frame, nodes
 
-// The tree of a grid's arrays, both ways.
+// Reads a partition from a grid's arrays, and writes one to them.
 struct vtkStratusLeaves {
   std::vector<stratus_partition_node> Nodes;
   std::vector<int32_t> Leaf;
   stratus_leaves Leaves;
 
-  // False if the grid carries none, or none that is whole.
+  // Returns false where the grid carries no partition, or an incomplete one.
   bool Set(vtkUnstructuredGrid* grid);
   static void Write(const stratus_leaves& leaves, vtkIdType cells, vtkUnstructuredGrid* grid);
 };

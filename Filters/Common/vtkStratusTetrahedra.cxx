@@ -22,7 +22,7 @@ namespace {
 constexpr vtkIdType NumbersMax = 2147483647;
 constexpr int Types = 256;
 
-// A fan from the lowest point: both cells at a face see the same.
+// Divides a face into a fan of triangles around its lowest point number, so that both cells at the face divide it alike.
 template <typename Function> void Fan(const std::vector<vtkIdType>& face, Function&& function)
 {
   const size_t count = face.size();
@@ -32,11 +32,11 @@ template <typename Function> void Fan(const std::vector<vtkIdType>& face, Functi
   }
 }
 
-// A face with points on its edges, in VTK's order: corners, middles of edges, its own middle. Corners are cut off, so that no triangle is
-// flat where edges are straight.
+// Divides a face whose points come in VTK's order: corners, edge midpoints, the face's centre. Without a centre, triangles cut off the
+// corners, so that none is degenerate where edges are straight.
 template <typename Function> void DivideQuadraticFace(int type, const std::vector<vtkIdType>& p, Function&& function)
 {
-  if (type == VTK_QUADRATIC_LINEAR_QUAD) { // its second and fourth edge have no middle
+  if (type == VTK_QUADRATIC_LINEAR_QUAD) { // its second and fourth edge have no midpoint
     Fan({ p[0], p[4], p[5], p[3] }, function);
     Fan({ p[4], p[1], p[2], p[5] }, function);
     return;
@@ -63,7 +63,7 @@ std::string TellCell(vtkIdType cell, int type)
 }
 } // namespace
 
-// What VTK knows of a type of cell, asked once.
+// Properties of a VTK cell type, looked up once.
 struct vtkStratusTetrahedra::Kind {
   enum { Unknown, Flat, Linear, Quadratic, Polyhedron, ConvexPointSet } Way = Unknown;
   vtkIdType Points = 0;
@@ -72,8 +72,8 @@ struct vtkStratusTetrahedra::Kind {
     Face Nodes; // anticlockwise as seen from outside
   };
   std::vector<Side> Sides;
-  vtkIdType Inner = -1;        // the node that is on no side
-  std::vector<double> Weights; // of the nodes in the middle, where none is there
+  vtkIdType Inner = -1;        // the node that is on no side, -1: none
+  std::vector<double> Weights; // shape functions of all nodes at the cell's centre, where no node is there
 
   explicit Kind(int type = VTK_EMPTY_CELL);
 };
@@ -89,7 +89,7 @@ vtkStratusTetrahedra::Kind::Kind(int type)
     this->Way = cell ? Flat : Unknown;
     return;
   }
-  if (type > VTK_TRIQUADRATIC_PYRAMID) { // of any order
+  if (type > VTK_TRIQUADRATIC_PYRAMID) { // arbitrary order or parametric
     return;
   }
   this->Way = cell->IsLinear() ? Linear : Quadratic;
@@ -101,7 +101,7 @@ vtkStratusTetrahedra::Kind::Kind(int type)
   for (int f = 0; f < cell->GetNumberOfFaces(); ++f) {
     vtkCell* face = cell->GetFace(f);
     Side side = { face->GetCellType(), Face(face->GetPointIds()->begin(), face->GetPointIds()->end()) };
-    if (side.Type == VTK_PIXEL) { // points run row by row, not round about
+    if (side.Type == VTK_PIXEL) { // VTK_PIXEL lists its points row by row, not around the face
       std::swap(side.Nodes[2], side.Nodes[3]);
     }
     for (vtkIdType node : side.Nodes) {
@@ -132,7 +132,8 @@ const vtkStratusTetrahedra::Kind& vtkStratusTetrahedra::GetKind(int type)
   return kinds[static_cast<size_t>(type) % Types];
 }
 
-// Cells that were made of others by giving two corners one point have pieces that are none.
+// Leaves out a tetrahedron with a repeated point. A cell degenerated from another type, as a wedge stored as a hexahedron, yields such
+// pieces.
 void vtkStratusTetrahedra::AddPiece(vtkIdType a, vtkIdType b, vtkIdType c, vtkIdType d, vtkIdType cell)
 {
   if (a == b || a == c || a == d || b == c || b == d || c == d) {
@@ -144,8 +145,8 @@ void vtkStratusTetrahedra::AddPiece(vtkIdType a, vtkIdType b, vtkIdType c, vtkId
   this->Cells.push_back(cell);
 }
 
-// A fan from the cell's lowest point, which is the lowest of each face that it is on, too: those are divided as their other cell divides
-// them.
+// Divides a cell into a fan of tetrahedra around its lowest point number. That point is also the lowest of each face that it lies on, so
+// that the neighbour divides these faces alike.
 void vtkStratusTetrahedra::AddLinear(const std::vector<Face>& faces, vtkIdType cell)
 {
   vtkIdType apex = VTK_ID_MAX;
@@ -176,7 +177,8 @@ vtkIdType vtkStratusTetrahedra::AddMiddle(const Kind& kind, const vtkIdType* ids
 void vtkStratusTetrahedra::AddQuadratic(const Kind& kind, const vtkIdType* ids, vtkIdType cell)
 {
   if (kind.Points == 10) {
-    // Corners 0..3 and the middles of edges 01 12 20 03 13 23: four at the corners, four around the line between the middles of 01 and 23.
+    // Nodes 0..3 are corners, nodes 4..9 the midpoints of edges 01 12 20 03 13 23. Four tetrahedra lie at the corners, four around the line
+    // from node 4 to node 9.
     static const int parts[8][4] = { { 0, 4, 6, 7 }, { 4, 1, 5, 8 }, { 6, 5, 2, 9 }, { 7, 8, 9, 3 }, { 4, 9, 6, 7 }, { 4, 9, 7, 8 },
       { 4, 9, 8, 5 }, { 4, 9, 5, 6 } };
     for (const auto& part : parts) {
@@ -239,7 +241,7 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
     error = TellCell(cell, type) + " of " + std::to_string(count) + " points, it must have " + std::to_string(kind.Points);
     return false;
   }
-  if (type == VTK_TETRA) { // as it is, whatever it is
+  if (type == VTK_TETRA) { // kept as it is, even if degenerate
     this->Vertices.insert(this->Vertices.end(), ids, ids + 4);
     this->Cells.push_back(cell);
   } else if (kind.Way == Kind::Quadratic) {
@@ -327,7 +329,7 @@ void vtkStratusTetrahedra::CopyPointValues(vtkAbstractArray* from, vtkAbstractAr
       nodes->SetId(static_cast<vtkIdType>(i), this->MiddleNodes[this->Middles[m].Node + i]);
     }
     const vtkIdType at = this->GridPoints + static_cast<vtkIdType>(m);
-    if (flags) { // what all nodes are
+    if (flags) { // a ghost flag is set where all nodes have it
       unsigned char all = 255;
       for (vtkIdType node : *nodes) {
         all = static_cast<unsigned char>(all & flags->GetValue(node));

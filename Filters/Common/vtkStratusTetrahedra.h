@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids as meshes of tetrahedra for the core. Private to the modules, never installed.
+// Divides an unstructured grid into tetrahedra for the core. Private to the modules, never installed.
 #ifndef vtkStratusTetrahedra_h
 #define vtkStratusTetrahedra_h
 
@@ -15,29 +15,30 @@ class vtkAbstractArray;
 class vtkUnstructuredGrid;
 
 struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra {
-  std::vector<double> Points;    // of the grid, all of them, then the middles of quadratic cells that have no point there
-  std::vector<int32_t> Vertices; // four a tetrahedron
-  std::vector<vtkIdType> Cells;  // the grid's cell that each is of, in rising order
+  std::vector<double> Points;    // all points of the grid, then the centres of quadratic cells that have no node there
+  std::vector<int32_t> Vertices; // four per tetrahedron
+  std::vector<vtkIdType> Cells;  // the grid's cell of each tetrahedron, ascending
   vtkIdType GridPoints = 0;
-  vtkIdType LeftOut = 0;  // cells of no volume's dimension: vertices, lines, polygons
-  bool CellByCell = true; // each cell of the grid is one tetrahedron, under its own number
+  vtkIdType LeftOut = 0;  // cells without a volume: vertices, lines, polygons, empty cells
+  bool CellByCell = true; // each cell of the grid is one tetrahedron with the same number
 
-  // Divides linear and quadratic cells and polyhedra; neighbours are divided alike across their faces. False, and why, for others, and for
-  // numbers beyond 31 bits.
+  // Divides linear and quadratic cells and polyhedra. Two neighbours divide their common face alike. Returns false, with the reason in
+  // `error`, for other cells and for numbers beyond 31 bits.
   bool Set(vtkUnstructuredGrid* grid, std::string& error);
   stratus_mesh GetMesh() const;
-  // "nothing to draw" in words, where a grid with cells has none with a volume.
+  // The message for a grid none of whose cells has a volume, so that there is nothing to draw.
   std::string TellLeftOut() const;
 
-  // to: an array with room for all Points; from: one of the grid's points. Values in the middles follow the cell's own shape functions.
+  // Copies `from`, an array of the grid's points, to `to`, which has room for all Points. A value at a centre follows from the cell's shape
+  // functions.
   void CopyPointValues(vtkAbstractArray* from, vtkAbstractArray* to) const;
 
 private:
   using Face = std::vector<vtkIdType>;
-  struct Kind; // of cell
+  struct Kind; // of a cell type
   struct Middle {
-    size_t Node;                        // the first of the cell's in MiddleNodes
-    const std::vector<double>* Weights; // of each there
+    size_t Node;                        // index of the cell's first node in MiddleNodes
+    const std::vector<double>* Weights; // one for each of the cell's nodes
   };
 
   static const Kind& GetKind(int type);
@@ -51,7 +52,7 @@ private:
 
   std::vector<Middle> Middles;
   std::vector<vtkIdType> MiddleNodes;
-  std::vector<Face> Faces; // of the cell at hand
+  std::vector<Face> Faces; // of the current cell, kept to reuse its memory
 };
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkVolumeProperty's functions as the core's piecewise linear ones: exactly where they are that, densely sampled elsewhere.
+// Converts vtkVolumeProperty's functions to the core's piecewise linear ones. Functions that are piecewise linear are copied exactly,
+// others are sampled densely.
 #include "vtkStratusInput.h"
 
 #include "vtkColorTransferFunction.h"
@@ -12,8 +13,8 @@
 namespace {
 constexpr int SamplesOfAFunction = 4096;
 
-// Positions to sample a function that bends between its nodes: every node, and each interval cut evenly (in the logarithm where that is
-// the function's axis), and once more close to both sides of its midpoint, where a sharp node steps.
+// Returns positions at which to sample a function that is curved between its nodes. Each interval is divided evenly (in the logarithm where
+// the function's axis is logarithmic). Two positions enclose its midpoint, where a sharp node makes a step.
 std::vector<double> DensePositions(const std::vector<double>& nodes, const std::vector<double>& midpoints, bool logarithmic)
 {
   std::vector<double> positions;
@@ -27,7 +28,7 @@ std::vector<double> DensePositions(const std::vector<double>& nodes, const std::
     }
     positions.push_back(at(std::max(0.0, midpoints[n] - 1e-7)));
     positions.push_back(at(std::min(1.0, midpoints[n] + 1e-7)));
-    positions.push_back(std::nextafter(b, a)); // the left value of a step at the next node
+    positions.push_back(std::nextafter(b, a)); // the value left of a step at the next node
   }
   positions.push_back(nodes.back());
   std::sort(positions.begin(), positions.end());
@@ -40,7 +41,7 @@ bool IsStraight(double midpoint, double sharpness)
   return midpoint == 0.5 && sharpness == 0.0;
 }
 
-// `stride` numbers a node: the position and stride-1 equal values.
+// Appends each node as its position and `values` equal values. Returns false where the function has no node.
 bool AppendPiecewise(vtkPiecewiseFunction* function, size_t values, std::vector<double>& result)
 {
   std::vector<double> nodes, midpoints;
@@ -73,7 +74,7 @@ void AppendColor(std::vector<double>& result, double x, const double rgb[3])
 bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& result)
 {
   std::vector<double> nodes, midpoints;
-  // A derived class may colour as it likes (discretised, indexed): only VTK's own class is known to go straight.
+  // Only VTK's own class is known to interpolate linearly: a derived class may colour otherwise (discretised, indexed).
   bool exact = std::string(function->GetClassName()) == "vtkColorTransferFunction" && function->GetColorSpace() == VTK_CTF_RGB &&
     function->GetScale() == VTK_CTF_LINEAR;
   for (int n = 0; n < function->GetSize(); ++n) {
@@ -98,7 +99,7 @@ bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& resul
       AppendColor(result, x, rgb);
     }
   }
-  if (!function->GetClamping()) { // black beyond the ends, by a step there
+  if (!function->GetClamping()) { // black beyond the ends, by a step at each end
     const double black[3] = { 0, 0, 0 };
     const double first[4] = { nodes.front(), 0, 0, 0 };
     result.insert(result.begin(), first, first + 4);
@@ -106,7 +107,7 @@ bool AppendColors(vtkColorTransferFunction* function, std::vector<double>& resul
   }
   return true;
 }
-// Nothing where the function is 1 everywhere. Beyond the ends of one that does not clamp there is nothing.
+// Appends nothing where the function is 1 everywhere. A function that does not clamp is 0 beyond its ends, by a step at each end.
 void AppendGradient(vtkPiecewiseFunction* function, std::vector<double>& result)
 {
   if (!AppendPiecewise(function, 1, result)) {

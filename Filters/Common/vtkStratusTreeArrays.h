@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of the field data by which an image carries its tree: the filter writes them, the mapper looks for the first. Private to the
-// modules.
+// Names of the field-data arrays in which an image carries its tree. vtkStratusHybridTreeFilter writes all three, vtkStratusVolumeMapper
+// reads the first. Private to the modules.
 #ifndef vtkStratusTreeArrays_h
 #define vtkStratusTreeArrays_h
 
