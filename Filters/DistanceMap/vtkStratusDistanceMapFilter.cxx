@@ -186,7 +186,7 @@ int vtkStratusDistanceMapFilter::RequestInformation(vtkInformation*, vtkInformat
   input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
   const vtkInformation* array = this->GetInputArrayInformation(0);
   const bool cells = const_cast<vtkInformation*>(array)->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-  const int size = this->BlockSize > 0 ? this->BlockSize : 4; // others are refused when there are data
+  const int size = this->BlockSize > 0 ? this->BlockSize : 4; // RequestData() refuses other sizes
   int blocks[6];
   for (int a = 0; a < 3; ++a) {
     const int length = extent[2 * a + 1] - extent[2 * a] - (cells ? 1 : 0);
@@ -219,7 +219,7 @@ int vtkStratusDistanceMapFilter::RequestData(vtkInformation*, vtkInformationVect
     this->Internal->HasLast = true;
   } else {
     vtkErrorMacro(<< error);
-    if (this->Internal->HasLast) { // the pipeline has emptied it
+    if (this->Internal->HasLast) { // the pipeline has emptied the output
       output->ShallowCopy(this->Internal->Last);
     }
   }

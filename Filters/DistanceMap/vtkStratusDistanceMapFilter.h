@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusDistanceMapFilter
- * @brief   distance in blocks from each block of an image to the nearest one that shows something
+ * @brief   distance in blocks from each block of an image to the nearest block that shows something
  *
- * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a vtkImageData with
- * one cell a block and the cell data "Distance" (unsigned char): 0 in occupied blocks, the Chebyshev distance in blocks elsewhere, 127
- * where it is longer. It lies over the input; its last blocks may reach beyond it. For cell data it begins at the centre of the first cell,
- * as interpolation does.
+ * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a vtkImageData with one
+ * cell per block and the cell data "Distance" (unsigned char). The distance is 0 in occupied blocks and the Chebyshev distance in blocks
+ * elsewhere, at most 127. The output lies over the input, but its last blocks may extend beyond it. For cell data it begins at the centre
+ * of the first cell, because interpolation does.
  *
- * A block is occupied if something of VolumeProperty's scalar opacity shows between the smallest and the largest value in it, or, without a
- * VolumeProperty, something in LowerThreshold..UpperThreshold, ends included. Values of 24 bits or fewer are compared exactly; of wider
- * types those that one float stands for are told as one. So no bound is ever rounded inward.
+ * A block is occupied if VolumeProperty's scalar opacity is above 0 somewhere between the block's smallest and largest value. Without a
+ * VolumeProperty, a block is occupied if a value between the two lies in LowerThreshold..UpperThreshold, ends included. Values of 24 bits
+ * or fewer are compared exactly. Values of wider types are compared as floats, and a float counts if any value that rounds to it does, so
+ * that no bound is rounded inward.
  *
- * Where the filter fails its output stays what it was.
+ * If the filter fails, its output stays unchanged.
  *
  * @sa vtkStratusVolumeMapper
  */
@@ -36,7 +37,8 @@ public:
 
   //@{
   /**
-   * The values that count as occupied, ends included; lower <= upper, infinities allowed. Default: all. Not used with a VolumeProperty.
+   * Set/Get the range of values that count as occupied, ends included. Lower must be <= upper; infinities are allowed. Default: all values.
+   * Ignored where a VolumeProperty is set.
    */
   vtkSetMacro(LowerThreshold, double);
   vtkGetMacro(LowerThreshold, double);
@@ -47,7 +49,7 @@ public:
 
   //@{
   /**
-   * The property whose scalar opacity tells what is occupied. Default none.
+   * Set/Get the property whose scalar opacity tells which blocks are occupied. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
@@ -55,7 +57,7 @@ public:
 
   //@{
   /**
-   * Cells along a block: 2, 4, 8, 16 or 32. Default 4.
+   * Set/Get the number of cells along a block's edge: 2, 4, 8, 16 or 32. Default 4.
    */
   vtkSetMacro(BlockSize, int);
   vtkGetMacro(BlockSize, int);
@@ -64,8 +66,11 @@ public:
   enum KindType { BLOCK, FULL, PAPER, OCTANT };
   //@{
   /**
-   * BLOCK: 1 in every empty block; FULL: the distance to the nearest occupied block; PAPER: the same by Deakin and Knackstedt's own
-   * transform, equal to the bit; OCTANT: to the nearest one that a ray of the octant Octant can reach. Default FULL.
+   * Set/Get the kind of distance. Default FULL.
+   * - BLOCK: 1 in every empty block.
+   * - FULL: the distance to the nearest occupied block.
+   * - PAPER: the same distances, computed by Deakin and Knackstedt's own transform.
+   * - OCTANT: the distance to the nearest occupied block that a ray of the octant Octant can reach.
    */
   vtkSetClampMacro(Kind, int, BLOCK, OCTANT);
   vtkGetMacro(Kind, int);
@@ -78,7 +83,8 @@ public:
 
   //@{
   /**
-   * Of the rays, 0..7: bit a is set where they move towards + along axis a. Default 7. Used by the kind OCTANT.
+   * Set/Get the octant of ray directions, 0..7: bit a is set if the rays move in the positive direction of axis a. Default 7. Used only by
+   * the kind OCTANT.
    */
   vtkSetClampMacro(Octant, int, 0, 7);
   vtkGetMacro(Octant, int);
@@ -86,7 +92,7 @@ public:
 
   //@{
   /**
-   * Of the last output: blocks that are occupied.
+   * Get the number of occupied blocks of the last output.
    */
   vtkGetMacro(OccupiedBlocks, vtkIdType);
   //@}
