@@ -244,7 +244,7 @@ int vtkStratusHybridTreeFilter::RequestData(vtkInformation*, vtkInformationVecto
     internal->Reason = statistics.why;
   } else {
     vtkErrorMacro(<< error);
-    if (internal->HasLast) { // the pipeline has emptied them
+    if (internal->HasLast) { // the pipeline has emptied the outputs
       output->ShallowCopy(internal->LastImage);
       boxes->ShallowCopy(internal->LastBoxes);
     }

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusHybridTreeFilter
- * @brief   builds the tree that rays skip by, and lets the image carry it
+ * @brief   builds the tree by which rays skip empty space, and stores it in the image
  *
- * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). First output: the same image,
- * shallow, with the tree in its field data: "StratusHybridTree" (unsigned char: versioned, with a checksum), "StratusHybridTreeVersion"
- * (int: major and minor of the Stratus that wrote it) and "StratusHybridTreeHash" (string: of the values and hidden parts it was built
- * from). VTK's writers and readers keep them. A vtkStratusVolumeMapper that gets the image uses the tree where it serves, and builds its
- * own otherwise.
+ * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). First output: a shallow copy of
+ * the image with the tree in its field data:
+ * - "StratusHybridTree" (unsigned char): the tree, with a version and a checksum;
+ * - "StratusHybridTreeVersion" (int): the major and minor version of the Stratus that wrote it;
+ * - "StratusHybridTreeHash" (string): a hash of the values and hidden parts from which it was built.
  *
- * Second output: a vtkPolyData with the box of each of the tree's nodes as one polyline in world coordinates, parents before children. Cell
- * data "Depth" (int, the root's is 0; the scalars), "Kind" (unsigned char: 0 inner node, 1 leaf of bricks, 2 leaf of a distance field) and
- * "Count" (vtkIdType: voxels in it).
+ * VTK's writers and readers keep these arrays. A vtkStratusVolumeMapper uses the tree of its input if the tree holds all that the transfer
+ * function shows, and builds its own otherwise.
  *
- * What counts is what VolumeProperty's scalar opacity shows or, without a VolumeProperty, LowerThreshold..UpperThreshold.
+ * Second output: a vtkPolyData with one polyline per node, the box of the node in world coordinates, parents before children. Cell data:
+ * "Depth" (int, 0 at the root; the scalars), "Kind" (unsigned char: 0 inner node, 1 leaf of bricks, 2 leaf of a distance field) and "Count"
+ * (vtkIdType: voxels of the tree in the box).
  *
- * Where the filter fails its outputs stay what they were.
+ * The tree holds what VolumeProperty's scalar opacity shows. Without a VolumeProperty it holds values in LowerThreshold..UpperThreshold.
+ *
+ * If the filter fails, its outputs stay unchanged.
  *
  * @sa vtkStratusVolumeMapper vtkStratusDistanceMapFilter
  */
@@ -40,7 +43,8 @@ public:
 
   //@{
   /**
-   * The values that count, ends included; lower <= upper, infinities allowed. Default: all. Not used with a VolumeProperty.
+   * Set/Get the range of values that the tree holds, ends included. Lower must be <= upper; infinities are allowed. Default: all values.
+   * Ignored where a VolumeProperty is set.
    */
   vtkSetMacro(LowerThreshold, double);
   vtkGetMacro(LowerThreshold, double);
@@ -51,7 +55,7 @@ public:
 
   //@{
   /**
-   * The property whose scalar opacity tells what counts. Default none.
+   * Set/Get the property whose scalar opacity tells which values the tree holds. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
@@ -60,9 +64,10 @@ public:
   enum PurposeType { RAY_CASTING, FIRST_HITS };
   //@{
   /**
-   * What the tree is for. RAY_CASTING: blocks of cells that show something between their smallest and largest value, rounded outward;
-   * serves every transfer function that shows no more. FIRST_HITS: the voxels themselves; serves those that show the same. Default
-   * RAY_CASTING.
+   * Set/Get the purpose of the tree. Default RAY_CASTING.
+   * - RAY_CASTING: the tree holds blocks of cells that show something between their smallest and largest value, rounded outward.
+   *   It serves every transfer function that shows no more.
+   * - FIRST_HITS: the tree holds single voxels. It serves transfer functions that show the same voxels.
    */
   vtkSetClampMacro(Purpose, int, RAY_CASTING, FIRST_HITS);
   vtkGetMacro(Purpose, int);
@@ -73,9 +78,11 @@ public:
   enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS };
   //@{
   /**
-   * How the tree is built. HYBRID (default): leaves of distance fields where voxels lie even, a hierarchy of bricks where they don't;
-   * HYBRID_PAPER: Guo et al. 2025 as written; DISTANCE and OCTANT: one field over everything; the others: hierarchies of single voxels, to
-   * compare with.
+   * Set/Get how the tree is built. Default HYBRID.
+   * - HYBRID: leaves of distance fields where voxels are spread evenly, a hierarchy of bricks elsewhere.
+   * - HYBRID_PAPER: the method of Guo et al. 2025 as published.
+   * - DISTANCE, OCTANT: one distance field over everything; OCTANT stores a distance for each octant of ray directions.
+   * - SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS: hierarchies of single voxels, for comparison.
    */
   vtkSetClampMacro(Method, int, HYBRID, K_MEANS);
   vtkGetMacro(Method, int);
@@ -95,7 +102,8 @@ public:
 
   //@{
   /**
-   * A node this deep is a leaf, 1..64; hierarchies of voxels are only kept near it, by splits at the median. Default 32.
+   * Set/Get the depth at which a node becomes a leaf, 1..64. Hierarchies of voxels may go deeper, but split at the median from there on.
+   * Default 32.
    */
   vtkSetClampMacro(MaximumDepth, int, 1, 64);
   vtkGetMacro(MaximumDepth, int);
@@ -103,7 +111,8 @@ public:
 
   //@{
   /**
-   * Bricks of 4^3 voxels in a leaf of the sparse parts, and voxels in a leaf of the hierarchies of voxels; 1..64. Default 4 and 1.
+   * Set/Get the most bricks (4^3 voxels) in a leaf of bricks, and the most voxels in a leaf of a hierarchy of voxels; each 1..64. Default 4
+   * and 1.
    */
   vtkSetClampMacro(LeafBricks, int, 1, 64);
   vtkGetMacro(LeafBricks, int);
@@ -113,8 +122,8 @@ public:
 
   //@{
   /**
-   * Most bricks that a leaf of a distance field covers, 1..2^29, and most of them for one that holds anything, at least 1. Values out of
-   * range are an error when building. Default 33554432 and 512.
+   * Set/Get the most bricks that a leaf of a distance field covers, 1..2^29, and the most of them per brick that holds a voxel, at least 1.
+   * A value out of range is an error when building. Default 33554432 and 512.
    */
   vtkSetMacro(FieldBricks, vtkIdType);
   vtkGetMacro(FieldBricks, vtkIdType);
@@ -124,8 +133,9 @@ public:
 
   //@{
   /**
-   * How much the spread of voxels may differ between the axes for a node to count as even: of the node's extent (HYBRID, default .1), and
-   * in voxels (HYBRID_PAPER, default 8). At least 0; else an error when building.
+   * Set/Get how much the spread of voxels may differ between the axes for a node to count as evenly filled. Uniform (of HYBRID, default .1)
+   * is a fraction of the node's extent. PaperThreshold (of HYBRID_PAPER, default 8) is in voxels. A value below 0 is an error when
+   * building.
    */
   vtkSetMacro(Uniform, double);
   vtkGetMacro(Uniform, double);
@@ -135,7 +145,8 @@ public:
 
   //@{
   /**
-   * Bandwidth of density in voxels, or 0 (default) for the paper's rule with its floor of 1. Negative: an error when building.
+   * Set/Get the bandwidth of the density estimate in voxels. 0 (default) takes the paper's rule, but at least 1. A negative value is an
+   * error when building.
    */
   vtkSetMacro(Bandwidth, double);
   vtkGetMacro(Bandwidth, double);
@@ -143,7 +154,8 @@ public:
 
   //@{
   /**
-   * Density summed voxel by voxel instead of over bricks, and anew in each node. Default off; HYBRID_PAPER always does both.
+   * Set/Get how density is estimated. ExactDensity sums it voxel by voxel instead of brick by brick; DensityPerNode computes it anew in
+   * each node. Default off; HYBRID_PAPER always does both.
    */
   vtkSetClampMacro(ExactDensity, vtkTypeBool, 0, 1);
   vtkGetMacro(ExactDensity, vtkTypeBool);
@@ -155,8 +167,8 @@ public:
 
   //@{
   /**
-   * Of the last tree built: voxels that count, bricks that hold any, nodes, leaves, leaves of distance fields, depth of the deepest leaf,
-   * bytes, cost by the surface area heuristic, milliseconds, and one sentence on what decided its shape.
+   * Get statistics of the last tree built: voxels that it holds, bricks that hold any, nodes, leaves, leaves of distance fields, depth of
+   * the deepest leaf, bytes, cost by the surface area heuristic, build time in milliseconds, and a sentence on what decided its shape.
    */
   vtkGetMacro(NumberOfVoxels, vtkIdType);
   vtkGetMacro(NumberOfBricks, vtkIdType);
@@ -171,7 +183,7 @@ public:
   //@}
 
   /**
-   * The second output.
+   * Get the second output.
    */
   vtkPolyData* GetBoxes();
 

@@ -13,10 +13,10 @@
 #include <algorithm>
 
 namespace {
-// All twelve edges in one stroke, so that a box is one cell: three are drawn twice.
+// One polyline along all twelve edges, so that a box is one cell. It draws three edges twice.
 const vtkIdType Stroke[16] = { 0, 1, 3, 2, 0, 4, 5, 1, 5, 7, 3, 7, 6, 2, 6, 4 };
 
-// In index coordinates. Cells beyond the volume's last belong to its last block, and are not drawn.
+// Finds the part of a box that lies in the volume, in index coordinates. The last blocks of cells may extend beyond the volume.
 void Extent(const stratus_node_box& box, const stratus_volume& volume, bool cells, double extent[6])
 {
   for (int a = 0; a < 3; ++a) {
@@ -27,7 +27,7 @@ void Extent(const stratus_node_box& box, const stratus_volume& volume, bool cell
       extent[2 * a] -= 0.5;
       extent[2 * a + 1] -= 0.5;
     } else {
-      const double border = volume.cell_centered ? 0.5 : 0.0; // values of cells reach half a cell farther
+      const double border = volume.cell_centered ? 0.5 : 0.0; // the volume of cell data extends half a cell beyond its outermost values
       extent[2 * a] = box.lo[a] == 0 ? -border : extent[2 * a];
       extent[2 * a + 1] = extent[2 * a + 1] >= last ? last + border : extent[2 * a + 1];
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boxes of a tree's nodes, to look at. Private to the module.
+// Draws the boxes of a tree's nodes. Private to the module.
 #ifndef vtkStratusTreeBoxes_h
 #define vtkStratusTreeBoxes_h
 
@@ -7,7 +7,8 @@
 
 class vtkPolyData;
 
-// cells: voxels of the tree are cells between values, else cubes about values. World is the image's: no matrix of a prop.
+// `cells`: the tree's voxels are cells between values; otherwise they are unit cubes about values. World coordinates are the image's,
+// without a prop's matrix.
 VTK_STRATUS_PRIVATE void vtkStratusTreeBoxes(const stratus_tree* tree, const stratus_volume& volume, bool cells, vtkPolyData* output);
 
 #endif
