@@ -48,7 +48,7 @@ bool CheckAttributes(vtkUnstructuredGrid* grid, std::string& error)
     vtkStratusFindGhosts(grid->GetCellData(), cells, "cells of the grid", flags, error);
 }
 
-// Attributes that stay attributes: what is copied under the same name.
+// Makes the copies of the active attributes (scalars, vectors ...) active, too.
 void KeepAttributes(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
   for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type) {
@@ -84,7 +84,7 @@ void InterpolatePoints(vtkPointData* from, const vtkStratusTetrahedra& tetrahedr
       ghosts && ghosts == result && std::string(array->GetName() ? array->GetName() : "") == vtkDataSetAttributes::GhostArrayName();
     for (vtkIdType i = old_points; i < points; ++i) {
       const vtkIdType p = cut.ends[2 * (i - old_points)], q = cut.ends[2 * (i - old_points) + 1];
-      if (flags) { // what both ends are
+      if (flags) { // a ghost flag is set where both ends have it
         ghosts->SetValue(i, static_cast<unsigned char>(ghosts->GetValue(p) & ghosts->GetValue(q)));
       } else {
         result->InterpolateTuple(i, p, result, q, result, cut.weights[i - old_points]);
@@ -116,7 +116,7 @@ void CopyCells(vtkCellData* from, const std::vector<vtkIdType>& origins, vtkCell
   KeepAttributes(from, to);
 }
 
-// A cell with a blanked corner is blanked as a whole: its pieces say so themselves, as not all of them touch the corner.
+// Hides every piece of a cell that has a hidden corner, because not every piece touches that corner.
 void HidePieces(
   vtkUnstructuredGrid* input, const vtkStratusTetrahedra& tetrahedra, const std::vector<vtkIdType>& origins, vtkUnstructuredGrid* output)
 {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusPartitionFilter
- * @brief   an unstructured grid cut into the leaves of a K-D tree
+ * @brief   cuts an unstructured grid into the leaves of a K-D tree
  *
- * Input: a vtkUnstructuredGrid. Its cells are divided into tetrahedra that meet face to face (linear and quadratic cells and polyhedra;
- * vertices, lines and polygons are dropped, cells of higher order refused), and those are cut by planes, so that each lies in one leaf: Li
- * et al. 2012. Pieces meet in the same points, across leaves, too, and fill what they were cut from.
+ * Input: a vtkUnstructuredGrid. Its linear and quadratic cells and polyhedra are divided into tetrahedra that meet face to face. Vertices,
+ * lines and polygons are dropped; cells of higher order are refused. Planes then cut the tetrahedra, so that each piece lies in one leaf
+ * (Li et al. 2012). Neighbouring pieces share their points, across leaves, too. Together the pieces of a cell fill the cell.
  *
- * Output: tetrahedra, leaf by leaf. Points keep their numbers; the middles of quadratic cells that have no point there (all but tetrahedra,
- * triquadratic hexahedra and pyramids) and points on cut edges follow; point data are interpolated, cell data
- * copied (global ids are dropped, as they would no longer be unique). Cell data "StratusLeaf" and "StratusOriginalCell" and field data
- * "StratusPartition" (the tree) are added; vtkStratusVisibilitySort reads them.
+ * Output: tetrahedra, leaf by leaf. The input's points keep their numbers. Behind them come the centres of quadratic cells that have no
+ * node there (all but tetrahedra and triquadratic hexahedra and pyramids) and the points on cut edges. Point data are interpolated and cell
+ * data copied; global ids are dropped, because they would no longer be unique. The cell data "StratusLeaf" and "StratusOriginalCell" and
+ * the field data "StratusPartition" (the tree) are added; vtkStratusVisibilitySort reads them.
  *
  * @sa vtkStratusVisibilitySort
  */
@@ -32,8 +32,9 @@ public:
   enum RuleType { MEDIAN, PAPER };
   //@{
   /**
-   * MEDIAN: of the planes through points between the 40 % and the 60 % quantile the one that adds fewest cells. PAPER: of evenly spaced
-   * planes the one that adds fewest among those that Growth and Imbalance admit. Default MEDIAN.
+   * Set/Get the rule that chooses a plane. MEDIAN takes, of the planes through points between the 40 % and the 60 % quantile, the one that
+   * adds fewest cells. PAPER takes the one that adds fewest of evenly spaced planes. A plane must also satisfy Growth and Imbalance.
+   * Default MEDIAN.
    */
   vtkSetClampMacro(Rule, int, MEDIAN, PAPER);
   vtkGetMacro(Rule, int);
@@ -41,7 +42,7 @@ public:
 
   //@{
   /**
-   * At most 2^Depth leaves, 0..16. Default 3.
+   * Set/Get the depth of the tree, 0..16. It has at most 2^Depth leaves. Default 3.
    */
   vtkSetClampMacro(Depth, int, 0, 16);
   vtkGetMacro(Depth, int);
@@ -49,7 +50,7 @@ public:
 
   //@{
   /**
-   * Planes tried an axis and node, 1..4096. Default 64.
+   * Set/Get the number of planes tried per axis and node, 1..4096. Default 64.
    */
   vtkSetClampMacro(Planes, int, 1, 4096);
   vtkGetMacro(Planes, int);
@@ -57,7 +58,7 @@ public:
 
   //@{
   /**
-   * Most new cells per cell of a node (the paper's Phi), > 0. Default: any.
+   * Set/Get the most new cells that a plane may add per cell of the node (the paper's Phi), > 0. Default infinity.
    */
   vtkSetMacro(Growth, double);
   vtkGetMacro(Growth, double);
@@ -65,7 +66,7 @@ public:
 
   //@{
   /**
-   * The difference of a plane's two sides over their mean stays below this (the paper's epsilon), > 0. Default 0.5.
+   * Set/Get the bound on a plane's imbalance, the difference of its two sides over their mean (the paper's epsilon), > 0. Default 0.5.
    */
   vtkSetMacro(Imbalance, double);
   vtkGetMacro(Imbalance, double);
@@ -73,7 +74,7 @@ public:
 
   //@{
   /**
-   * Where no plane is admissible the mesh is turned as many times at most, 0..64. Default 0.
+   * Set/Get how often the mesh may be rotated where no plane of the root is admissible, 0..64. Default 0.
    */
   vtkSetClampMacro(Rotations, int, 0, 64);
   vtkGetMacro(Rotations, int);
@@ -81,7 +82,7 @@ public:
 
   //@{
   /**
-   * A node of so many cells or fewer is not cut, >= 1. Default 1024.
+   * Set/Get the number of cells up to which a node is not cut, >= 1. Default 1024.
    */
   vtkSetClampMacro(LeafCells, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(LeafCells, vtkIdType);
@@ -89,7 +90,7 @@ public:
 
   //@{
   /**
-   * Of the last output: leaves; cells of the largest; tetrahedra before anything was cut.
+   * Get statistics of the last output: the number of leaves, the cells of the largest leaf, and the number of tetrahedra before cutting.
    */
   vtkGetMacro(NumberOfLeaves, int);
   vtkGetMacro(LargestLeaf, vtkIdType);

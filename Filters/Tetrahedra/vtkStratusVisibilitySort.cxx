@@ -38,7 +38,7 @@ public:
   vtkStratusLeaves Leaves;
   stratus_visibility_order* Order = nullptr;
   stratus_visibility_result Result{};
-  vtkDataSet* Grid = nullptr; // compared, not read
+  vtkDataSet* Grid = nullptr; // only compared, it may be gone
   vtkMTimeType Built = 0;
   vtkIdType Next = 0, Count = 0;
   vtkNew<vtkIdTypeArray> Cells;
@@ -68,7 +68,7 @@ bool vtkStratusVisibilitySort::Internals::Build(vtkUnstructuredGrid* grid, std::
   stratus_context* context = this->Context.Get();
   stratus_status status = STRATUS_INVALID_ARGUMENT;
   if (this->Leaves.Set(grid)) {
-    // A tree that does not hold any more, since something moved the points, is refused: then there is one leaf.
+    // The core refuses a tree that no longer fits the cells, for instance because a filter moved the points. The mesh then is one leaf.
     status = stratus_visibility_order_create(context, &mesh, &this->Leaves.Leaves, &this->Order);
   }
   if (status == STRATUS_INVALID_ARGUMENT) {

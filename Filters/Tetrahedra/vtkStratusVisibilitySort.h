@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVisibilitySort
- * @brief   tetrahedra in an order in which none hides one that comes before it
+ * @brief   sorts tetrahedra so that none hides one that comes before it
  *
- * Plugs into vtkProjectedTetrahedraMapper, or any other that takes a vtkVisibilitySort. Input: a vtkUnstructuredGrid of linear tetrahedra.
- * Which of two neighbours is in front follows from their face, in exact arithmetic where double does not tell; which of two cells on both
- * sides of a gap, from where their border faces cover one another in the view. If the input comes from vtkStratusPartitionFilter and still
- * is as that left it, its leaves are sorted apart and in parallel. Neighbours are found when the input has changed; an order is kept
- * while the eye stays, or where there are no gaps, as long as every cell hides the same neighbours.
+ * Plugs into vtkProjectedTetrahedraMapper, or any other class that takes a vtkVisibilitySort. Input: a vtkUnstructuredGrid of linear
+ * tetrahedra.
  *
- * MaxCellsReturned, Direction and ModelTransform are honoured. What cannot be sorted gives an error and no cells.
+ * Which of two neighbours is in front follows from their common face, by exact arithmetic where double precision does not suffice. Which of
+ * two cells on opposite sides of a gap is in front follows from where their border faces cover one another in the view. If the input comes
+ * unchanged from vtkStratusPartitionFilter, its leaves are sorted separately and in parallel. Neighbours are found anew only when the input
+ * changes. The last order is reused while the eye stays, or, in a mesh without gaps, while every cell hides the same neighbours.
+ *
+ * MaxCellsReturned, Direction and ModelTransform are honoured. An input that cannot be sorted gives an error and no cells.
  *
  * @sa vtkStratusPartitionFilter vtkProjectedTetrahedraMapper
  */
@@ -30,7 +32,8 @@ public:
 
   //@{
   /**
-   * Sorts for the camera as it is now; gives at most MaxCellsReturned cells, the next in order; nullptr after the last.
+   * InitTraversal() sorts for the camera as it is now. GetNextCells() returns the next cells in order, at most MaxCellsReturned, and
+   * nullptr after the last.
    */
   void InitTraversal() override;
   vtkIdTypeArray* GetNextCells() override;
@@ -39,8 +42,8 @@ public:
   enum PeelingType { NEAREST, LAYERS };
   //@{
   /**
-   * NEAREST: of the cells that nothing hides any more one of the nearest comes next. LAYERS: all of them do, as Li et al. 2012 have it;
-   * gaps may then be crossed in the wrong order. Default NEAREST.
+   * Set/Get the choice among cells that no remaining cell hides. NEAREST takes one of the nearest. LAYERS takes all of them, as in Li et
+   * al. 2012, and may cross gaps in the wrong order. Default NEAREST.
    */
   vtkSetClampMacro(Peeling, int, NEAREST, LAYERS);
   vtkGetMacro(Peeling, int);
@@ -48,7 +51,7 @@ public:
 
   //@{
   /**
-   * Threads of the host, 0: as many as OpenMP would take, at most 1024. Default 0.
+   * Set/Get the number of threads of the host, 0..1024. 0 takes as many as OpenMP would. Default 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -56,9 +59,14 @@ public:
 
   //@{
   /**
-   * Of the last traversal: leaves; rings of cells that hide one another, each broken once; those of them that lead across gaps, as where
-   * cells overlap; cells that came before some that hide them, as rings were too many; layers (peeling in layers); milliseconds that
-   * neighbours took, once, and signs and peeling, each time.
+   * Get statistics of the last traversal.
+   * - NumberOfLeaves: leaves of the partition.
+   * - NumberOfCycles: cycles of cells that hide one another; each is broken once.
+   * - NumberOfOverlaps: cycles that lead across a gap, as where cells overlap.
+   * - NumberOfForcedCells: cells placed before a cell that hides them, because there were too many cycles.
+   * - NumberOfLayers: layers of peeling, if Peeling is LAYERS.
+   * - BuildMilliseconds: time to find neighbours, once per input.
+   * - SortMilliseconds: time to find signs and to peel, in each traversal.
    */
   vtkGetMacro(NumberOfLeaves, int);
   vtkGetMacro(NumberOfCycles, vtkIdType);
