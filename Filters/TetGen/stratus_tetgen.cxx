@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-tetgen: does TetGen's work for vtkStratusTetGenFilter in a process of its own, so that its crashes and endless runs stay here.
-// This source is under the licence above; the program built from it links TetGen and so falls under the AGPL as a whole (README.md).
+// stratus-tetgen runs TetGen for vtkStratusTetGenFilter in a process of its own, so that a crash or an endless run does not harm the
+// application. This source is under the licence above. The program built from it links TetGen and so falls under the AGPL as a whole
+// (README.md).
 #include "tetgen_exchange.h"
 
 #include <tetgen.h>
@@ -18,7 +19,7 @@
 namespace {
 using tetgen_exchange::Answer;
 using tetgen_exchange::Request;
-const size_t PieceBytes = size_t(1) << 30; // the most that one read or write may be asked for is a little more
+const size_t PieceBytes = size_t(1) << 30; // below the limit of a single read() or write()
 
 template <typename T> void Read(T* values, size_t count)
 {
@@ -54,7 +55,7 @@ void WriteHeader(const Answer& answer)
   Write(&answer, 1);
 }
 
-// TetGen frees by delete[] what it is given.
+// Returns memory from new[], because TetGen frees its input by delete[].
 template <typename T> T* ReadNew(std::int64_t count)
 {
   T* values = new T[static_cast<size_t>(count)];
@@ -87,7 +88,8 @@ void ReadSurface(const Request& request, tetgenio& in)
   }
 }
 
-// p: a surface; z: counted from 0; J: no point is left out, so that ours keep their numbers; Q: quiet.
+// Switches of TetGen: p, the input is a surface; z, numbers start at 0; J, no point is left out, so that the request's points keep their
+// numbers; Q, quiet.
 std::string Switches(const Request& request, const tetgenio& in)
 {
   std::string switches = "pzJQ";
@@ -124,11 +126,11 @@ void Mesh(const Request& request, tetgenio& in, tetgenio& out)
 void WriteMesh(const Request& request, const tetgenio& out)
 {
   Answer answer = {};
-  Write(&answer, 1); // its place; without the magic it says nothing
+  Write(&answer, 1); // reserves the header's place, still without the magic number that makes it valid
   const size_t tetrahedra = static_cast<size_t>(out.numberoftetrahedra), faces = static_cast<size_t>(out.numberoftrifaces);
   const bool regions = request.Regions > 0 && out.numberoftetrahedronattributes > 0;
   Write(out.pointlist, 3 * static_cast<size_t>(out.numberofpoints));
-  for (size_t index = 0; regions && index < tetrahedra; ++index) { // the region's comes last
+  for (size_t index = 0; regions && index < tetrahedra; ++index) { // the region's attribute comes last
     Write(out.tetrahedronattributelist + (index + 1) * static_cast<size_t>(out.numberoftetrahedronattributes) - 1, 1);
   }
   Write(out.tetrahedronlist, 4 * tetrahedra);
@@ -147,8 +149,8 @@ int Run()
   if (request.Magic != tetgen_exchange::RequestMagic) {
     throw std::string("this is no request of vtkStratusTetGenFilter, whose program this is");
   }
-  alarm(static_cast<unsigned>(request.Seconds)); // ends this even if nobody is left to do so
-  // Not destroyed: a mesh half made may be freed twice.
+  alarm(static_cast<unsigned>(request.Seconds)); // ends this program even if the filter's process is gone
+  // Never deleted: TetGen may leave a partial mesh whose destructor would free memory twice.
   tetgenio& in = *new tetgenio;
   tetgenio& out = *new tetgenio;
   ReadSurface(request, in);
@@ -172,7 +174,7 @@ int Run()
 int main()
 {
   const struct rlimit none = { 0, 0 };
-  setrlimit(RLIMIT_CORE, &none); // a crash is an outcome here, not worth a dump
+  setrlimit(RLIMIT_CORE, &none); // a crash is an expected outcome and needs no core dump
   int status = 1;
   try {
     status = Run();
@@ -182,5 +184,5 @@ int main()
     std::fprintf(stderr, "stratus-tetgen: %s\n", error.what());
   }
   std::fflush(nullptr);
-  _exit(status); // no destructor of a damaged heap
+  _exit(status); // the heap may be damaged, so no destructor runs
 }

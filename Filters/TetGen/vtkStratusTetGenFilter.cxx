@@ -29,7 +29,7 @@ private:
 };
 
 namespace {
-// lower < value <= upper, or lower too where it is included.
+// Throws unless lower < value <= upper. `included` allows lower itself.
 void CheckRange(const char* name, double value, double lower, bool included, double upper)
 {
   if (!(value > lower || (included && value == lower)) || !(value <= upper)) {
@@ -52,7 +52,8 @@ tetgen_exchange::Request vtkStratusTetGenFilter::Internals::GetOptions(vtkStratu
   options.MaximumVolume = filter->MaximumVolume;
   options.SteinerPoints = filter->MaximumSteinerPoints;
   options.PreserveBoundary = filter->PreserveBoundary;
-  options.Seconds = static_cast<std::int32_t>(std::ceil(filter->TimeLimit)) + 10; // only if this process is gone by then
+  options.Seconds = static_cast<std::int32_t>(std::ceil(filter->TimeLimit)) +
+    10; // 10 s later than the filter's own limit, in case this process is gone by then
   return options;
 }
 
@@ -72,7 +73,7 @@ void vtkStratusTetGenFilter::Internals::Mesh(
   surface.Write(options, request);
   filter->UpdateProgress(0.1);
   vtkStratusTetGenRun(program, filter->TimeLimit, request, answer, [filter](double seconds) {
-    filter->UpdateProgress(0.1 + 0.8 * std::min(1.0, seconds / filter->TimeLimit)); // TetGen tells nothing; this moves on at least
+    filter->UpdateProgress(0.1 + 0.8 * std::min(1.0, seconds / filter->TimeLimit)); // TetGen reports no progress, so time stands in for it
     return filter->GetAbortExecute() != 0;
   });
   vtkStratusTetGenReadAnswer(answer, surface, mesh, boundary);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusTetGenFilter
- * @brief   fills a closed surface with tetrahedra, by TetGen
+ * @brief   fills a closed surface with tetrahedra by TetGen
  *
- * Input: a vtkPolyData whose polygons and strips enclose a volume and do not cross each other; polygons are planar. Walls within are kept.
- * Vertices are points that the mesh shall have, lines count for nothing. Points in exactly one place are taken as one, unused ones are left
- * out. Cell data "Marker" (integer) mark facets; field data "Holes" (3 components) and "Regions" (5: a point, an attribute, the largest
- * volume or 0) add to what AddHole() and AddRegion() say: what vtkStratusTetGenReader gives of a .smesh file.
+ * Input: a vtkPolyData whose polygons and strips enclose a volume and do not cross each other; polygons are planar. Walls inside are kept.
+ * Vertices are points that the mesh must have; lines are ignored. Points with equal coordinates are merged, unused points dropped. The cell
+ * data "Marker" (integer) mark facets. The field data "Holes" (3 components) and "Regions" (5 components: a point, an attribute, the
+ * largest volume or 0) add to AddHole() and AddRegion(). vtkStratusTetGenReader reads these arrays from a .smesh file.
  *
- * First output: a vtkUnstructuredGrid of linear tetrahedra, none of them inverted, with point data "vtkOriginalPointIds" (-1 for points
- * that TetGen added), and cell data "Region" (double), the attributes of regions, if there are any. Second output: the mesh's boundary and
- * inner walls as triangles over the same points, with cell data "Marker" (int; 1 where the input has none).
+ * First output: a vtkUnstructuredGrid of linear tetrahedra, none of them inverted. Its point data "vtkOriginalPointIds" are -1 for points
+ * that TetGen added. If there are regions, its cell data "Region" (double) hold their attributes. Second output: the triangles of the
+ * mesh's boundary and inner walls over the same points, with the cell data "Marker" (int; 1 where the input has none).
  *
- * TetGen runs in a process of its own, the program stratus-tetgen: where it crashes, as it may for surfaces that cross themselves, or runs
- * on, as it may for a quality that can't be had, that is an error that says so. Outputs are empty after an error.
+ * TetGen runs in a process of its own, the program stratus-tetgen. It may crash on surfaces that cross themselves and may run without end
+ * for a quality that cannot be reached; the filter then reports an error. Outputs are empty after an error.
  *
  * TetGen is under the AGPL: see the module's README.
  *
@@ -38,7 +38,7 @@ public:
 
   //@{
   /**
-   * Whether to add points until tetrahedra are well shaped. Default on.
+   * Set/Get whether TetGen adds points until the tetrahedra are well shaped. Default on.
    */
   vtkSetClampMacro(Quality, vtkTypeBool, 0, 1);
   vtkGetMacro(Quality, vtkTypeBool);
@@ -47,9 +47,9 @@ public:
 
   //@{
   /**
-   * With Quality: the largest ratio of a tetrahedron's circumscribed radius to its shortest edge, above 0, and the smallest angle between
-   * two of its faces in degrees, 0..70. Default 2 and 0. Below 1.2 and above 18 TetGen may not come to an end; beside small angles of the
-   * surface itself it lets worse ones stand.
+   * Set/Get the bounds on shape that Quality imposes: the largest ratio of a tetrahedron's circumradius to its shortest edge, above 0 and
+   * up to 1e6, and the smallest dihedral angle in degrees, 0..70. Default 2 and 0. Below a ratio of 1.2 or above an angle of 18 TetGen may
+   * not end. Next to small angles of the surface TetGen accepts worse tetrahedra.
    */
   vtkSetMacro(RadiusEdgeRatio, double);
   vtkGetMacro(RadiusEdgeRatio, double);
@@ -59,7 +59,7 @@ public:
 
   //@{
   /**
-   * The largest volume of a tetrahedron, at least 0. Default 0: any.
+   * Set/Get the largest volume of a tetrahedron, at least 0. Default 0: no bound.
    */
   vtkSetMacro(MaximumVolume, double);
   vtkGetMacro(MaximumVolume, double);
@@ -67,7 +67,8 @@ public:
 
   //@{
   /**
-   * How many points TetGen may add at most, 0..2^31 - 1, or -1 (default) for any number. Where it is reached, quality and volume are not.
+   * Set/Get the most points that TetGen may add, 0..2^31 - 1, or -1 (default) for any number. If TetGen reaches the limit, the bounds on
+   * shape and volume may not hold.
    */
   vtkSetMacro(MaximumSteinerPoints, vtkIdType);
   vtkGetMacro(MaximumSteinerPoints, vtkIdType);
@@ -75,7 +76,7 @@ public:
 
   //@{
   /**
-   * Whether the surface's triangles stay as they are, without points added on it. Default off.
+   * Set/Get whether the surface's triangles stay as they are, without added points. Default off.
    */
   vtkSetClampMacro(PreserveBoundary, vtkTypeBool, 0, 1);
   vtkGetMacro(PreserveBoundary, vtkTypeBool);
@@ -84,7 +85,7 @@ public:
 
   //@{
   /**
-   * A point in a part that stays empty: all up to the next facets is left out.
+   * A hole is a point in a part that stays empty. The part extends to the nearest facets around the point.
    */
   void AddHole(double x, double y, double z);
   void RemoveAllHoles();
@@ -93,8 +94,8 @@ public:
 
   //@{
   /**
-   * A point in a part whose tetrahedra shall have this value of "Region" and, where it is above 0, no larger volume. Parts that no region
-   * lies in have whole values above all of these.
+   * A region is a point in a part of the volume. The part's tetrahedra get this value of "Region" and, where maximumVolume is above 0, are
+   * no larger. Parts without a region get integers above all attributes.
    */
   void AddRegion(double x, double y, double z, double attribute, double maximumVolume = 0.0);
   void RemoveAllRegions();
@@ -103,7 +104,7 @@ public:
 
   //@{
   /**
-   * Seconds after which TetGen is stopped, above 0 and up to 1e6. Default 60.
+   * Set/Get the seconds after which TetGen is stopped, above 0 and up to 1e6. Default 60.
    */
   vtkSetMacro(TimeLimit, double);
   vtkGetMacro(TimeLimit, double);
@@ -111,14 +112,14 @@ public:
 
   //@{
   /**
-   * The program that runs TetGen. Default none: stratus-tetgen where it was built or installed with this library.
+   * Set/Get the program that runs TetGen. Default none: the stratus-tetgen built or installed with this library.
    */
   vtkSetFilePathMacro(Program);
   vtkGetFilePathMacro(Program);
   //@}
 
   /**
-   * The second output.
+   * Get the second output.
    */
   vtkPolyData* GetBoundary();
 

@@ -21,7 +21,7 @@ namespace {
   throw vtkStratusTetGenFailure{ text };
 }
 
-// What TetGen throws, in words.
+// The meaning of a number that TetGen throws.
 std::string Meaning(std::int64_t status)
 {
   switch (status) {
@@ -42,7 +42,7 @@ std::string Meaning(std::int64_t status)
   }
 }
 
-// A child process, which does not outlive the object.
+// A child process, killed with the object.
 class Child
 {
 public:
@@ -50,7 +50,7 @@ public:
   ~Child();
   Child(const Child&) = delete;
   void operator=(const Child&) = delete;
-  // Whether it has ended.
+  // Returns whether the process has ended.
   bool Poll();
   int GetStatus() const { return this->Status; }
   bool IsStatusKnown() const { return this->Known; }
@@ -71,7 +71,7 @@ Child::Child(const std::string& program, int request, int answer, int messages)
   posix_spawn_file_actions_adddup2(&actions, messages, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages, STDERR_FILENO);
   posix_spawn_file_actions_adddup2(&actions, answer, tetgen_exchange::AnswerDescriptor);
-  // Signals as a program expects them, whatever the caller has done with its own.
+  // The program gets the default signal handling, whatever the application has set.
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
@@ -101,7 +101,7 @@ bool Child::Poll()
 {
   if (!this->Ended) {
     const pid_t ended = waitpid(this->Process, &this->Status, WNOHANG);
-    // An application that ignores SIGCHLD, or waits for all children, leaves no status: the answer tells then.
+    // An application that ignores SIGCHLD, or waits for all children, leaves no status. The answer then tells whether the run succeeded.
     this->Known = !(ended < 0 && errno == ECHILD);
     this->Ended = ended == this->Process || !this->Known;
   }
@@ -145,7 +145,7 @@ vtkStratusTetGenSpool::vtkStratusTetGenSpool() : File(std::tmpfile())
     }
     Fail("can't make a temporary file: " + reason);
   }
-  std::fclose(this->File); // the duplicate stays, and it alone is not inherited
+  std::fclose(this->File); // the duplicate stays open and, unlike the original, is not inherited
   this->File = nullptr;
 }
 

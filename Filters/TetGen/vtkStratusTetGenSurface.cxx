@@ -22,7 +22,7 @@
 #include <utility>
 
 namespace {
-const vtkIdType MostNumbers = std::numeric_limits<std::int32_t>::max(); // TetGen's are of 32 bits
+const vtkIdType MostNumbers = std::numeric_limits<std::int32_t>::max(); // TetGen's numbers have 32 bits
 
 [[noreturn]] void Fail(const std::string& text)
 {
@@ -34,7 +34,7 @@ std::string Number(vtkIdType value)
   return std::to_string(value);
 }
 
-// Appends the tuples of a field-data array, all finite.
+// Appends the tuples of a field-data array. Throws where a seed is not finite.
 template <size_t N> void AddSeeds(vtkPolyData* surface, const char* name, std::vector<std::array<double, N>>& seeds)
 {
   vtkDataArray* array = surface->GetFieldData()->GetArray(name);
@@ -54,7 +54,7 @@ template <size_t N> void AddSeeds(vtkPolyData* surface, const char* name, std::v
   }
 }
 
-// The input's numbers of markers are those of its cells, polygons behind vertices and lines, strips last.
+// Returns a cell's marker, 1 where there are none. vtkPolyData numbers vertices first, then lines, polygons and strips.
 std::int32_t MarkerOf(vtkPolyData* surface, vtkIdType cell)
 {
   vtkDataArray* markers = surface->GetCellData()->GetArray("Marker");
@@ -69,8 +69,8 @@ std::int32_t MarkerOf(vtkPolyData* surface, vtkIdType cell)
 }
 } // namespace
 
-// Points that are used, in the input's order, those in one place as one: TetGen takes two there ill. ours: our number of each point of the
-// input.
+// Collects the points that cells use, in the input's order. Points with equal coordinates are merged, because TetGen handles duplicates
+// badly. `ours` maps each point of the input to its number in the request, -1 where it is unused.
 void vtkStratusTetGenSurface::SetPoints(vtkPolyData* surface, std::vector<vtkIdType>& ours)
 {
   using Place = std::pair<std::array<double, 3>, vtkIdType>;
@@ -98,7 +98,7 @@ void vtkStratusTetGenSurface::SetPoints(vtkPolyData* surface, std::vector<vtkIdT
   for (size_t index = 1; index < places.size(); ++index) {
     if (places[index].first == places[index - 1].first) {
       ours[static_cast<size_t>(places[index].second)] = places[index - 1].second;
-      places[index].second = places[index - 1].second; // the first of all that are here
+      places[index].second = places[index - 1].second; // the lowest number of all points here
     }
   }
   for (size_t point = 0; point < ours.size(); ++point) {
@@ -109,7 +109,7 @@ void vtkStratusTetGenSurface::SetPoints(vtkPolyData* surface, std::vector<vtkIdT
       ours[point] = static_cast<vtkIdType>(this->OriginalPoints.size());
       this->OriginalPoints.push_back(static_cast<vtkIdType>(point));
     } else if (ours[point] >= 0) {
-      ours[point] = ours[static_cast<size_t>(ours[point])]; // its number is less, so it has ours already
+      ours[point] = ours[static_cast<size_t>(ours[point])]; // merged into a point of a lower number, which is mapped already
     }
   }
 }
@@ -126,7 +126,7 @@ void vtkStratusTetGenSurface::AddFacet(vtkIdType size, const vtkIdType* points, 
   while (corners.size() > 1 && corners.back() == corners.front()) {
     corners.pop_back();
   }
-  if (corners.size() < 3) { // it has no area left
+  if (corners.size() < 3) { // merging has left it without area
     return;
   }
   this->Corners.insert(this->Corners.end(), corners.begin(), corners.end());
@@ -185,8 +185,8 @@ void vtkStratusTetGenSurface::Write(tetgen_exchange::Request header, vtkStratusT
   write(this->Coordinates);
   write(this->Holes);
   std::vector<std::array<double, 5>> numbered = this->Regions;
-  for (size_t region = 0; region < numbered.size();
-       ++region) { // TetGen cuts attributes to integers, so it gets numbers and we put them back
+  for (size_t region = 0; region < numbered.size(); ++region) {
+    // TetGen truncates attributes to integers, so it gets the regions' numbers; PutAttributes() puts the attributes back.
     numbered[region][3] = static_cast<double>(region + 1);
   }
   write(numbered);
@@ -197,7 +197,8 @@ void vtkStratusTetGenSurface::Write(tetgen_exchange::Request header, vtkStratusT
 }
 
 namespace {
-// TetGen's numbers of regions become their attributes; those without a seed, which it numbers on from ours, integers above all of them.
+// Replaces the numbers of regions by their attributes. TetGen numbers parts without a seed on from the last region; they get integers above
+// all attributes.
 void PutAttributes(const std::vector<std::array<double, 5>>& regions, vtkDoubleArray* attributes)
 {
   const double seeds = static_cast<double>(regions.size());
@@ -212,7 +213,7 @@ void PutAttributes(const std::vector<std::array<double, 5>>& regions, vtkDoubleA
   }
 }
 
-// Numbers of 32 bits from the answer, all in 0..limit - 1.
+// Reads 32-bit numbers from the answer. Throws unless all are in 0..limit - 1.
 vtkSmartPointer<vtkIdTypeArray> ReadIds(vtkStratusTetGenSpool& answer, std::int64_t count, std::int64_t limit)
 {
   std::vector<std::int32_t> numbers(static_cast<size_t>(count));
@@ -226,7 +227,7 @@ vtkSmartPointer<vtkIdTypeArray> ReadIds(vtkStratusTetGenSpool& answer, std::int6
   return ids;
 }
 
-// Leaves out the points that no tetrahedron has: those in holes, for the most part. Returns the points left, in order.
+// Drops the points that no tetrahedron uses, most of which lie in holes, and renumbers the rest. Returns the points kept, in order.
 std::vector<vtkIdType> LeaveOut(vtkIdType points, vtkIdTypeArray* mesh, vtkIdTypeArray* boundary)
 {
   std::vector<vtkIdType> number(static_cast<size_t>(points), -1), left;

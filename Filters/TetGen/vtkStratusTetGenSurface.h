@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vtkPolyData as a request to TetGen, and TetGen's answer as a mesh. Private to the module.
+// Converts a vtkPolyData to a request to TetGen, and TetGen's answer to a mesh. Private to the module.
 #ifndef vtkStratusTetGenSurface_h
 #define vtkStratusTetGenSurface_h
 
@@ -15,13 +15,13 @@ class vtkUnstructuredGrid;
 
 struct VTK_STRATUS_PRIVATE vtkStratusTetGenSurface {
   std::vector<double> Coordinates;
-  std::vector<vtkIdType> OriginalPoints; // of the input, one for each of ours
+  std::vector<vtkIdType> OriginalPoints; // the input's number of each of our points
   std::vector<std::int32_t> Begins, Corners, Markers;
   std::vector<std::array<double, 3>> Holes;
   std::vector<std::array<double, 5>> Regions;
 
-  // Polygons, strips and vertices with the points that they use, those in one place as one; adds field data "Holes" and "Regions". Throws
-  // vtkStratusTetGenFailure.
+  // Takes over polygons, strips and vertices and the points that they use, merges points with equal coordinates, and adds the field data
+  // "Holes" and "Regions". Throws vtkStratusTetGenFailure.
   void Set(vtkPolyData* surface);
   void Write(tetgen_exchange::Request header, vtkStratusTetGenSpool& spool) const;
 
@@ -30,7 +30,7 @@ private:
   void AddFacet(vtkIdType size, const vtkIdType* points, std::int32_t marker, const std::vector<vtkIdType>& ours);
 };
 
-// Fills both outputs from a whole answer.
+// Fills both outputs from a complete answer. Throws vtkStratusTetGenFailure where it is damaged.
 VTK_STRATUS_PRIVATE void vtkStratusTetGenReadAnswer(
   vtkStratusTetGenSpool& answer, const vtkStratusTetGenSurface& surface, vtkUnstructuredGrid* mesh, vtkPolyData* boundary);
 
