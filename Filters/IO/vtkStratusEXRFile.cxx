@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 namespace {
-const size_t ShortName = 31; // longer ones need a flag that readers of before 2.0 do not know
+const size_t ShortName = 31; // longer names need a flag that OpenEXR before 2.0 does not know
 
-// What OpenEXR writes, kept in memory. Its callbacks are called from C: nothing is thrown there.
+// Collects in memory the bytes that OpenEXR writes. OpenEXR calls the callbacks from C, so they must not throw.
 class Encoder
 {
 public:
@@ -62,7 +62,7 @@ Encoder::~Encoder()
   }
 }
 
-// Before exr_finish(): its buffers are freed by the context's functions, and without a context nothing is.
+// Must run before exr_finish(), because the context's functions free the pipeline's buffers.
 void Encoder::ReleasePipeline()
 {
   if (this->Pipeline.context) {
@@ -82,7 +82,7 @@ int64_t Encoder::Write(
 {
   Encoder* encoder = static_cast<Encoder*>(self);
   try {
-    if (encoder->Bytes.size() < offset + size) { // the table of chunks is written last, into the space it was given first
+    if (encoder->Bytes.size() < offset + size) { // OpenEXR writes the chunk table last, into the space reserved for it at the start
       encoder->Bytes.resize(static_cast<size_t>(offset + size));
     }
   } catch (const std::exception&) {
@@ -127,7 +127,7 @@ void Encoder::WriteHeader(int width, int height, const std::vector<vtkStratusEXR
   this->Check(exr_write_header(this->Context));
 }
 
-// values: channel by channel, the rows of the chunk from the top down.
+// `values` holds one channel after the other, each with the chunk's rows from the top down.
 void Encoder::WriteChunk(int top, int width, const std::vector<float>& values, const std::vector<vtkStratusEXRChannel>& channels)
 {
   exr_chunk_info_t chunk;
@@ -135,7 +135,7 @@ void Encoder::WriteChunk(int top, int width, const std::vector<float>& values, c
   const bool first = !this->Pipeline.context;
   this->Check(first ? exr_encoding_initialize(this->Context, this->Part, &chunk, &this->Pipeline)
                     : exr_encoding_update(this->Context, this->Part, &chunk, &this->Pipeline));
-  for (int16_t c = 0; c < this->Pipeline.channel_count; ++c) { // OpenEXR keeps them by name
+  for (int16_t c = 0; c < this->Pipeline.channel_count; ++c) { // OpenEXR sorts channels by name
     exr_coding_channel_info_t& info = this->Pipeline.channels[c];
     const auto source =
       std::find_if(channels.begin(), channels.end(), [&info](const vtkStratusEXRChannel& one) { return one.Name == info.channel_name; });

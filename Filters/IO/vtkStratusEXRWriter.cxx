@@ -25,7 +25,7 @@
 vtkStandardNewMacro(vtkStratusEXRWriter);
 
 namespace {
-// Why nothing was written; Code is of vtkErrorCode.
+// The reason why nothing was written. Code is one of vtkErrorCode.
 struct Failure {
   std::string Text;
   unsigned long Code;
@@ -36,14 +36,14 @@ struct Failure {
   throw Failure{ text, code };
 }
 
-// A float of the same value, if there is one. NaN is taken for NaN.
+// Converts a value to the float equal to it. Returns false where there is none; a NaN stays a NaN.
 template <typename T> bool ToFloat(T value, float& result)
 {
   result = static_cast<float>(value);
   if constexpr (std::is_floating_point<T>::value) {
     return result == value || value != value;
   } else {
-    const float limit = std::ldexp(1.0f, std::numeric_limits<T>::digits); // the first integer beyond the type
+    const float limit = std::ldexp(1.0f, std::numeric_limits<T>::digits); // one above the type's largest value
     return result < limit && result >= (std::is_signed<T>::value ? -limit : 0.0f) && static_cast<T>(result) == value;
   }
 }
@@ -97,7 +97,7 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
     Fail(what + " is of type " + abstract->GetDataTypeAsString() + ", channels are made of numbers of 8 to 64 bits");
   }
   vtkSmartPointer<vtkDataArray> plain = array;
-  if (!array->HasStandardMemoryLayout()) { // one copy for all rows and channels: GetVoidPointer() would make one each time
+  if (!array->HasStandardMemoryLayout()) { // one copy for all rows and channels, because GetVoidPointer() would copy each time
     plain = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
     plain->DeepCopy(array);
   }
@@ -107,7 +107,7 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
   }
 }
 
-// Beside its final name first, so that there is the old file or the new one, and no half of it.
+// Writes a temporary file and renames it, so that there is the old file or the new one, never half of it.
 void Store(const std::vector<unsigned char>& bytes, const std::string& path)
 {
   std::string part;

@@ -3,19 +3,19 @@
  * @class   vtkStratusEXRWriter
  * @brief   writes the arrays of a picture as named float channels of an OpenEXR file
  *
- * The input is a vtkImageData of one layer, as vtkStratusVolumeMapper::GetLastImage() gives it. Each array of its point data becomes 32-bit
+ * Input: a vtkImageData of one layer, for instance vtkStratusVolumeMapper::GetLastImage(). Each array of its point data becomes 32-bit
  * float channels, without loss (ZIP):
- * - "RGBA" becomes R, G, B and A, as EXR has them: colours premultiplied by alpha;
+ * - "RGBA" becomes R, G, B and A; as in EXR, colours are premultiplied by alpha;
  * - "Depth" becomes Z;
- * - any other array of one component keeps its name ("Samples"), of more gets a number for each: "name.0", "name.1" ...;
- * - an array without a name is taken for RGBA, RGB or grey (Y) by its 4, 3 or 1 components.
+ * - any other array of one component keeps its name ("Samples"), an array of more gets numbered channels: "name.0", "name.1" ...;
+ * - an array without a name is RGBA, RGB or grey (Y) if it has 4, 3 or 1 components.
  *
- * A value that no float is (0.1 in double, 16777217) is an error, nothing is rounded. VTK's first row, at the bottom, is EXR's last. The
- * image's origin and spacing are not kept.
+ * A value to which no float is equal (0.1 in double, 16777217) is an error; nothing is rounded. VTK's first row, at the bottom, is EXR's
+ * last. The image's origin and spacing are not written.
  *
- * The file takes its name when it is complete: where writing fails or is aborted, a file that was there stays as it was.
+ * The file takes its name when it is complete. If writing fails or is aborted, a previous file stays as it was.
  *
- * The class is there where Stratus was built with OpenEXR (STRATUS_BUILD_EXR).
+ * The class exists if Stratus was built with OpenEXR (STRATUS_BUILD_EXR).
  *
  * @sa vtkStratusVolumeMapper
  */
@@ -34,7 +34,7 @@ public:
 
   //@{
   /**
-   * The file to write. Default none.
+   * Set/Get the file to write. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);

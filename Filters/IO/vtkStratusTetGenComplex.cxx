@@ -8,7 +8,7 @@
 #include <limits>
 
 namespace {
-// Cells of one kind; those of a vtkPolyData stand in the order of their kinds, its cell data with them.
+// Cells of one kind. A vtkPolyData numbers its cells kind by kind, so their cell data are collected kind by kind, too.
 struct Cells {
   vtkSmartPointer<vtkCellArray> Polygons = vtkSmartPointer<vtkCellArray>::New();
   std::vector<vtkIdType> Facets;
@@ -53,12 +53,12 @@ vtkSmartPointer<vtkDoubleArray> Parser::MakeArray(const char* name, int componen
 
 int Parser::ReadMarker()
 {
-  const bool given = this->IsMarked && this->Input.HasNumber(); // a facet may leave its marker out
+  const bool given = this->IsMarked && this->Input.HasNumber(); // a facet of a .smesh file may leave its marker out
   return given ? static_cast<int>(this->Input.GetInteger("the marker", std::numeric_limits<int>::min(), std::numeric_limits<int>::max()))
                : 0;
 }
 
-// Corners go on in the next line where one ends. Returns the kind.
+// Reads a polygon, whose corners may continue on the next lines. Returns its kind.
 vtkIdType Parser::ReadPolygon(vtkIdType facet)
 {
   const vtkIdType count = this->Input.GetCount("the number of corners", 1);
@@ -139,7 +139,7 @@ void Parser::ReadHoles()
 
 void Parser::ReadRegions()
 {
-  if (!this->Input.NextLine()) { // this part may be missing
+  if (!this->Input.NextLine()) { // the list of regions may be missing
     return;
   }
   const vtkIdType regions = this->Input.GetCount("the number of regions", 5);
@@ -152,7 +152,7 @@ void Parser::ReadRegions()
       tuple[axis] = this->Input.GetFinite("a region's coordinate");
     }
     tuple[3] = this->Input.GetFinite("a region's attribute");
-    // TetGen takes a lone fourth number for both.
+    // TetGen takes a lone fourth number as attribute and as volume.
     tuple[4] = this->Input.HasNumber() ? this->Input.GetFinite("a region's largest volume") : tuple[3];
     this->Regions->InsertNextTuple(tuple);
     this->Input.EndLine();

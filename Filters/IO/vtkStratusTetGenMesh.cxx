@@ -3,11 +3,11 @@
 
 #include <limits>
 
-// TetGen lists the middles of edges 2-3, 0-3, 0-1, 1-2, 1-3, 0-2; VTK those of 0-1, 1-2, 0-2, 0-3, 1-3, 2-3.
+// TetGen lists the midpoints of edges 2-3, 0-3, 0-1, 1-2, 1-3, 0-2; VTK lists 0-1, 1-2, 0-2, 0-3, 1-3, 2-3.
 const int vtkStratusTetGenCorner[10] = { 0, 1, 2, 3, 6, 7, 9, 5, 8, 4 };
 
 namespace {
-const vtkIdType MostColumns = 4096; // of attributes; TetGen's own lines end at 2047 bytes
+const vtkIdType MostColumns = 4096; // attributes; TetGen's own lines end at 2047 bytes
 const int SmallestMarker = std::numeric_limits<int>::min();
 const int LargestMarker = std::numeric_limits<int>::max();
 
@@ -139,7 +139,7 @@ int vtkStratusTetGenReadPieces(
 {
   const char* things = corners == 3 ? "faces" : "edges";
   const int middles = corners == 3 ? 3 : 1;
-  const int owners = corners == 3 ? 2 : 1; // tetrahedra beside it, where TetGen was asked for them
+  const int owners = corners == 3 ? 2 : 1; // tetrahedra beside the face or edge, where TetGen was asked for them
   input.NeedLine("headers", 0, 1);
   const vtkIdType count = input.GetCount(corners == 3 ? "the number of faces" : "the number of edges", corners + 1);
   const bool marked = OptionalInteger(input, "the flag of markers", 0, 1, 0) == 1;

@@ -19,7 +19,7 @@
 
 vtkStandardNewMacro(vtkStratusTetGenReader);
 
-// One run of the reader.
+// State of one run of the reader.
 class vtkStratusTetGenReader::Internals
 {
 public:
@@ -40,7 +40,7 @@ private:
   vtkStratusTetGenReader* Reader;
   const vtkStratusTetGenProgress Progress = [this](std::uintmax_t bytes) { this->Advance(bytes); };
   std::string Base;
-  std::string Extension; // that FileName has, or that was found
+  std::string Extension; // of FileName, or of the file that was found
   std::uintmax_t BytesRead = 0, BytesAll = 1;
   vtkStratusTetGenNodes Nodes;
 };
@@ -64,7 +64,7 @@ void vtkStratusTetGenReader::Internals::Advance(std::uintmax_t bytes)
   }
 }
 
-// Whether to read the mesh's file of this kind.
+// Returns whether to read the mesh's file of this kind.
 bool vtkStratusTetGenReader::Internals::IsWanted(const char* extension, bool asked) const
 {
   return this->Extension == extension || (asked && Exists(this->PathOf(extension)));
@@ -113,7 +113,7 @@ void vtkStratusTetGenReader::Internals::FillPointData(vtkPointData* data) const
   }
 }
 
-// Returns whether they are of second order, -1 where there are none.
+// Returns whether the tetrahedra are of second order, -1 where there are none.
 int vtkStratusTetGenReader::Internals::ReadElements(vtkUnstructuredGrid* mesh)
 {
   const bool neighbors = this->IsWanted(".neigh", this->Reader->ReadNeighbors != 0);
@@ -163,7 +163,7 @@ void vtkStratusTetGenReader::Internals::ReadPieces(int second_order, vtkPolyData
   if (!edges.Markers && !faces.Markers) {
     return;
   }
-  // Lines come first in a vtkPolyData. Those of a file without markers have 0, as in TetGen.
+  // Lines precede polygons in a vtkPolyData. Cells of a file without markers get 0, as in TetGen.
   const vtkIdType lines = surface->GetNumberOfLines();
   vtkSmartPointer<vtkIntArray> markers = vtkSmartPointer<vtkIntArray>::New();
   markers->SetName("Marker");

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusTetGenReader
- * @brief   reads what TetGen reads and writes: .node, .ele, .neigh, .face, .edge, .poly and .smesh
+ * @brief   reads TetGen's files: .node, .ele, .neigh, .face, .edge, .poly and .smesh
  *
- * FileName names one file of a mesh, whose other files lie beside it (mesh.1.node, mesh.1.ele ...), or what their names have in common
- * (mesh.1).
+ * FileName names one file of a mesh, or the common part of the names (mesh.1). The mesh's other files lie beside it (mesh.1.node,
+ * mesh.1.ele ...).
  *
- * Of .node, .ele, .neigh, .face and .edge: the first output is a vtkUnstructuredGrid of tetrahedra, linear or quadratic; the .node file
- * must be there, all others may be missing unless FileName names them. The second output is a vtkPolyData of edges and faces over the same
- * points. Faces and edges of second-order meshes come without the points in the middle of their edges.
+ * From .node, .ele, .neigh, .face and .edge: the first output is a vtkUnstructuredGrid of linear or quadratic tetrahedra. The .node file
+ * must exist; the others may be missing unless FileName names them. The second output is a vtkPolyData of edges and faces over the same
+ * points, without the midpoints of second-order edges.
  *
- * Of .poly and .smesh (points in the same file, or in the .node file beside it): the second output holds the surface, the first is points
- * without cells.
+ * From .poly and .smesh (with points in the same file, or in the .node file beside it): the second output holds the surface, the first
+ * holds points without cells.
  *
  * | array | where | |
  * |---|---|---|
  * | Attribute1, Attribute2 ... (double) | point data of both outputs, cell data of the first | of points and tetrahedra |
- * | Marker (int) | point data of both, cell data of the second | of points, faces, edges, facets, where the files have markers |
+ * | Marker (int) | point data of both, cell data of the second | of points, faces, edges, facets, if the files have markers |
  * | Neighbors (vtkIdType, 4) | cell data of the first | the tetrahedron opposite each corner, -1 for none |
- * | Facet (vtkIdType) | cell data of the second | of .poly and .smesh: polygons of the same number are one facet |
- * | Holes (double, 3), Regions (double, 5) | field data of the second | of .poly and .smesh: a point in each; Regions: attribute, largest
- * volume | | FacetHoles (double, 4) | field data of the second | of .poly: a facet's number and a point in a hole of it |
+ * | Facet (vtkIdType) | cell data of the second | .poly and .smesh: polygons with the same number are one facet |
+ * | Holes (double, 3) | field data of the second | .poly and .smesh: a point in each hole |
+ * | Regions (double, 5) | field data of the second | .poly and .smesh: a point in each region, attribute, largest volume |
+ * | FacetHoles (double, 4) | field data of the second | .poly: a facet's number and a point in a hole of it |
  *
- * The first attributes are the scalars. A tetrahedron's last is its region's, if TetGen was asked for regions.
+ * The first attribute is the active scalars. If TetGen was asked for regions, the last attribute of a tetrahedron is its region's.
  *
- * Files count from 0 or from 1, told by the first point's number; outputs count from 0. What is wrong is told with the file, the line, the
- * value and what it must be; both outputs are empty then. Files of any size are read in pieces of a megabyte, and no more is allocated than
- * a file can fill.
+ * The first point's number tells whether a mesh's files count from 0 or from 1; outputs count from 0. An error names the file, the line,
+ * the value and what it must be, and empties both outputs. The reader reads files in pieces of a megabyte and allocates no more than a file
+ * can fill.
  *
  * @sa vtkStratusTetGenWriter vtkStratusTetGenFilter
  */
@@ -49,7 +50,7 @@ public:
 
   //@{
   /**
-   * A file of the mesh, or what the names of all have in common. Default none.
+   * Set/Get a file of the mesh, or the common part of the files' names. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
@@ -57,7 +58,7 @@ public:
 
   //@{
   /**
-   * Whether to read .face, .edge and .neigh files that are there. Default on. One that FileName names is read in any case.
+   * Set/Get whether to read the .face, .edge and .neigh files that exist. A file that FileName names is always read. Default on.
    */
   vtkSetClampMacro(ReadFaces, vtkTypeBool, 0, 1);
   vtkGetMacro(ReadFaces, vtkTypeBool);
@@ -71,7 +72,7 @@ public:
   //@}
 
   /**
-   * The second output.
+   * Get the second output.
    */
   vtkPolyData* GetSurface();
 

@@ -15,15 +15,15 @@
 
 namespace {
 const size_t ChunkBytes = size_t(1) << 20;
-const vtkIdType SmallCount = 1000000;     // numbers to allocate on a file's bare word
-const size_t LineBytes = size_t(1) << 26; // no line of TetGen's is nearly so long, a binary file may be one line
+const vtkIdType SmallCount = 1000000;     // numbers to allocate before the file's size is checked
+const size_t LineBytes = size_t(1) << 26; // far above TetGen's lines, because a binary file may be one line
 
 bool IsBlank(char c)
 {
   return c == ' ' || c == '\t' || c == ',' || c == '\r' || c == '\v' || c == '\f';
 }
 
-// What stands in the file, fit for a message.
+// A token in printable form, for a message.
 std::string Shown(std::string_view token)
 {
   std::string shown(token.substr(0, 40));
@@ -32,7 +32,7 @@ std::string Shown(std::string_view token)
   return shown + (token.size() > 40 ? "..." : "");
 }
 
-// from_chars takes no plus sign.
+// Parses a whole token. It skips a plus sign, which from_chars refuses.
 template <typename T> std::errc Parse(std::string_view token, T& value)
 {
   const char* end = token.data() + token.size();
@@ -50,7 +50,7 @@ vtkStratusTetGenInput::vtkStratusTetGenInput(const std::string& path, const vtkS
   if (!std::filesystem::exists(status)) {
     throw vtkStratusTetGenError{ "there is no file " + path, vtkErrorCode::FileNotFoundError };
   }
-  if (!std::filesystem::is_regular_file(status)) { // its size is needed
+  if (!std::filesystem::is_regular_file(status)) { // the size bounds allocations
     throw vtkStratusTetGenError{ path + " is not a regular file", vtkErrorCode::CannotOpenFileError };
   }
   this->Size = std::filesystem::file_size(path, error);
@@ -79,7 +79,7 @@ void vtkStratusTetGenInput::FailEarly(const std::string& text) const
     vtkErrorCode::PrematureEndOfFileError };
 }
 
-// Reads on behind what is left, which moves to the buffer's begin.
+// Moves the unread bytes to the buffer's start and reads more behind them. Returns false at the end of the file.
 bool vtkStratusTetGenInput::Fill()
 {
   if (this->AtEnd) {
@@ -127,7 +127,7 @@ bool vtkStratusTetGenInput::NextLine()
     if (!newline && this->Begin == this->End) {
       return false;
     }
-    begin = this->Buffer.data() + this->Begin; // the last line may lack its end, and filling moves
+    begin = this->Buffer.data() + this->Begin; // the last line may lack a newline, and Fill() moves the buffer
     const size_t length = newline ? static_cast<size_t>(newline - begin) : this->End - this->Begin;
     this->Begin += length + (newline ? 1 : 0);
     this->Consumed += length + (newline ? 1 : 0);
@@ -192,7 +192,7 @@ double vtkStratusTetGenInput::GetReal(const char* name)
   const std::string_view token = this->Next(name);
   double value = 0.0;
   const std::errc error = Parse(token, value);
-  if (error == std::errc::result_out_of_range) { // what is too small is zero; too large stays an error
+  if (error == std::errc::result_out_of_range) { // a number too small for double is 0, one too large stays an error
     value = std::strtod(std::string(token).c_str(), nullptr);
   }
   if (error == std::errc::invalid_argument || (error == std::errc::result_out_of_range && !(std::abs(value) < 1.0))) {
@@ -219,10 +219,10 @@ vtkIdType vtkStratusTetGenInput::GetCount(const char* name, vtkIdType numbers)
 
 void vtkStratusTetGenInput::CheckCount(const char* name, vtkIdType count, vtkIdType numbers) const
 {
-  // Each number takes a digit and a separator; the very last may do without.
+  // Each number takes a digit and a separator; the very last may lack the separator.
   const std::uintmax_t bytes = this->Size - std::min(this->Size, this->Consumed) + this->Rest.size() + 1;
   const vtkIdType room = static_cast<vtkIdType>(bytes / 2) / numbers;
-  // Of a short file cut short it is told how far it goes.
+  // In a short file reading goes on, so that the message tells how many lines there are.
   if (count > room && count > SmallCount / numbers) {
     this->Fail(std::string(name) + " is " + std::to_string(count) + ", but the rest of the file, of " + std::to_string(this->Size) +
       " bytes, can hold no more than " + std::to_string(room));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines of numbers, in and out: the text that all of TetGen's files are made of. Files are read and written a megabyte at a time, so that
-// their size does not matter; numbers are written with as many digits as bring back the same bits. Private to the module.
+// Reads and writes lines of numbers, the text that all of TetGen's files consist of. Files of any size pass through a buffer of a megabyte.
+// Numbers are written with as many digits as restore the same bits. Private to the module.
 #ifndef vtkStratusTetGenText_h
 #define vtkStratusTetGenText_h
 
@@ -19,17 +19,16 @@
 #define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
 #endif
 
-// Thrown inside the module, caught where a reader or writer begins.
+// Thrown inside the module and caught by the reader's or writer's entry point.
 struct VTK_STRATUS_PRIVATE vtkStratusTetGenError {
   std::string Text;
-  unsigned long Code; // of vtkErrorCode
+  unsigned long Code; // one of vtkErrorCode
 };
 
-// Gets how many bytes were read or written since the last call; throws to stop.
+// Gets the number of bytes read or written since the last call. Throws to stop.
 using vtkStratusTetGenProgress = std::function<void(std::uintmax_t)>;
 
-// A file as lines of numbers. Blank lines and what follows a '#' are passed over, as TetGen does; numbers are parted by blanks, tabs or
-// commas.
+// A file as lines of numbers. As in TetGen, blank lines and text after a '#' are skipped. Blanks, tabs and commas separate numbers.
 class VTK_STRATUS_PRIVATE vtkStratusTetGenInput
 {
 public:
@@ -38,24 +37,24 @@ public:
   vtkStratusTetGenInput(const vtkStratusTetGenInput&) = delete;
   void operator=(const vtkStratusTetGenInput&) = delete;
 
-  // To the next line with a number on it. The first tells whether there is one, the second fails where there is none: `done` of `all`
-  // `things` are read.
+  // Both move to the next line with a number on it. NextLine() returns false where there is none; NeedLine() throws and says that `done` of
+  // `all` `things` are read.
   bool NextLine();
   void NeedLine(const char* things, vtkIdType done, vtkIdType all);
-  // Numbers left on this line.
+  // Counts the numbers left on this line.
   int GetNumbersLeft() const;
   bool HasNumber() const { return !this->Rest.empty(); }
 
-  // The next number of this line, which must be there and, if an integer, in lower..upper.
+  // Return the next number of this line. They throw where there is none, or where an integer is not in lower..upper.
   vtkIdType GetInteger(const char* name, vtkIdType lower, vtkIdType upper);
   double GetReal(const char* name);
   double GetFinite(const char* name);
-  // How many lines of at least `numbers` numbers follow: no more than the rest of the file can hold, so that
-  // nothing large is allocated for a lie.
+  // GetCount() reads how many lines of at least `numbers` numbers follow. CheckCount() throws if the rest of the file cannot hold `count`
+  // of them, so that a wrong number allocates nothing large.
   vtkIdType GetCount(const char* name, vtkIdType numbers);
   void CheckCount(const char* name, vtkIdType count, vtkIdType numbers) const;
 
-  // No number may be left on the line, no line in the file.
+  // Throw where a number is left on the line, or a line in the file.
   void EndLine();
   void EndFile(const char* things, vtkIdType all);
   [[noreturn]] void Fail(const std::string& text) const;
@@ -70,16 +69,16 @@ private:
   vtkStratusTetGenProgress Progress;
   std::FILE* File = nullptr;
   std::uintmax_t Size = 0;
-  std::uintmax_t Consumed = 0; // by lines
+  std::uintmax_t Consumed = 0; // bytes of lines read so far
   std::vector<char> Buffer;
-  size_t Begin = 0; // of what is not yet a line
+  size_t Begin = 0; // of the bytes that are not yet a line
   size_t End = 0;
   bool AtEnd = false;
   vtkIdType Line = 0;
-  std::string_view Rest; // of the line, beginning at a number
+  std::string_view Rest; // of the line, starting at a number
 };
 
-// A file being written, beside its final name. It takes the name by Commit() and is gone if destroyed before.
+// A file being written under a temporary name. Commit() gives it its final name; without it, the destructor removes the file.
 class VTK_STRATUS_PRIVATE vtkStratusTetGenOutput
 {
 public:

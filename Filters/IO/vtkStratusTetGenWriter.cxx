@@ -20,7 +20,7 @@
 
 vtkStandardNewMacro(vtkStratusTetGenWriter);
 
-// One run of the writer.
+// State of one run of the writer.
 class vtkStratusTetGenWriter::Internals
 {
 public:
@@ -48,7 +48,7 @@ namespace {
   throw vtkStratusTetGenError{ text, code };
 }
 
-// One point set over another must be over the same points, or numbers of points mean others.
+// Throws unless the surface and the mesh have the same points, because their cells refer to points by number.
 void CheckSamePoints(vtkUnstructuredGrid* mesh, vtkPolyData* surface)
 {
   const vtkIdType points = mesh->GetNumberOfPoints();
@@ -211,7 +211,7 @@ void vtkStratusTetGenWriter::WriteData()
     this->SetErrorCode(vtkErrorCode::UnknownError);
     vtkErrorMacro(<< "out of memory while writing " << (this->FileName ? this->FileName : ""));
   }
-  this->Internal->Files.clear(); // what did not get its name goes
+  this->Internal->Files.clear(); // removes the files that were not committed
 }
 
 void vtkStratusTetGenWriter::PrintSelf(ostream& os, vtkIndent indent)

@@ -4,17 +4,18 @@
  * @brief   writes files that TetGen reads: .node, .ele, .neigh, .face and .edge of a mesh, .poly or .smesh of a surface
  *
  * Input 0 is one of
- * - a vtkUnstructuredGrid of tetrahedra, all linear or all quadratic: writes .node and .ele, and .neigh if there are cell data "Neighbors"
- * of four components. A grid without cells gives .node alone. The optional input 1, a vtkPolyData over the same points, adds .face (its
- *   triangles) and .edge (its lines); a quadratic mesh takes none.
- * - a vtkPolyData: writes .poly if FileName says so, else .smesh, its points in the same file. Its polygons are facets; those of the same
- * cell data "Facet" are one facet, which only .poly can hold. Lines of two points are edges to keep. Field data "Holes" (3 components),
- * "Regions" (5: a point, the attribute, the largest volume) and "FacetHoles" (4: facet, point).
+ * - a vtkUnstructuredGrid of tetrahedra, all linear or all quadratic. The writer writes .node and .ele, and .neigh if there are
+ *   cell data "Neighbors" of four components. A grid without cells gives .node alone. The optional input 1, a vtkPolyData over
+ *   the same points, adds .face (its triangles) and .edge (its lines); a quadratic mesh accepts none.
+ * - a vtkPolyData. The writer writes .poly if FileName says so, else .smesh, with the points in the same file. Polygons are
+ *   facets; polygons with the same cell data "Facet" are one facet, which only .poly can hold. Lines of two points are edges
+ *   to keep. The field data "Holes" (3 components), "Regions" (5: a point, the attribute, the largest volume) and "FacetHoles"
+ *   (4: facet, point) are written, too.
  *
- * An array "Marker" of one component becomes the markers, the components of all other arrays of numbers become attributes; their names are
- * lost. Numbers are written with the digits that bring back the same double.
+ * An array "Marker" of one component becomes the markers. The components of all other numeric arrays become attributes, without their
+ * names. Numbers are written with the digits that restore the same double.
  *
- * Files take their names when all are complete: where writing fails or is aborted, files that were there stay as they were.
+ * Files take their names when all are complete. If writing fails or is aborted, previous files stay as they were.
  *
  * @sa vtkStratusTetGenReader
  */
@@ -35,7 +36,7 @@ public:
 
   //@{
   /**
-   * One of the files to write, or what the names of all shall have in common. Default none.
+   * Set/Get one of the files to write, or the common part of their names. Default none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
@@ -43,7 +44,7 @@ public:
 
   //@{
   /**
-   * The number of the first point, tetrahedron, face ... in the files: 0 (default) or 1.
+   * Set/Get the number of the first point, tetrahedron, face ... in the files: 0 (default) or 1.
    */
   vtkSetClampMacro(FirstNumber, int, 0, 1);
   vtkGetMacro(FirstNumber, int);

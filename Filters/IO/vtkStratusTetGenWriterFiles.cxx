@@ -16,7 +16,7 @@
 #include <limits>
 
 namespace {
-const vtkIdType MostColumns = 72;  // TetGen reads lines of up to 2047 bytes; a number takes up to 25
+const vtkIdType MostColumns = 72;  // TetGen reads lines of up to 2047 bytes, and a number takes up to 25
 const vtkIdType CornersALine = 64; // for the same reason
 
 [[noreturn]] void Fail(const std::string& text)
@@ -29,7 +29,7 @@ std::string Number(vtkIdType value)
   return std::to_string(value);
 }
 
-// Names of arrays that are no quantities of points or tetrahedra.
+// Returns whether an array holds numbers or flags, not quantities of points or tetrahedra.
 bool IsBookkeeping(const char* name)
 {
   const char* const names[] = { "Marker", "Neighbors", "Facet", "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkGhostType" };
@@ -82,7 +82,7 @@ void vtkStratusTetGenColumns::PutAttributes(vtkStratusTetGenOutput& output, vtkI
   for (vtkDataArray* array : this->Attributes) {
     for (int component = 0; component < array->GetNumberOfComponents(); ++component) {
       const double value = array->GetComponent(tuple, component);
-      if (!std::isfinite(value)) { // the name is put together where it is needed only
+      if (!std::isfinite(value)) { // the message is built only where it is needed
         Finite(array, tuple, component, this->What + " '" + (array->GetName() ? array->GetName() : "") + "'");
       }
       output.Put(value);
@@ -201,7 +201,7 @@ void vtkStratusTetGenWritePieces(vtkStratusTetGenOutput& output, vtkPolyData* su
 }
 
 namespace {
-// Writes the facets of a surface, holes and regions.
+// Writes the facets, holes and regions of a surface.
 class ComplexWriter
 {
 public:
@@ -249,7 +249,7 @@ void ComplexWriter::FindFacets()
       if (cells == surface->GetPolys() && size < 3) {
         Fail("cell " + Number(cell) + " is a polygon of " + Number(size) + " points, it must have at least 3");
       }
-      if (cells != surface->GetVerts() || (facets && size == 1)) { // a point that lies on no facet is in the list of points already
+      if (cells != surface->GetVerts() || (facets && size == 1)) { // isolated points are in the point list already
         this->Polygons.push_back({ facets ? facets->GetComponent(cell, 0) : static_cast<double>(cell), cell, cells, local });
       }
     }
@@ -266,7 +266,7 @@ size_t ComplexWriter::FacetEnd(size_t begin) const
   return end;
 }
 
-// Tuples of "FacetHoles" that are of this facet.
+// Returns the tuples of "FacetHoles" that belong to this facet.
 std::vector<vtkIdType> ComplexWriter::FindHoles(double facet) const
 {
   std::vector<vtkIdType> tuples;
@@ -327,7 +327,7 @@ void ComplexWriter::WriteFacets()
   }
 }
 
-// Holes or regions, one tuple a line.
+// Writes holes or regions, one tuple per line.
 void ComplexWriter::WriteSeeds(const char* name, int components)
 {
   vtkDataArray* seeds = this->Surface->GetFieldData()->GetArray(name);
