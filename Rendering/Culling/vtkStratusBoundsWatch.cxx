@@ -23,8 +23,8 @@ bool Among(const std::vector<std::type_index>& types, std::type_index type)
 }
 } // namespace
 
-// By exact type: a class that derives from these may compute its bounds from anything. New() gives what the object factory puts in their
-// place.
+// Classes are recognised by their exact type, because a derived class may compute its bounds from anything. New() returns the class that an
+// object factory may put in their place.
 vtkStratusBoundsWatch::vtkStratusBoundsWatch()
 {
   vtkNew<vtkActor> actor;
@@ -45,7 +45,7 @@ void vtkStratusBoundsWatch::NextLook()
 bool vtkStratusBoundsWatch::Changed(vtkProp* prop, State& state)
 {
   if (state.Known) {
-    // Not vtkActor's: colours and textures move no bounds, and each is one more place in memory.
+    // vtkProp3D's time, not vtkActor's: colours and textures change no bounds, and each costs one more memory access.
     const vtkMTimeType own = static_cast<vtkActor*>(prop)->vtkProp3D::GetMTime();
     if (own == state.Own) {
       const vtkMTimeType newest = this->Newest(*state.Mapper);
@@ -75,8 +75,8 @@ void vtkStratusBoundsWatch::Resolve(vtkProp* prop, State& state)
   state.Newest = this->Newest(*state.Mapper);
 }
 
-// Those that are gone are forgotten here, in an order that matters to nobody: whoever held one has been modified when it let go of it, and
-// is resolved anew before it is followed.
+// Forgets algorithms that are gone. Pointers to them may remain in actors and algorithms that were connected to them. Those have been
+// modified since, so that their pointers are replaced before they are followed.
 void vtkStratusBoundsWatch::Sweep()
 {
   for (auto entry = this->Producers.begin(); entry != this->Producers.end();) {
@@ -88,7 +88,7 @@ void vtkStratusBoundsWatch::Sweep()
 vtkStratusBoundsWatch::Producer* vtkStratusBoundsWatch::Find(vtkAlgorithm* algorithm, bool mapper)
 {
   Producer& producer = this->Producers[algorithm];
-  if (producer.Algorithm != algorithm) { // new, or another at the address of one that is gone
+  if (producer.Algorithm != algorithm) { // new, or at the address of an algorithm that is gone
     producer = Producer();
     producer.Algorithm = algorithm;
     producer.Mapper = mapper;
@@ -119,7 +119,7 @@ vtkMTimeType vtkStratusBoundsWatch::Newest(Producer& producer)
   }
   producer.Look = this->Look;
   vtkAlgorithm* algorithm = producer.Algorithm;
-  // Of a mapper its own time alone: tables of colours and clipping planes move no bounds.
+  // Only the mapper's own time counts: lookup tables and clipping planes change no bounds.
   const vtkMTimeType own = producer.Mapper ? algorithm->vtkObject::GetMTime() : algorithm->GetMTime();
   if (own != producer.Own) {
     this->Collect(producer);

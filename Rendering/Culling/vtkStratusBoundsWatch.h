@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a prop's bounds may have changed, without asking for them: asking updates the pipeline behind a mapper and walks its cells, which
-// is what culling costs. Private to the module, never installed.
+// Tells whether a prop's bounds may have changed without asking for them. Asking updates the pipeline behind a mapper and walks its cells,
+// which is what culling costs. Private to the module, never installed.
 #ifndef vtkStratusBoundsWatch_h
 #define vtkStratusBoundsWatch_h
 
@@ -25,26 +25,26 @@ class VTK_STRATUS_PRIVATE vtkStratusBoundsWatch
 public:
   vtkStratusBoundsWatch();
 
-  // An algorithm, and the newest modification of all that it is fed by. Several mappers may share what is behind them: it is read once a
-  // look.
+  // An algorithm and the newest modification time of it and its inputs. Several mappers may share their inputs, so that times are read once
+  // per look.
   struct Producer {
     vtkWeakPointer<vtkAlgorithm> Algorithm;
-    bool Mapper = false; // its data count, too: they may be edited in place
+    bool Mapper = false; // the times of its input data count, too, because data may be edited in place
     vtkMTimeType Own = 0, Newest = 0;
     uint64_t Look = 0;
     std::vector<Producer*> Inputs;
   };
 
-  // Of one prop. Times are compared for being equal, not for being later: whatever is newest may go.
+  // State of one prop. Times are compared for equality, not for order, because the object with the newest time may go.
   struct State {
-    bool Known = false; // else its bounds are asked at each look
+    bool Known = false; // false: the bounds are asked for at each look
     vtkMTimeType Own = 0, Newest = 0;
     Producer* Mapper = nullptr;
   };
 
-  // What has been read is read again.
+  // Starts a look, which reads all times anew.
   void NextLook();
-  // Whether the bounds may be others than when this was last called.
+  // Returns whether the bounds may have changed since the last call with this state.
   bool Changed(vtkProp* prop, State& state);
 
 private:

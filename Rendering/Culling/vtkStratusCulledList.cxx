@@ -25,16 +25,16 @@
   } while (0)
 
 namespace {
-// As vtkFrustumCoverageCuller allots them: little to what has no bounds, such as a title, less to a point.
+// Shares that vtkFrustumCoverageCuller allots: little to a prop without bounds, such as a title, and less to a point.
 constexpr float ShareWithoutBounds = 1e-3f;
 constexpr double ShareOfPoint = 1e-4;
 
 bool Same(const double a[6], const double b[6])
 {
-  return std::memcmp(a, b, 6 * sizeof(double)) == 0; // NaN are equal here
+  return std::memcmp(a, b, 6 * sizeof(double)) == 0; // bytewise, so that NaN equals NaN
 }
 
-// The prop's bounds, or NaN and a share where they are not to be used.
+// Gets the prop's bounds and a share of -1, or NaN and a share of render time where the bounds cannot be used.
 void Ask(vtkProp* prop, double bounds[6], float& share)
 {
   const bool use = prop->GetUseBounds();
@@ -118,8 +118,8 @@ stratus_status vtkStratusCulledList::Look(vtkProp** props, int count, vtkStratus
   return status;
 }
 
-// Lists differ little from frame to frame: what they begin and end with alike is left alone. A prop at the address of one that is gone is
-// not alike, since pointers to what is gone are NULL.
+// Lists differ little from frame to frame, so that a common beginning and end stay untouched. A prop at the address of a deleted one is not
+// equal to it, because the weak pointer to the deleted one is NULL.
 stratus_status vtkStratusCulledList::Match(vtkProp** props, size_t count, vtkStratusBoundsWatch& watch)
 {
   const size_t before = this->Order.size(), shorter = std::min(before, count);
@@ -158,7 +158,7 @@ stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size
     }
     Slot slot;
     slot.Prop = props[i];
-    watch.Changed(props[i], slot.Watched); // the times from before the bounds: what changes in between is seen at the next look
+    watch.Changed(props[i], slot.Watched); // before the bounds, so that a change in between is found at the next look
     Ask(props[i], slot.Bounds, slot.Share);
     ++this->Asked;
     slots.push_back(slot);
@@ -199,7 +199,7 @@ stratus_status vtkStratusCulledList::Insert(const std::vector<Slot>& slots, cons
   }
   for (size_t i = 0; i < slots.size(); ++i) {
     this->Slots[made[i]] = slots[i];
-    SetBit(this->Seen, made[i]); // its time is its own yet: 0 from the first look on that does not see it
+    SetBit(this->Seen, made[i]); // so that ClearTimes() clears its render time if the first look does not see it
     ids[places[i]] = made[i];
   }
   return STRATUS_OK;
@@ -227,7 +227,7 @@ stratus_status vtkStratusCulledList::Refresh(vtkStratusBoundsWatch& watch, bool 
   return moved.empty() ? STRATUS_OK : stratus_octree_move(this->Octree, moved.data(), bounds.data(), moved.size());
 }
 
-// ---- what is seen
+// ---- visible props
 
 void vtkStratusCulledList::Mark(const stratus_octree_visible& visible)
 {
@@ -261,7 +261,7 @@ double vtkStratusCulledList::Time(const stratus_octree_visible& visible, size_t 
   return coverage > policy.MaximumCoverage ? 1.0 : (coverage - policy.MinimumCoverage) / policy.MaximumCoverage;
 }
 
-// Of those that were seen the last time and are no more.
+// Sets the render time of props that were visible the last time and no longer are to 0.
 void vtkStratusCulledList::ClearTimes()
 {
   for (size_t word = 0; word < this->Seen.size(); ++word) {
@@ -312,11 +312,11 @@ stratus_status vtkStratusCulledList::Cull(
   return STRATUS_OK;
 }
 
-// ---- boxes for people
+// ---- boxes to look at
 
 stratus_status vtkStratusCulledList::Boxes(const stratus_frustum* frustum, vtkPolyData* output) const
 {
-  // All twelve edges in one stroke, so that a box is one cell: three are drawn twice.
+  // One polyline along all twelve edges, so that a box is one cell. It draws three edges twice.
   static const vtkIdType stroke[16] = { 0, 1, 3, 2, 0, 4, 5, 1, 5, 7, 3, 7, 6, 2, 6, 4 };
   std::vector<stratus_octree_node> nodes(this->GetStatistics().nodes);
   if (!nodes.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One renderer's props in an octree of the core, kept as the renderer lists them. Private to the module, never installed.
+// Keeps one renderer's props in an octree of the core, in the order of the renderer's list. Private to the module, never installed.
 #ifndef vtkStratusCulledList_h
 #define vtkStratusCulledList_h
 
@@ -15,7 +15,7 @@ class vtkPolyData;
 class VTK_STRATUS_PRIVATE vtkStratusCulledList
 {
 public:
-  // How a share of the window becomes an allotment of time, and what follows from the order.
+  // How coverage becomes render time, and how visible props are sorted.
   struct Policy {
     double MinimumCoverage, MaximumCoverage;
     int Sorting; // 0, 1 front to back, -1 back to front
@@ -27,18 +27,19 @@ public:
   vtkStratusCulledList(const vtkStratusCulledList&) = delete;
   void operator=(const vtkStratusCulledList&) = delete;
 
-  // All of these return a status of the core; after a failure the list is empty and fit for the next call.
+  // All of these return a status of the core. After a failure the list is empty and ready for the next call.
   stratus_status Open(stratus_context* context, const stratus_octree_options& options);
-  // Makes the octree hold these props with their present bounds. ask: also of those that stayed, by the watch; askAll: without it.
+  // Makes the octree hold these props with their present bounds. The bounds of new props are always asked for. `ask`: also the bounds that
+  // the watch calls changed. `askAll`: all bounds.
   stratus_status Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll);
-  // Sorts the seen ones of the props of the last look to the front. seen, total: how many, and their times together.
+  // Moves the visible props of the last look to the front. `seen` gets their number, `total` the sum of their render times.
   stratus_status Cull(const stratus_frustum& frustum, const Policy& policy, bool initialized, vtkProp** props, int& seen, double& total);
-  // A polyline a node; frustum may be NULL.
+  // Writes one polyline per node. `frustum` may be NULL.
   stratus_status Boxes(const stratus_frustum* frustum, vtkPolyData* output) const;
 
   bool IsOpen() const { return this->View != nullptr; }
   void Close();
-  // Whose bounds the last look asked for.
+  // Props whose bounds the last look asked for.
   size_t GetNumberOfPropsAsked() const { return this->Asked; }
   stratus_octree_statistics GetStatistics() const;
 
@@ -46,7 +47,7 @@ private:
   struct Slot {
     vtkWeakPointer<vtkProp> Prop;
     vtkStratusBoundsWatch::State Watched;
-    float Share = -1.0f; // of the window, where bounds tell none
+    float Share = -1.0f; // of render time, for props without usable bounds; -1: coverage tells it
     double Bounds[6];
   };
   struct Entry {
@@ -65,12 +66,12 @@ private:
   stratus_octree* Octree = nullptr;
   stratus_octree_view* View = nullptr;
   size_t Asked = 0;
-  std::vector<uint32_t> Order;            // ids, as the renderer lists their props
-  std::vector<uint32_t> Positions;        // by id
+  std::vector<uint32_t> Order;            // ids in the order of the renderer's list
+  std::vector<uint32_t> Positions;        // in Order, by id
   std::vector<Slot> Slots;                // by id
-  std::vector<uint64_t> Seen, SeenBefore; // a bit an id: whose time is not 0
-  std::vector<uint64_t> Marks;            // a bit a position: what the octree calls visible
-  std::vector<uint32_t> Ranks;            // by position, where marked: which of the visible
+  std::vector<uint64_t> Seen, SeenBefore; // one bit per id: the render time is not 0
+  std::vector<uint64_t> Marks;            // one bit per position: the octree finds the prop visible
+  std::vector<uint32_t> Ranks;            // by position, if marked: the index among the visible
   std::vector<Entry> Kept;
   std::vector<vtkProp*> Rest;
 };

@@ -26,8 +26,9 @@ double Milliseconds()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Clip coordinates are x, y, z within -w..w; with a margin, x and y within that much more. Unit normals, since coverage measures distances.
-// The camera's composite matrix, and so its GetFrustumPlanes(), leaves stereo out: an eye's view is the product of what is drawn with.
+// Gets the planes of the view frustum, widened by `margin` pixels. In clip coordinates x, y and z lie in -w..w; the margin widens x and y.
+// Normals have unit length, because coverage measures distances. The camera's composite matrix, and so GetFrustumPlanes(), leaves stereo
+// out, so the matrices that an eye is drawn with are multiplied here.
 void GetFrustum(vtkRenderer* renderer, double margin, stratus_frustum& frustum)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -56,7 +57,7 @@ bool SameTree(const stratus_octree_options& a, const stratus_octree_options& b)
   return a.stop == b.stop && a.pixels == b.pixels && a.c == b.c && a.levels == b.levels && a.leaf_objects == b.leaf_objects;
 }
 
-// Whether the camera's state is the one that it will draw in: which eye it is, if any, it learns only when it draws.
+// Returns whether the camera's state is the one in which it will draw. The camera learns only then which eye it is.
 bool KnowsEye(vtkRenderer* renderer)
 {
   vtkRenderWindow* window = renderer->GetRenderWindow();
@@ -69,7 +70,7 @@ bool KnowsEye(vtkRenderer* renderer)
   return !stereo || (type != VTK_STEREO_LEFT && type != VTK_STEREO_RIGHT) || eye == (type == VTK_STEREO_LEFT);
 }
 
-// Nothing is left out, and times are what they were.
+// Leaves out no prop and keeps the render times.
 double KeepAll(vtkProp** props, int count, bool initialized)
 {
   double total = 0.0;
@@ -85,11 +86,11 @@ class vtkStratusOctreeCuller::Internals
 {
 public:
   struct Served {
-    vtkWeakPointer<vtkRenderer> Renderer; // an address may be another's by now
+    vtkWeakPointer<vtkRenderer> Renderer; // tells whether the address belongs to another renderer by now
     vtkStratusCulledList List;
     stratus_octree_options Options;
     vtkMTimeType Asked = 0;
-    vtkMTimeType Doubtful = 0; // a camera of this age may draw with matrices from before it learned of its eye
+    vtkMTimeType Doubtful = 0; // time of a camera that may draw with matrices from before it learned its eye
   };
 
   ~Internals() { this->Close(); }
@@ -101,7 +102,7 @@ public:
     this->Context = nullptr;
   }
 
-  // Why the core failed, if it did.
+  // Returns the core's reason for a failure.
   std::string Message(stratus_status status) const
   {
     const std::string reason = this->Context ? stratus_context_message(this->Context) : "";
@@ -137,7 +138,7 @@ public:
     return found != this->Renderers.end() && found->second.Renderer && found->second.List.IsOpen() ? &found->second : nullptr;
   }
 
-  // Whether the renderer will draw with the matrices that the camera tells now.
+  // Returns whether the renderer will draw with the camera's present matrices.
   bool KnowsView(vtkRenderer* renderer)
   {
     Served& served = this->Of(renderer);
@@ -159,7 +160,7 @@ vtkStratusOctreeCuller::vtkStratusOctreeCuller() : Internal(new Internals) {}
 
 vtkStratusOctreeCuller::~vtkStratusOctreeCuller() = default;
 
-// ---- in a renderer
+// ---- installation
 
 vtkStratusOctreeCuller* vtkStratusOctreeCuller::Install(vtkRenderer* renderer)
 {
@@ -265,7 +266,7 @@ double vtkStratusOctreeCuller::Cull(vtkRenderer* renderer, vtkProp** propList, i
   return total;
 }
 
-// ---- what it tells
+// ---- statistics and boxes
 
 bool vtkStratusOctreeCuller::GetBoxes(vtkRenderer* renderer, vtkPolyData* output)
 {

@@ -3,15 +3,15 @@
  * @class   vtkStratusOctreeCuller
  * @brief   leaves out what the camera does not see, by an octree of the props' bounds
  *
- * Takes the place of the vtkFrustumCoverageCuller that each renderer has, and keeps what that one does: render times by coverage, the
- * order, the total; that one asks every prop for its bounds in every frame. This one keeps the bounds in an octree that is split where the
- * frustum's border runs (Li & Huang 2024), and asks an actor only after something that its bounds come from was modified: the actor, its
- * mapper, the data, or any algorithm upstream. That is known of vtkActor with a vtkPolyDataMapper or a vtkDataSetMapper, not of classes
- * that derive from them; all other props (volumes, assemblies, followers ...) are asked in every frame. So a prop that was added, moved,
- * hidden, removed or fed anew is right in the next frame, seen or not.
+ * Replaces the vtkFrustumCoverageCuller that each renderer has, and keeps its results: render times by coverage, the order, the total. The
+ * vtkFrustumCoverageCuller asks every prop for its bounds in every frame. This culler keeps the bounds in an octree that is split where the
+ * frustum's border runs (Li & Huang 2024). It asks an actor for its bounds only after one of their sources was modified: the actor, its
+ * mapper, the data, or any algorithm upstream. The sources are known of a vtkActor with a vtkPolyDataMapper or a vtkDataSetMapper, but not
+ * of derived classes; all other props (volumes, assemblies, followers ...) are asked in every frame. So a prop that was added, moved,
+ * hidden, removed or given new data is right in the next frame, visible or not.
  *
- * A prop is kept if its box reaches into each of the six half-spaces of the camera, the window taken Margin pixels wider. Props without
- * bounds and those with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
+ * A prop is kept if its box reaches into each of the camera's six half-spaces, with the window widened by Margin pixels. Props without
+ * bounds and props with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
  *
  *     vtkStratusOctreeCuller::Install(renderer);
  *
@@ -36,8 +36,9 @@ public:
 
   //@{
   /**
-   * Install puts a culler in place of the renderer's vtkFrustumCoverageCuller, takes over its coverages and order, and returns it; the
-   * renderer owns it. Where one is, it is returned. Uninstall goes the way back. Other cullers stay.
+   * Install() replaces the renderer's vtkFrustumCoverageCuller by a vtkStratusOctreeCuller with the same coverages and order, and returns
+   * it. The renderer owns it. If the renderer has one already, Install() returns that. Uninstall() reverses the replacement. Other cullers
+   * stay.
    */
   static vtkStratusOctreeCuller* Install(vtkRenderer* renderer);
   static void Uninstall(vtkRenderer* renderer);
@@ -45,8 +46,8 @@ public:
 
   //@{
   /**
-   * The promise that this culler's Modified() is called whenever bounds may have changed; they are asked for then, and of props that are
-   * new in the list. Props added, removed, shown or hidden need no call. Default off.
+   * Set/Get the promise that Modified() of this culler is called whenever bounds may have changed. Bounds are then asked for only after
+   * such a call, and of props that are new in the list. Props added, removed, shown or hidden need no call. Default off.
    */
   vtkSetMacro(StaticProps, bool);
   vtkGetMacro(StaticProps, bool);
@@ -55,8 +56,8 @@ public:
 
   //@{
   /**
-   * Pixels by which the window counts as wider on each side, 0..1000: points and lines of twice that width reach into it from outside.
-   * Coverage is a share of the wider window. Default 8.
+   * Set/Get the pixels by which the window is widened on each side, 0..1000. Points and lines of up to twice that width may reach into the
+   * window from outside. Coverage is a share of the widened window. Default 8.
    */
   vtkSetClampMacro(Margin, double, 0.0, 1000.0);
   vtkGetMacro(Margin, double);
@@ -64,7 +65,7 @@ public:
 
   //@{
   /**
-   * Props that cover less of the window than the first are left out, those that cover more than the second get all their time, 0..1.
+   * Set/Get the share of the window below which a prop is left out, and the share above which a prop gets its full render time, 0..1.
    * Default 0 and 1.
    */
   vtkSetClampMacro(MinimumCoverage, double, 0.0, 1.0);
@@ -76,8 +77,8 @@ public:
   enum SortingStyleType { SORT_NONE, SORT_FRONT_TO_BACK, SORT_BACK_TO_FRONT };
   //@{
   /**
-   * Order of what is left, by the distance of the bounds' centre from the near plane, as vtkFrustumCoverageCuller's. Default the
-   * renderer's.
+   * Set/Get the order of the visible props, by the distance of the bounds' centre from the near plane, as in vtkFrustumCoverageCuller.
+   * Default SORT_NONE, the renderer's order.
    */
   vtkSetClampMacro(SortingStyle, int, SORT_NONE, SORT_BACK_TO_FRONT);
   vtkGetMacro(SortingStyle, int);
@@ -89,7 +90,7 @@ public:
 
   //@{
   /**
-   * Whether boxes at the frustum's edges are tried by every separating axis, so that nothing beyond them is kept. Default off.
+   * Set/Get whether boxes at the frustum's edges are tested along every separating axis, so that no box outside is kept. Default off.
    */
   vtkSetMacro(Exact, bool);
   vtkGetMacro(Exact, bool);
@@ -99,8 +100,13 @@ public:
   enum StopRuleType { STOP_PIXELS, STOP_MANHATTAN, STOP_EUCLID, STOP_STATIC };
   //@{
   /**
-   * Which nodes that the frustum's border crosses are split: those larger than Pixels on screen (default), those with L / (DistanceFactor
-   * S) < 1 as in the paper or in straight lines, or all, at once. What is seen depends on none of it.
+   * Set/Get the rule that chooses which nodes across the frustum's border are split. The rule does not change which props are visible.
+   * Default STOP_PIXELS.
+   * - STOP_PIXELS: nodes larger on screen than Pixels.
+   * - STOP_MANHATTAN: nodes with L / (DistanceFactor S) < 1, where L is the distance from the eye to the node's centre and S the
+   *   node's diagonal, both measured along the axes as in the paper.
+   * - STOP_EUCLID: the same with straight distances.
+   * - STOP_STATIC: all nodes, at once.
    */
   vtkSetClampMacro(StopRule, int, STOP_PIXELS, STOP_STATIC);
   vtkGetMacro(StopRule, int);
@@ -113,7 +119,8 @@ public:
 
   //@{
   /**
-   * Diameter of a node on screen, of a window 1000 pixels high, 1e-3..1e6, default 32; C of the rules by distance, 1e-3..1e6, default 35.
+   * Set/Get the parameters of the rules: Pixels, a node's diameter on screen in a window 1000 pixels high, 1e-3..1e6, default 32;
+   * DistanceFactor, the C of the rules by distance, 1e-3..1e6, default 35.
    */
   vtkSetClampMacro(Pixels, double, 1e-3, 1e6);
   vtkGetMacro(Pixels, double);
@@ -123,7 +130,8 @@ public:
 
   //@{
   /**
-   * Levels below the root, 0..21, default 21; 0 is a plain list. A node of so many props or fewer is not split, 1..1048576, default 256.
+   * Set/Get the levels below the root, 0..21, default 21; 0 is a plain list. Set/Get the number of props up to which a node is not
+   * split, 1..1048576, default 256.
    */
   vtkSetClampMacro(MaximumLevel, int, 0, 21);
   vtkGetMacro(MaximumLevel, int);
@@ -133,7 +141,8 @@ public:
 
   //@{
   /**
-   * Threads that test boxes, 0..1024, 0 as many as OpenMP takes. Default 1: below a hundred thousand props others cost more than they do.
+   * Set/Get the number of threads that test boxes, 0..1024. 0 takes as many as OpenMP would. Default 1, because below a hundred thousand
+   * props further threads cost more than they save.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -141,7 +150,8 @@ public:
 
   //@{
   /**
-   * Of the last call of Cull(), whichever renderer's: props in the list, those left in it, those whose bounds were asked for, milliseconds.
+   * Get statistics of the last call of Cull() for any renderer: props in the list, props kept, props whose bounds were asked for,
+   * milliseconds.
    */
   vtkGetMacro(NumberOfProps, vtkIdType);
   vtkGetMacro(NumberOfVisibleProps, vtkIdType);
@@ -151,23 +161,23 @@ public:
 
   //@{
   /**
-   * Of a renderer's octree: nodes, bytes that it takes beside the bounds; 0 if it has none.
+   * Get the nodes of a renderer's octree, and the bytes that it takes besides the bounds; 0 if it has none.
    */
   vtkIdType GetNumberOfNodes(vtkRenderer* renderer);
   vtkIdType GetBytes(vtkRenderer* renderer);
   //@}
 
   /**
-   * The cells of a renderer's octree as it is now: each one polyline in world coordinates, parents before children. Cell data "Level" (int,
-   * the root's is 0; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split"
-   * (unsigned char) and "Objects" (vtkIdType: props in its own list). False, and the output as it was, for a renderer that this culler has
-   * not served.
+   * Writes the nodes of a renderer's octree, each as one polyline in world coordinates, parents before children. Cell data: "Level" (int, 0
+   * at the root; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split" (unsigned
+   * char) and "Objects" (vtkIdType: props in the node's own list). Returns false and leaves the output unchanged for a renderer that this
+   * culler has not served.
    */
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 
   /**
-   * Called by the renderer. All props stay in the list where the camera's planes are not finite, while a camera goes into
-   * stereo or out of it and has not moved since (it learns of that too late), and, which is an error, where the core fails.
+   * Called by the renderer. All props stay in the list if the camera's planes are not finite, if the camera enters or leaves stereo and has
+   * not moved since (it learns of stereo too late), or if the core fails, which is an error.
    */
   double Cull(vtkRenderer* renderer, vtkProp** propList, int& listLength, int& initialized) override;
 
