@@ -61,7 +61,7 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
   return true;
 }
 
-// Cells that another piece owns, blanked ones, and those that touch a blanked point.
+// Marks cells that another piece owns, hidden cells, and cells that touch a hidden point.
 bool vtkStratusMeshView::SetHidden(vtkUnstructuredGrid* grid, std::string& error)
 {
   vtkUnsignedCharArray* points = nullptr;
@@ -88,7 +88,7 @@ bool vtkStratusMeshView::SetHidden(vtkUnstructuredGrid* grid, std::string& error
   return true;
 }
 
-// A cell with a hidden part is hidden: its parts follow one another.
+// Hides all parts of a cell that has a hidden part. The parts of a cell are consecutive.
 void vtkStratusMeshView::HideWhole(std::vector<uint8_t>& hidden) const
 {
   const std::vector<vtkIdType>& cells = this->Tetrahedra.Cells;
@@ -101,7 +101,7 @@ void vtkStratusMeshView::HideWhole(std::vector<uint8_t>& hidden) const
   }
 }
 
-// The array's values for the tetrahedra and points that cells were divided into, made anew when the grid or the array has changed.
+// Copies the array's values to the tetrahedra and points into which cells were divided, if the grid or the array has changed.
 vtkDataArray* vtkStratusMeshView::Spread(vtkDataArray* array, bool cells)
 {
   if (this->Divided && this->Source == array && this->DividedCells == cells && this->DividedTime == array->GetMTime()) {
@@ -130,7 +130,7 @@ vtkDataArray* vtkStratusMeshView::Spread(vtkDataArray* array, bool cells)
   return this->Divided;
 }
 
-// The core hides tetrahedra with such a corner; here the cell that they are parts of is.
+// Hides the whole cell where a value is not finite. The core would hide only the tetrahedra at that corner.
 void vtkStratusMeshView::HideNotFinite()
 {
   std::vector<uint8_t> bad(static_cast<size_t>(this->Divided->GetNumberOfTuples()));
@@ -157,7 +157,7 @@ stratus_volume vtkStratusMeshView::GetBox() const
     const double width = this->Bounds[2 * a + 1] - this->Bounds[2 * a];
     box.dimensions[a] = 2;
     box.origin[a] = this->Bounds[2 * a];
-    box.spacing[a] = width > 0.0 ? width : 1e-30; // a flat grid has a box, too
+    box.spacing[a] = width > 0.0 ? width : 1e-30; // a flat grid needs a box with a volume, too
   }
   return box;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A grid, its cells divided into tetrahedra, as what the core takes. Private to the module.
+// A view of a grid in the core's terms, its cells divided into tetrahedra. Private to the module.
 #ifndef vtkStratusMeshView_h
 #define vtkStratusMeshView_h
 
@@ -22,15 +22,16 @@
 class VTK_STRATUS_PRIVATE vtkStratusMeshView
 {
 public:
-  // False, with the reason in `error`, where the core can't take the grid or the array. matrix: of the prop, or nullptr. Copies what has to
-  // be copied when it changes only.
+  // Returns false, with the reason in `error`, where the core cannot take the grid or the array. `matrix` is the prop's, or nullptr for the
+  // identity. Copies are made only where the input has changed.
   bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
   const stratus_mesh& GetMesh() const { return this->Mesh; }
-  // Of the grid's partition, nullptr if it carries none; or none any more, once the core has refused it: then the points were moved.
+  // The grid's partition, or nullptr where it carries none. DropLeaves() forgets a partition that the core has refused because the points
+  // were moved.
   const stratus_leaves* GetLeaves() const { return this->HasLeaves ? &this->Leaves.Leaves : nullptr; }
   void DropLeaves() { this->HasLeaves = false; }
   vtkIdType GetLeftOut() const { return this->Tetrahedra.LeftOut; }
-  // A box about it, for who only needs to know where it is.
+  // A box around the grid, for code that needs only its place.
   stratus_volume GetBox() const;
 
 private:
@@ -41,21 +42,21 @@ private:
 
   stratus_mesh Mesh;
   double Bounds[6] = { 0, 1, 0, 1, 0, 1 };
-  vtkSmartPointer<vtkUnstructuredGrid> Grid; // held, so that no other can take its address
+  vtkSmartPointer<vtkUnstructuredGrid> Grid; // kept alive, so that no other grid can get the same address
   vtkMTimeType Time = 0;
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;
   vtkStratusLeaves Leaves;
   bool HasLeaves = false;
-  std::vector<uint8_t> Hidden; // a tetrahedron, by ghosts and blanking
-  // Where cells are divided: a value for each tetrahedron, or for their points.
+  std::vector<uint8_t> Hidden; // one per tetrahedron, by ghost arrays and blanking
+  // Copies for divided cells: a value for each tetrahedron, or for each of their points.
   vtkSmartPointer<vtkDataArray> Source;
   vtkSmartPointer<vtkDataArray> Divided;
   vtkMTimeType DividedTime = 0;
   bool DividedCells = false;
-  std::vector<uint8_t> DividedHidden; // by values that are not finite, too
-  vtkNew<vtkImageData> Carrier;       // as long as the array: values are viewed as an image's are
+  std::vector<uint8_t> DividedHidden; // Hidden, and by values that are not finite
+  vtkNew<vtkImageData> Carrier;       // an image as long as the array, because vtkStratusImageView takes images
   vtkStratusImageView Values;
 };
 

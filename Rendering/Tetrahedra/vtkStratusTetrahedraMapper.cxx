@@ -32,7 +32,7 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   if (this->Internal->Render(ren, vol, error)) {
     this->Internal->LastError.clear();
   } else if (!error.empty() && error != this->Internal->LastError) {
-    this->Internal->LastError = error; // once, not with every picture
+    this->Internal->LastError = error; // reported once, not with every picture
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);

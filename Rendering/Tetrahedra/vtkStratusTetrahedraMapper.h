@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusTetrahedraMapper
- * @brief   draws the volume of a vtkUnstructuredGrid, its cells divided into tetrahedra, with exact thickness and order
+ * @brief   draws the volume of a vtkUnstructuredGrid, divided into tetrahedra, with exact thickness and order
  *
- * Takes the place of vtkProjectedTetrahedraMapper and of vtkUnstructuredGridVolumeRayCastMapper: a vtkUnstructuredGrid and the vtkVolume's
- * vtkVolumeProperty go in, the picture is composited with the opaque geometry of the scene.
+ * Replaces vtkProjectedTetrahedraMapper and vtkUnstructuredGridVolumeRayCastMapper. It draws a vtkUnstructuredGrid with the vtkVolume's
+ * vtkVolumeProperty and composites the picture with the scene's opaque geometry.
  *
- * Supported: linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and
- * flat cells. All but linear tetrahedra are divided into such, neighbours alike across their faces, so that the field is linear in each
- * part; vertices, lines and polygons are ignored and counted, a grid that has nothing else is an error. Point and cell scalars of one
- * component and any numeric type but bits; scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units; blend modes composite
- * and maximum intensity (the largest value of a ray, at the opacity of one unit distance); ghost and blanking arrays; values that are not
- * finite (whole cells with one are transparent); the volume's matrix; parallel and perspective cameras, also within the grid. Cells that
- * cross the near plane are cut there. All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer
- * functions, label maps, clipping planes) is refused by an error, and nothing is drawn.
+ * Supported are:
+ * - linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
+ *   cells. Cells are divided into linear tetrahedra, in which the field is linear; neighbours divide their common face alike.
+ *   Vertices, lines and polygons are ignored and counted; a grid that has nothing else is an error.
+ * - point and cell scalars of one component and any numeric type but bits;
+ * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
+ * - the blend modes composite and maximum intensity (the largest value on a ray, at the opacity of one unit distance);
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
+ * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
+ * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * What is built is kept: a new view of the same grid rebuilds nothing, a new transfer function a table only.
+ * All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping
+ * planes) is refused by an error, and nothing is drawn.
+ *
+ * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
  * @sa vtkStratusVolumeMapper vtkProjectedTetrahedraMapper
  */
@@ -38,7 +43,7 @@ public:
 
   //@{
   /**
-   * A ray ends when its alpha passes this, 0..1. Default 0.9999. Not in maximum intensity.
+   * Set/Get the alpha beyond which a ray ends, 0..1. Default 0.9999. Not used in maximum intensity.
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
@@ -46,9 +51,10 @@ public:
 
   //@{
   /**
-   * How a picture is drawn: rays march from cell to cell; cells that can show something are sorted and projected into tiles of pixels (on
-   * the host only); or auto, whichever should cost less by counts of cells, pixels and segments in view. A camera that stands still never
-   * changes the choice, and both give the same picture but for the rounding of floats: below .01 of 255 on the mean. Default AUTO_METHOD.
+   * Set/Get how a picture is drawn. MARCH_METHOD marches rays from cell to cell. PROJECT_METHOD sorts the cells that can show something and
+   * projects them into tiles of pixels, on the host only. AUTO_METHOD takes the one that should cost less, by the counts of cells, pixels
+   * and segments in view; a camera that stands still never changes the choice. Both methods give the same picture up to the rounding of
+   * floats, below .01 of 255 on the mean. Default AUTO_METHOD.
    */
   enum MethodType { AUTO_METHOD, MARCH_METHOD, PROJECT_METHOD };
   vtkSetClampMacro(Method, int, AUTO_METHOD, PROJECT_METHOD);
@@ -61,7 +67,7 @@ public:
 
   //@{
   /**
-   * Threads that draw, 0..1024; 0 takes as many as OpenMP would. The picture is the same with any number. Default 0.
+   * Set/Get the number of threads that draw, 0..1024. 0 takes as many as OpenMP would. The picture does not depend on it. Default 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -69,19 +75,19 @@ public:
 
   //@{
   /**
-   * Where rays march: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name; the
-   * picture is the same. One that does not exist is an error with the list of those that do, and the device stays what it was. A mesh that
-   * a device can't hold is drawn on the host. Default "auto".
+   * Set/Get the device on which rays march: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a
+   * part of its name. The picture does not depend on it. A device that does not exist is an error that lists the existing ones, and the
+   * previous device stays. A mesh that does not fit a device is drawn on the host. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
-  const char* GetDeviceName(); // the one that draws, "" if there is none
+  const char* GetDeviceName(); // the device in use, "" if there is none
   //@}
 
   //@{
   /**
-   * Of the last picture: milliseconds that the march took, and making the grid ready (0 where it was), cells that rays passed, and faces
-   * through which they came in.
+   * Get statistics of the last picture's march: milliseconds of the march; milliseconds to prepare the grid, 0 if it was ready; cells that
+   * rays passed; faces through which rays entered.
    */
   double GetMarchMilliseconds();
   double GetBuildMilliseconds();
@@ -91,8 +97,8 @@ public:
 
   //@{
   /**
-   * Of the last picture: tetrahedra that the cells were divided into; cells ignored: vertices, lines and polygons; tetrahedra left out
-   * though no ghost or blanking array hides them, of values that are not finite or that name a point more than once.
+   * Get counts of the last picture: tetrahedra into which the cells were divided; cells ignored (vertices, lines and polygons); tetrahedra
+   * left out though not hidden by a ghost or blanking array, because a value is not finite or a point is repeated.
    */
   vtkIdType GetNumberOfTetrahedra();
   vtkIdType GetNumberOfIgnoredCells();
@@ -101,9 +107,9 @@ public:
 
   //@{
   /**
-   * Of the last picture: march or project, and why; milliseconds of the projection: order of cells, their outlines and tiles, pixels (0
-   * where rays marched); cells that it saw; pixels whose cells had come in a wrong order (across gaps, in cycles) and were drawn again,
-   * nearest first.
+   * Get the method of the last picture, march or project, and its reason. Get statistics of the projection, 0 where rays marched:
+   * milliseconds to order cells, to sort their outlines into tiles, and to draw pixels; cells in view; pixels whose cells had come in a
+   * wrong order (across gaps, in cycles) and were drawn again, nearest first.
    */
   const char* GetMethodUsedAsString();
   const char* GetMethodReason();
@@ -115,14 +121,15 @@ public:
   //@}
 
   /**
-   * Of the last picture: leaves that were sorted in parallel for the projection: those of vtkStratusPartitionFilter, if the input carries
-   * its arrays and its points are still where they were, else 1. 0 where rays marched or nothing showed.
+   * Get the number of leaves that were sorted in parallel for the last picture's projection. It is the number of
+   * vtkStratusPartitionFilter's leaves if the input carries its arrays and the points have not moved, else 1. It is 0 where rays marched or
+   * nothing was visible.
    */
   vtkIdType GetNumberOfLeaves();
 
   /**
-   * The last picture as floats, as large as the renderer's viewport: point arrays RGBA (premultiplied by alpha) and Depth (world distance
-   * along the ray from the eye, infinity where nothing is). nullptr before the first. Made anew with each call.
+   * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
+   * along the ray from the eye, infinity where nothing is). nullptr before the first picture. Each call makes a new image.
    */
   vtkImageData* GetLastImage();
 

@@ -23,7 +23,7 @@ vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* map
 vtkStratusTetrahedraMapper::Internals::~Internals()
 {
   this->Context.OnRelease();
-  this->Context.OnRelease = nullptr; // members that it touches go before the context does
+  this->Context.OnRelease = nullptr; // members that it uses are destroyed before the context
 }
 
 bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
@@ -33,7 +33,7 @@ bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
   return window && window->CheckAbortStatus();
 }
 
-// ---------------------------------------------------------------- what is asked for
+// ---------------------------------------------------------------- settings and input
 
 bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
@@ -126,7 +126,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   if (status == STRATUS_INVALID_ARGUMENT && options.leaves) {
     options.leaves = nullptr;
     status = draw();
-    if (status == STRATUS_OK) { // it was the leaves
+    if (status == STRATUS_OK) { // the core had refused the leaves
       this->Mesh.DropLeaves();
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkStratusTetrahedraMapper holds between pictures. Private to the module.
+// State that vtkStratusTetrahedraMapper keeps between pictures. Private to the module.
 #ifndef vtkStratusTetrahedraMapperInternals_h
 #define vtkStratusTetrahedraMapperInternals_h
 
@@ -23,7 +23,7 @@ public:
   explicit Internals(vtkStratusTetrahedraMapper* mapper);
   ~Internals();
 
-  // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
+  // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
   vtkImageData* GetLastImage();
@@ -34,7 +34,7 @@ public:
   vtkStratusContext Context;
   stratus_tetra_report Report = stratus_tetra_report();
   vtkStratusDisplay Display;
-  std::string LastError; // told already
+  std::string LastError; // reported already
 
 private:
   bool OnProgress(double fraction);
@@ -42,7 +42,7 @@ private:
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
 
-  vtkRenderer* Renderer = nullptr; // while rendering
+  vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
