@@ -60,7 +60,7 @@ vtkStratusDisplay::Part vtkStratusDisplay::ChoosePart(const vtkStratusPicture& p
 {
   Part part;
   for (int a = 0; a < 2; ++a) {
-    // A coarse picture is interpolated, up to its borders: it stays whole.
+    // A coarse picture is interpolated up to its borders, so it is drawn whole.
     const bool coarse = picture.Size[0] != picture.Rectangle[2] || picture.Size[1] != picture.Rectangle[3];
     part.From[a] = coarse ? 0 : pixels.Window[2 * a];
     part.Size[a] = coarse ? picture.Size[a] : pixels.Window[2 * a + 1] - pixels.Window[2 * a];
@@ -70,7 +70,7 @@ vtkStratusDisplay::Part vtkStratusDisplay::ChoosePart(const vtkStratusPicture& p
   return part;
 }
 
-// Into the texture that is bound, at (x, y).
+// Copies pixels to (x, y) of the bound texture.
 void vtkStratusDisplay::CopyPixels(
   vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part, int x, int y)
 {
@@ -83,8 +83,8 @@ void vtkStratusDisplay::CopyPixels(
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-// Where nothing is behind the picture, its bytes are those of the frame buffer. Software OpenGL takes about as long to draw them as we to
-// cast the rays of a small scene; a copy costs a tenth.
+// Copies the picture's bytes to the frame buffer where nothing is behind the picture. Software OpenGL takes about as long to draw them as
+// the core takes to cast the rays of a small scene; a copy costs a tenth. Returns false where it copied nothing.
 bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
@@ -110,8 +110,9 @@ bool vtkStratusDisplay::WriteInPlace(
   return true;
 }
 
-// Software OpenGL rounds three times when it blends, which costs up to 1.3 of 255; a copy of what is behind lets the shader round once.
-// Where several samples a pixel or a render pass lie between us and the frame buffer, its own blending has to do.
+// Copies what is behind the picture, so that the shader can blend and round once. Software OpenGL rounds three times when it blends, which
+// costs up to 1.3 of 255. Returns false where multisampling or a render pass lies between the picture and the frame buffer; the frame
+// buffer then blends.
 bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part)
 {
   if (renderer->GetPass() || window->GetRenderFramebuffer()->GetMultiSamples() > 0) {
@@ -137,7 +138,8 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  const bool writesDepth = pixels.Depth && this->Stage != vtkStratusPeels::FIRST; // an edge has one depth
+  const bool writesDepth =
+    pixels.Depth && this->Stage != vtkStratusPeels::FIRST; // depths are not interpolated, so colours must not be, either
   const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);
@@ -157,7 +159,7 @@ bool vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDe
   std::unique_ptr<vtkOpenGLQuadHelper>& quad = writesDepth ? this->DepthQuad : this->Quad;
   if (!quad) {
     const std::string shader = FragmentShader;
-    const size_t first = shader.find('\n') + 1; // the version comes before it
+    const size_t first = shader.find('\n') + 1; // the #version replaces the first line, and the #define must follow it
     const std::string writer = shader.substr(0, first) + "#define WRITES_DEPTH\n" + shader.substr(first);
     quad.reset(new vtkOpenGLQuadHelper(window, nullptr, writesDepth ? writer.c_str() : FragmentShader, ""));
   } else {
@@ -198,7 +200,7 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   state->vtkglViewport(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   state->vtkglScissor(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
-  // The rays have ended at the opaque depth already. Depth is written by a test that nothing fails.
+  // The rays end at the opaque depth, so that no depth test is needed. Depth is only written with the test enabled.
   if (pixels.Depth) {
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglDepthFunc(GL_ALWAYS);
@@ -224,7 +226,7 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   }
   quad->Render();
   if (pixels.Depth) {
-    state->vtkglDepthFunc(GL_LEQUAL); // VTK's own
+    state->vtkglDepthFunc(GL_LEQUAL); // VTK's default
   }
   if (!blends) {
     this->Behind->Deactivate();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lays a float picture over what the window shows, texel on pixel. Private to the module.
+// Draws a float picture over the window's contents, one texel per pixel. Private to the module.
 //
-// VTK's vtkRayCastImageDisplayHelper does the same for bytes, through texture coordinates that shrink the picture by a pixel, and rounds
-// before it blends. Here the picture is rounded once: after the blend, or, with nothing behind, before the upload.
+// VTK's vtkRayCastImageDisplayHelper does the same for bytes. Its texture coordinates shrink the picture by a pixel, and it rounds before
+// it blends. This class rounds once: after the blend, or before the upload where nothing is behind the picture.
 #ifndef vtkStratusDisplay_h
 #define vtkStratusDisplay_h
 
@@ -21,16 +21,15 @@ class vtkWindow;
 class VTK_STRATUS_PRIVATE vtkStratusDisplay
 {
 public:
-  // What is to be shown: picture.Size pixels, premultiplied. Shown is rgb * Scale + alpha * Bias.
+  // The picture.Size pixels to draw, premultiplied. The window shows rgb * Scale + alpha * Bias.
   struct Pixels {
     const float* Rgba = nullptr;
-    const unsigned char* Bytes = nullptr; // the same rounded, or nullptr; taken if given: Scale and Bias are 1 and 0, and black is behind
-    int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: nothing shows outside
+    const unsigned char* Bytes = nullptr; // the same rounded, used if given; then Scale is 1, Bias is 0 and the background is black
+    int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: pixels outside are empty
     float Scale = 1.0f;
     float Bias = 0.0f;
-    const float* Depth =
-      nullptr;          // of the window, to be written where alpha is, or, FIRST, to be laid between peels by; or nullptr: none is
-    bool Alone = false; // nothing has been drawn before: the bytes are what the window has to hold
+    const float* Depth = nullptr; // window depths to write where alpha is not 0, or to place the picture between peels (FIRST)
+    bool Alone = false;           // nothing was drawn before, so that the bytes may replace the frame buffer's
   };
 
   vtkStratusDisplay();
@@ -38,20 +37,20 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // To be asked before each draw. LATER: DrawAgain() is all that is left to do. FIRST: Draw() needs depths.
+  // Must be called before each draw. After LATER, only DrawAgain() is left to call. After FIRST, Draw() needs depths.
   vtkStratusPeels::Draw Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);
-  // False if the window is not an OpenGL one.
+  // Returns false where the window is not an OpenGL one or compiles no shader.
   bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
-  // What Draw() showed in this frame, between the peels of now; nothing if it was not called.
+  // Draws the picture of this frame's last Draw() between the current peels, or nothing if there was none.
   bool DrawAgain();
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
-  // A part of the picture, and where it goes.
+  // A part of the picture and its place.
   struct Part {
-    int From[2]; // of the picture
+    int From[2]; // in the picture
     int Size[2];
-    int To[2]; // of the window, and how large there
+    int To[2]; // in the window, where the part may have another size
     int ToSize[2];
   };
 
@@ -69,12 +68,12 @@ private:
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
   vtkNew<vtkTextureObject> Depth;
-  std::unique_ptr<vtkOpenGLQuadHelper> Quad, DepthQuad; // the second writes depth, too
-  vtkOpenGLRenderWindow* Window = nullptr;              // that the textures belong to
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad, DepthQuad; // DepthQuad writes depth, too
+  vtkOpenGLRenderWindow* Window = nullptr;              // owner of the textures
   vtkStratusPeels Peels;
   vtkStratusPeels::Draw Stage = vtkStratusPeels::NONE;
-  vtkStratusPeels::Picture Peeled;     // what is drawn between peels in this frame; without textures: nothing
-  const vtkProp* PeeledProp = nullptr; // whose it is: props may share a mapper; only compared
+  vtkStratusPeels::Picture Peeled;     // drawn between peels in this frame; without textures, nothing is drawn
+  const vtkProp* PeeledProp = nullptr; // prop of Peeled, because props may share a mapper; only compared
 };
 
 #endif

@@ -18,7 +18,7 @@
 #include "vtk_glew.h"
 
 namespace {
-// The pass replaces the two comments in capitals, and calls what stands between them.
+// The pass replaces //VTK::DepthPeeling::Dec and //VTK::CallWorker::Impl by code that calls initializeRayCast() and castRay().
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
@@ -45,8 +45,8 @@ void main()
 //VTK::CallWorker::Impl
 }
 )";
-// The pass names its stage nowhere but in the uniforms that it declares.
-const char* const FrontOfPeels = "lastFrontColorTex"; // while it peels: the colours before the peels so far
+// The uniforms that the pass declares are the only sign of its stage.
+const char* const FrontOfPeels = "lastFrontColorTex"; // while it peels: the colours in front, from the peels so far
 const char* const RestOfPeels = "depthRangeTex";      // after the last peel
 
 bool Declares(const std::string& shader, const char* uniform)
@@ -105,8 +105,9 @@ vtkStratusPeels::Draw vtkStratusPeels::Begin(vtkProp* prop, vtkAbstractMapper* m
   return Declares(this->Shader, FrontOfPeels) || Declares(this->Shader, RestOfPeels) ? LATER : FIRST;
 }
 
-// The pass would blend a frame's volumes by their maximum. Laid one over the other they need what the one before has left in its buffers:
-// its code lays what it gets from castRay() under the colours of a texture, which is a copy of the buffer itself here.
+// Copies the colours in front of the peels. The pass's code puts castRay()'s colour under the colours of a texture, and the pass would
+// blend the results of several volumes by their maximum. To composite volumes over one another, that texture must hold what the previous
+// volume has left in the buffer, so it is a copy of the buffer.
 bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2])
 {
   const unsigned int width = static_cast<unsigned int>(size[0]), height = static_cast<unsigned int>(size[1]);
@@ -165,7 +166,7 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
   program->SetUniform2f("in_inverseWindowSize", inverseSize);
   if (peels) {
     program->SetUniformi(FrontOfPeels, this->Front->GetTextureUnit());
-    glDisablei(GL_BLEND, 1); // what the shader writes there has the colours before in it
+    glDisablei(GL_BLEND, 1); // the shader's second output already includes the colours in front
   }
   quad->Render();
   if (peels) {

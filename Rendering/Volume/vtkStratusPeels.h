@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lays a picture between the translucent surfaces of a renderer that peels them (UseDepthPeelingForVolumes). Private to the modules.
+// Draws a picture between the translucent surfaces of a renderer that peels them (UseDepthPeelingForVolumes). Private to the modules.
 //
-// vtkDualDepthPeelingPass draws volumes several times a frame, each time between other surfaces, into frame buffers of its own: what is
-// behind all of them, what is before, then from the outside in. It lends a volume's shader the code that finds those depths and calls
-// castRay() for what lies between two of them. Here castRay() gives the whole picture where its first depth lies between the two, and
-// nothing elsewhere: so each pixel is drawn once a frame, before or behind each surface by its depth.
+// vtkDualDepthPeelingPass draws volumes several times a frame into frame buffers of its own, each time between other surfaces: behind all
+// of them, in front of all of them, then from the outside in. It adds code to a volume's shader that finds the depths of two surfaces and
+// calls castRay() for the space between them. Here castRay() returns the whole picture's colour where the picture's depth lies between the
+// two, and nothing elsewhere. So each pixel is drawn once a frame, in front of or behind each surface by its depth.
 #ifndef vtkStratusPeels_h
 #define vtkStratusPeels_h
 
@@ -28,18 +28,18 @@ class vtkWindow;
 class VTK_STRATUS_PRIVATE vtkStratusPeels
 {
 public:
-  // What is to be drawn: textures of premultiplied colours and of depths in the window, both of the part alone.
+  // The part of a picture to draw: textures of premultiplied colours and of window depths.
   struct Picture {
     vtkTextureObject* Colors = nullptr;
     vtkTextureObject* Depths = nullptr;
-    int To[2] = { 0, 0 }; // the part's first pixel in the renderer's viewport
+    int To[2] = { 0, 0 }; // first pixel of the part in the renderer's viewport
     int Size[2] = { 0, 0 };
-    int Viewport[2] = { 0, 0 }; // the viewport's size
+    int Viewport[2] = { 0, 0 }; // size of the viewport
     float Scale = 1.0f, Bias = 0.0f;
   };
 
-  // As long as it lives the window's own frame buffer is drawn into, not the pass's. Where the window has several samples a pixel the pass
-  // of VTK 9.1 gets no depths of opaque surfaces from it, and takes all for hidden.
+  // While it lives, drawing goes to the window's own frame buffer, not to the pass's. In a window with multisampling, the pass of VTK 9.1
+  // gets no depths of opaque surfaces and takes everything for hidden.
   class Outside
   {
   public:
@@ -59,22 +59,22 @@ public:
   vtkStratusPeels(const vtkStratusPeels&) = delete;
   void operator=(const vtkStratusPeels&) = delete;
 
-  // Whether a pass draws the prop between peels at the moment, and which of its draws in this frame: all show the picture of the first.
-  // OUTSIDE: the first, where the pass would lose it; see Outside.
+  // The current draw of a prop: not between peels, the first of a frame, a later one, or a first one that the pass would lose (see
+  // Outside). All draws of a frame show the picture of the first.
   enum Draw { NONE, FIRST, LATER, OUTSIDE };
   Draw Begin(vtkProp* prop, vtkAbstractMapper* mapper);
-  // After Begin(). False where the shader does not compile.
+  // Must follow Begin(). Returns false where the shader does not compile.
   bool Render(vtkOpenGLRenderWindow* window, const Picture& picture);
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
   bool CopyFront(vtkOpenGLRenderWindow* window, const int size[2]);
 
-  vtkOpenGLRenderPass* Pass = nullptr; // this and the next three from Begin() to Render()
+  vtkOpenGLRenderPass* Pass = nullptr; // Pass, Prop, Mapper and Shader are valid from Begin() to Render()
   vtkProp* Prop = nullptr;
   vtkAbstractMapper* Mapper = nullptr;
   std::string Shader;
-  std::map<std::string, std::unique_ptr<vtkOpenGLQuadHelper>> Quads; // one a shader: the pass has three
+  std::map<std::string, std::unique_ptr<vtkOpenGLQuadHelper>> Quads; // one per shader, of which the pass has three
   vtkNew<vtkTextureObject> Front;
 };
 

@@ -16,8 +16,8 @@
 #include <limits>
 
 namespace {
-// A camera's rays over its whole window, in view coordinates. They come from the projection alone, whose numbers are small, and only then
-// go to the world: inverting the composite matrix would cost digits far from the origin.
+// The rays of a camera's whole window in view coordinates. They are computed from the projection alone, whose numbers are small, and only
+// then moved to the world. Inverting the composite matrix would cost digits far from the origin.
 struct ViewRays {
   double Eye[3], Forward[3], Right[3], Up[3], Near, Far;
 };
@@ -33,8 +33,8 @@ bool Unproject(const double inverse[16], double u, double v, double z, double po
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
 
-// The planes of constant depth are perpendicular to the view's z axis in all of VTK's projections, sheared ones too, so that the distance k
-// to the eye's plane runs along -z.
+// Finds the rays of a projection. In all of VTK's projections, sheared ones too, planes of constant depth are perpendicular to the view's z
+// axis. The distance k to the eye's plane therefore runs along -z. Returns false where the projection is degenerate.
 bool UnprojectRays(vtkMatrix4x4* projection, bool parallel, ViewRays& rays)
 {
   double inverse[16];
@@ -47,7 +47,7 @@ bool UnprojectRays(vtkMatrix4x4* projection, bool parallel, ViewRays& rays)
   const double depth = nearCenter[2] - farCenter[2];
   double eyeZ = 0.0;
   double scale = 1.0;
-  if (!parallel) { // all rays meet where x, y and w vanish: the inverse's third column
+  if (!parallel) { // the eye is where x, y and w vanish: the inverse's third column
     eyeZ = inverse[10] / inverse[14];
     scale = 1.0 / (eyeZ - nearCenter[2]);
   }
@@ -62,7 +62,7 @@ bool UnprojectRays(vtkMatrix4x4* projection, bool parallel, ViewRays& rays)
   return depth > 0.0 && (parallel || rays.Near > 0.0) && std::isfinite(scale);
 }
 
-// The rays of a part of the window: u' = center[0] + half[0] u there.
+// Moves the rays of a part of the window to the world. The part's coordinate u is center[0] + half[0] u in the window.
 void PlaceRays(vtkMatrix4x4* view, const ViewRays& rays, const double center[2], const double half[2], stratus_camera& camera)
 {
   double inverse[16];
@@ -81,7 +81,7 @@ void PlaceRays(vtkMatrix4x4* view, const ViewRays& rays, const double center[2],
   camera.far_k = rays.Far;
 }
 
-// The corners of the drawn box along the grid's axes, as origin + spacing * index; margin in voxels.
+// Finds the drawn box along the grid's axes, as origin + spacing * index. `margin` is in voxels.
 void LocalBox(const stratus_volume& volume, const double* crop, double margin, double box[6])
 {
   for (int a = 0; a < 3; ++a) {
@@ -119,7 +119,7 @@ void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus
     double world[4], clip[4];
     CornerToWorld(volume, box, corner, world);
     vtkMatrix4x4::MultiplyPoint(worldToClip, world, clip);
-    if (!(clip[3] > 0.0) || clip[2] < -clip[3]) { // reaches to the near plane or behind it: anywhere
+    if (!(clip[3] > 0.0) || clip[2] < -clip[3]) { // a box that reaches the near plane may cover any pixel
       low[0] = low[1] = -1;
       high[0] = high[1] = 1;
       break;
@@ -131,7 +131,7 @@ void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus
   }
   for (int a = 0; a < 2; ++a) {
     const int pixels = this->Viewport[2 + a];
-    const double first = std::floor((low[a] + 1) * 0.5 * pixels) - 1; // a pixel more, for rounding
+    const double first = std::floor((low[a] + 1) * 0.5 * pixels) - 1; // one pixel more, for rounding
     const double last = std::ceil((high[a] + 1) * 0.5 * pixels) + 1;
     const int begin = static_cast<int>(std::min<double>(std::max(first, 0.0), pixels));
     const int end = static_cast<int>(std::min<double>(std::max(last, 0.0), pixels));
@@ -157,7 +157,7 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
     half[a] = this->Rectangle[2 + a] / pixels;
   }
   this->Camera = stratus_camera();
-  // An off-axis projection is a perspective one whatever the flag says.
+  // An off-axis projection is perspective whatever the camera's flag says.
   this->Camera.parallel = projection->GetElement(3, 2) == 0.0 ? 1 : 0;
   ViewRays rays;
   if (!UnprojectRays(projection, this->Camera.parallel != 0, rays)) {
@@ -167,7 +167,7 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
   return true;
 }
 
-// ---------------------------------------------------------------- ray by ray
+// ---------------------------------------------------------------- values per ray
 
 vtkStratusPicture::Others vtkStratusPicture::FindOthers(
   vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay)

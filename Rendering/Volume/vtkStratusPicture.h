@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where on the window a volume is drawn, the rays that go there, and what is handed over ray by ray. Private to the modules.
+// Finds a volume's place in the window and the rays that go there, and converts values per ray. Private to the modules.
 #ifndef vtkStratusPicture_h
 #define vtkStratusPicture_h
 
@@ -19,29 +19,29 @@ class vtkRenderer;
 
 struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   int Viewport[4] = { 0, 0, 0, 0 };  // of the renderer: x, y in the window, width, height
-  int Rectangle[4] = { 0, 0, 0, 0 }; // what the volume may cover: x, y in the viewport, width, height
-  int Size[2] = { 0, 0 };            // pixels to cast; fewer than the rectangle's in a coarse picture
+  int Rectangle[4] = { 0, 0, 0, 0 }; // part that the volume may cover: x, y in the viewport, width, height
+  int Size[2] = { 0, 0 };            // rays to cast; fewer than the rectangle's pixels in a coarse picture
   stratus_camera Camera;
 
   bool IsEmpty() const { return this->Size[0] < 1 || this->Size[1] < 1; }
-  // solid: values on points are cubes about them, half a voxel beyond the volume's bounds.
-  // crop: bounds along the grid's axes as stratus_ray_cast_options has them, or nullptr. coarseness: pixels a ray along each axis, >= 1.
-  // False where the camera is degenerate.
+  // `solid`: values on points are cubes, which extend half a voxel beyond the volume's bounds. `crop`: bounds along the grid's axes, as in
+  // stratus_ray_cast_options, or nullptr. `coarseness`: pixels between rays along each axis, >= 1. Returns false where the camera is
+  // degenerate.
   bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
-  // What else the renderer draws: something that may have written depth before, or anything beside the prop. endsNoRay: of another prop,
-  // that it writes no depth.
+  // What else the renderer draws. Geometry: something may have written depth before. Any: another prop is visible. endsNoRay() tells
+  // whether another prop writes no depth.
   struct Others {
     bool Geometry = false;
     bool Any = false;
   };
   static Others FindOthers(vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay);
-  // The opaque depth at each ray, until the next call. Not to be asked for where nothing can have been drawn before: it costs as much as a
-  // simple scene.
+  // Returns the opaque depth at each ray, valid until the next call. Reading it costs as much as a simple scene, so it is not worth it
+  // where nothing can have been drawn before.
   const float* ReadOpaqueDepth(vtkRenderer* renderer);
-  // The window's depths, 0..1, of distances along the rays; 1 where nothing is.
+  // Converts distances along the rays to window depths, 0..1; 1 where nothing is.
   void ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const;
-  // What the rays brought back, over the whole viewport: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
+  // Makes an image of the whole viewport from values per ray: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
   vtkSmartPointer<vtkImageData> MakeImage(
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;
 

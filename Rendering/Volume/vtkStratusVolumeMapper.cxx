@@ -33,7 +33,7 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   std::string error;
   this->Internal->Render(ren, vol, error);
   std::swap(error, this->Internal->LastError);
-  if (!this->Internal->LastError.empty() && this->Internal->LastError != error) { // once, not with every picture
+  if (!this->Internal->LastError.empty() && this->Internal->LastError != error) { // reported once, not with every picture
     vtkErrorMacro(<< this->Internal->LastError << "; nothing is drawn");
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
@@ -60,7 +60,7 @@ void vtkStratusVolumeMapper::SetDevice(const char* device)
   }
 }
 
-// Not in the header: VTK 9.2's smart pointers give what they hold only where its class is known.
+// Not in the header, because VTK 9.2's smart pointers convert to pointers of complete classes only.
 vtkImageData* vtkStratusVolumeMapper::GetMaskInput()
 {
   return this->MaskInput;

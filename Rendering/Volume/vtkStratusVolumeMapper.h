@@ -1,32 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumeMapper
- * @brief   draws a vtkImageData by ray casting that skips what is transparent, without changing the picture
+ * @brief   draws a vtkImageData by ray casting that skips transparent regions without changing the picture
  *
- * Takes the place of vtkSmartVolumeMapper: a vtkImageData and the vtkVolume's vtkVolumeProperty go in, the picture is composited with
- * the opaque geometry of the scene. Setters that mean the same have vtkSmartVolumeMapper's names.
+ * Replaces vtkSmartVolumeMapper. It draws a vtkImageData with the vtkVolume's vtkVolumeProperty and composites the picture with the scene's
+ * opaque geometry. Setters with vtkSmartVolumeMapper's names mean the same.
  *
- * Supported: point and cell scalars of any numeric type but bits, linear and nearest interpolation, scalar opacity, colour or grey,
- * ScalarOpacityUnitDistance, ghost and blanking arrays, the image's extent, spacing, origin and direction, the volume's matrix, cropping
- * to any of the 27 regions, up to six clipping planes, binary masks, jitter, and the blend modes composite, maximum and minimum
- * intensity, average intensity (AverageIPScalarRange), additive, and isosurface (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16,
- * linear interpolation, every root of the field in each cell). In composite also: light (Shade; the renderer's lights and
- * TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample; isosurfaces, too); gradient opacity (over
- * magnitudes in values per mean spacing, as VTK's mappers have it; it multiplies the optical depth); arrays of 2 to 4 components:
- * independent ones are media that mix (their optical depths add up, times ComponentWeight; their shading must be alike), dependent ones
- * are colour and opacity (2), or red, green, blue and opacity (4 of unsigned char); and label maps. All else (blend mode slice,
- * two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, depth peeling of volumes, shaders of the
- * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn; the module's README has a table of it. Picking
- * by hardware finds the volume where it shows.
+ * Supported are:
+ * - point and cell scalars of any numeric type but bits, with linear and nearest interpolation, ghost and blanking arrays;
+ * - the image's extent, spacing, origin and direction, and the volume's matrix;
+ * - scalar opacity, colour or grey, ScalarOpacityUnitDistance;
+ * - cropping to any of the 27 regions, up to six clipping planes, binary masks, jitter;
+ * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, and isosurface
+ *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell);
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
+ * - hardware picking, which finds the volume where it is visible.
  *
- * RenderModeToFirstHit draws what shows (opacity > 0) as solid voxels in the light of the renderer instead, and writes their depth. There
- * the property's Shade, Ambient, Diffuse, Specular and SpecularPower count; positional lights are taken without attenuation and cone (a
- * cone below 90 degrees is refused), and the mapper's bounds reach half a voxel farther, for a voxel of point data is a cube about its
- * point.
+ * Composite mode also supports:
+ * - light (Shade; the renderer's lights and TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each
+ *   sample), as isosurfaces do, too;
+ * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers; it multiplies the optical depth;
+ * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up;
+ *   their shading must be alike. Dependent components are colour and opacity (2), or red, green, blue and opacity (4 of
+ *   unsigned char);
+ * - label maps.
  *
- * An image that comes with a tree (vtkStratusHybridTreeFilter) has it used where it serves.
+ * All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, shaders of the
+ * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn. The module's README has a table.
  *
- * What is built is kept: a new picture of the same data rebuilds nothing, a new transfer function rebuilds tables and structure only.
+ * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
+ * Ambient, Diffuse, Specular and SpecularPower apply. Positional lights have no attenuation and no cone (a cone below 90 degrees is
+ * refused). A voxel of point data is a cube about its point, so that the mapper's bounds extend half a voxel farther.
+ *
+ * The mapper uses the tree of an image that carries one (vtkStratusHybridTreeFilter) if it serves the transfer function.
+ *
+ * The mapper keeps what it builds: a new picture of the same data rebuilds nothing, a new transfer function rebuilds only tables and the
+ * structure.
  *
  * @sa vtkStratusHybridTreeFilter vtkStratusDistanceMapFilter vtkSmartVolumeMapper
  */
@@ -51,7 +60,8 @@ public:
   enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE };
   //@{
   /**
-   * Light through the whole of each ray, or the first voxel of opacity > 0 as a lit, opaque solid. Default COMPOSITE_MODE.
+   * Set/Get the render mode. COMPOSITE_MODE collects light along the whole ray. FIRST_HIT_MODE shows the first voxel of opacity > 0 as a
+   * lit, opaque solid. Default COMPOSITE_MODE.
    */
   vtkSetClampMacro(RenderMode, int, COMPOSITE_MODE, FIRST_HIT_MODE);
   vtkGetMacro(RenderMode, int);
@@ -63,7 +73,7 @@ public:
   enum NormalsType { FACE_NORMALS, GRADIENT_NORMALS };
   //@{
   /**
-   * What light falls on in first hits: the voxels' faces, or the field's gradient by central differences. Default FACE_NORMALS.
+   * Set/Get the normals of first hits: the voxels' faces, or the field's gradient by central differences. Default FACE_NORMALS.
    */
   vtkSetClampMacro(Normals, int, FACE_NORMALS, GRADIENT_NORMALS);
   vtkGetMacro(Normals, int);
@@ -73,7 +83,8 @@ public:
 
   //@{
   /**
-   * World length between two samples of a ray; 0 or less takes it from the data's spacing and the transfer function. Default -1.
+   * Set/Get the world length between two samples of a ray. 0 or less takes it from the data's spacing and the transfer function. Default
+   * -1.
    */
   vtkSetMacro(SampleDistance, double);
   vtkGetMacro(SampleDistance, double);
@@ -81,8 +92,8 @@ public:
 
   //@{
   /**
-   * While the window's desired update rate is at least InteractiveUpdateRate, draw as coarsely as the time allotted to this volume
-   * asks for: first longer steps, then fewer rays. Below that rate the picture is exact. Default on.
+   * Set/Get whether pictures are coarser while the window's desired update rate is at least InteractiveUpdateRate. The time allotted to
+   * this volume tells how coarse they are: first steps get longer, then rays fewer. Below that rate the picture is exact. Default on.
    */
   vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
   vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
@@ -91,8 +102,8 @@ public:
 
   //@{
   /**
-   * Frames a second from which AutoAdjustSampleDistances is at work, 1e-10..1e10. Default 1: a still picture of VTK's interactor (rate
-   * 0.0001) is exact, one that moves (rate 15) is adjusted.
+   * Set/Get the update rate in frames per second from which AutoAdjustSampleDistances applies, 1e-10..1e10. Default 1: VTK's interactor
+   * draws still pictures at rate 0.0001, which are exact, and moving ones at rate 15, which are adjusted.
    */
   vtkSetClampMacro(InteractiveUpdateRate, double, 1.0e-10, 1.0e10);
   vtkGetMacro(InteractiveUpdateRate, double);
@@ -100,7 +111,8 @@ public:
 
   //@{
   /**
-   * Pixels between two rays along each axis of the window, 1..100, and the most that AutoAdjustSampleDistances may take. Default 1 and 8.
+   * Set/Get the pixels between two rays along each axis of the window, and the most that AutoAdjustSampleDistances may take; each 1..100.
+   * Default 1 and 8.
    */
   vtkSetClampMacro(ImageSampleDistance, double, 1.0, 100.0);
   vtkGetMacro(ImageSampleDistance, double);
@@ -110,7 +122,7 @@ public:
 
   //@{
   /**
-   * How many times the sample distance AutoAdjustSampleDistances may make it, 1..100. Default 2.
+   * Set/Get the most by which AutoAdjustSampleDistances may multiply the sample distance, 1..100. Default 2.
    */
   vtkSetClampMacro(MaximumSampleDistanceFactor, double, 1.0, 100.0);
   vtkGetMacro(MaximumSampleDistanceFactor, double);
@@ -118,8 +130,8 @@ public:
 
   //@{
   /**
-   * Window and level of the final colours: a colour c is shown as (c - level) / window + 0.5. The window is not 0, a negative one
-   * inverts. Default 1 and 0.5: as they are. GetLastImage() is not affected.
+   * Set/Get window and level of the final colours: a colour c is shown as (c - level) / window + 0.5. The window must not be 0; a negative
+   * one inverts. Default 1 and 0.5, which change nothing. GetLastImage() is not affected.
    */
   vtkSetMacro(FinalColorWindow, float);
   vtkGetMacro(FinalColorWindow, float);
@@ -130,8 +142,8 @@ public:
   enum StructureType { AUTO_STRUCTURE, NO_STRUCTURE, BLOCK_STRUCTURE, DISTANCE_STRUCTURE, OCTANT_STRUCTURE, HYBRID_STRUCTURE };
   //@{
   /**
-   * What tells the rays where nothing is to see: nothing, a flag a block, a distance map, eight of them by the ray's octant, or a hybrid
-   * tree. No choice changes the picture. Default AUTO_STRUCTURE: the cheapest that the scene needs.
+   * Set/Get the structure by which rays skip empty space: none, a flag per block, a distance map, eight distance maps by the ray's octant,
+   * or a hybrid tree. The structure does not change the picture. Default AUTO_STRUCTURE, the cheapest that the scene needs.
    */
   vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, HYBRID_STRUCTURE);
   vtkGetMacro(Structure, int);
@@ -147,8 +159,9 @@ public:
   enum SamplingType { AUTO_SAMPLING, MIDPOINT_SAMPLING, PREINTEGRATED_SAMPLING };
   //@{
   /**
-   * One value in the middle of each segment, or the transfer function integrated between the values at its ends. Nearest interpolation is
-   * never pre-integrated. Default AUTO_SAMPLING: by the transfer function's bend against the data.
+   * Set/Get the sampling of a ray's segments. MIDPOINT_SAMPLING takes one value in the middle. PREINTEGRATED_SAMPLING integrates the
+   * transfer function between the values at both ends; it is never used with nearest interpolation. AUTO_SAMPLING chooses by the transfer
+   * function's curvature against the data. Default AUTO_SAMPLING.
    */
   vtkSetClampMacro(Sampling, int, AUTO_SAMPLING, PREINTEGRATED_SAMPLING);
   vtkGetMacro(Sampling, int);
@@ -161,10 +174,10 @@ public:
   enum { BinaryMaskType = 0, LabelMapMaskType };
   //@{
   /**
-   * As vtkGPUVolumeRayCastMapper's: an image of one unsigned char a value of the input (point scalars; of the same dimensions as the
-   * values), 0 where nothing is to be seen. Taken at the nearest value. Default nullptr: none. Of type label map it hides nothing: its
-   * bytes are labels, and where label l has vtkVolumeProperty::SetLabelColor() or SetLabelScalarOpacity(), values have those in place of
-   * the property's (composite, one component). Default binary.
+   * Set/Get the mask, as in vtkGPUVolumeRayCastMapper: an image whose point scalars are one unsigned char per value of the input, with the
+   * same dimensions. The mask is taken at the nearest value. A binary mask hides values where it is 0. A label map hides nothing: its bytes
+   * are labels, and the functions of vtkVolumeProperty::SetLabelColor() and SetLabelScalarOpacity() replace the property's where the label
+   * has them (composite, one component). Default nullptr and BinaryMaskType.
    */
   virtual void SetMaskInput(vtkImageData* mask);
   vtkImageData* GetMaskInput();
@@ -176,8 +189,9 @@ public:
 
   //@{
   /**
-   * Move each ray's samples along it by up to a sample distance, so that the wood grain of long steps turns into noise. The noise is the
-   * same from picture to picture, at any number of threads; another seed is another noise. Default off, seed 0.
+   * Set/Get whether each ray's samples move along it by up to a sample distance, which turns the wood grain of long steps into noise. The
+   * noise does not depend on the number of threads and does not change from picture to picture; another seed gives other noise. Default
+   * off, seed 0.
    */
   vtkSetClampMacro(UseJittering, vtkTypeBool, 0, 1);
   vtkGetMacro(UseJittering, vtkTypeBool);
@@ -188,7 +202,7 @@ public:
 
   //@{
   /**
-   * A ray ends when its opacity passes this, 0..1. Default 0.999.
+   * Set/Get the opacity beyond which a ray ends, 0..1. Default 0.999.
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
@@ -196,7 +210,8 @@ public:
 
   //@{
   /**
-   * Cells along a block of the structure: 2, 4, 8, 16, 32, or 0 for the core's default. Others are an error when drawing. Default 0.
+   * Set/Get the number of cells along a block's edge of the structure: 2, 4, 8, 16, 32, or 0 for the core's default. Other values are an
+   * error when drawing. Default 0.
    */
   vtkSetMacro(BlockSize, int);
   vtkGetMacro(BlockSize, int);
@@ -204,8 +219,8 @@ public:
 
   //@{
   /**
-   * Where rays are cast: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a part of its name.
-   * One that does not exist is an error with the list of those that do, and the device stays what it was. Default "auto".
+   * Set/Get the device on which rays are cast: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a
+   * part of its name. A device that does not exist is an error that lists the existing ones, and the previous device stays. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
@@ -213,7 +228,8 @@ public:
 
   //@{
   /**
-   * Threads of the host, 1..1024, or 0 for as many as OpenMP would take. The picture does not depend on it. Default 0.
+   * Set/Get the number of threads of the host, 1..1024, or 0 for as many as OpenMP would take. The picture does not depend on it. Default
+   * 0.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -221,7 +237,8 @@ public:
 
   //@{
   /**
-   * Also march without structure and count the pixels that differ, see GetDifferingPixels(). Slow. Default off.
+   * Set/Get whether each picture is also drawn without structure and the differing pixels counted, see GetDifferingPixels(). Slow. Default
+   * off.
    */
   vtkSetClampMacro(Audit, vtkTypeBool, 0, 1);
   vtkGetMacro(Audit, vtkTypeBool);
@@ -230,7 +247,8 @@ public:
 
   //@{
   /**
-   * Also count the values interpolated for each pixel: GetLastImage() then has them as "Samples". Does not change the picture. Default off.
+   * Set/Get whether the values interpolated are counted for each pixel; GetLastImage() then has the array "Samples". The picture does not
+   * change. Default off.
    */
   vtkSetClampMacro(CountSamples, vtkTypeBool, 0, 1);
   vtkGetMacro(CountSamples, vtkTypeBool);
@@ -239,8 +257,8 @@ public:
 
   //@{
   /**
-   * Of the last picture drawn: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
-   * blocks and how many of them are occupied, and bytes of the structure.
+   * Get counts of the last picture: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
+   * blocks, occupied blocks, and bytes of the structure.
    */
   vtkTypeUInt64 GetSamplesTaken();
   vtkTypeUInt64 GetSamplesSkipped();
@@ -253,7 +271,7 @@ public:
 
   //@{
   /**
-   * How often each was built since this mapper (or its device or threads) was set up.
+   * Get how often each was built since this mapper, its device or its threads were set up.
    */
   vtkTypeUInt64 GetRangeBuilds();
   vtkTypeUInt64 GetTableBuilds();
@@ -261,14 +279,15 @@ public:
   vtkTypeUInt64 GetStructureBuilds();
   vtkTypeUInt64 GetUploads();
   /**
-   * Whether the last picture was drawn by the tree that the input carries, so that none had to be built.
+   * Get whether the last picture was drawn by the tree that the input carries, so that none had to be built.
    */
   bool GetCarriedTreeUsed();
   //@}
 
   //@{
   /**
-   * Milliseconds of the last picture by stage; 0 for what was not done. Draw is the read-back of depth and the display of the picture.
+   * Get the milliseconds of the last picture's stages, 0 for a stage that was not needed. The draw time is that of reading the depth and
+   * displaying the picture.
    */
   double GetRangeTime();
   double GetTableTime();
@@ -281,7 +300,8 @@ public:
 
   //@{
   /**
-   * What the last picture used, and why: structure, sampling, world length between samples, pixels between rays, device.
+   * Get what the last picture used: structure, sampling, world length between samples, pixels between rays, the reason for the choice, and
+   * the device.
    */
   const char* GetStructureUsedAsString();
   const char* GetSamplingUsedAsString();
@@ -292,21 +312,25 @@ public:
   //@}
 
   /**
-   * Why the last picture was refused; empty if it was not. An error event tells the same, but only the first of equal ones in a row.
+   * Get the reason why the last picture was refused, empty if it was not. An error event reports it, too, but only once for equal reasons
+   * in a row.
    */
   const char* GetLastError();
 
   /**
-   * The last picture in float, the size of the renderer's viewport, its first pixel at the bottom left: point data "RGBA" (the scalars, 4
-   * components, premultiplied by alpha, without the opaque geometry) and "Depth" (world distance along the ray from the eye, in a parallel
-   * view from its plane, to the first contribution; infinite where there is none), and "Samples" if the picture was drawn with
-   * CountSamples, whatever it is now. A coarse picture is repeated pixel by pixel. nullptr before the first picture, and after one that was
-   * refused or aborted. Copied on each call; it is the mapper's, and the next call overwrites it.
+   * Get the last picture as floats, of the renderer's viewport's size, its first pixel at the bottom left. Point data:
+   * - "RGBA" (the scalars): 4 components, premultiplied by alpha, without the opaque geometry;
+   * - "Depth": world distance along the ray from the eye, in a parallel view from its plane, to the first contribution; infinite where
+   *   there is none;
+   * - "Samples", if the picture was drawn with CountSamples.
+   *
+   * A pixel of a coarse picture is repeated. The result is nullptr before the first picture and after one that was refused or aborted. The
+   * mapper owns the image, and the next call overwrites it.
    */
   vtkImageData* GetLastImage();
 
   /**
-   * Of the input, half a voxel more on all sides for first hits of point data.
+   * Get the input's bounds, extended by half a voxel on all sides for first hits of point data.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

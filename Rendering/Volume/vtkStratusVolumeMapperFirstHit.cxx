@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light that vtkStratusVolumeMapper's pictures are in; what only first hits ask of it: bounds, depth for the window; and the tree that
-// an image may carry.
+// The light of vtkStratusVolumeMapper's pictures, the bounds of first hits, and the tree that an image may carry.
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkStratusTreeArrays.h"
@@ -17,7 +16,7 @@
 #include <cmath>
 
 namespace {
-// The renderer has brought lights that follow the camera to where it is.
+// Converts a light. The renderer has already moved lights that follow the camera.
 bool SetLight(vtkLight* light, stratus_light& result, std::string& error)
 {
   double position[3], focal[3];
@@ -94,7 +93,7 @@ void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
   }
 }
 
-// Bytes that are no tree are told once, and do no harm: the caster builds its own.
+// Offers the input's tree to the caster. A damaged tree is reported once, and the caster builds its own.
 void vtkStratusVolumeMapper::Internals::OfferTree()
 {
   vtkStratusVolumeMapper* self = this->Mapper;

@@ -19,7 +19,7 @@
 #include <cmath>
 
 namespace {
-// Of those that have functions of their own and fit in a byte.
+// Returns the highest label that has functions of its own and fits in a byte.
 int HighestLabel(vtkVolumeProperty* property)
 {
   int highest = 0;
@@ -36,7 +36,7 @@ vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
     this->Caster = nullptr;
-    this->OfferedTo = nullptr; // the next one may come to the same address
+    this->OfferedTo = nullptr; // the next caster may get the same address
     this->FullMilliseconds = 0.0;
   };
 }
@@ -44,7 +44,7 @@ vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
 vtkStratusVolumeMapper::Internals::~Internals()
 {
   this->Context.OnRelease();
-  this->Context.OnRelease = nullptr; // members that it touches go before the context does
+  this->Context.OnRelease = nullptr; // members that it uses are destroyed before the context
 }
 
 bool vtkStratusVolumeMapper::Internals::OnProgress(double fraction)
@@ -72,7 +72,7 @@ bool vtkStratusVolumeMapper::Internals::PrepareContext(std::string& error)
   return true;
 }
 
-// ---------------------------------------------------------------- what is asked for
+// ---------------------------------------------------------------- settings and input
 
 bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
 {
@@ -91,7 +91,7 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
   return error.empty();
 }
 
-// What the prop may ask of a mapper of volumes beside the property.
+// Checks the prop's settings other than its property.
 bool vtkStratusVolumeMapper::Internals::CheckScene(vtkVolume* prop, std::string& error) const
 {
   vtkShaderProperty* shaders = prop->GetShaderProperty();
@@ -124,7 +124,7 @@ bool vtkStratusVolumeMapper::Internals::HasLabels() const
   return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType;
 }
 
-// One transfer function, or one for each component that is a medium of its own, or for each label.
+// Sets one transfer function, or one for each independent component, or one for each label.
 bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
 {
   const int components = this->Image.GetVolume().components;
@@ -251,7 +251,7 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
   return error.empty();
 }
 
-// What means and isosurfaces are told beside the transfer function.
+// Sets the range of average intensity and the values of isosurfaces.
 bool vtkStratusVolumeMapper::Internals::SetContours(
   vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
@@ -286,7 +286,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.sampling = static_cast<stratus_sampling>(mapper->Sampling);
   options.interpolation =
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // what is no number is refused
+  options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
   options.termination = mapper->Termination;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.block_size = mapper->BlockSize;

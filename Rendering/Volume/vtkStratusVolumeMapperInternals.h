@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkStratusVolumeMapper holds between pictures. Private to the module.
+// State that vtkStratusVolumeMapper keeps between pictures. Private to the module.
 #ifndef vtkStratusVolumeMapperInternals_h
 #define vtkStratusVolumeMapperInternals_h
 
@@ -24,15 +24,15 @@ public:
   explicit Internals(vtkStratusVolumeMapper* mapper);
   ~Internals();
 
-  // Makes the context where there is none, or where the number of threads has changed.
+  // Makes the context and the caster where there are none, or where the number of threads has changed.
   bool PrepareContext(std::string& error);
-  // Replaces device and context, or leaves them as they are.
+  // Replaces the device and its context. On failure both stay as they are.
   bool SetDevice(const std::string& device, std::string& error);
 
-  // A whole picture: checks, casts, draws. `error` stays empty where an abort ended it.
+  // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   vtkImageData* GetLastImage();
-  // Half a voxel to all sides, in first hits of point data.
+  // Extends the bounds by half a voxel on all sides, in first hits of point data.
   void WidenBounds(double bounds[6]) const;
 
   vtkStratusVolumeMapper* Mapper;
@@ -40,15 +40,15 @@ public:
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkStratusImageView Image;
-  std::vector<vtkStratusTransferView> Transfers; // one a component that has one, or a label ..
-  std::vector<stratus_transfer> Functions;       // .. as the core takes them
+  std::vector<vtkStratusTransferView> Transfers; // one per independent component, or per label
+  std::vector<stratus_transfer> Functions;       // the same in the core's terms
   vtkStratusDisplay Display;
-  std::string LastError; // of the last picture, empty: none; told already
+  std::string LastError; // of the last picture, reported already; empty: none
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
 
 private:
-  // How much coarser than asked for the picture is drawn: times the sample distance, pixels between rays.
+  // How coarsely the picture is drawn: the factor of the sample distance, and the pixels between rays.
   struct Coarseness {
     double Step = 1.0;
     double Pixels = 1.0;
@@ -62,7 +62,7 @@ private:
   bool HasLabels() const;
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
-  // First hits (vtkStratusVolumeMapperFirstHit.cxx).
+  // Light, first hits and carried trees (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   void OfferTree();
@@ -77,18 +77,18 @@ private:
   vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others) const;
   void ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels);
 
-  vtkRenderer* Renderer = nullptr; // while rendering
+  vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
   std::vector<float> Rgba, Depth, ShownDepth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
-  vtkSmartPointer<vtkAbstractArray> Offered; // the tree that the caster was last given ..
+  vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;
-  std::array<double, 18> LearnedFor{}; // settings and geometry that FullMilliseconds and FullSampleDistance belong to
-  double FullMilliseconds = 0.0;       // estimate of an exact picture's cast; 0: unknown
+  std::array<double, 18> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
+  double FullMilliseconds = 0.0;       // estimated cast time of an exact picture, 0: unknown
   double FullSampleDistance = 0.0;
   vtkSmartPointer<vtkImageData> LastImage;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One picture of vtkStratusVolumeMapper: how coarse, what bounds the rays, cast, show.
+// Draws one picture of vtkStratusVolumeMapper: chooses its coarseness, reads depths, casts rays and displays the result.
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkHardwareSelector.h"
@@ -21,7 +21,7 @@ double Now() // milliseconds
 }
 } // namespace
 
-// ---------------------------------------------------------------- how coarse
+// ---------------------------------------------------------------- coarseness
 
 vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals::ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop)
 {
@@ -29,7 +29,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   Coarseness coarseness;
   coarseness.Pixels = mapper->ImageSampleDistance;
   vtkRenderWindow* window = renderer->GetRenderWindow();
-  // What was learned of a full picture holds for its settings and geometry only.
+  // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
   std::array<double, 18> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
@@ -45,7 +45,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   if (!interactive || this->FullMilliseconds <= 0.0) {
     return coarseness;
   }
-  // What showing the picture takes is not ours to save.
+  // Only casting can be made faster, so that the time to display the picture is subtracted.
   const double allotted = 1000.0 * prop->GetAllocatedRenderTime();
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
@@ -75,13 +75,14 @@ vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRende
 {
   return vtkStratusPicture::FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
-    // Our other volumes end no rays, but those that write depth do.
+    // Other volumes of this class end no rays, except those that write depth.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
     return mapper && mapper->RenderMode == COMPOSITE_MODE;
   });
 }
 
-// Bytes are enough where black is behind: nothing is left to round after them. Cast() fills in the rest.
+// Chooses how the picture is displayed. Bytes are precise enough on a black background, because no blend rounds after them. Render() fills
+// in the rest.
 vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
   vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
 {
@@ -98,7 +99,7 @@ vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
   return pixels;
 }
 
-// What is picked by hardware is read off the window: the prop's own colour where the volume shows anything, at the depth where it does.
+// Prepares a picture for hardware picking, which reads the window: the prop's selection colour where the volume shows anything.
 void vtkStratusVolumeMapper::Internals::ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels)
 {
   float color[3];
@@ -148,7 +149,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     error = drawn ? this->LastError : unshown;
     return drawn;
   }
-  this->HasPicture = false; // of one that is refused nothing is left to be asked for
+  this->HasPicture = false; // a refused picture leaves no image
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
   vtkVolumeProperty* property = prop->GetProperty();
@@ -157,7 +158,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     !this->SetShading(renderer, property, options, error) || !this->PrepareContext(error)) {
     return false;
   }
-  // Checked here too, because the picture's rectangle already relies on it.
+  // Rendering checks the volume, too, but the picture's rectangle already relies on it.
   if (stratus_volume_check(this->Context.Get(), &this->Image.GetVolume()) != STRATUS_OK) {
     error = stratus_context_message(this->Context.Get());
     return false;
