@@ -14,7 +14,7 @@ vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
 
 vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
 
-// The superclass takes another mapper for composite data: then there is none of ours to set.
+// Returns nullptr where the superclass has set another mapper, as it does for composite data.
 vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetStratusMapper()
 {
   return vtkStratusVolumeMapper::SafeDownCast(this->VolumeMapper);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumeRepresentation
- * @brief   ParaView's volume rendering of uniform grids, by vtkStratusVolumeMapper
+ * @brief   ParaView's volume rendering of uniform grids by vtkStratusVolumeMapper
  *
- * Everything of ParaView's own representation "Volume" that the mapper can do; what it can't it refuses by an error in ParaView's messages.
- * The setters below are vtkStratusVolumeMapper's, which tells what they mean.
+ * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
+ * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
  *
  * @sa vtkStratusVolumeMapper
  */
