@@ -6,7 +6,7 @@
 
 namespace {
 
-// World bounds of the blocks that show anything; of everything where none does.
+// Finds the world bounds of the blocks that show anything, or of the whole volume where none does.
 void shown_bounds(const cli::context& core, const stratus_volume& volume, const stratus_transfer& transfer, double bounds[6])
 {
   stratus_value_range* ranges = nullptr;
@@ -35,8 +35,8 @@ void shown_bounds(const cli::context& core, const stratus_volume& volume, const 
   core.check(stratus_volume_bounds(core, &part, bounds), "bounds");
 }
 
-// Tangents of the widest and highest view of the bounds at this elevation, whatever the azimuth: a turn about the upward axis neither
-// cuts anything off nor breathes. Parallel: half sizes instead of tangents.
+// Finds the tangents of the widest and highest view of the bounds at this elevation, for any azimuth, so that a turn about the upward axis
+// neither cuts anything off nor changes the scale. In a parallel view these are half sizes instead of tangents.
 void fit(double around, double upward, double elevation, double away, bool parallel, double& wide, double& high)
 {
   wide = high = 0.0;
@@ -66,10 +66,10 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
     focal[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     half[a] = 0.5 * (bounds[2 * a + 1] - bounds[2 * a]);
   }
-  // Straight up and down the view has no way to tell what is up; a thousandth of a degree off it has.
+  // Straight up or down, the view direction is parallel to the upward axis, so the elevation stays a thousandth of a degree off.
   const double elevation = std::min(std::max(o.elevation, -89.999), 89.999) * degree;
   const double around = std::hypot(half[(up + 1) % 3], half[(up + 2) % 3]);
-  const double away = std::hypot(around, half[up]) / std::sin(15.0 * degree); // as the cameras of record
+  const double away = std::hypot(around, half[up]) / std::sin(15.0 * degree); // the same distance as stratus_scene_camera()
   double direction[3];
   direction[up] = std::sin(elevation);
   direction[(up + 1) % 3] = std::cos(elevation) * std::cos(o.azimuth * degree);

@@ -6,9 +6,9 @@
 
 namespace cli {
 
-// Looks at what the transfer function shows of the volume, from the options' azimuth and elevation about the axis `up`, so that all of it
-// fits.
+// Places a camera that looks from the options' azimuth and elevation about the axis `up`. The view contains all that the transfer function
+// shows of the volume.
 stratus_camera place_camera(const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up);
-// Eye, direction, up, and angle or parallel scale in one line, with the digits that another program needs to look from there.
+// Describes eye, direction, up, and angle or parallel scale in one line, with enough digits for another program to reproduce the view.
 std::string describe(const stratus_camera& camera);
 } // namespace cli

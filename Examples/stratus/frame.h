@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture's pixels with what is known of each, and the file they become: PNG of colours or of samples, or OpenEXR of all.
+// The pixels of a picture and the values of each, written as a PNG of colours or samples, or as an OpenEXR file of all.
 #pragma once
 
 #include "options.h"
@@ -13,11 +13,11 @@ namespace cli {
 class frame
 {
 public:
-  // Tells at once, by throwing usage, what cannot become a file: an OUT.exr where OpenEXR was not there to build with, a heat map in it.
+  // Throws usage for an OUT.exr if the program was built without OpenEXR, or if a heat map is asked for.
   explicit frame(const options& o);
-  // Borrows what the options ask for.
+  // Borrows the arrays that the options ask for.
   stratus_image view();
-  // Samples a pixel in a line, where they were counted.
+  // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;
   void write(output_file& file) const;
 

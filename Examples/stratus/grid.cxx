@@ -10,7 +10,7 @@
 
 namespace {
 
-// What only regular grids have is told, not ignored.
+// Refuses options that apply to regular grids only, so that none is ignored silently.
 void refuse_options(const cli::options& o)
 {
   if (o.mode != STRATUS_MODE_COMPOSITE || o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest ||
@@ -27,7 +27,7 @@ namespace cli {
 stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view)
 {
   stratus_volume box = m.box();
-  const uint8_t nothing[8] = {}; // what of the box shows says nothing of the mesh: all of it is looked at
+  const uint8_t nothing[8] = {}; // of no value, so that the whole box counts as shown
   box.values = nothing;
   box.type = STRATUS_UINT8;
   for (int a = 0; a < 3; ++a) {
@@ -49,7 +49,7 @@ void render_grid(const options& o)
   const stratus_transfer view = look.view();
   core.check(stratus_transfer_check(core, &view), "transfer function");
   const stratus_camera camera = place_camera(core, o, m, view);
-  output_file out(o.output); // before the work: a path that cannot be written is told at once
+  output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
 
   stratus_image image = picture.view();
   stratus_tetra_report report = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of unstructured grids, and what is in them.
+// Draws and describes unstructured grids.
 #pragma once
 
 #include "mesh.h"
@@ -7,8 +7,8 @@
 
 namespace cli {
 
-// Looks at the whole of the mesh.
+// Places a camera that looks at the whole mesh.
 stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view);
 void render_grid(const options& o);
-void print_grid(const options& o); // info
+void print_grid(const options& o); // stratus info
 } // namespace cli

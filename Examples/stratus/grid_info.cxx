@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stratus info` of an unstructured grid: its cells, points and arrays, what the tetrahedra that they are divided into are like, and what
-// would be drawn.
+// `stratus info` of an unstructured grid: its cells, points and arrays, the quality of the tetrahedra into which it is divided, and what
+// `stratus render` would draw.
 #include "grid.h"
 
 #include "input.h"
@@ -71,7 +71,7 @@ void print_arrays(vtkUnstructuredGrid* grid)
   }
 }
 
-// A picture for the sake of its report, which tells what the caster found on the way.
+// Draws a picture whose only purpose is its report.
 stratus_tetra_report draw(
   const cli::context& core, const stratus_mesh& mesh, const stratus_transfer& transfer, const stratus_camera& camera, int width, int height)
 {
@@ -89,7 +89,7 @@ stratus_tetra_report draw(
   return report;
 }
 
-// One pixel.
+// Draws a single pixel, because the report on the mesh does not depend on the picture.
 stratus_tetra_report look_at(const cli::context& core, const stratus_mesh& mesh)
 {
   const double opacity[4] = { 0.0, 0.0, 1.0, 1.0 }, color[4] = { 0.0, 1.0, 1.0, 1.0 };
@@ -122,7 +122,7 @@ void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
   for (vtkIdType point = 0; point < parts.GridPoints; ++point) {
     unused += used[static_cast<size_t>(point)] ? 0 : 1;
   }
-  const std::vector<uint8_t> values(static_cast<size_t>(mesh.cell_count) + 1, 0); // which ones does not count here
+  const std::vector<uint8_t> values(static_cast<size_t>(mesh.cell_count) + 1, 0); // all 0: the report on the mesh does not depend on values
   mesh.values = values.data();
   mesh.type = STRATUS_UINT8;
   mesh.cell_values = 1;
@@ -167,7 +167,7 @@ void cli::print_grid(const options& o)
     row("opacity", look.origin);
     row("method", report.why + format(", at %d x %d pixels", o.width, o.height));
   } catch (const failure& reason) {
-    if (!o.array.empty()) { // asked for
+    if (!o.array.empty()) { // the user asked for this array
       throw;
     }
     row("drawn", std::string("nothing: ") + reason.what());

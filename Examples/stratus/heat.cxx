@@ -40,7 +40,7 @@ void look_up(vtkColorTransferFunction* colors, double value, uint8_t rgb[3])
   }
 }
 
-// Text over what is there, its left middle at x, y.
+// Writes text over the canvas, the middle of its left edge at x, y.
 void write_text(canvas& to, const std::string& text, int x, int y)
 {
   vtkNew<vtkTextProperty> look;
@@ -66,7 +66,7 @@ void write_text(canvas& to, const std::string& text, int x, int y)
   }
 }
 
-// 1, 2 or 5 times a power of ten, at least `least`.
+// Returns the smallest of 1, 2 or 5 times a power of ten that is at least `least`.
 double round_step(double least)
 {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -89,7 +89,7 @@ void draw_bar(canvas& to, int left, uint32_t most, vtkColorTransferFunction* col
     }
   }
   if (to.height < 2 * bar_margin + line_height) {
-    return; // no room for letters
+    return; // no room for text
   }
   const double step = std::max(1.0, round_step(std::max(1.0, static_cast<double>(most)) * line_height / tall));
   for (double value = 0.0; value <= static_cast<double>(most); value += step) {

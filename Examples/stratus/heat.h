@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples a pixel as colours, with a bar that tells which colour is how many.
+// Shows the samples per pixel as colours, with a labelled colour bar.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace cli {
 
-constexpr int heat_bar_width = 112; // pixels beside the picture
+constexpr int heat_bar_width = 112; // in pixels, beside the picture
 
-// RGB, bottom row first, width + heat_bar_width pixels a row. color: as --color has it, over 0 .. the most samples of a pixel.
+// Returns RGB bytes, bottom row first, width + heat_bar_width pixels per row. `color` is a value of --color, over 0 .. the most samples of
+// a pixel.
 std::vector<uint8_t> heat_map(const std::vector<uint32_t>& samples, int width, int height, const std::string& color);
 } // namespace cli

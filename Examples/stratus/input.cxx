@@ -37,7 +37,7 @@
 
 namespace {
 
-// VTK's readers report through objects of their own as well (parsers, decompressors); all of it passes here, so none of it is lost.
+// Collects all messages of VTK. Readers also report through objects of their own (parsers, decompressors), whose messages pass here, too.
 class listener : public vtkOutputWindow
 {
 public:
@@ -51,7 +51,7 @@ protected:
 };
 vtkStandardNewMacro(listener);
 
-// Listens as long as it lives, to std::cerr too: there VTK's MetaIO tells, and nowhere else, that a file was cut short.
+// Collects messages while it lives, also from std::cerr, where VTK's MetaIO alone reports that a file was cut short.
 class listening
 {
 public:
@@ -75,7 +75,7 @@ private:
   std::streambuf* Stream;
 };
 
-// The message alone: VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before it.
+// Extracts the message. VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before it.
 std::string first_message(const std::string& heard)
 {
   size_t at = heard.find("): ");
@@ -369,7 +369,7 @@ input::input(context& core, const std::string& source, const std::string& array)
     }
     core.check(stratus_scene_create(core, source.c_str(), &this->scene), "scene '" + source + "'");
     this->volume = this->scene->volume;
-    this->volume.components = 1; // options tell of one transfer function: of two pollutants, the first
+    this->volume.components = 1; // options describe one transfer function: of two pollutants, the first is drawn
     this->up_axis = this->scene->up_axis;
     this->array_name = source;
     return;

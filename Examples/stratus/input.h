@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An image file, or a scene of record, as the core's view of a volume.
+// Reads an image file, or makes a scene of record, as the core's view of a volume.
 #pragma once
 
 #include "support.h"
@@ -11,24 +11,26 @@ class vtkDataArray;
 
 namespace cli {
 
-// Reads any file of an image or an unstructured grid that VTK reads, and TetGen's. Whatever VTK complains about while it reads is a
-// failure: half a picture is none.
+// Reads any image or unstructured grid that VTK reads, and TetGen's files. Any complaint of VTK is a failure, so that a damaged file is
+// never drawn in part.
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
-// A file of TetGen's, by its name: .node, .ele, .face, .edge, .neigh.
+// Returns whether the name is that of a TetGen file: .node, .ele, .face, .edge, .neigh.
 bool is_tetgen(const std::string& path);
-// What read_data() does, of an image.
+// Reads an image as read_data() does, and fails for other data.
 vtkSmartPointer<vtkImageData> read_image(const std::string& path);
 
-// The array to draw: `name`, or where it is empty the active scalars, else the first array of one component; points before cells.
+// Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component. Points come
+// before cells.
 vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells);
 
-// Borrows the array's values. A sheet (an axis with one point) gets the thickness of a cell, or there would be nothing to see.
+// Borrows the array's values. A sheet (an image with one point along an axis) gets the thickness of a cell, because it would be invisible
+// otherwise.
 stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells);
 
-// STRATUS_..., and false for what the core has no type for (bits, strings).
+// Finds the core's type. Returns false where there is none (bits, strings).
 bool stratus_type_of(vtkDataArray* array, stratus_type& type);
 const char* name_of(stratus_type type);
-// Size, type and spacing in one line.
+// Describes size, type and spacing in one line.
 std::string describe(const stratus_volume& volume);
 
 class input

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line: a volume goes in, a picture comes out. `stratus --help` tells the rest.
+// The command line draws a volume to a picture file. `stratus --help` describes it.
 #include "camera.h"
 #include "frame.h"
 #include "grid.h"
@@ -61,7 +61,7 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
   }
 }
 
-// Which parts are shown. What it gives back holds the mask's bytes.
+// Sets the crop and the mask. The result owns the mask's bytes.
 std::unique_ptr<cli::input> choose_parts(
   cli::context& core, const cli::options& o, const stratus_volume& volume, stratus_ray_cast_options& cast)
 {
@@ -97,7 +97,7 @@ void render(const cli::options& o)
   const stratus_transfer view = transfer.view();
   core.check(stratus_transfer_check(core, &view), "transfer function");
   const stratus_camera camera = cli::place_camera(core, o, in.volume, view, o.up.empty() ? in.up_axis : o.up[0] - 'x');
-  cli::output_file out(o.output); // before the work: a path that cannot be written is told at once
+  cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
 
   stratus_image image = frame.view();
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
@@ -191,10 +191,10 @@ void devices()
   }
 }
 
-// Compilers of OpenCL and VTK's readers crash where the stack ends.
+// Fails for a small stack, on which OpenCL's compilers and VTK's readers crash.
 void check_stack()
 {
-  constexpr rlim_t least = 256; // KiB; commands were seen to crash at 80, and to work at 96
+  constexpr rlim_t least = 256; // KiB; commands crashed at 80 and worked at 96
   struct rlimit limit;
   if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur / 1024 < least) {
     throw cli::failure(cli::format("the stack may have %llu KiB, at least %llu are needed: ulimit -s %llu",
@@ -228,7 +228,7 @@ void run(const cli::options& o)
 
 int main(int argc, char* argv[])
 {
-  // What VTK has to tell comes as an exception's text, once.
+  // VTK's messages are reported as an exception's text, so VTK itself must not print them.
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   try {
     run(cli::parse(argc, argv));

@@ -13,7 +13,7 @@
 #include <fstream>
 
 namespace {
-constexpr size_t header = 1024; // a legacy file names its data set within this
+constexpr size_t header = 1024; // a legacy file names its data set type within these bytes
 }
 
 namespace cli {

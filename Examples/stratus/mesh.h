@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file of an unstructured grid as the core's view of tetrahedra.
+// Reads a file of an unstructured grid as the core's view of tetrahedra.
 #pragma once
 
 #include "support.h"
@@ -11,19 +11,21 @@
 
 namespace cli {
 
-// A file that says so by its name (.vtu, .pvtu, TetGen's .node, .ele ...) or its first lines (.vtk).
+// Returns whether the file's name (.vtu, .pvtu, TetGen's .node, .ele ...) or its first lines (.vtk) tell that it holds an unstructured
+// grid.
 bool is_grid(const std::string& path);
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path);
 
-// The grid's cells divided into tetrahedra, with the values of the array to draw.
+// A grid's cells divided into tetrahedra, with the values of the array to draw.
 class VTK_STRATUS_PRIVATE mesh
 {
 public:
-  // array: its name, or where it is empty the one that choose_array() finds.
+  // `array` is the array's name. If it is empty, choose_array() chooses the array.
   mesh(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
-  // The values in a box of the grid's size, for who asks how often values come and how long rays are, not where: all but the last few.
+  // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity
+  // from the frequency of values and the length of rays.
   stratus_volume box() const;
 
   std::string array_name;

@@ -201,7 +201,7 @@ stratus_sampling sampling_named(const std::string& text)
   throw usage("--sampling: '" + text + "' is none of auto, midpoint, preintegrated");
 }
 
-// ---- the words of the command line
+// ---- tables of options
 
 template <std::string options::*Text> void keep(options& o, const std::string&, const std::string& value)
 {
@@ -299,7 +299,7 @@ constexpr struct {
   { "--audit", &options::audit },
 };
 
-// Of a table, nullptr where it has no such word.
+// Finds a word in a table. Returns nullptr where the table lacks it.
 template <class Table> auto find_word(const Table& table, const std::string& word)
 {
   const auto found = std::find_if(std::begin(table), std::end(table), [&](const auto& entry) { return word == entry.word; });

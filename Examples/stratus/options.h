@@ -19,7 +19,7 @@ struct options {
   std::string color;
   std::string background;
   std::string device = "auto";
-  std::string up; // x, y, z; empty: the scene's, else z
+  std::string up; // x, y or z; empty: the scene's, else z
   double unit_distance = 0.0;
   double azimuth = 30.0;
   double elevation = 30.0;
@@ -28,31 +28,31 @@ struct options {
   int width = 512;
   int height = 512;
   int threads = 0;
-  double read_timeout = usual_read_timeout; // seconds; 0: never
-  int depth = 3;                            // sort: of the K-D tree
+  double read_timeout = usual_read_timeout; // seconds; 0: no limit
+  int depth = 3;                            // sort: depth of the K-D tree
   bool parallel = false;
   bool nearest = false;
   bool shade = false;
   bool audit = false;
-  bool shows_samples = false; // render: how many samples each pixel took, in place of what it shows
-  bool has_range = false;     // tree: of values, lower..upper
+  bool shows_samples = false; // render: draws the samples that each pixel took
+  bool has_range = false;     // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;
-  stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: of grids
+  stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface
-  std::vector<double> average;  // average: none, or the range of values that count
-  std::vector<double> crop;     // none, or six planes across the grid's axes
+  std::vector<double> average;  // average: empty, or the range of values that count
+  std::vector<double> crop;     // empty, or six planes across the grid's axes
   int crop_regions = STRATUS_CROP_INSIDE;
-  std::string mask; // an image of bytes, 0 where nothing is to be seen
-  int jitter = -1;  // or the seed
+  std::string mask; // file of an image of bytes, 0 where the volume is hidden
+  int jitter = -1;  // seed, or -1: none
   stratus_normals normals = STRATUS_NORMALS_FACES;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
 };
 
-// Throws usage where the command line makes no sense.
+// Throws usage for an invalid command line.
 options parse(int argc, char* argv[]);
 std::string help();
 } // namespace cli

@@ -16,13 +16,13 @@
 
 namespace {
 
-// What a handler removes: there is one file at a time. It is told only of a file that this program made, and until that is gone.
+// The file that a signal handler removes. There is one at a time. has_temporary is set only while the program's own file exists.
 char temporary[PATH_MAX];
 std::atomic<bool> has_temporary = { false };
 
 constexpr int endings[] = { SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGXCPU };
 constexpr size_t ending_count = sizeof endings / sizeof endings[0];
-struct sigaction before[ending_count]; // an OpenCL compiler in this process may have files of its own to remove
+struct sigaction before[ending_count]; // an OpenCL compiler in this process may have handlers that remove files of its own
 
 void remove_and_end(int number)
 {
@@ -34,10 +34,11 @@ void remove_and_end(int number)
       sigaction(number, &before[i], nullptr);
     }
   }
-  raise(number); // comes when this returns
+  raise(number); // delivered when this handler returns
 }
 
-// What ends a program. What is ignored (nohup) stays so. A file that grows beyond its limit is an error like a full disk.
+// Catches the signals that end a program, except ignored ones (nohup). A file that grows beyond its size limit is an error like a full
+// disk.
 void catch_signals()
 {
   for (size_t i = 0; i < ending_count; ++i) {
@@ -51,7 +52,8 @@ void catch_signals()
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-// A signal waits while a file and what the handler is told of it change together: it could leave ours, or remove another's of that name.
+// Blocks signals while a file and the handler's record of it change together. Otherwise a signal could leave the program's file behind, or
+// remove a file of that name that is not the program's.
 class signals_wait
 {
 public:
@@ -77,7 +79,7 @@ bool same_file(const struct stat& one, const struct stat& other)
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
 
-// The standard stream that writes to this file already, as /dev/stdout does, or -1.
+// Returns the standard stream that already writes to this file, as for /dev/stdout, or -1.
 int standard_stream(const struct stat& status)
 {
   for (int number : { STDOUT_FILENO, STDERR_FILENO, STDIN_FILENO }) {
@@ -103,11 +105,12 @@ output_file::output_file(const std::string& path) : Path(path), Target(path)
     throw failure("cannot write '" + path + "': it is a folder");
   }
   this->Stream = exists ? standard_stream(status) : -1;
-  if (exists && this->Stream < 0 && access(path.c_str(), W_OK) != 0) { // a rename would not ask
+  if (exists && this->Stream < 0 && access(path.c_str(), W_OK) != 0) { // a rename needs no such permission
     this->fail(errno);
   }
   this->InPlace = exists && (this->Stream >= 0 || !S_ISREG(status.st_mode));
-  if (!this->InPlace) { // the file gets its new bytes, not a link to it; one without a name has no place beside it
+  if (!this->InPlace) {
+    // A rename must replace the target of a link. A target without a name of its own cannot be replaced.
     struct stat found;
     this->Target = vtkStratusFollowLinks(path);
     this->InPlace = exists && !(stat(this->Target.c_str(), &found) == 0 && same_file(found, status));
@@ -138,7 +141,8 @@ void output_file::fail(int reason)
 void output_file::open()
 {
   catch_signals();
-  if (this->Stream >= 0) { // behind what is in it already, and before what is yet to come
+  if (this->Stream >= 0) {
+    // Standard output's earlier lines must come before the picture, its later ones behind it.
     std::fflush(stdout);
     const int stream = dup(this->Stream);
     this->File = stream >= 0 ? fdopen(stream, "wb") : nullptr;
@@ -163,7 +167,7 @@ void output_file::open()
 void output_file::write(const std::vector<uint8_t>& bytes)
 {
   this->open();
-  // On the disk before the name: after a crash there is the old file or the new one. A pipe has no disk to reach.
+  // The bytes reach the disk before the rename, so that a crash leaves the old file or the new one. A pipe cannot be synchronized.
   if (std::fwrite(bytes.data(), 1, bytes.size(), this->File) != bytes.size() || std::fflush(this->File) != 0 ||
     (fsync(fileno(this->File)) != 0 && !this->InPlace)) {
     this->fail(errno);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file that is either whole or not there.
+// Writes a file that is either complete or absent.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,12 @@
 
 namespace cli {
 
-// Bytes become a file under another name beside it, which then gets the name. What is left of it goes when the program fails, and when a
-// signal ends it. What exists and is no regular file (a pipe, a device) is written in place, and so is what a standard stream writes to
-// (/dev/stdout).
+// Writes a temporary file beside the path and renames it. The temporary file is removed when the program fails or a signal ends it. A path
+// that is no regular file (a pipe, a device), or to which a standard stream writes (/dev/stdout), is written in place.
 class output_file
 {
 public:
-  explicit output_file(const std::string& path); // opens nothing; throws failure where the file could not be written
+  explicit output_file(const std::string& path); // opens nothing; throws failure where the file cannot be written
   ~output_file();
   output_file(const output_file&) = delete;
   output_file& operator=(const output_file&) = delete;
@@ -26,10 +25,10 @@ private:
   [[noreturn]] void fail(int reason);
   void open();
 
-  std::string Path;   // as it was given
-  std::string Target; // where it leads to
+  std::string Path;   // as given
+  std::string Target; // Path with links followed
   bool InPlace = false;
-  int Stream = -1; // of the standard ones, the one to write to
+  int Stream = -1; // standard stream to write to, or -1
   bool HasTemporary = false;
   std::FILE* File = nullptr;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Float pixels -> 8 bits over a background -> PNG.
+// Converts float pixels to 8 bits over a background, and encodes them as PNG.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ struct background {
   double top[3] = { 0.16, 0.20, 0.28 };
 };
 
-// "dark", "light", "black", "white", "transparent", "r:g:b", or "r:g:b,r:g:b" from bottom to top.
+// Parses "dark", "light", "black", "white", "transparent", "r:g:b", or "r:g:b,r:g:b" from bottom to top.
 background parse_background(const std::string& text);
 
-// 3 or, where the background is transparent, 4 bytes a pixel (then alpha is not premultiplied, as PNG wants), bottom row first.
+// Returns 3 bytes per pixel, or 4 for a transparent background, bottom row first. With 4 bytes alpha is not premultiplied, as PNG requires.
 std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind);
 
 std::vector<uint8_t> encode_png(const std::vector<uint8_t>& bytes, int width, int height);

@@ -20,7 +20,7 @@
 #ifdef __linux__
 #include <sys/syscall.h>
 #endif
-#ifdef __has_feature // clang's way
+#ifdef __has_feature // clang's form of __SANITIZE_ADDRESS__
 #define FEATURE(name) __has_feature(name)
 #else
 #define FEATURE(name) 0
@@ -31,7 +31,7 @@
 
 namespace {
 
-constexpr int looks = 20; // a timeout: they are counted, so that a program that was stopped meanwhile is not taken for a hanging one
+constexpr int looks = 20; // looks per timeout; counting them keeps a program that was stopped meanwhile from being taken for a hanging one
 double timeout = cli::usual_read_timeout;
 
 constexpr struct {
@@ -41,7 +41,7 @@ constexpr struct {
 constexpr size_t crash_count = sizeof crashes / sizeof crashes[0];
 constexpr size_t stack_bytes = 65536;
 
-// What a handler needs, there before it runs. One file is read at a time.
+// State that the handler needs, prepared before it runs. One file is read at a time.
 char crash_text[8192];
 struct sigaction before[crash_count];
 stack_t stack_before;
@@ -91,7 +91,7 @@ public:
     }
     try {
       this->Thread = std::thread([this] { this->watch(); });
-    } catch (const std::system_error&) { // no thread to be had: reading goes on unwatched
+    } catch (const std::system_error&) { // without a thread, reading goes on unwatched
     }
   }
 
@@ -116,7 +116,7 @@ public:
   std::atomic<unsigned long long> Events = { 0 };
 
 private:
-  // The lines of what the thread has read, through calls and from the disk; empty where they are not told.
+  // Returns the counters of bytes that the thread has read, by calls and from the disk; empty where the system has none.
   std::string bytes() const
   {
     std::string result, line;
@@ -166,8 +166,8 @@ reading::reading(const std::string& path, const std::string& by) : Path(path)
   this->catch_crashes();
 }
 
-// On a stack of its own, since a crash may be for want of stack. Handlers of an OpenCL compiler in this process give way, a sanitizer's
-// stay.
+// Handlers run on a stack of their own, because a stack overflow may be the crash. They replace those of an OpenCL compiler in this
+// process, but not a sanitizer's.
 void reading::catch_crashes()
 {
 #ifdef CATCH_CRASHES

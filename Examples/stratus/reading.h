@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readers of other people's making, on files of other people's: they may hang or crash. Then the program ends with one sentence that names
-// file and reader, and exit status 1, having written nothing.
+// Guards against third-party readers that hang or crash on a file. The program then ends with exit status 1 and one sentence that names the
+// file and the reader, and writes no file.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ namespace cli {
 
 constexpr double usual_read_timeout = 60.0;
 
-// Of all reading from now on: seconds without progress after which the program ends; 0: never.
+// Sets the seconds without progress after which the program ends, for all further reading; 0: never.
 void set_read_timeout(double seconds);
 
-// Watches the thread that makes it, as long as it lives. Progress is a byte that the thread has read, from a file or ahead from its disk,
-// or a ProgressEvent of the reader. Where the system does not count bytes (all but Linux) nobody waits in vain: the timeout is none.
+// Watches the thread that constructs it, while it lives. Progress is a byte that the thread has read, from a file or ahead from its disk,
+// or a ProgressEvent of the reader. Systems other than Linux do not count bytes, so there is no timeout there.
 class reading
 {
 public:
-  // by: who reads, for people, until follow() tells.
+  // `by` names the reader in messages until follow() names another.
   reading(const std::string& path, const std::string& by);
   ~reading();
   reading(const reading&) = delete;

@@ -15,9 +15,9 @@
 
 namespace {
 
-constexpr int views = 8;              // of record, perspective and parallel
-constexpr int rays = 64;              // a view
-constexpr double least_length = 1e-9; // of the mesh: shorter stretches may be rounding's
+constexpr int views = 8;              // of record, each perspective and parallel
+constexpr int rays = 64;              // per view
+constexpr double least_length = 1e-9; // relative to the mesh's size; shorter stretches may be due to rounding
 
 using point = std::array<double, 3>;
 
@@ -42,7 +42,7 @@ point minus(const point& a, const point& b)
   return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
-// Where the ray is inside all four faces. A cell that is flat but for rounding has no inside.
+// Finds the part of a ray inside all four faces. Returns false where there is none, or where the cell is flat up to rounding.
 bool clip(const stratus_mesh& mesh, int64_t cell, const point& origin, const point& direction, stretch& hit)
 {
   hit.low = 0.0;
@@ -68,7 +68,7 @@ bool clip(const stratus_mesh& mesh, int64_t cell, const point& origin, const poi
   return true;
 }
 
-// Balls around the cells: most are nowhere near a ray.
+// Finds spheres around the cells, to reject most cells near no ray. The fourth number is the squared radius.
 std::vector<std::array<double, 4>> balls_of(const stratus_mesh& mesh)
 {
   std::vector<std::array<double, 4>> balls(static_cast<size_t>(mesh.cell_count));
@@ -95,7 +95,7 @@ bool is_near(const std::array<double, 4>& ball, const point& origin, const point
   return dot(across, across) <= ball[3] + 1e-14 * dot(from, from);
 }
 
-// Pairs of cells that follow one another on rays through points of cells, and how many of them come in the other order.
+// Counts the pairs of cells that follow one another on rays through cells, and the pairs that the order has reversed.
 void ask_rays(const stratus_mesh& mesh, const std::vector<std::array<double, 4>>& balls, const stratus_camera& camera,
   const uint32_t* cells, double size, int64_t& pairs, int64_t& wrong)
 {
@@ -124,7 +124,7 @@ void ask_rays(const stratus_mesh& mesh, const std::vector<std::array<double, 4>>
     std::vector<stretch> hits;
     stretch hit;
     if (!clip(mesh, through, origin, direction, hit)) {
-      continue; // a cell without volume: such a ray may run between the others
+      continue; // a ray through a cell without volume may run between the others
     }
     for (int64_t c = 0; c < mesh.cell_count; ++c) {
       if (is_near(balls[static_cast<size_t>(c)], origin, direction) && clip(mesh, c, origin, direction, hit) &&
@@ -161,7 +161,7 @@ void bounds_of(const stratus_mesh& mesh, double bounds[6])
   }
 }
 
-// One line: a way to sort, over all views.
+// Measures one way to sort over all views and prints it as one line.
 void measure(const cli::context& core, const cli::options& o, const char* name, const stratus_mesh& mesh, const stratus_leaves* leaves,
   stratus_peeling peeling)
 {

@@ -5,6 +5,6 @@
 
 namespace cli {
 
-// `stratus sort`: cuts a grid into leaves, sorts it from the views of record, and asks rays whether the order is right.
+// `stratus sort`: cuts a grid into leaves, sorts it from the views of record, and checks the order along rays.
 void print_sort(const options& o);
 } // namespace cli

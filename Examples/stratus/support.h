@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of the command line share: one way to fail, a context with a progress bar, small text helpers.
+// Shared parts of the command line: failures, a context with a progress bar, small text helpers.
 #pragma once
 
 #include "stratus.h"
@@ -10,17 +10,17 @@
 
 namespace cli {
 
-// Anything that keeps the picture from being written: one sentence for people.
+// A reason why the picture is not written, as one sentence for the user.
 struct failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The command was not understood.
+// An invalid command line.
 struct usage : failure {
   using failure::failure;
 };
 
-// A context of the core that draws a progress bar on a terminal, and on nothing else.
+// A context of the core that draws a progress bar if the standard error is a terminal.
 class context
 {
 public:
@@ -30,7 +30,7 @@ public:
   context& operator=(const context&) = delete;
 
   operator stratus_context*() const { return this->Context; }
-  // Throws the core's own message, after `what`.
+  // Throws failure with `what` and the core's message unless the status is STRATUS_OK.
   void check(stratus_status status, const std::string& what) const;
 
 private:
@@ -43,12 +43,12 @@ private:
 };
 
 std::vector<std::string> split(const std::string& text, char separator);
-// A finite number and nothing else; throws usage naming `what`.
+// Parses a finite number. Throws usage that names `what` for any other text.
 double number(const std::string& text, const std::string& what);
 int whole_number(const std::string& text, const std::string& what, int low, int high);
 // 1234567 -> "1,234,567"
 std::string grouped(unsigned long long value);
-// A line of what a command prints: what it is, and its value.
+// Prints a line of a command's output: a name and its value.
 void row(const char* name, const std::string& value);
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 } // namespace cli

@@ -52,7 +52,7 @@ template <class T> void count_values(const stratus_volume& volume, cli::histogra
     h.not_finite = static_cast<double>(n);
     return;
   }
-  // Integers get a bin each as long as there are few, so that no bin mixes the background with what is drawn.
+  // A range of few integers gets a bin for each, so that no bin mixes the background with what is drawn.
   const bool integers = std::numeric_limits<T>::is_integer && high - low < 1024.0;
   const size_t bins = low == high ? 1 : integers ? static_cast<size_t>(high - low) + 1 : 1024;
   h.first = integers ? low - 0.5 : low;
@@ -75,8 +75,8 @@ template <class T> void count_values(const stratus_volume& volume, cli::histogra
   h.finite = static_cast<double>(n) - h.not_finite;
 }
 
-// Where the background ends: from its peak on, the first bin that falls under 3/10 of the peak, or the floor of the valley before the
-// next rise, whichever comes first.
+// Finds the end of the background: from its peak on, the first bin below 3/10 of the peak, or the floor of the valley before the next rise,
+// whichever comes first.
 size_t end_of_background(const std::vector<double>& count, size_t peak)
 {
   size_t floor = peak;
@@ -108,7 +108,7 @@ std::vector<double> smoothed(const std::vector<double>& count)
   return result;
 }
 
-// The ramp has a knee: what lies next to the background is usually most of the volume, and would hide the rest.
+// The ramp has a knee, because values next to the background usually fill most of the volume and would hide the rest.
 const double knee_at = 0.4;
 const double knee_height = 0.15;
 
@@ -117,7 +117,7 @@ double ramp(double t)
   return t < knee_at ? t / knee_at * knee_height : knee_height + (t - knee_at) / (1.0 - knee_at) * (1.0 - knee_height);
 }
 
-// Opacity of the ramp's top with which a ray through what is shown collects an optical depth of about 2.
+// Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2.
 double top_opacity(const stratus_volume& volume, const cli::histogram& h, double from, double to)
 {
   double weight = 0.0;
@@ -209,7 +209,7 @@ void transfer::shown(double& low, double& high) const
 
 void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& result)
 {
-  if (h.count.size() < 2) { // nothing, or one value: a haze
+  if (h.count.size() < 2) { // no or only one value: a haze
     result.opacity = { h.low <= h.high ? h.low : 0.0, 0.05 };
     result.origin = "one value only: a haze";
     return;
@@ -220,7 +220,7 @@ void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& r
     std::reverse(count.begin(), count.end());
   }
   const size_t peak = static_cast<size_t>(std::max_element(count.begin(), count.end()) - count.begin());
-  // Where one value alone is the background, the ramp starts right behind it; integers lie in the middle of their bins.
+  // If a single value is the background, the ramp starts right behind it; integers lie in the middle of their bins.
   const double lone = *std::max_element(h.count.begin(), h.count.end());
   double bins = lone > 0.5 * h.finite ? static_cast<double>(peak) + 0.5 : static_cast<double>(end_of_background(count, peak));
   bins = std::min(bins, static_cast<double>(count.size()) - 1.0);
@@ -307,7 +307,7 @@ transfer make_transfer(
     result.origin = "the scene's own";
   } else {
     guess_opacity(volume, histogram_of(volume), result);
-    if (unit_distance > 0.0) { // the guess is per voxel
+    if (unit_distance > 0.0) { // the guess is per voxel edge
       for (size_t i = 1; i < result.opacity.size(); i += 2) {
         result.opacity[i] = -std::expm1(unit_distance / voxel * std::log1p(-result.opacity[i]));
       }

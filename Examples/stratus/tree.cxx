@@ -92,7 +92,8 @@ void print_tree(const options& o)
 {
   context core(o.device, o.threads);
   input in(core, o.source, o.array);
-  std::unique_ptr<output_file> out(o.output.empty() ? nullptr : new output_file(o.output)); // before the work
+  std::unique_ptr<output_file> out(
+    o.output.empty() ? nullptr : new output_file(o.output)); // before the work, so that a path that cannot be written is reported at once
   std::string what;
   const tree_pointer tree = build(core, o, in, what);
   stratus_tree_statistics statistics;
