@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Planes of the hybrid tree by density (Guo et al. 2025, 3.1): the peak, how evenly voxels lie about it, the axis along which density falls
- * most steeply, and on that axis the border of the peak's cluster, or, where that spans the node or there is none, the density's own
- * border.
+ * Planes of the hybrid tree by density (Guo et al. 2025, 3.1). The functions find the density's peak, the deviation of the voxels from it,
+ * and the axis along which density falls most steeply. The plane is the border of the peak's cluster on that axis. Where the cluster spans
+ * the node or does not exist, the plane is the border of the density itself.
  *
- * A coordinate is a cluster's core if its window holds half of what an even spread would put there: on even data that gives one cluster,
- * where the mean itself gives a random number of them. */
+ * A coordinate is a core of a cluster if its window holds half of the voxels that an even spread would put there. Even data then form one
+ * cluster; with the mean itself as the threshold they would form a random number of clusters. */
 #include "hybrid_tree.h"
 
 #include <string.h>
 
-/* The node's bricks in their own array, with a bandwidth and a density of their own. */
+/* Copies the node's bricks to an array of their own and computes their bandwidth and density. */
 static stratus_status make_own(hybrid_build* build, const hybrid_node* node)
 {
   const double wanted = build->options->bandwidth;
@@ -31,7 +31,7 @@ static stratus_status make_own(hybrid_build* build, const hybrid_node* node)
     build->context, build->gathered, node->count, build->bandwidth, build->paper || build->options->exact_density, &build->density);
 }
 
-/* One for the whole tree, at the first node that asks. */
+/* Computes one density for the whole tree, at the first node that needs it. */
 static stratus_status make_common(hybrid_build* build)
 {
   const stratus_voxels* voxels = build->voxels;
@@ -49,7 +49,7 @@ static const stratus_brick* bricks_of(const hybrid_build* build, const hybrid_no
   return build->gathered ? build->gathered : build->voxels->bricks;
 }
 
-/* Eq. 8. */
+/* Computes the deviations of eq. 8. */
 static void find_deviations(const hybrid_build* build, const hybrid_node* node, hybrid_view* view)
 {
   const uint32_t* which;
@@ -101,7 +101,7 @@ double stratus_hybrid_unevenness(const hybrid_node* node, const hybrid_view* vie
   return most - least;
 }
 
-/* Takes the plane between bricks that is nearest to `position` (voxels) if it divides the node, and more cheaply. */
+/* Takes the plane between bricks nearest to `position` (voxels) if it divides the node and is cheaper than *best. */
 static void offer(const hybrid_build* build, const hybrid_node* node, int axis, int32_t position, hybrid_plane* best)
 {
   const int32_t brick = (position + STRATUS_BRICK / 2) / STRATUS_BRICK;
@@ -113,7 +113,7 @@ static void offer(const hybrid_build* build, const hybrid_node* node, int axis, 
   }
 }
 
-/* The borders of the peak's cluster. */
+/* Offers both borders of the peak's cluster. */
 static stratus_status offer_cluster(hybrid_build* build, const hybrid_node* node, const hybrid_view* view, int axis, hybrid_plane* best)
 {
   const int32_t start = STRATUS_BRICK * node->lo[axis], extent = STRATUS_BRICK * (node->hi[axis] - node->lo[axis]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Planes of the hybrid tree: the surface area heuristic over bins of bricks (Wald 2007), medians, and the partition. A node's bricks stay
- * in ascending order, so that a density can be made of any node's. */
+ * in ascending order, because a density requires that order. */
 #include "hybrid_tree.h"
 
 #include <string.h>
@@ -33,7 +33,7 @@ static void join(bin* b, const bin* other)
   }
 }
 
-/* Half its surface times its bricks. */
+/* Returns half of a bin's surface times its number of bricks. */
 static double cost_of(const bin* b)
 {
   const double x = b->hi[0] - b->lo[0], y = b->hi[1] - b->lo[1], z = b->hi[2] - b->lo[2];
@@ -109,7 +109,7 @@ uint32_t stratus_hybrid_plane_below(const hybrid_build* build, const hybrid_node
   return below;
 }
 
-/* Across the longest axis, by halving: the plane with the fewest more than half of the bricks below. */
+/* Finds the plane across the longest axis by bisection: the lowest one with at least half of the bricks below it. */
 hybrid_plane stratus_hybrid_plane_median(const hybrid_build* build, const hybrid_node* node)
 {
   hybrid_plane plane = { .axis = 0 };
@@ -132,7 +132,7 @@ hybrid_plane stratus_hybrid_plane_median(const hybrid_build* build, const hybrid
 
 /* ---- boxes */
 
-/* The first and the last of four groups of bits that hold any. */
+/* Finds the first and the last of four groups of bits that hold a set bit. */
 static void ends(uint64_t mask, uint64_t group, int step, int32_t* first, int32_t* last)
 {
   *first = 0;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The shape of the hybrid tree (Guo et al. 2025): where one distance field stands for many voxels, and where nodes divide.
+ * The shape of the hybrid tree (Guo et al. 2025): which nodes become distance fields, and where nodes are split.
  *
- * HYBRID models no more than the scene needs. A node becomes one distance field as soon as that is affordable: neither too large nor too
- * empty. No density is computed for it, since a field is as good over uneven voxels as over even ones. Otherwise the node is split: one
- * that is merely too large by surface area, since any cut serves; one that is too empty where its emptiness can be cut off. If its voxels
- * lie unevenly about their peak (eq. 8 over the extents, above `uniform`), the border of the peak's cluster is where to; it is taken unless
- * the surface area heuristic knows a plane that is a quarter cheaper, which is what becomes of clusters that are not any. Even nodes and
- * small ones are split by surface area at once too, and the sparse end as leaves of a few bricks.
+ * HYBRID makes a node a distance field as soon as the field is neither too large nor too empty. It computes no density for such a node,
+ * because a field suits uneven voxels as well as even ones. All other nodes are split. A node that is only too large is split by the
+ * surface area heuristic, because any cut serves. A node that is too empty is split where a cut removes empty space. If its voxels lie
+ * unevenly about their density's peak (eq. 8 over the extents, above `uniform`), that is the border of the peak's cluster. The border is
+ * rejected if it costs more than 1.25 times the best plane of the surface area heuristic; it then belongs to no real cluster. Even nodes
+ * and nodes of few bricks are split by surface area as well. Nodes of few bricks end as leaves of bricks.
  *
- * HYBRID_PAPER does as the paper says: density anew at each node, the raw test in voxels, the side with the peak tested again, the other
- * divided by surface area. It keeps the defaults' cap on a field's bricks, and cuts between bricks. */
+ * HYBRID_PAPER follows the paper: it computes density anew at each node, tests evenness in voxels, tests the side with the peak again, and
+ * divides the other side by surface area. Unlike the paper, it keeps the default cap on a field's bricks and cuts between bricks. */
 #include "hybrid_tree.h"
 
 #include "density_plan.h"
@@ -18,9 +18,9 @@
 #include <string.h>
 
 #define DEPTH_MAX 64
-#define DENSITY_LEAST 64 /* bricks, below which density has nothing to tell that boxes do not */
+#define DENSITY_LEAST 64 /* bricks; in smaller nodes density finds no better planes than boxes do */
 #define NEARLY_AS_CHEAP 1.25
-#define FIELD_LONGEST (1 << 14) /* cells along an axis of a field: bricks, the paper's are voxels */
+#define FIELD_LONGEST (1 << 14) /* cells along an axis of a field; a cell is a brick, in the paper's trees a voxel */
 
 static double volume_of(const hybrid_node* node)
 {
@@ -48,7 +48,7 @@ static bool field_pays(const hybrid_build* build, const hybrid_node* node)
 
 /* ---- where to split */
 
-/* If the larger side could not be divided into small leaves any more but the node could be, the bricks are halved instead. */
+/* Halves the bricks if the larger side could no longer be divided into leaves of `leaf_bricks`, though the node itself could. */
 static void keep_depth(hybrid_build* build, const hybrid_node* node, hybrid_plane* plane, int** how)
 {
   const int levels = build->options->max_depth - node->depth;
@@ -63,7 +63,7 @@ static void keep_depth(hybrid_build* build, const hybrid_node* node, hybrid_plan
   }
 }
 
-/* *even: 1 if the node passes the node test of its method. */
+/* Chooses the plane that splits a node. *even is 1 if the node passes its method's node test. */
 static stratus_status choose_plane(hybrid_build* build, const hybrid_node* node, hybrid_view* view, hybrid_plane* plane, int* even)
 {
   stratus_tree_statistics* statistics = build->statistics;
@@ -75,7 +75,7 @@ static stratus_status choose_plane(hybrid_build* build, const hybrid_node* node,
     const double uneven = stratus_hybrid_unevenness(node, view, build->paper);
     *even = build->paper ? uneven < build->options->paper_threshold : uneven <= build->options->uniform;
     if (build->paper && *even && field_fits(build, node)) {
-      return STRATUS_OK; /* a leaf */
+      return STRATUS_OK; /* the node becomes a leaf */
     }
     if (!*even) {
       TRY(stratus_hybrid_plane_density(build, node, view, &dense, &clustered));
@@ -122,7 +122,7 @@ static void make_leaf(hybrid_build* build, const hybrid_node* node, stratus_node
   leaf->kind_count = stratus_tree_kind_count(kind, node->count);
 }
 
-/* Splits the node; sides[] are its children. */
+/* Splits the node into the children sides[]. */
 static stratus_status split(hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2])
 {
   stratus_tree_shape* shape = build->shape;
@@ -140,7 +140,7 @@ static stratus_status split(hybrid_build* build, const hybrid_node* node, const 
   return STRATUS_OK;
 }
 
-/* Makes a leaf of the node, or two nodes: *count of them. */
+/* Makes the node a leaf, or splits it. *count is the number of its children. */
 static stratus_status decide(hybrid_build* build, const hybrid_node* node, hybrid_node sides[2], int* count)
 {
   const stratus_tree_options* options = build->options;
@@ -164,7 +164,7 @@ static stratus_status decide(hybrid_build* build, const hybrid_node* node, hybri
   TRY(split(build, node, &plane, sides));
   *count = 2;
   if (build->paper && !node->sparse && !even) {
-    /* What the peak is not in is left to boxes. An even node that is merely too large for a field keeps both sides. */
+    /* The side without the peak is divided by surface area only. If an even node is too large for a field, both sides are tested. */
     const int above = view.peak[plane.axis] >= STRATUS_BRICK * plane.brick;
     sides[!above].sparse = 1;
   }
@@ -195,7 +195,7 @@ static stratus_status grow_tree(hybrid_build* build)
   return STRATUS_OK;
 }
 
-/* ---- */
+/* ---- the whole shape */
 
 static void explain(const hybrid_build* build)
 {

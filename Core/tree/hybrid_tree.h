@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the files of the hybrid tree's builder share: the node at hand, and planes to split it by. Planes lie between bricks, so none is
- * cut. */
+ * Shared by the files of the hybrid tree's builder: the current node, and planes that may split it. Planes lie between bricks, so that they
+ * cut none. */
 #ifndef STRATUS_HYBRID_TREE_H
 #define STRATUS_HYBRID_TREE_H
 
 #include "tree.h"
 
-/* A node to be decided: bricks order[first .. first+count-1], ascending. */
+/* A node to be split or made a leaf. Its bricks are order[first .. first+count-1], ascending. */
 typedef struct hybrid_node {
   uint32_t number;
   uint32_t first, count;
@@ -21,13 +21,13 @@ typedef struct hybrid_build {
   const stratus_tree_options* options;
   stratus_tree_statistics* statistics;
   stratus_tree_shape* shape;
-  uint32_t node_max;        /* that shape->nodes has room for */
-  uint32_t* scratch;        /* of all bricks: of a partition */
-  int64_t* counts;          /* along the longest axis, made with the first density */
+  uint32_t node_max;        /* capacity of shape->nodes */
+  uint32_t* scratch;        /* for partitions, one entry per brick */
+  int64_t* counts;          /* along the longest axis, allocated for the first plane by density */
   stratus_density* density; /* of all bricks, or of `gathered` */
-  stratus_brick* gathered;  /* a node's own, if it gets a density of its own */
+  stratus_brick* gathered;  /* bricks of one node, if each node gets a density of its own */
   double bandwidth;
-  double volume; /* of the root, bricks */
+  double volume; /* of the root, in bricks */
   int paper;
 } hybrid_build;
 
@@ -41,25 +41,25 @@ typedef struct hybrid_plane {
 double stratus_hybrid_plane_cost(const hybrid_build* build, const hybrid_node* node, int axis, int32_t brick);
 hybrid_plane stratus_hybrid_plane_sah(const hybrid_build* build, const hybrid_node* node);
 hybrid_plane stratus_hybrid_plane_median(const hybrid_build* build, const hybrid_node* node);
-/* How many of the node's bricks are below. */
+/* Counts the node's bricks below the plane. */
 uint32_t stratus_hybrid_plane_below(const hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane);
-/* Moves the bricks below the plane to the front, each side in its order; fills both sides' first, count and boxes, and their nodes' boxes.
- */
+/* Moves the bricks below the plane to the front and keeps the order of each side. Fills `first`, `count` and the boxes of both sides, and
+ * the boxes of their nodes. */
 void stratus_hybrid_partition(
   hybrid_build* build, const hybrid_node* node, const hybrid_plane* plane, hybrid_node sides[2], stratus_tree_node boxes[2]);
-/* The box of `count` bricks in order[first ..], tight in bricks and in voxels. */
+/* Finds the box of the node's bricks, in bricks (`node`) and in voxels (`box`), both tight. */
 void stratus_hybrid_tight_box(const hybrid_build* build, hybrid_node* node, stratus_tree_node* box);
 
-/* hybrid_density.c: what density says of a node. */
+/* hybrid_density.c: the peak of a node's density, and the deviation of its voxels from the peak. */
 typedef struct hybrid_view {
   int32_t peak[3];
   double deviation[3]; /* eq. 8, voxels */
 } hybrid_view;
 
 stratus_status stratus_hybrid_measure(hybrid_build* build, const hybrid_node* node, hybrid_view* view);
-/* Greatest difference between two axes' deviations: over the node's extents, or in voxels as the paper has it. */
+/* Returns the greatest difference between two axes' deviations, relative to the node's extents, or in voxels as in the paper. */
 double stratus_hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper);
-/* The plane by density: *clustered is 1 if it is the border of the peak's cluster. */
+/* Finds the plane by density. *clustered is 1 if it is a border of the peak's cluster. */
 stratus_status stratus_hybrid_plane_density(
   hybrid_build* build, const hybrid_node* node, const hybrid_view* view, hybrid_plane* plane, int* clustered);
 

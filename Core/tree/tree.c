@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees for first hits: the builders behind one interface, and what a tree tells of itself. */
+ * Trees for first hits: one interface to all builders, and the statistics of a tree. */
 #include "tree.h"
 
 #include "matrix.h"
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The paper's fields have an entry a voxel: 256^3 of them. */
+/* Most bricks of a field in the paper's trees, whose fields have an entry per voxel: 256^3 entries. */
 #define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
 
 static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh",
@@ -53,7 +53,7 @@ static stratus_status check_options(stratus_context* context, const stratus_tree
 
 /* ---------------------------------------------------------------- shapes */
 
-/* One leaf of a field over everything. */
+/* Makes one leaf, a distance field over everything. */
 static stratus_status whole_shape(stratus_context* context, const stratus_voxels* voxels, stratus_tree_shape* shape)
 {
   void* memory;
@@ -73,7 +73,7 @@ static stratus_status whole_shape(stratus_context* context, const stratus_voxels
   return STRATUS_OK;
 }
 
-/* A baseline's hierarchy over the voxels' boxes; its leaves' bricks have one bit each. */
+/* Builds a baseline's hierarchy over the voxels' boxes. The bricks of its leaves have one bit each. */
 static stratus_status hierarchy(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree* tree)
 {
@@ -119,7 +119,7 @@ cleanup:
   return status;
 }
 
-/* Bricks of the leaves that hold them, in the leaves' order, and the fields of the others. */
+/* Copies the bricks of brick leaves, in the leaves' order, and makes the fields of the other leaves. */
 static stratus_status fill_leaves(stratus_context* context, const stratus_voxels* voxels, stratus_tree_shape* shape, stratus_tree* tree)
 {
   void* memory;
@@ -180,7 +180,7 @@ size_t stratus_tree_memory(const stratus_tree* tree)
     (size_t)tree->entry_count * (size_t)tree->entry_bytes + tree->row_count * sizeof *tree->rows + tree->mask_count * sizeof *tree->masks;
 }
 
-/* Depth of every node, parents before children. */
+/* Computes the depth of every node; parents come before children. */
 static void find_depths(const stratus_tree* tree, uint8_t* depth)
 {
   if (tree->node_count) {
@@ -248,7 +248,7 @@ stratus_status stratus_tree_create(
   tree = memory;
   tree->context = context;
   tree->origin = voxels->origin;
-  tree->entry_bytes = 2; /* until distance fields ask for more; a tree without fields, or without a node, has a width, too */
+  tree->entry_bytes = 2; /* distance fields may set 3; without fields or nodes the width must be valid, too */
   memcpy(tree->index_to_world, voxels->index_to_world, sizeof tree->index_to_world);
   stratus_matrix_invert_affine(tree->index_to_world, tree->world_to_index);
   for (int a = 0; a < 3; ++a) {

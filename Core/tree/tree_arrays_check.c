@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The arrays of a tree that came as bytes, trusted with nothing: numbers and leaps are all checked before the tree is handed out. */
+ * Checks of the arrays of a tree that was read from bytes. All numbers and leaps are checked before the tree is returned. */
 #include "tree.h"
 
 #include <string.h>
@@ -17,7 +17,7 @@ static bool box_inside(const stratus_tree_node* node, const int32_t lo[3], const
   return true;
 }
 
-/* A leaf's bricks lie in its box, bit by bit, and are no other leaf's. */
+/* Returns whether a leaf's bricks lie in its box, voxel by voxel, and belong to no other leaf. */
 static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, uint8_t* taken)
 {
   for (uint32_t b = node->first; b < node->first + stratus_tree_node_count(node); ++b) {
@@ -39,7 +39,8 @@ static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, 
   return true;
 }
 
-/* Each node but the root the child of one before it, children inside, leaves' bricks and fields one after another. */
+/* Checks that each node but the root is the child of an earlier node, that children lie inside their parents, and that the leaves hold as
+ * many bricks and fields as the tree. */
 static stratus_status check_nodes(stratus_context* context, const stratus_tree* tree, uint8_t* depth, uint8_t* taken)
 {
   static const int32_t zero[3] = { 0, 0, 0 };
@@ -142,7 +143,7 @@ static stratus_status check_fields(stratus_context* context, const stratus_tree*
   return entries == tree->entry_count ? STRATUS_OK : WRONG("the tree has entries that are no distance field's");
 }
 
-/* Bits of an occupied brick's mask that lie beyond the node's box. */
+/* Returns the bits of a brick that lie outside the node's box; its first voxel is `first`. */
 static uint64_t bits_outside(const stratus_tree_node* node, const int32_t first[3])
 {
   uint64_t outside = 0;
@@ -155,7 +156,7 @@ static uint64_t bits_outside(const stratus_tree_node* node, const int32_t first[
   return outside;
 }
 
-/* No voxel of a field's border bricks lies beyond the node. Entries have been checked. */
+/* Returns whether no voxel of a field's border bricks lies outside the node. The entries must have been checked before. */
 static bool masks_fit(const stratus_tree* tree, const stratus_tree_node* node, const stratus_tree_field* field)
 {
   const int32_t* n = field->cells;
@@ -175,7 +176,7 @@ static bool masks_fit(const stratus_tree* tree, const stratus_tree_node* node, c
   return true;
 }
 
-/* A node of a field covers cells of that field only. */
+/* Checks that each node of a field covers exactly the field's cells. */
 static stratus_status check_covers(stratus_context* context, const stratus_tree* tree)
 {
   for (uint32_t n = 0; n < tree->node_count; ++n) {

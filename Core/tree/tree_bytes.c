@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees as bytes: a header, then the arrays, each at a multiple of 8. What is read back is trusted with nothing: sizes, numbers and leaps
- * are all checked before the tree is handed out, so that no bytes can lead traversal astray. */
+ * Trees as bytes: a header, then the arrays, each at a multiple of 8. Loading checks all sizes, numbers and leaps before it returns a tree,
+ * so that no bytes can lead traversal out of the arrays. */
 #include "tree.h"
 #include "voxels_build.h"
 #include "volume_hash.h"
@@ -8,12 +8,12 @@
 
 #include <string.h>
 
-#define MAGIC 0x3142545354525453ull /* "STRTSTB1" read as a little-endian number: other byte orders see another one */
+#define MAGIC 0x3142545354525453ull /* "STRTSTB1" as a little-endian number; machines of other byte orders read another number */
 #define VERSION 1
 #define WRONG(...) stratus_fail(context, STRATUS_INVALID_ARGUMENT, __VA_ARGS__)
 
 typedef struct header {
-  uint64_t magic, size, checksum; /* the checksum is of all that follows it */
+  uint64_t magic, size, checksum; /* the checksum is of all bytes behind it */
   int32_t version, method;
   int32_t dimensions[3], octants, entry_bytes, cell_log2;
   uint32_t node_count, brick_count, field_count, entry_count, row_count, mask_count;
@@ -28,7 +28,7 @@ typedef struct header {
 _Static_assert(sizeof(header) % 8 == 0 && sizeof(stratus_tree_node) == 32 && sizeof(stratus_brick) == 16, "records have no padding");
 _Static_assert(sizeof(stratus_tree_field) == 32, "records have no padding");
 
-/* Multiply and fold, eight bytes at a time: finds damage, keeps no secret. */
+/* A hash that multiplies and folds eight bytes at a time. It detects damage, not forgery. */
 static uint64_t checksum(const void* bytes, size_t size)
 {
   const unsigned char* p = bytes;
@@ -48,7 +48,7 @@ static uint64_t checksum(const void* bytes, size_t size)
 
 #define ARRAYS 6
 
-/* Sizes of the arrays in bytes, rounded up to 8, and their sum with the header. */
+/* Computes the sizes of the arrays in bytes. Returns the size of the header and the arrays, each array rounded up to 8. */
 static size_t array_sizes(const header* h, size_t sizes[ARRAYS])
 {
   const size_t plain[ARRAYS] = { h->node_count * sizeof(stratus_tree_node), h->brick_count * sizeof(stratus_brick),
@@ -130,7 +130,7 @@ void stratus_tree_save(const stratus_tree* tree, void* bytes)
   memcpy(bytes, &h, sizeof h);
 }
 
-/* ---------------------------------------------------------------- and back */
+/* ---------------------------------------------------------------- loading */
 
 static stratus_status check_header(stratus_context* context, const header* h, const void* bytes, size_t size)
 {
@@ -158,7 +158,8 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   }
   for (int32_t i = 0; fine && i < h->origin.intervals; ++i) {
     const double* interval = h->origin.interval[i];
-    const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY; /* equal to nobody's */
+    /* An inverted interval stands for more intervals than an origin can store. It covers no criterion. */
+    const bool emptied = h->origin.intervals == 1 && interval[0] == INFINITY && interval[1] == -INFINITY;
     fine = emptied || (interval[0] <= interval[1] && (i == 0 || h->origin.interval[i - 1][1] < interval[0]));
   }
   return fine ? STRATUS_OK : WRONG("a tree whose header contradicts itself");

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree held against the voxels that it was made of. */
+ * Checks a tree against the voxels that it was made of. */
 #include "tree.h"
 
 #include <string.h>
 
 #define WRONG(...) stratus_fail(context, STRATUS_INVALID_ARGUMENT, __VA_ARGS__)
 
-/* The bit of a voxel in `seen`; sets it and tells whether it was effective and not yet seen. */
+/* The voxels that the leaves checked so far hold. */
 typedef struct census {
   const stratus_voxels* voxels;
-  uint64_t* seen; /* a mask a brick */
+  uint64_t* seen; /* a mask per brick */
   int64_t count;
 } census;
 
@@ -32,7 +32,7 @@ static int64_t find_brick(const stratus_voxels* voxels, const int32_t at[3])
     : -1;
 }
 
-/* Counts the voxels of a mask; false if one is not effective or was seen before. Widens [lo, hi) by them. */
+/* Counts the voxels of a mask and widens [lo, hi) to contain them. Returns false if one is not effective or was counted before. */
 static bool count_mask(census* c, const int32_t at[3], uint64_t mask, int32_t lo[3], int32_t hi[3])
 {
   const int64_t brick = find_brick(c->voxels, at);
@@ -54,7 +54,7 @@ static bool count_mask(census* c, const int32_t at[3], uint64_t mask, int32_t lo
 
 /* ---------------------------------------------------------------- distance fields */
 
-/* Occupied cells in [lo, hi), cut to the field, from sums over [0, i) x [0, j) x [0, k). */
+/* Counts the occupied cells in [lo, hi), clipped to the field. sums[] holds the counts of [0, i) x [0, j) x [0, k). */
 static int64_t occupied_in(const stratus_tree_field* f, const int64_t* sums, const int64_t lo[3], const int64_t hi[3])
 {
   const int64_t nx = f->cells[0] + 1, ny = f->cells[1] + 1;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Leaves of distance fields: their layout, and those that are a Chebyshev distance. Those with a leap for each octant: tree_octants.c. */
+ * Leaves of distance fields: their layout, and fields of Chebyshev distances. tree_octants.c fills fields with a leap for each octant. */
 #include "tree_fields.h"
 
 #include <string.h>
 
-/* Entries may take this many bytes a voxel before a direction gets two bits instead of three: three bits leap farther. */
+/* Most bytes of entries per voxel with which an octant's code has three bits instead of two. Three bits leap farther. */
 #define ENTRY_BYTES_A_VOXEL 20
 
 int32_t stratus_tree_field_leap(
@@ -23,9 +23,9 @@ int32_t stratus_tree_field_leap(
   return tree->octants ? stratus_leap_of_code(bits, (int)(entry >> (octant * bits) & low)) : (int32_t)(entry >> 2);
 }
 
-/* ---------------------------------------------------------------- which cells */
+/* ---------------------------------------------------------------- cells */
 
-/* Cells of a field: bricks, or where the tree says so the voxels of the bricks. */
+/* Finds the cells of a field: bricks, or voxels of bricks in the paper's trees. */
 static void place_field(const stratus_tree_node* node, int cell_log2, stratus_tree_field* field)
 {
   for (int a = 0; a < 3; ++a) {
@@ -35,7 +35,7 @@ static void place_field(const stratus_tree_node* node, int cell_log2, stratus_tr
   }
 }
 
-/* One byte a cell, 1 where it is occupied. */
+/* Sets a byte of `occupied` to 1 for each occupied cell. */
 static void mark_cells(const stratus_voxels* voxels, const stratus_tree_shape* shape, const stratus_tree_node* node, int cell_log2,
   const stratus_tree_field* field, uint8_t* occupied)
 {
@@ -53,7 +53,7 @@ static void mark_cells(const stratus_voxels* voxels, const stratus_tree_shape* s
   }
 }
 
-/* Numbers of the masks: a row's occupied bricks in order, rows in order. The entries of occupied cells are 0 so far. */
+/* Numbers the masks: a row's occupied bricks in order, rows in order. The entries of occupied cells are 0 before. */
 static stratus_status number_masks(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree, uint32_t* mask)
 {
@@ -61,7 +61,7 @@ static stratus_status number_masks(stratus_context* context, const stratus_voxel
   const int bytes = tree->entry_bytes;
   uint32_t* const start = tree->rows + field->first_row;
   void* memory;
-  /* A node's bricks come in any order. Counting those before each in its row needs the row's bricks only. */
+  /* A node's bricks come in any order, but a brick's number depends only on the bricks of its row. */
   TRY(stratus_allocate_zero(context, (size_t)rows + 1, sizeof(uint32_t), &memory));
   uint32_t* const next = memory;
   const stratus_status status = stratus_allocate(context, count, sizeof(uint32_t), &memory);
@@ -78,7 +78,7 @@ static stratus_status number_masks(stratus_context* context, const stratus_voxel
     next[r + 1] += next[r];
     start[r] = *mask + next[r];
   }
-  for (uint32_t b = 0; b < count; ++b) { /* into rows, each kept sorted by insertion: a node's bricks are nearly in order */
+  for (uint32_t b = 0; b < count; ++b) { /* insertion sort in each row, because a node's bricks are nearly in order */
     const uint32_t number = shape->order[node->first + b];
     const stratus_brick* brick = &voxels->bricks[number];
     const uint32_t row = (uint32_t)(brick->at[2] - field->at[2]) * (uint32_t)field->cells[1] + (uint32_t)(brick->at[1] - field->at[1]);
@@ -109,7 +109,7 @@ static stratus_status number_masks(stratus_context* context, const stratus_voxel
 
 /* ---------------------------------------------------------------- distances */
 
-/* Chebyshev distance by the sweeps of distance_sweep.c. */
+/* Fills a field with Chebyshev distances, by the sweeps of distance_sweep.c. */
 static stratus_status fill_distances(stratus_context* context, const stratus_tree_field* field, uint8_t* occupied, stratus_tree* tree)
 {
   stratus_occupancy occupancy = { .context = context, .block_size = STRATUS_BRICK, .occupied = occupied };
@@ -137,7 +137,7 @@ static stratus_status fill_distances(stratus_context* context, const stratus_tre
   return STRATUS_OK;
 }
 
-/* The bricks of a node as a set of their own, from the corner of the node's first brick. */
+/* Copies the bricks of a node to a set of their own, whose origin is the corner of the node's first brick. */
 static stratus_status cut_out(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, stratus_voxels* part)
 {
@@ -163,8 +163,8 @@ static stratus_status cut_out(stratus_context* context, const stratus_voxels* vo
   return STRATUS_OK;
 }
 
-/* The paper's leaf: a Euclidean field by its adaptive flooding (2.3). A ray may leap so many cells that the cube of those is sure to lie
- * within the sphere. Floodings tell distances too long: the Chebyshev distance, which is there already, corrects them. */
+/* Makes the paper's leaf, a Euclidean field by its adaptive flooding (2.3). A ray may leap as many cells as surely stay within the sphere
+ * of that distance. Floodings overestimate distances, so that the Chebyshev distance, already in the entry, bounds the leap. */
 static stratus_status shorten_by_flooding(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree)
 {
@@ -189,7 +189,7 @@ static stratus_status shorten_by_flooding(stratus_context* context, const stratu
       for (int32_t i = 0; i < n[0]; ++i, e += 2) {
         const unsigned longest = (unsigned)(e[0] | e[1] << 8) >> 2;
         unsigned leap = 1;
-        /* (leap)^3 about the cell lie within the sphere if 3 leap^2 < d^2: one more step leaves them. */
+        /* Cells within the Chebyshev distance `leap` lie in the sphere if 3 leap^2 < d^2. One more step leaves them. */
         while (leap < longest && 3.0f * (float)(leap * leap) < row[i] * row[i]) {
           ++leap;
         }
@@ -228,7 +228,7 @@ static stratus_status make_field(stratus_context* context, const stratus_voxels*
   return tree->cell_log2 ? number_masks(context, voxels, shape, node, field, tree, mask) : STRATUS_OK;
 }
 
-/* Sets the fields' places and the sums that arrays are allocated by. */
+/* Sets the places of the fields, and the sizes of the arrays that they share. */
 static stratus_status place_fields(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape, stratus_tree* tree)
 {

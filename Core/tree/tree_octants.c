@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How far a ray of each octant may leap from a cell, found on bits, 64 cells a word: a leap of n is free if no bit is set among the n^3
- * cells that begin with the cell, which a few shifts and ORs along each axis decide for a word at a time. Leaps are tried from short to
- * long; a code counts those that are free. */
+ * Finds how far a ray of each octant may leap from a cell. Cells are bits, 64 per word. A leap of n is free if no bit is set among the n^3
+ * cells that begin with the cell; a few shifts and ORs along each axis decide that for a whole word. Leaps are tried from short to long,
+ * and a code counts the free ones. */
 #include "tree_fields.h"
 
 #include <string.h>
 
-/* Bits of a grid of cells: rows of `words`, rows[0]*rows[1] of them; beyond a row's end they are 0. */
+/* A grid of cells as bits: rows[0]*rows[1] rows of `words` words. Bits beyond a row's end are 0. */
 typedef struct bit_grid {
-  int64_t words, rows[2], size; /* size: words in all */
+  int64_t words, rows[2], size; /* size: number of words */
 } bit_grid;
 
-/* to[i] = from[i] | from[i + by], cells along a row, 0 < |by| < 64. */
+/* to[i] = from[i] | from[i + by] for cells along a row, 0 < |by| < 64. */
 static void or_along_rows(const bit_grid* grid, const uint64_t* restrict from, int by, uint64_t* restrict to)
 {
   const int64_t n = grid->words;
@@ -38,7 +38,7 @@ static void or_along_rows(const bit_grid* grid, const uint64_t* restrict from, i
   }
 }
 
-/* The same by words, within runs of `run` words: along y a run is a slice, along z everything. */
+/* The same by whole words, within runs of `run` words. Along y a run is a slice, along z the whole grid. */
 static void or_along_runs(int64_t size, int64_t run, const uint64_t* restrict from, int64_t by, uint64_t* restrict to)
 {
   const int64_t away = by < 0 ? -by : by, both = run > away ? run - away : 0;
@@ -59,7 +59,8 @@ static void or_along_runs(int64_t size, int64_t run, const uint64_t* restrict fr
   }
 }
 
-/* What `cells` cells from each along an axis hold, itself included. Uses spare; returns where the result is: in `to` or in spare. */
+/* ORs each cell with the cells that follow it along an axis, `cells` in all. Returns the buffer that holds the result: `from`, `to` or
+ * `spare`. */
 static uint64_t* dilate(const bit_grid* grid, int axis, int sign, int cells, const uint64_t* from, uint64_t* to, uint64_t* spare)
 {
   for (int now = 1; now < cells;) {
@@ -78,7 +79,7 @@ static uint64_t* dilate(const bit_grid* grid, int axis, int sign, int cells, con
   return (uint64_t*)from;
 }
 
-/* The code of an octant, a plane of bits each: adds 1 in free cells. */
+/* Adds 1 to an octant's code in the free cells. Each bit of the code is a plane of bits. */
 static void count_free(const bit_grid* grid, int bits, const uint64_t* blocked, const uint64_t* inside, uint64_t* planes)
 {
   const int64_t n = grid->size;
@@ -96,7 +97,7 @@ static void count_free(const bit_grid* grid, int bits, const uint64_t* blocked, 
   }
 }
 
-/* 8 cells by 8 planes, a byte a plane, into a byte a cell (the transpose of an 8x8 bit matrix, by blocks of 1, 2 and 4). */
+/* Transposes an 8x8 bit matrix by blocks of 1, 2 and 4. A byte per plane becomes a byte per cell. */
 static uint64_t transpose(uint64_t x)
 {
   uint64_t t = (x ^ x >> 7) & 0x00aa00aa00aa00aaull;
@@ -107,7 +108,7 @@ static uint64_t transpose(uint64_t x)
   return x ^ t ^ t << 28;
 }
 
-/* Planes of one row, 8*bits of them `apart` words apart, to entries of `bits` bytes each. */
+/* Converts one row of 8*bits planes, `apart` words apart, to entries of `bits` bytes each. */
 static void write_row(const uint64_t* planes, int64_t apart, int bits, int64_t cells, uint8_t* entries)
 {
   for (int64_t first = 0; first < cells; first += 8) {
@@ -132,7 +133,7 @@ static void write_row(const uint64_t* planes, int64_t apart, int bits, int64_t c
   }
 }
 
-/* The codes of the two octants with one pair of signs along x and y. room: 4 grids. */
+/* Computes the codes of the two octants with one pair of signs along x and y. `room` has space for 4 grids. */
 static void find_leaps(
   const bit_grid* grid, int bits, int xy, const uint64_t* occupied, const uint64_t* inside, uint64_t* room, uint64_t* planes)
 {
@@ -151,7 +152,7 @@ static void find_leaps(
   }
 }
 
-/* Bits of the occupied cells, and of those that are none. */
+/* Sets the bits of the occupied cells, and the bits of the empty ones. */
 static void mark_bits(const stratus_voxels* voxels, const stratus_tree_shape* shape, const stratus_tree_node* node,
   const stratus_tree_field* field, const bit_grid* grid, uint64_t* occupied, uint64_t* empty)
 {
