@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits of a batch of rays: which way, which threads. */
+ * First hits of a batch of rays: chooses the method and distributes the rays over threads. */
 #include "first_hit_batch.h"
 
 #include "first_hit_arguments.h"
@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* One chunk's answers; false if ray *bad of it can't be used. more: rays behind the chunk's. */
+/* Finds the hits of one chunk. Returns false if ray *bad of it is unusable. `more` is the number of rays behind the chunk. */
 static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_functions* functions, const stratus_ray* rays, int count,
   size_t more, stratus_hit_chunk* chunk, stratus_hit* hits, int* bad)
 {
@@ -33,7 +33,7 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
   return true;
 }
 
-/* Packets walk one field; and where every position is in doubt they would be a waste. */
+/* Packets walk a single distance field. Where every position is in doubt they would be a waste. */
 static bool takes_packets(const stratus_hit_batch* batch)
 {
   return batch->tree->node_count == 1 && batch->tree->field_count == 1 && batch->slack <= 0.05f;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What all rays of a batch share: the tree in voxel coordinates, and the functions for an instruction set. */
+ * Data that all rays of a batch share, and the choice of functions for an instruction set. */
 #include "first_hit_batch.h"
 
 #include <string.h>
 
-/* The unit normals of the voxels' faces: gradients of the index coordinates. */
+/* Computes the unit normals of the voxels' faces, which are the gradients of the index coordinates. */
 static void find_normals(const stratus_tree* tree, double normal[6][3])
 {
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,7 +35,7 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
     batch->hi[a] = tree->node_count ? tree->nodes[0].hi[a] : 0;
     most = tree->dimensions[a] > most ? tree->dimensions[a] : most;
   }
-  /* A float position is that of its rounded start, direction and length: some five roundings of at most twice the longest edge. */
+  /* A float position results from a rounded start, direction and length: about five roundings of at most twice the longest edge. */
   batch->slack = 1.2e-7f * 8.0f * (float)most;
   find_normals(tree, batch->normal);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on the context's device: the host makes rays ready and answers ready, chunk by chunk, the device walks. The tree is copied
- * with each batch (a device that shares memory with the host reads it in place). */
+ * First hits on the context's device. The host prepares rays and computes hits chunk by chunk, the device walks. The tree is copied with
+ * each batch; a device that shares memory with the host reads it in place. */
 #include "first_hit_batch.h"
 
 #include "first_hit_arguments.h"
@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CHUNKS 128 /* a launch */
-#define GROUP 64   /* work items a group, one ray each */
+#define CHUNKS 128 /* per launch */
+#define GROUP 64   /* work items per group, one ray each */
 
 /* The kernel's compiler is told the arguments' size, and asserts the same. */
 _Static_assert(_Alignof(stratus_hit_arguments) == sizeof(float), "arguments must be scalars of four bytes");
@@ -26,10 +26,10 @@ typedef struct launch {
   bool packets;
   cl_mem buffers[BUFFERS];
   stratus_hit_chunk* chunks;
-  int32_t* words; /* what a launch takes and gives */
+  int32_t* words; /* input of a launch, then its output */
 } launch;
 
-/* The arrays of chunk c among those of `count` rays. */
+/* Copies the arrays of chunk c to their place among those of `count` rays. */
 static void pack_chunk(const launch* l, int c, int count)
 {
   const stratus_hit_chunk* chunk = &l->chunks[c];

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits in double precision, one ray at a time, through any tree: the way through trees of many nodes, and the judge of rays that the
- * packets left in doubt. Boxes are met a hair wider than they are, and wherever the ray lands near an edge all voxels about it are tried,
- * so that rounding can hide none; of all voxels that the ray meets the first counts. */
+ * First hits in double precision, one ray at a time, in any tree. This method serves trees of many nodes and rays that packets have left in
+ * doubt. Boxes are grown by a hair, and near an edge all voxels around the position are tested, so that rounding can hide none. Of all
+ * voxels that the ray meets, the first counts. */
 #include "first_hit_batch.h"
 
 #include <string.h>
 
-/* How far a position may be off, over its size: some ten roundings. */
+/* The error of a position relative to its size: about ten roundings. */
 #define HAIR 4e-15
 
-/* A crossing of a plane between voxels: crossings come in the order of t, at equal t in that of the axes. axis 3: the ray's own beginning,
- * after all of the same t. The rule is voxel_walk.c's, and so are the bits of t: of all voxels a ray is in one at a time, in the same order
- * for every tree. */
+/* A crossing of a plane between voxels. Crossings are ordered by t, those of equal t by axis. Axis 3 is the ray's own start, which comes
+ * after all crossings of the same t. The rule and the bits of t are those of voxel_walk.c: a ray is in one voxel at a time, in the same
+ * order for every tree. */
 typedef struct crossing {
   double t;
   int axis;
@@ -26,15 +26,15 @@ typedef struct walker {
   const stratus_hit_batch* batch;
   const stratus_tree* tree;
   const stratus_ray* ray;
-  double o[3], d[3], inverse[3]; /* voxel coordinates */
-  double hair;                   /* of positions */
+  double o[3], d[3], inverse[3]; /* in voxel coordinates */
+  double hair;                   /* error of positions */
   int up[3], octant;
   stratus_hit* hit;
-  crossing first; /* by which the ray enters it */
+  crossing first; /* crossing by which the ray enters the hit voxel */
   uint32_t visited;
 } walker;
 
-/* Whether the ray ever is in the voxel, and the crossing by which it comes in. */
+/* Returns whether the ray is ever in the voxel, and finds the crossing by which it enters. */
 static inline bool enters(const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], crossing* entry)
 {
   crossing in = { ray->t_min, 3 }, out = { INFINITY, 4 };
@@ -86,7 +86,7 @@ void stratus_hit_of_voxel(
   }
 }
 
-/* Keeps the hit of an effective voxel if it is the first so far. */
+/* Keeps the hit of an effective voxel if the ray enters it before the hit so far. */
 static void try_voxel(walker* w, int x, int y, int z)
 {
   const int voxel[3] = { x, y, z };
@@ -97,7 +97,7 @@ static void try_voxel(walker* w, int x, int y, int z)
   }
 }
 
-/* Where the ray enters and leaves a box grown by a hair; false if nowhere, or only behind what was hit. */
+/* Finds where the ray enters and leaves a box grown by a hair. Returns false if it misses the box or meets it behind the hit so far. */
 static bool meets_box(const walker* w, const int32_t lo[3], const int32_t hi[3], double* enter, double* leave)
 {
   double t0 = w->ray->t_min, t1 = w->ray->t_max < w->hit->t ? w->ray->t_max : w->hit->t;
@@ -143,7 +143,7 @@ static void walk_bricks(walker* w, const stratus_tree_node* node)
   }
 }
 
-/* How far a ray may leap from a voxel's cell, 0 if the voxel is effective, -1 if only its cell is occupied, -2 beyond the field. */
+/* Returns how far a ray may leap from a voxel's cell; 0 if the voxel is effective, -1 if only its cell is occupied, -2 beyond the field. */
 static int32_t look(const walker* w, const stratus_tree_field* field, const int voxel[3])
 {
   const int log2 = w->tree->cell_log2;
@@ -162,7 +162,7 @@ static int32_t look(const walker* w, const stratus_tree_field* field, const int 
   return mask >> ((voxel[2] & 3) << 4 | (voxel[1] & 3) << 2 | (voxel[0] & 3)) & 1 ? 0 : -1;
 }
 
-/* Voxels that a position within a hair of their border may lie in, but the one it is said to lie in. */
+/* Tests the other voxels in which a position within a hair of a border may lie. */
 static void try_neighbours(walker* w, const stratus_tree_field* field, const double position[3], const int voxel[3])
 {
   int other[3], any = 0;
@@ -201,16 +201,16 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
     if (leap == 0) {
       try_voxel(w, voxel[0], voxel[1], voxel[2]);
     }
-    try_neighbours(w, field, position, voxel); /* where it leaves, too: it may do so by a corner */
+    try_neighbours(w, field, position, voxel); /* also where the ray leaves the field, because it may leave by a corner */
     if (leap == -2 || t > leave || t > w->hit->t) {
       return;
     }
-    /* On to the border of what is known to be empty. */
+    /* Advance to the border of the cells known to be empty. */
     double next = INFINITY, at[3];
     int far[3], near[3];
     for (int a = 0; a < 3; ++a) {
       const int block = voxel[a] >> log2;
-      const int first = field->at[a], beyond = first + field->cells[a]; /* nor farther than the field's border */
+      const int first = field->at[a], beyond = first + field->cells[a]; /* a leap ends at the field's border */
       const int up = block + leap < beyond ? block + leap : beyond, down = block + 1 - leap > first ? block + 1 - leap : first;
       far[a] = leap <= 0 ? voxel[a] + w->up[a] : (w->up[a] ? up : down) * (1 << log2);
       near[a] = leap <= 0 ? voxel[a] : w->up[a] ? block * (1 << log2) : (block + 1) * (1 << log2) - 1;
@@ -230,13 +230,13 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
 
 /* ---------------------------------------------------------------- nodes */
 
-/* The ray in floats, from where it enters the root's box, in lengths of its longest component: boxes grown by the floats' slack are met
- * wherever the ray meets the boxes. */
+/* A ray in floats, from where it enters the root's box, in units of its longest component. The sketch meets every
+ * box that the ray meets, if the box is grown by the floats' slack. */
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_int __attribute__((vector_size(16)));
 
 typedef struct sketch {
-  four o, inverse; /* the last lane is idle */
+  four o, inverse; /* the last lane is unused */
   double base, scale;
   float slack, end;
 } sketch;
@@ -273,7 +273,7 @@ static inline four load_box(const int32_t* corner)
   return __builtin_convertvector(i, four);
 }
 
-/* Whether the ray meets the node's box before `end`, and about where. */
+/* Returns whether the ray may meet the node's box before `end`, and finds about where. */
 static inline bool may_meet(const sketch* k, const stratus_tree_node* node, float end, float* enter)
 {
   const four lo = (load_box(node->lo) - k->slack - k->o) * k->inverse, hi = (load_box(node->hi) + k->slack - k->o) * k->inverse;
@@ -305,7 +305,7 @@ static void walk_leaf(walker* w, const stratus_tree_node* node)
 static void walk_tree(walker* w)
 {
   const stratus_tree* tree = w->tree;
-  pending stack[130]; /* two children a level and less one that is taken: trees are at most 128 deep */
+  pending stack[130]; /* each level adds two children and takes one; trees are at most 128 deep */
   int top = 0;
   sketch k;
   if (tree->node_count == 0 || !make_sketch(w, &k)) {

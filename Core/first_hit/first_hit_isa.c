@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on the host, compiled for one instruction set, STRATUS_ISA: rays into packets, packets through the field, lanes whose ray has
- * ended given the next, and the answers in double precision. */
+ * First hits on the host, compiled for one instruction set, STRATUS_ISA. Rays are gathered in packets, packets walk the field, a lane whose
+ * ray has ended gets the next ray, and hits are computed in double precision. */
 #include "first_hit_batch.h"
 
 #include "first_hit.h"
@@ -9,11 +9,11 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
 
-/* ---------------------------------------------------------------- in */
+/* ---------------------------------------------------------------- rays to chunk */
 
-#define HAIR 4e-7 /* of t found in floats, over t */
+#define HAIR 4e-7 /* relative error of a t computed in floats */
 
-/* Loops over a chunk, written so that the compiler makes vectors of them. */
+/* A loop over a chunk in a form that the compiler vectorizes. */
 #define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
 
 static inline double larger(double a, double b)
@@ -25,7 +25,7 @@ static inline double smaller(double a, double b)
   return a < b ? a : b;
 }
 
-/* The ray in voxel coordinates. */
+/* Converts rays to voxel coordinates. */
 static void transform(
   const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* restrict first, double* restrict last)
 {
@@ -46,7 +46,7 @@ static void transform(
   }
 }
 
-/* Lengths of the longest component; 0 is returned if all numbers can be used: as stratus_ray_usable() has it. */
+/* Computes the length of each ray's longest component. Returns 0 if stratus_ray_usable() holds for all rays. */
 static double measure(const stratus_hit_chunk* chunk, const double* restrict first, const double* restrict last, double* restrict most)
 {
   const int n = chunk->count;
@@ -71,8 +71,8 @@ static int find_bad(const stratus_hit_batch* batch, const stratus_ray* rays, int
   return i;
 }
 
-/* From here on t is in lengths of the ray's longest component. Where the ray enters the root's box is found in floats, a hair early: it
- * only tells where the walk begins, and a voxel that is met there by mistake is found out when its hit is made. */
+/* Converts rays to a chunk, in which t is in units of a ray's longest component. The entry into the root's box is computed in floats, a
+ * hair early. It only sets where the walk begins; a voxel met there by mistake is rejected when its hit is computed. */
 static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
 {
   double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], most[STRATUS_HIT_CHUNK];
@@ -99,7 +99,7 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
       const float unit = (float)(along[i] * most[i]);
       d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
       inverse[i] = 1.0f / d[i];
-      /* A ray that runs within a face of the box is in it all the way, not from t = 0 on. */
+      /* The slack keeps a ray that runs within a face of the box inside the box all the way, not only from t = 0 on. */
       const double hair = fabsf(unit) < 1e-30f ? slack : 0.0;
       const double t0 = (lo - hair - from[i]) * (double)inverse[i], t1 = (hi + hair - from[i]) * (double)inverse[i];
       const double enter = smaller(t0, t1), leave = larger(t0, t1);
@@ -127,9 +127,9 @@ static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int
   return true;
 }
 
-/* ---------------------------------------------------------------- through */
+/* ---------------------------------------------------------------- walk */
 
-/* Lanes of `mask` get the next values from p in turn. */
+/* Sets the lanes of `mask` to consecutive values from p. */
 static inline vfloat expand(vfloat old, vmask mask, const int* lanes, int count, const float* p)
 {
 #if STRATUS_ISA == 2
@@ -166,8 +166,8 @@ static inline vint expand_int(vint old, vmask mask, const int* lanes, int count,
 
 typedef struct stream {
   stratus_hit_chunk* chunk;
-  int* next; /* ray of the chunk */
-  vint id;   /* ray of each lane, -1: none */
+  int* next; /* next ray of the chunk, shared by all packets */
+  vint id;   /* ray in each lane, -1: none */
 } stream;
 
 /* base[at[lane]] = value[lane] for lanes of the mask. */
@@ -184,7 +184,7 @@ static inline void scatter(int* base, vint at, vint value, vmask mask)
 #endif
 }
 
-/* The first `count` lanes of a mask, and their numbers where expand() asks for those. */
+/* Returns the first `count` lanes of a mask, and lists their numbers where expand() needs them. */
 static inline vmask first_lanes(vmask mask, int count, int* lanes)
 {
 #if STRATUS_ISA == 2
@@ -207,7 +207,7 @@ static inline vmask first_lanes(vmask mask, int count, int* lanes)
 #endif
 }
 
-/* Puts down the rays of lanes that have ended, and gives those lanes the next. */
+/* Stores the results of lanes whose ray has ended, and gives those lanes the next rays. */
 static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
 {
   static const int numbers[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
@@ -243,10 +243,10 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
   k->live = k->live | (fresh & v_le(v_set(0.0f), k->end));
 }
 
-/* A lane that has ended costs as much as one that has not: so many may stand idle before they are given new rays. */
+/* A lane whose ray has ended costs as much as a live one. This many may be idle before they get new rays. */
 #define IDLE (STRATUS_WIDTH / 4)
 
-/* False once the packet's rays have ended and there are no more. */
+/* Returns false once the packet's rays have ended and no ray is left. */
 static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
 {
   const int live = m_count(k->live);
@@ -259,10 +259,10 @@ static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_
   return m_any(k->live);
 }
 
-/* Packets side by side: a step is a chain of loads and sums that wait for each other, and while one packet waits the next computes. */
+/* Packets walked in turn. A step is a chain of dependent loads and sums, and while one packet waits the next computes. */
 #define PACKETS 2
 
-/* Lines of the next rays that are asked for with each step: memory would else be waited for at the beginning of each chunk. */
+/* Cache lines of the next chunk's rays prefetched per step. Without them each chunk would begin by waiting for memory. */
 #define LINES 4
 
 static inline __attribute__((always_inline)) void walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
@@ -317,7 +317,7 @@ static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
   }
 }
 
-/* ---------------------------------------------------------------- out */
+/* ---------------------------------------------------------------- chunk to hits */
 
 static void finish(const stratus_hit_batch* batch, const stratus_ray* rays, const stratus_hit_chunk* chunk, stratus_hit* hits)
 {
