@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the culler share: a window of actors, drawn with the culler and without any, and the two pictures compared.
+// Helpers of the culler's tests: a window of actors that is drawn with and without cullers, and a comparison of the two pictures.
 #ifndef culler_testing_h
 #define culler_testing_h
 
@@ -26,7 +26,7 @@
 
 static int Failures = 0;
 
-// Tells and counts what does not hold, and goes on.
+// Prints and counts a condition that does not hold, and goes on.
 #define CHECK(condition, ...)                                                                                                              \
   do {                                                                                                                                     \
     if (!(condition)) {                                                                                                                    \
@@ -39,7 +39,7 @@ static int Failures = 0;
 
 using Pixels = std::vector<unsigned char>;
 
-// A sphere of radius 0.3 with a source and a mapper of its own.
+// A sphere with a source and a mapper of its own.
 struct Part {
   explicit Part(double x = 0.0, double y = 0.0, double z = 0.0, double radius = 0.3)
   {
@@ -63,10 +63,10 @@ public:
     this->Window->SetSize(160, 120);
     this->Window->AddRenderer(this->Renderer);
     this->Culler = vtkStratusOctreeCuller::Install(this->Renderer);
-    this->Culler->SetLeafProps(4); // so that few props make a tree
+    this->Culler->SetLeafProps(4); // so that few props split the octree
   }
 
-  // From (0, 0, 10) at (0, 0, 0), about 5 wide and 4 high where z is 0.
+  // Looks from (0, 0, 10) at the origin. The view is about 5 wide and 4 high at z = 0.
   void LookAhead()
   {
     vtkCamera* camera = this->Renderer->GetActiveCamera();
@@ -77,7 +77,7 @@ public:
     camera->SetClippingRange(1, 100);
   }
 
-  // n^3 shapes of all kinds, 2 apart, the corner at the origin; sources are shared, mappers are not.
+  // Adds n^3 spheres, cubes and cones, 2 apart, the first at the origin. They share sources, but not mappers.
   void AddLattice(int n)
   {
     vtkNew<vtkSphereSource> sphere;
@@ -106,7 +106,8 @@ public:
     return Pixels(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
   }
 
-  // First with the cullers that are there, so that nothing but they may bring data up to date, then with none. Returns the picture.
+  // Checks that the pictures with cullers and without any are equal, and returns the picture. The cullers come first, so that no other
+  // drawing brings data up to date for them.
   Pixels Compare(const char* what)
   {
     const Pixels culled = this->Draw();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the mapper share: a scene of one volume, its pictures in float and in bytes, and the reference's picture of the same
-// scene.
+// Helpers of the mapper's tests: a scene of one volume, its picture in floats and in bytes, and the reference's picture of the same scene.
 #ifndef mapper_testing_h
 #define mapper_testing_h
 
@@ -36,7 +35,7 @@
 
 static int Failures = 0;
 
-// Tells and counts what does not hold, and goes on.
+// Prints and counts a condition that does not hold, and goes on.
 #define CHECK(condition, ...)                                                                                                              \
   do {                                                                                                                                     \
     if (!(condition)) {                                                                                                                    \
@@ -47,7 +46,7 @@ static int Failures = 0;
     }                                                                                                                                      \
   } while (0)
 
-// Counts errors and keeps the last one, in place of VTK's printing it.
+// Counts errors and keeps the last one, so that VTK does not print them.
 class ErrorObserver : public vtkCommand
 {
 public:
@@ -62,7 +61,7 @@ public:
   std::string Text;
 };
 
-// A smooth, uneven field in 0..1: two blobs on an empty ground, so that blocks of all kinds occur.
+// A smooth, uneven field in 0..1: two blobs in empty space, so that blocks of all kinds occur.
 inline float Field(double x, double y, double z)
 {
   const auto blob = [&](double cx, double cy, double cz, double radius) {
@@ -95,7 +94,7 @@ inline void FillField(vtkImageData* image, bool cells, const char* name, double 
   }
 }
 
-// A window with one volume of 33 x 29 x 25 points in it, black behind.
+// A window with one volume of 33 x 29 x 25 points on a black background.
 struct Scene {
   explicit Scene(int width = 160, int height = 120)
   {
@@ -152,7 +151,7 @@ struct Scene {
     vtkImageData* image = this->Mapper->GetLastImage();
     return image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("Depth"))->GetPointer(0) : nullptr;
   }
-  // A copy that the next picture does not overwrite.
+  // Draws and returns a copy of the picture, which the next picture does not overwrite.
   std::vector<float> Picture()
   {
     this->Render();
@@ -172,7 +171,7 @@ struct Scene {
     return sum;
   }
 
-  // What the window shows within the renderer's viewport.
+  // Returns the bytes that the window shows in the renderer's viewport.
   std::vector<unsigned char> Bytes()
   {
     const int* origin = this->Renderer->GetOrigin();
@@ -182,7 +181,7 @@ struct Scene {
     return std::vector<unsigned char>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
   }
 
-  // Largest difference in 1/255 between the float picture over `background` and what the window shows.
+  // Returns the largest difference, in 1/255, between the float picture over `background` and what the window shows.
   double ShownError(const double background[3])
   {
     const std::vector<unsigned char> bytes = this->Bytes();
@@ -207,7 +206,7 @@ struct Scene {
   vtkNew<ErrorObserver> Errors;
 };
 
-// The same rays as the window's, from VTK's composite matrix alone: the mapper goes another way.
+// Computes the window's rays from VTK's composite matrix alone, which the mapper does not use.
 inline stratus_camera ReferenceCamera(vtkRenderer* renderer)
 {
   vtkCamera* active = renderer->GetActiveCamera();
@@ -237,10 +236,10 @@ inline stratus_camera ReferenceCamera(vtkRenderer* renderer)
   }
   vtkMath::Cross(up, right, normal);
   vtkMath::Normalize(normal);
-  const double between = vtkMath::Dot(along, normal); // the planes
+  const double between = vtkMath::Dot(along, normal); // the near and far planes
   stratus_camera camera = stratus_camera();
   camera.parallel = active->GetParallelProjection();
-  // Near and far plane are as far from the eye as they are wide.
+  // The planes' distances from the eye are proportional to their widths.
   const double ratio = vtkMath::Norm(right) / vtkMath::Norm(farRight);
   camera.near_k = between * ratio / (1.0 - ratio);
   if (camera.parallel) {
@@ -271,7 +270,7 @@ inline stratus_volume ReferenceVolume(vtkImageData* image, vtkFloatArray* values
   image->GetDimensions(points);
   image->GetExtent(extent);
   image->GetSpacing(volume.spacing);
-  // VTK's own word on where the first point lies.
+  // VTK itself finds the position of the first point.
   image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], volume.origin);
   std::copy_n(image->GetDirectionMatrix()->GetData(), 9, volume.direction);
   std::copy_n(&matrix->Element[0][0], 16, volume.matrix);
@@ -281,7 +280,7 @@ inline stratus_volume ReferenceVolume(vtkImageData* image, vtkFloatArray* values
   return volume;
 }
 
-// PSNR in dB of the scene's float picture against the reference at 1/16 voxel. `more` may add cropping, planes, opaque depth.
+// Returns the PSNR in dB of the scene's float picture against the reference at 1/16 voxel. `more` may add cropping, planes, opaque depth.
 inline double ReferencePsnr(Scene& scene, const std::function<void(reference_scene&)>& more = nullptr, vtkFloatArray* cellValues = nullptr)
 {
   std::vector<double> opacity, color;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the mapper's refusals share: a scene that is broken, told of once, and mended.
+// Helpers of the tests of the mapper's refusals: a scene is broken, refused with one error, and mended.
 #ifndef refusal_testing_h
 #define refusal_testing_h
 
@@ -16,7 +16,7 @@ inline bool IsBlack(Scene& scene)
   return true;
 }
 
-// Breaks a scene that has drawn, looks for `word` in one error, mends it, and wants the first picture again.
+// Breaks a scene that has been drawn, expects one error that contains `word`, mends the scene, and expects the first picture again.
 inline void Refused(const char* what, const char* word, const std::function<void(Scene&)>& breaks, const std::function<void(Scene&)>& mends)
 {
   Scene scene(64, 48);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of TetGen's files and filter share: files of text, volumes and areas by the textbook, and a cube.
+// Helpers of the tests of TetGen's files and filter: text files, volumes and areas by textbook formulas, comparisons, and a box.
 #ifndef tetgen_testing_h
 #define tetgen_testing_h
 
@@ -29,7 +29,7 @@ inline std::string ReadText(const std::string& path)
   return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
 }
 
-// Six times the signed volume of the first four corners.
+// Returns six times the signed volume of the first four corners' tetrahedron.
 inline double SixVolumes(vtkPointSet* mesh, const vtkIdType* corners)
 {
   double p[4][3], a[3], b[3], c[3], normal[3];
@@ -51,7 +51,7 @@ inline const vtkIdType* Corners(vtkUnstructuredGrid* mesh, vtkIdType cell)
   return corners;
 }
 
-// Of all cells, none of which is inverted or flat.
+// Returns the volume of all cells, and checks that none is inverted or flat.
 inline double Volume(vtkUnstructuredGrid* mesh)
 {
   double volume = 0.0;
@@ -65,7 +65,7 @@ inline double Volume(vtkUnstructuredGrid* mesh)
   return volume;
 }
 
-// Of the triangles with this marker.
+// Returns the area of the triangles with this marker.
 inline double Area(vtkPolyData* surface, int marker)
 {
   vtkDataArray* markers = surface->GetCellData()->GetArray("Marker");
@@ -88,7 +88,8 @@ inline double Area(vtkPolyData* surface, int marker)
   return area;
 }
 
-// Each neighbour has all corners of the cell but the one it is opposite to, and a cell has a neighbour wherever another has that face.
+// Checks that each neighbour has all corners of the cell but the one opposite to it, and that a cell has a neighbour wherever another cell
+// has that face.
 inline bool NeighborsAreRight(vtkUnstructuredGrid* mesh)
 {
   vtkDataArray* neighbors = mesh->GetCellData()->GetArray("Neighbors");
@@ -113,7 +114,7 @@ inline bool NeighborsAreRight(vtkUnstructuredGrid* mesh)
   return true;
 }
 
-// A box of six quadrilaterals, each with a marker of its own from `marker` on.
+// Adds a box of six quadrilaterals with markers `marker` .. `marker` + 5.
 inline void AddBox(vtkPolyData* surface, const double lower[3], const double upper[3], int marker)
 {
   if (!surface->GetPoints()) {
@@ -140,7 +141,7 @@ inline void AddBox(vtkPolyData* surface, const double lower[3], const double upp
   }
 }
 
-// Same type, same shape, same bits.
+// Returns whether two arrays have the same type, shape and bits.
 inline bool SameArray(vtkDataArray* a, vtkDataArray* b)
 {
   if (!a || !b || a->GetDataType() != b->GetDataType() || a->GetNumberOfValues() != b->GetNumberOfValues() ||
@@ -153,7 +154,7 @@ inline bool SameArray(vtkDataArray* a, vtkDataArray* b)
       static_cast<char*>(a->GetVoidPointer(0)), static_cast<char*>(a->GetVoidPointer(0)) + bytes, static_cast<char*>(b->GetVoidPointer(0)));
 }
 
-// All arrays of a are in b, the same, and there are no more.
+// Returns whether b has the arrays of a and no others.
 inline bool SameArrays(vtkFieldData* a, vtkFieldData* b)
 {
   bool same = a->GetNumberOfArrays() == b->GetNumberOfArrays();

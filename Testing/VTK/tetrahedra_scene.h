@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene of one grid for the tests of vtkStratusTetrahedraMapper, and the picture that it is judged by, written apart from the core: each
-// ray against every tetrahedron in double precision, what it meets sorted by where it enters, each stretch in many midpoint steps.
+// A scene of one grid for the tests of vtkStratusTetrahedraMapper, and a reference picture that does not use the core. The reference tests
+// each ray against every tetrahedron in double precision, sorts the tetrahedra by where the ray enters, and integrates each stretch in many
+// midpoint steps.
 #ifndef tetrahedra_scene_h
 #define tetrahedra_scene_h
 
@@ -12,8 +13,8 @@
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
-// A cube of 6^3 boxes, six cells each about the boxes' diagonals; values fall and rise with x and z alone, linearly within each box: both
-// ways of interpolating agree then.
+// A cube of 6^3 boxes, each divided into six tetrahedra about its diagonal. Values are linear in x and z, so that trilinear and linear
+// interpolation agree.
 constexpr int Boxes = 6;
 
 inline float FieldAt(int i, int k)
@@ -54,10 +55,11 @@ inline void MakeGrid(vtkUnstructuredGrid* grid)
   grid->GetPointData()->SetScalars(values);
 }
 
-// Image samples .02 apart err by about 1e-4 where the function bends, and by what a first or last sample covers too much or little.
+// PSNR in dB of equal pictures. The image's samples, .02 apart, err by about 1e-4 where the function bends, and by what a first or last
+// sample covers too much or too little.
 constexpr double SamePicture = 62.0;
 
-// The grid in the place of Scene's image.
+// A Scene with the grid in the place of the image.
 struct GridScene : Scene {
   explicit GridScene(int width = 160, int height = 120) : Scene(width, height)
   {
@@ -89,7 +91,7 @@ struct GridScene : Scene {
     }
     return sum;
   }
-  // The image mapper's picture of the same scene against ours, PSNR in dB.
+  // Returns the PSNR in dB of the image mapper's picture of the same scene against this mapper's.
   double Psnr()
   {
     const std::vector<float> ours = this->GridPicture();
@@ -108,7 +110,7 @@ struct GridScene : Scene {
 // ---- the reference
 
 struct Stretch {
-  double From, To, First, Last; // along the ray, and the field there
+  double From, To, First, Last; // From and To along the ray, the field's values there
   vtkIdType Cell;
 };
 
@@ -117,12 +119,13 @@ inline double Determinant(const Vector& a, const Vector& b, const Vector& c, con
   return Dot(Minus(b, a), Cross(Minus(c, a), Minus(d, a)));
 }
 
-// What of origin + t along, from..to, lies in the cell: each barycentric coordinate is linear along it.
+// Finds the stretch within from..to of a ray, t times `along`, that lies in the cell. Corners are relative to the ray's origin. Each
+// barycentric coordinate is linear along the ray.
 inline bool Meets(const Vector corners[4], const double values[4], const Vector& along, double from, double to, Stretch& stretch)
 {
   const double whole = Determinant(corners[0], corners[1], corners[2], corners[3]);
   double start[4], rise[4];
-  double reach = 0.0; // as far as the cell: another scale would drown it in rounding
+  double reach = 0.0; // about the cell's t: another scale would drown it in rounding
   for (int i = 0; i < 4; ++i) {
     reach = std::max(reach, std::sqrt(Dot(corners[i], corners[i]) / Dot(along, along)));
   }
@@ -149,7 +152,8 @@ inline bool Meets(const Vector corners[4], const double values[4], const Vector&
   return true;
 }
 
-// A grid of tetrahedra as the scene looks at it. values: of its points, or cells. order: of all cells, in place of each ray's own.
+// Draws a grid of tetrahedra in the scene's view. `values` are of its points or cells. `order` is a rank for each cell, in place of each
+// ray's own order.
 inline std::vector<double> TetraReference(
   Scene& scene, vtkUnstructuredGrid* grid, vtkDataArray* values, bool ofCells, const std::vector<vtkIdType>* order = nullptr)
 {
@@ -210,7 +214,8 @@ inline std::vector<double> TetraReference(
   return picture;
 }
 
-// Root mean square of RGBA in 0..255 over the pixels that either shows; infinite where there are none, which would be no agreement.
+// Returns the root mean square difference of RGBA in 0..255 over the pixels that either picture shows. It is infinite where there are none,
+// because empty pictures prove nothing.
 inline double TetraError(const std::vector<float>& ours, const std::vector<double>& reference)
 {
   double squares = 0.0, count = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids of mixed cells for the tests of tetrahedra, and what must hold of cells that fill a box.
+// Grids of mixed cells for the tests of tetrahedra, and helpers that check cells which fill a box.
 #ifndef tetrahedra_testing_h
 #define tetrahedra_testing_h
 
@@ -42,7 +42,7 @@ inline double Dot(const Vector& a, const Vector& b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// n*n*n unit cubes: hexahedra, voxels, six pyramids each, and a column of wedges along z in each corner: all meet in whole faces.
+// Makes n*n*n unit cubes: two wedges where i == j, elsewhere hexahedra, voxels, and six pyramids each. All meet in whole faces.
 inline Grid MixedGrid(int n)
 {
   auto grid = Grid::New();
@@ -85,7 +85,7 @@ inline Grid MixedGrid(int n)
   return grid;
 }
 
-// n*n*n unit cubes of one type: hexahedra, or two wedges each.
+// Makes n*n*n unit cubes of one type: hexahedra, or two wedges each.
 inline Grid CubesOf(int n, int type)
 {
   auto grid = Grid::New();
@@ -110,8 +110,8 @@ inline Grid CubesOf(int n, int type)
   return grid;
 }
 
-// A grid's cells with points in the middles of edges, faces and cells, as the types that take the place of hexahedra (and voxels), wedges
-// and pyramids want them. Points within the box from 0 to n move, or edges would be straight.
+// Returns a grid's cells with nodes in the middles of edges, faces and cells, as the given types for hexahedra (and voxels), wedges and
+// pyramids require. Nodes inside the box from 0 to n move by `bend`, because edges would be straight otherwise.
 inline Grid Elevated(vtkUnstructuredGrid* linear, int hexahedron, int wedge, int pyramid, int n, double bend)
 {
   auto grid = Grid::New();
@@ -188,7 +188,7 @@ inline Grid Elevated(vtkUnstructuredGrid* linear, int hexahedron, int wedge, int
 }
 
 struct Faces {
-  std::map<std::array<vtkIdType, 3>, std::vector<vtkIdType>> Owners; // cells by their faces' points in rising order
+  std::map<std::array<vtkIdType, 3>, std::vector<vtkIdType>> Owners; // cells by the points of their faces, ascending
   explicit Faces(vtkUnstructuredGrid* grid)
   {
     for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
