@@ -34,8 +34,7 @@ public:
   // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
   bool SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
-  // VTK gives cropping planes along its axes from GetOrigin(); the core takes crop_bounds = planes + offset, from the first value's
-  // position.
+  // The offset from VTK's cropping planes to the core's: crop_bounds = planes + offset. VTK's planes ignore the image's direction.
   const double* GetCropOffset() const { return this->CropOffset; }
   void Release();
 

@@ -222,7 +222,7 @@ void vtkStratusTetGenInput::CheckCount(const char* name, vtkIdType count, vtkIdT
   // Each number takes a digit and a separator; the very last may lack the separator.
   const std::uintmax_t bytes = this->Size - std::min(this->Size, this->Consumed) + this->Rest.size() + 1;
   const vtkIdType room = static_cast<vtkIdType>(bytes / 2) / numbers;
-  // In a short file reading goes on, so that the message tells how many lines there are.
+  // A small count passes in a file that is too short, because NeedLine() then reports how many lines there are.
   if (count > room && count > SmallCount / numbers) {
     this->Fail(std::string(name) + " is " + std::to_string(count) + ", but the rest of the file, of " + std::to_string(this->Size) +
       " bytes, can hold no more than " + std::to_string(room));

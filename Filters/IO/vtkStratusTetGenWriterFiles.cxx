@@ -17,7 +17,7 @@
 
 namespace {
 const vtkIdType MostColumns = 72;  // TetGen reads lines of up to 2047 bytes, and a number takes up to 25
-const vtkIdType CornersALine = 64; // for the same reason
+const vtkIdType CornersALine = 64; // corners, for the same reason
 
 [[noreturn]] void Fail(const std::string& text)
 {
