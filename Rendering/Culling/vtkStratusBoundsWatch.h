@@ -42,7 +42,7 @@ public:
     Producer* Mapper = nullptr;
   };
 
-  // Starts a look, which reads all times anew.
+  // Starts a look, one pass over the props that reads all times anew.
   void NextLook();
   // Returns whether the bounds may have changed since the last call with this state.
   bool Changed(vtkProp* prop, State& state);

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""NumPy volumes as pictures: `show` draws one, `as_image` hands its memory to VTK."""
+"""Draws NumPy volumes: `show` returns a picture, `as_image` hands an array's memory to VTK."""
 import os
 from numbers import Real
 
 import numpy
-import vtkmodules.vtkRenderingOpenGL2  # registers itself, so that there is a window to draw in
+import vtkmodules.vtkRenderingOpenGL2  # registers itself, so that a window can be made
 import vtkmodules.vtkRenderingVolumeOpenGL2
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData, vtkPiecewiseFunction
@@ -17,11 +17,11 @@ _TYPES = "bool, int8..int64, uint8..uint64, float32, float64"
 
 
 class Picture(numpy.ndarray):
-    """RGBA, one byte each, the top row first: an ordinary array of shape (height, width, 4) that notebooks show as a picture."""
+    """An array of shape (height, width, 4), RGBA of one byte each, the top row first, which notebooks show as a picture."""
 
     def _repr_png_(self):
         if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != numpy.uint8 or self.size == 0:
-            return None  # a slice that is no picture any more
+            return None  # a slice may not be a picture
         image = vtkImageData()
         image.SetDimensions(self.shape[1], self.shape[0], 1)
         rows = numpy.ascontiguousarray(self[::-1]).reshape(-1, self.shape[2])
@@ -57,13 +57,13 @@ def _number(value, name):
 
 
 def as_image(array, spacing=(1, 1, 1), origin=(0, 0, 0), axes="zyx"):
-    """A vtkImageData over the array's own memory, which lives as long as the image does.
+    """Returns a vtkImageData over the array's own memory, which lives as long as the image does.
 
-    array    three axes of at least 2 values; bool, integers, float32 or float64. One that is not contiguous in memory is copied, no other.
-             What a masked array masks is hidden: the image gets a vtkGhostType.
+    array    three axes of at least 2 values; bool, integers, float32 or float64. Only an array that is not contiguous in memory is copied.
+             Masked values of a masked array are hidden by a vtkGhostType.
     spacing  world length between two values along x, y and z, each > 0
-    origin   where the first value lies: x, y, z
-    axes     which of the array's axes is which: "zyx" is array[z, y, x], "xyz" array[x, y, z]
+    origin   position of the first value: x, y, z
+    axes     order of the array's axes: "zyx" is array[z, y, x], "xyz" array[x, y, z]
     """
     mask = numpy.ma.getmask(array)
     array = numpy.asarray(array)
@@ -80,12 +80,12 @@ def as_image(array, spacing=(1, 1, 1), origin=(0, 0, 0), axes="zyx"):
     if values.dtype == bool:
         values = values.view(numpy.uint8)
     image = vtkImageData()
-    fastest_first = ["xyz".index(axis) for axis in reversed(axes)]  # world axis of each of the image's own
+    fastest_first = ["xyz".index(axis) for axis in reversed(axes)]  # the world axis of each axis of the image
     image.SetDimensions(values.shape[::-1])
     image.SetSpacing([spacing[world] for world in fastest_first])
     image.SetOrigin(origin)
     image.SetDirectionMatrix([1.0 if fastest_first[own] == world else 0.0 for world in range(3) for own in range(3)])
-    scalars = numpy_to_vtk(values.reshape(-1))  # holds on to the array
+    scalars = numpy_to_vtk(values.reshape(-1))  # keeps the array alive
     scalars.SetName("values")
     image.GetPointData().SetScalars(scalars)
     if mask is not numpy.ma.nomask:
@@ -96,7 +96,7 @@ def as_image(array, spacing=(1, 1, 1), origin=(0, 0, 0), axes="zyx"):
 
 
 def _scalars(image):
-    """The values that are drawn, a flat array or one row a point, and which of them show: not masked, and finite in all components."""
+    """Returns the values that are drawn, a flat array or one row per point, and which of them are shown: those not masked and finite."""
     points, cells = image.GetPointData(), image.GetCellData()
     data = points if points.GetScalars() else cells
     if not data.GetScalars():
@@ -112,25 +112,25 @@ def _scalars(image):
 
 
 def _scaled(image):
-    """The image and 0, or one whose values are those times 2**-power: floats, which the mapper draws from, hold none above 3.4e38."""
+    """Returns the image, 0 and its shown values, or a copy times 2**-power, because the mapper's floats end at 3.4e38."""
     values, shown = _scalars(image)
     finite = values if shown.all() else values[shown]
     largest = max(abs(float(finite.max())), abs(float(finite.min())))
     if finite.dtype.kind != "f" or largest == 0 or 1e-30 < largest < 1e37:
         return image, 0, finite
     power = int(numpy.frexp(largest)[1])
-    with numpy.errstate(all="ignore"):  # of those that do not show
+    with numpy.errstate(all="ignore"):  # of values that are not shown
         values = numpy.ldexp(values.astype(numpy.float64), -power)
     result, scalars = vtkImageData(), numpy_to_vtk(values)
     result.ShallowCopy(image)
     data = result.GetPointData() if image.GetPointData().GetScalars() else result.GetCellData()
-    scalars.SetName(data.GetScalars().GetName())  # by which a mapper may select it
-    data.SetScalars(scalars)  # in place of those of the image
+    scalars.SetName(data.GetScalars().GetName())  # a mapper may select it by name
+    data.SetScalars(scalars)  # replaces the image's scalars
     return result, power, values[shown]
 
 
 def _spread(values):
-    """Least, most and most frequent of the values."""
+    """Returns the smallest, the largest and the most frequent value."""
     low, high = float(values.min()), float(values.max())
     if low == high:
         return low, high, low
@@ -145,7 +145,7 @@ def _is_number(value):
 
 
 def _pairs(points, count, name, wanted, power):
-    """Numbers, their values at those of an image that was scaled."""
+    """Returns checked tuples of numbers, the first of each scaled as the image is."""
     try:
         pairs = [_numbers(point, count, f"a point of {name}") for point in points]
     except TypeError:
@@ -157,7 +157,7 @@ def _pairs(points, count, name, wanted, power):
 
 
 def _opacity_points(opacity, low, high, common, power):
-    """Pairs of value and opacity: a number is the top of a ramp away from the most frequent value, or the opacity of the only one."""
+    """Returns pairs of value and opacity. A number is the top of a ramp away from the most frequent value, or the opacity of a single value."""
     if opacity is None or _is_number(opacity):
         top = 0.3 if opacity is None else float(opacity)
         if not 0 <= top <= 1:
@@ -171,7 +171,7 @@ def _opacity_points(opacity, low, high, common, power):
 
 
 def _color_points(color, low, high, power):
-    """Value, red, green and blue: one colour is that of all values."""
+    """Returns tuples of value, red, green and blue. A single colour is that of all values."""
     if color is None:
         middle = low + 0.5 * (high - low)
         points = [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
@@ -188,7 +188,7 @@ def _color_points(color, low, high, power):
 
 
 def _steps(points):
-    """In order; of several at one value the first and the last, which are the ends of a step."""
+    """Returns the points in order. Of several points at one value the first and the last remain, the ends of a step."""
     points = sorted(points, key=lambda point: point[0])
     return [point for n, point in enumerate(points)
             if not (0 < n < len(points) - 1 and points[n - 1][0] == point[0] == points[n + 1][0])]
@@ -220,13 +220,13 @@ def _aim(renderer, camera):
 
 
 def _check_display(window):
-    """Windows of X need a display, or VTK before 9.4 crashes; those of EGL and OSMesa, of another class, need none."""
+    """Raises if an X window has no display, because VTK before 9.4 crashes then. EGL and OSMesa have other classes and need no display."""
     if window.IsA("vtkXOpenGLRenderWindow") and not os.environ.get("DISPLAY"):
         raise RuntimeError("there is no X display to draw by (DISPLAY is not set): run this under xvfb-run")
 
 
 def _paint(floats, background):
-    """Premultiplied floats, the bottom row first -> a Picture."""
+    """Converts premultiplied floats, the bottom row first, to a Picture."""
     rgb, alpha = floats[::-1, :, :3], floats[::-1, :, 3:]
     if background is None:
         rgb = numpy.divide(rgb, alpha, out=numpy.zeros_like(rgb), where=alpha > 0)
@@ -238,19 +238,19 @@ def _paint(floats, background):
 
 def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), camera=None, background=(0.08, 0.1, 0.14), origin=(0, 0, 0),
          axes="zyx", unit_distance=None, mapper=None):
-    """Draws a volume and returns the picture, as an array (height, width, 4) of bytes that notebooks show.
+    """Draws a volume and returns the picture, an array (height, width, 4) of bytes that notebooks show.
 
-    array          see as_image, also for spacing, origin and axes; its memory is drawn from, not copied, unless the largest
-                   magnitude is outside 1e-30..1e37: then it is a copy times a power of 2
-                   What is masked (numpy.ma), NaN or infinite is transparent; where nothing else is there, that is a ValueError
-    opacity        pairs of a value and its opacity in 0..1 per unit_distance; a number: the top of a ramp away from the most frequent value,
-                   or, where all values are one, of all of it: a uniform box. Two pairs at one value are a step
-    color          (r, g, b) in 0..1 for all values, or some (value, r, g, b), of which two at one value are a step
+    array          see as_image, also for spacing, origin and axes. Its memory is not copied, unless the largest magnitude is outside
+                   1e-30..1e37; then a copy is scaled by a power of 2. Masked (numpy.ma), NaN and infinite values are transparent;
+                   an array without other values raises a ValueError
+    opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
+                   ramp away from the most frequent value, or the opacity of the whole volume where all values are equal
+    color          (r, g, b) in 0..1 for all values, or several (value, r, g, b). Two at one value are a step
     size           width and height in pixels
     camera         dict of azimuth, elevation (degrees) and zoom, or a vtkCamera
     background     (r, g, b) in 0..1, or None for transparent
-    unit_distance  world length that opacity is per (default: a fiftieth of the volume's diagonal)
-    mapper         a vtkStratusVolumeMapper of yours: with its settings, to ask for its counters, or to draw the next array without building anew
+    unit_distance  world length to which the opacity refers (default: a fiftieth of the volume's diagonal)
+    mapper         a vtkStratusVolumeMapper to draw with: for its settings and counters, or to draw further arrays without building anew
     """
     image = array if isinstance(array, vtkImageData) else as_image(array, spacing, origin, axes)
     width, height = _numbers(size, 2, "size")
@@ -282,7 +282,7 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     look.SetInterpolationTypeToLinear()
     look.SetScalarOpacityUnitDistance(image.GetLength() / 50 if unit_distance is None else float(unit_distance))
     mapper = mapper or vtkStratusVolumeMapper()
-    tag = mapper.AddObserver("ErrorEvent", lambda caller, event: None)  # what would be printed is raised
+    tag = mapper.AddObserver("ErrorEvent", lambda caller, event: None)  # show() raises the error, so VTK must not print it
     mapper.SetInputData(image)
     volume.SetMapper(mapper)
     renderer.AddVolume(volume)
@@ -292,7 +292,7 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     _aim(renderer, camera)
     window.Render()
     mapper.RemoveObserver(tag)
-    asked = renderer.GetNumberOfPropsRendered() > 0  # or what the mapper has is of another picture
+    asked = renderer.GetNumberOfPropsRendered() > 0  # otherwise the mapper holds another picture
     last, error = (mapper.GetLastImage(), mapper.GetLastError()) if asked else (None, "")
     window.Finalize()
     if last is None:
