@@ -29,7 +29,7 @@ std::string Number(vtkIdType value)
   return std::to_string(value);
 }
 
-// Returns whether an array holds numbers or flags, not quantities of points or tetrahedra.
+// Returns whether an array describes the mesh itself (markers, neighbours, ids, flags) rather than a quantity on it.
 bool IsBookkeeping(const char* name)
 {
   const char* const names[] = { "Marker", "Neighbors", "Facet", "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkGhostType" };

@@ -85,7 +85,8 @@ public:
 
   //@{
   /**
-   * A hole is a point in a part that stays empty. The part extends to the nearest facets around the point.
+   * Add a hole, remove all holes, or get their number. A hole is a point in a part that stays empty, up to the nearest facets around the
+   * point.
    */
   void AddHole(double x, double y, double z);
   void RemoveAllHoles();
@@ -94,8 +95,8 @@ public:
 
   //@{
   /**
-   * A region is a point in a part of the volume. The part's tetrahedra get this value of "Region" and, where maximumVolume is above 0, are
-   * no larger. Parts without a region get integers above all attributes.
+   * Add a region, remove all regions, or get their number. A region is a point in a part of the volume. The part's tetrahedra get this
+   * value of "Region" and, where maximumVolume is above 0, are no larger. Parts without a region get integers above all attributes.
    */
   void AddRegion(double x, double y, double z, double attribute, double maximumVolume = 0.0);
   void RemoveAllRegions();
