@@ -55,19 +55,28 @@ bool Declares(const std::string& shader, const char* uniform)
 }
 } // namespace
 
-vtkStratusPeels::Outside::Outside(vtkOpenGLRenderWindow* window) : State(window->GetState()), Culls(State->GetEnumState(GL_CULL_FACE))
+vtkStratusPeels::Adding::Adding(vtkOpenGLState* state) : State(state)
 {
-  this->State->PushDrawFramebufferBinding();
-  window->GetRenderFramebuffer()->Bind(GL_DRAW_FRAMEBUFFER);
-  this->State->vtkglDisable(GL_CULL_FACE);
   glGetIntegerv(GL_BLEND_EQUATION_RGB, &this->Equation[0]);
   glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &this->Equation[1]);
   this->State->vtkglBlendEquation(GL_FUNC_ADD);
 }
 
-vtkStratusPeels::Outside::~Outside()
+vtkStratusPeels::Adding::~Adding()
 {
   this->State->vtkglBlendEquationSeparate(static_cast<GLenum>(this->Equation[0]), static_cast<GLenum>(this->Equation[1]));
+}
+
+vtkStratusPeels::Outside::Outside(vtkOpenGLRenderWindow* window)
+    : State(window->GetState()), Culls(State->GetEnumState(GL_CULL_FACE)), Blending(State)
+{
+  this->State->PushDrawFramebufferBinding();
+  window->GetRenderFramebuffer()->Bind(GL_DRAW_FRAMEBUFFER);
+  this->State->vtkglDisable(GL_CULL_FACE);
+}
+
+vtkStratusPeels::Outside::~Outside()
+{
   this->State->SetEnumState(GL_CULL_FACE, this->Culls);
   this->State->PopDrawFramebufferBinding();
 }
@@ -148,13 +157,10 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
   vtkOpenGLState::ScopedglEnableDisable cullFace(state, GL_CULL_FACE);
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
   vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
-  GLint equation[2];
-  glGetIntegerv(GL_BLEND_EQUATION_RGB, &equation[0]);
-  glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &equation[1]);
+  const Adding adding(state);
   state->vtkglViewport(picture.To[0], picture.To[1], picture.Size[0], picture.Size[1]);
   state->vtkglDisable(GL_CULL_FACE);
   state->vtkglEnable(GL_BLEND);
-  state->vtkglBlendEquation(GL_FUNC_ADD);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   const float inverseSize[2] = { 1.0f / static_cast<float>(picture.Viewport[0]), 1.0f / static_cast<float>(picture.Viewport[1]) };
   const float scaleBias[2] = { picture.Scale, picture.Bias };
@@ -175,6 +181,5 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
   }
   picture.Depths->Deactivate();
   picture.Colors->Deactivate();
-  state->vtkglBlendEquationSeparate(static_cast<GLenum>(equation[0]), static_cast<GLenum>(equation[1]));
   return true;
 }

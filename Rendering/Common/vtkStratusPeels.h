@@ -38,6 +38,20 @@ public:
     float Scale = 1.0f, Bias = 0.0f;
   };
 
+  // Blending adds as long as this lives; its end brings the blend equation of before back. VTK 9.1's state has no such scope of its own.
+  class Adding
+  {
+  public:
+    explicit Adding(vtkOpenGLState* state);
+    ~Adding();
+    Adding(const Adding&) = delete;
+    void operator=(const Adding&) = delete;
+
+  private:
+    vtkOpenGLState* State;
+    int Equation[2]; // of colours, of alpha
+  };
+
   // While it lives, drawing goes to the window's own frame buffer, not to the pass's. In a window with multisampling, the pass of VTK 9.1
   // gets no depths of opaque surfaces and takes everything for hidden.
   class Outside
@@ -51,7 +65,7 @@ public:
   private:
     vtkOpenGLState* State;
     bool Culls;
-    int Equation[2];
+    Adding Blending;
   };
 
   vtkStratusPeels();
