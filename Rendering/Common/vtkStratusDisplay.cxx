@@ -39,7 +39,8 @@ void main()
   gl_FragData[0] = blends == 1 ? color : color + (1.0 - color.a) * texture(behind, texCoord);
 }
 )";
-}
+const char* const Unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
+} // namespace
 
 vtkStratusDisplay::vtkStratusDisplay() = default;
 vtkStratusDisplay::~vtkStratusDisplay() = default;
@@ -89,7 +90,7 @@ bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
-  if (!pixels.Bytes || !pixels.Alone || pixels.Depth || renderer->GetPass() || frame->GetMultiSamples() > 0 ||
+  if (!pixels.Bytes || !pixels.Alone || !this->WindowDepth.empty() || renderer->GetPass() || frame->GetMultiSamples() > 0 ||
     window->GetUsingSRGBColorSpace() || part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
     return false;
   }
@@ -138,8 +139,7 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  const bool writesDepth =
-    pixels.Depth && this->Stage != vtkStratusPeels::FIRST; // depths are not interpolated, so colours must not be, either
+  const bool writesDepth = !this->WindowDepth.empty() && this->Stage != vtkStratusPeels::FIRST; // depths are not interpolated, so colours must not be, either
   const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);
@@ -151,7 +151,7 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   }
   this->Texture->Activate();
   CopyPixels(window, picture, pixels, part, 0, 0);
-  return !pixels.Depth || this->UploadDepth(window, picture, pixels, part);
+  return this->WindowDepth.empty() || this->UploadDepth(window, picture, part);
 }
 
 bool vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth)
@@ -168,7 +168,7 @@ bool vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDe
   return quad->Program && quad->Program->GetCompiled();
 }
 
-bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
+bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Part& part)
 {
   const unsigned int width = static_cast<unsigned int>(part.Size[0]), height = static_cast<unsigned int>(part.Size[1]);
   this->Depth->SetContext(window);
@@ -183,7 +183,7 @@ bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStra
   vtkOpenGLState* state = window->GetState();
   state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, picture.Size[0]);
-  const float* from = pixels.Depth + static_cast<size_t>(part.From[1]) * picture.Size[0] + part.From[0];
+  const float* from = this->WindowDepth.data() + static_cast<size_t>(part.From[1]) * picture.Size[0] + part.From[0];
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, part.Size[0], part.Size[1], GL_RED, GL_FLOAT, from);
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   return true;
@@ -192,6 +192,7 @@ bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStra
 void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLState* state = window->GetState();
+  const bool writesDepth = !this->WindowDepth.empty();
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglScissor scissor(state);
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
@@ -201,13 +202,13 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   state->vtkglViewport(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   state->vtkglScissor(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   // The rays end at the opaque depth, so that no depth test is needed. Depth is only written with the test enabled.
-  if (pixels.Depth) {
+  if (writesDepth) {
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglDepthFunc(GL_ALWAYS);
   } else {
     state->vtkglDisable(GL_DEPTH_TEST);
   }
-  state->vtkglDepthMask(pixels.Depth ? GL_TRUE : GL_FALSE);
+  state->vtkglDepthMask(writesDepth ? GL_TRUE : GL_FALSE);
   const bool blends = pixels.Bytes || !this->CopyBehind(renderer, window, part);
   if (blends) {
     state->vtkglEnable(GL_BLEND);
@@ -215,17 +216,17 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   } else {
     state->vtkglDisable(GL_BLEND);
   }
-  vtkOpenGLQuadHelper* quad = pixels.Depth ? this->DepthQuad.get() : this->Quad.get();
+  vtkOpenGLQuadHelper* quad = writesDepth ? this->DepthQuad.get() : this->Quad.get();
   quad->Program->SetUniformi("blends", blends ? 1 : 0);
   quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
   const float scaleBias[2] = { pixels.Scale, pixels.Bias };
   quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
   quad->Program->SetUniform2f("scaleBias", scaleBias);
-  if (pixels.Depth) {
+  if (writesDepth) {
     quad->Program->SetUniformi("depths", this->Depth->GetTextureUnit());
   }
   quad->Render();
-  if (pixels.Depth) {
+  if (writesDepth) {
     state->vtkglDepthFunc(GL_LEQUAL); // VTK's default
   }
   if (!blends) {
@@ -233,24 +234,21 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
   }
 }
 
-vtkStratusPeels::Draw vtkStratusDisplay::Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper)
+vtkStratusPeels::Draw vtkStratusDisplay::ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper)
 {
   vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   const bool outside = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
-  this->Stage = this->Peels.Begin(prop, mapper);
-  if (this->Stage == vtkStratusPeels::FIRST && outside) {
-    this->Stage = vtkStratusPeels::OUTSIDE;
-  } else if (this->Stage == vtkStratusPeels::LATER && !outside && prop != this->PeeledProp) {
-    this->Stage = vtkStratusPeels::FIRST;
+  const vtkStratusPeels::Draw stage = this->Peels.Begin(prop, mapper);
+  if (stage == vtkStratusPeels::FIRST && outside) {
+    return vtkStratusPeels::OUTSIDE;
   }
-  if (this->Stage != vtkStratusPeels::LATER) {
-    this->Peeled = vtkStratusPeels::Picture();
-    this->PeeledProp = prop;
+  if (stage == vtkStratusPeels::LATER && !outside && prop != this->PeeledProp) {
+    return vtkStratusPeels::FIRST;
   }
-  return this->Stage;
+  return stage;
 }
 
-bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels)
+bool vtkStratusDisplay::DrawPixels(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels)
 {
   vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   if (!window) {
@@ -276,22 +274,48 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
     }
     this->Peeled.Scale = pixels.Scale;
     this->Peeled.Bias = pixels.Bias;
-    drawn = this->DrawAgain();
-  } else if (drawn && this->PrepareQuad(window, pixels.Depth != nullptr)) {
+    drawn = this->DrawPeeled();
+  } else if (drawn && this->PrepareQuad(window, !this->WindowDepth.empty())) {
     const std::unique_ptr<vtkStratusPeels::Outside> frame(
       this->Stage == vtkStratusPeels::OUTSIDE ? new vtkStratusPeels::Outside(window) : nullptr);
     this->Blend(renderer, window, pixels, part);
   } else {
     drawn = false;
   }
-  if (pixels.Depth) {
+  if (!this->WindowDepth.empty()) {
     this->Depth->Deactivate();
   }
   this->Texture->Deactivate();
   return drawn;
 }
 
-bool vtkStratusDisplay::DrawAgain()
+bool vtkStratusDisplay::DrawPeeled()
 {
   return !this->Peeled.Colors || this->Peels.Render(this->Window, this->Peeled);
+}
+
+bool vtkStratusDisplay::Begin(
+  vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error)
+{
+  this->Stage = this->ChooseStage(renderer, prop, mapper);
+  if (this->Stage == vtkStratusPeels::LATER) {
+    error = this->DrawPeeled() ? lastError : Unshown;
+    return false;
+  }
+  this->Peeled = vtkStratusPeels::Picture();
+  this->PeeledProp = prop;
+  return true;
+}
+
+bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels, std::string& error)
+{
+  this->WindowDepth.clear();
+  if (pixels.WritesDepth || this->Stage == vtkStratusPeels::FIRST) { // peels are told apart by depth
+    picture.ToWindowDepth(*pixels.Depth, this->WindowDepth);
+  }
+  const bool drawn = this->DrawPixels(renderer, picture, pixels);
+  if (!drawn) {
+    error = Unshown;
+  }
+  return drawn;
 }

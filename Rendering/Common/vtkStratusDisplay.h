@@ -12,6 +12,8 @@
 #include "vtkNew.h"
 
 #include <memory>
+#include <string>
+#include <vector>
 
 class vtkOpenGLQuadHelper;
 class vtkOpenGLRenderWindow;
@@ -28,8 +30,9 @@ public:
     int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: pixels outside are empty
     float Scale = 1.0f;
     float Bias = 0.0f;
-    const float* Depth = nullptr; // window depths to write where alpha is not 0, or to place the picture between peels (FIRST)
-    bool Alone = false;           // nothing was drawn before, so that the bytes may replace the frame buffer's
+    const std::vector<float>* Depth = nullptr; // along each ray, as the core gives it
+    bool WritesDepth = false;                  // into the window's depth buffer, where alpha is not 0
+    bool Alone = false;                        // nothing was drawn before, so that the bytes may replace the frame buffer's
   };
 
   vtkStratusDisplay();
@@ -37,12 +40,12 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // Must be called before each draw. After LATER, only DrawAgain() is left to call. After FIRST, Draw() needs depths.
-  vtkStratusPeels::Draw Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);
-  // Returns false where the window is not an OpenGL one or compiles no shader.
-  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
-  // Draws the picture of this frame's last Draw() between the current peels, or nothing if there was none.
-  bool DrawAgain();
+  // Must be called before each draw. Returns false where the draw is complete already: a renderer that peels asks for several draws a
+  // frame, and the later ones draw the first one's picture between other peels. Then `error` is lastError, with which the frame's first
+  // draw ended.
+  bool Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error);
+  // Ends a draw for which Begin() returned true. Returns false, with the reason in `error`, where the window can't show it.
+  bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels, std::string& error);
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
@@ -54,6 +57,9 @@ private:
     int ToSize[2];
   };
 
+  vtkStratusPeels::Draw ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);
+  bool DrawPixels(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
+  bool DrawPeeled();
   static Part ChoosePart(const vtkStratusPicture& picture, const Pixels& pixels);
   static void CopyPixels(
     vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part, int x, int y);
@@ -62,9 +68,10 @@ private:
   bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
   bool PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth);
-  bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
+  bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Part& part);
   void Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
 
+  std::vector<float> WindowDepth; // of this draw; empty: it shows no depth
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
   vtkNew<vtkTextureObject> Depth;

@@ -139,12 +139,8 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
 
 bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
-  const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
-  const vtkStratusPeels::Draw peel = this->Display.Begin(renderer, prop, this->Mapper);
-  if (peel == vtkStratusPeels::LATER) {
-    const bool drawn = this->Display.DrawAgain();
-    error = drawn ? this->LastError : unshown;
-    return drawn && error.empty();
+  if (!this->Display.Begin(renderer, prop, this->Mapper, this->LastError, error)) {
+    return error.empty();
   }
   bool empty = false;
   this->HasPicture = false;
@@ -172,15 +168,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   pixels.Rgba = this->Rgba.data();
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
-  if (peel == vtkStratusPeels::FIRST) {
-    this->Picture.ToWindowDepth(this->Depth, this->ShownDepth);
-    pixels.Depth = this->ShownDepth.data();
-  }
-  if (!this->Display.Draw(renderer, this->Picture, pixels)) {
-    error = unshown;
-    return false;
-  }
-  return true;
+  pixels.Depth = &this->Depth;
+  return this->Display.Draw(renderer, this->Picture, pixels, error);
 }
 
 vtkImageData* vtkStratusTetrahedraMapper::Internals::GetLastImage()

@@ -47,7 +47,7 @@ private:
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
   bool HasPicture = false;
-  std::vector<float> Rgba, Depth, ShownDepth;
+  std::vector<float> Rgba, Depth;
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

@@ -81,7 +81,7 @@ private:
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
-  std::vector<float> Rgba, Depth, ShownDepth, Selected;
+  std::vector<float> Rgba, Depth, Selected;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given

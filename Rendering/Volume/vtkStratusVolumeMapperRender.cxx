@@ -142,12 +142,8 @@ bool vtkStratusVolumeMapper::Internals::Cast(
 
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
-  const char* const unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
-  const vtkStratusPeels::Draw peel = this->Display.Begin(renderer, prop, this->Mapper);
-  if (peel == vtkStratusPeels::LATER) {
-    const bool drawn = this->Display.DrawAgain();
-    error = drawn ? this->LastError : unshown;
-    return drawn;
+  if (!this->Display.Begin(renderer, prop, this->Mapper, this->LastError, error)) {
+    return error.empty();
   }
   this->HasPicture = false; // a refused picture leaves no image
   this->HasSamples = this->Mapper->CountSamples != 0;
@@ -197,20 +193,16 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   if (selector) {
     this->ChooseSelected(selector, pixels);
   }
-  if (this->IsFirstHit() || selector || peel == vtkStratusPeels::FIRST) {
-    this->Picture.ToWindowDepth(this->Depth, this->ShownDepth);
-    pixels.Depth = this->ShownDepth.data();
-  }
-  const bool drawn = this->Display.Draw(renderer, this->Picture, pixels);
+  pixels.Depth = &this->Depth;
+  pixels.WritesDepth = this->IsFirstHit() || selector;
+  const bool drawn = this->Display.Draw(renderer, this->Picture, pixels, error);
   if (selector) {
     selector->EndRenderProp();
   }
-  if (!drawn) {
-    error = unshown;
-    return false;
+  if (drawn) {
+    this->DrawMilliseconds = Now() - cast + read - start;
   }
-  this->DrawMilliseconds = Now() - cast + read - start;
-  return true;
+  return drawn;
 }
 
 vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
