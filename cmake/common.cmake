@@ -10,12 +10,14 @@ function (stratus_common_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
 endfunction ()
 
-# stratus_use_common(TARGET NAME...): the objects of NAME.cxx, and the headers beside them. The target links what the objects need.
+# stratus_use_common(TARGET NAME...): the objects of NAME.cxx, the headers beside them, and those of Filters/Common in any case. The target
+# links what the objects need.
 function (stratus_use_common target)
   get_target_property(real ${target} ALIASED_TARGET)
   if (NOT real)
     set(real ${target})
   endif ()
+  target_include_directories(${real} PRIVATE "$<TARGET_PROPERTY:stratus-filters-common,INTERFACE_INCLUDE_DIRECTORIES>")
   foreach (name IN LISTS ARGN)
     set(home)
     foreach (library IN LISTS stratus_common_libraries)

@@ -4,6 +4,8 @@
 #ifndef vtkStratusArrays_h
 #define vtkStratusArrays_h
 
+#include "vtkStratusPrivate.h"
+
 #include "vtkType.h"
 
 #include <string>
@@ -13,12 +15,6 @@ class vtkDataSetAttributes;
 class vtkPolyData;
 class vtkUnsignedCharArray;
 class vtkUnstructuredGrid;
-
-#if defined(__GNUC__)
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
-#else
-#define VTK_STRATUS_PRIVATE
-#endif
 
 // Sets `flags` to the array vtkGhostType, or to nullptr where there is none. Returns false, with the reason in `error`, unless the array
 // holds one unsigned char for each of the `count` `things` ("points of the image").

@@ -4,15 +4,11 @@
 #ifndef vtkStratusEXRFile_h
 #define vtkStratusEXRFile_h
 
+#include "vtkStratusPrivate.h"
+
 #include <functional>
 #include <string>
 #include <vector>
-
-#ifdef _WIN32
-#define VTK_STRATUS_PRIVATE
-#else
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
-#endif
 
 struct VTK_STRATUS_PRIVATE vtkStratusEXRChannel {
   std::string Name;                        // 1..255 bytes, unique; viewers know R, G, B, A and Z

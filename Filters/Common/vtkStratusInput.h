@@ -5,6 +5,8 @@
 
 #include "stratus.h"
 
+#include "vtkStratusPrivate.h"
+
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
@@ -17,13 +19,6 @@ class vtkImageData;
 class vtkMatrix4x4;
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
-
-// Each module compiles its own copy of these classes, so their symbols stay hidden.
-#if defined(__GNUC__)
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
-#else
-#define VTK_STRATUS_PRIVATE
-#endif
 
 // A view of one array of an image. It copies the values where the array's memory is not one plain run, and copies again when they change.
 class VTK_STRATUS_PRIVATE vtkStratusImageView

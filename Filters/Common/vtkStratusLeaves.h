@@ -4,6 +4,9 @@
 #define vtkStratusLeaves_h
 
 #include "stratus.h"
+
+#include "vtkStratusPrivate.h"
+
 #include "vtkType.h"
 
 #include <vector>
@@ -15,7 +18,7 @@ constexpr const char* vtkStratusOriginalCellArray = "StratusOriginalCell"; // ce
 constexpr const char* vtkStratusPartitionArray = "StratusPartition"; // field data: version, number of nodes, number of leaves, frame, nodes
 
 // Reads a partition from a grid's arrays, and writes one to them.
-struct vtkStratusLeaves {
+struct VTK_STRATUS_PRIVATE vtkStratusLeaves {
   std::vector<stratus_partition_node> Nodes;
   std::vector<int32_t> Leaf;
   stratus_leaves Leaves;

@@ -4,6 +4,8 @@
 #ifndef vtkStratusTetGenText_h
 #define vtkStratusTetGenText_h
 
+#include "vtkStratusPrivate.h"
+
 #include "vtkType.h"
 
 #include <cstdint>
@@ -12,12 +14,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#ifdef _WIN32
-#define VTK_STRATUS_PRIVATE
-#else
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
-#endif
 
 // Thrown inside the module and caught by the reader's or writer's entry point.
 struct VTK_STRATUS_PRIVATE vtkStratusTetGenError {

@@ -4,12 +4,11 @@
 #define vtkStratusTetGenProcess_h
 
 #include "tetgen_exchange.h"
+#include "vtkStratusPrivate.h"
 
 #include <cstdio>
 #include <functional>
 #include <string>
-
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
 
 // Thrown inside the module and caught by the filter.
 struct VTK_STRATUS_PRIVATE vtkStratusTetGenFailure {

@@ -4,6 +4,8 @@
 #ifndef vtkStratusBoundsWatch_h
 #define vtkStratusBoundsWatch_h
 
+#include "vtkStratusPrivate.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkWeakPointer.h"
 
@@ -13,12 +15,6 @@
 #include <vector>
 
 class vtkProp;
-
-#if defined(__GNUC__)
-#define VTK_STRATUS_PRIVATE __attribute__((visibility("hidden")))
-#else
-#define VTK_STRATUS_PRIVATE
-#endif
 
 class VTK_STRATUS_PRIVATE vtkStratusBoundsWatch
 {
