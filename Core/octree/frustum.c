@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta: six half-spaces from a camera, and boxes against them by their nearest and farthest corner (Assarsson & Moller 2000), or
- * (frustum_exact.c) by every separating axis. Whatever rounds, rounds towards "seen". */
+ * Frusta as six half-spaces, made from a camera. Boxes are tested by their nearest and farthest corner (Assarsson & Moller 2000), or by
+ * every separating axis (frustum_exact.c). A rounding error never hides a box that is seen. */
 #include "frustum.h"
 
 #include "vector.h"
@@ -17,7 +17,8 @@ static void set_plane(double plane[4], const double normal[3], const double poin
   plane[3] = offset / length - stratus_vector_dot(unit, point);
 }
 
-/* Rows of the inverse of (right, up, forward): they tell u, v and k of a point. False if the three span no space. */
+/* Rows of the inverse of the matrix (right, up, forward): their products with a point give its u, v and k. Returns false if the three axes
+ * are linearly dependent. */
 static bool invert_axes(const stratus_camera* camera, double rows[3][3])
 {
   const double* given[3] = { camera->right, camera->up, camera->forward };
@@ -105,7 +106,7 @@ stratus_status stratus_frustum_check(stratus_context* context, const stratus_fru
   return STRATUS_OK;
 }
 
-/* ---- made ready */
+/* ---- preparation */
 
 void stratus_frustum_prepare(const stratus_frustum* frustum, bool exact, stratus_frustum_plan* plan)
 {
@@ -185,7 +186,7 @@ stratus_side stratus_plan_side(const stratus_frustum_plan* plan, unsigned mask, 
   return side;
 }
 
-/* First the bounding sphere, then the box. */
+/* The bounding sphere decides most planes at less cost than the box. */
 stratus_side stratus_plan_side_turned(const stratus_frustum_plan* plan, unsigned mask, const stratus_solid_box* box)
 {
   const double radius = stratus_solid_box_radius(box);

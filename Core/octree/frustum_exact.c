@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta as solids: their corners, and every axis that may separate one from a box. Six half-spaces alone keep boxes that lie beyond an
+ * Frusta as solids: their corners, and every axis that may separate one from a box. The six half-spaces alone keep boxes that lie beyond an
  * edge. */
 #include "frustum.h"
 
@@ -7,11 +7,12 @@
 
 #include <string.h>
 
-#define CORNER_SLACK 1e-9 /* of a corner's place, relative to how far it is: three planes meet less exactly than one is known */
+/* Error of a corner's position, relative to its distance: an intersection of three planes is less exact than a plane. */
+#define CORNER_SLACK 1e-9
 
 /* ---- corners */
 
-/* Where three planes meet, or, without the third, the direction in which the first two do. False where they don't. */
+/* Point where three planes meet, or, without the third, the direction of the line in which two meet. Returns false where they do not. */
 static bool meet(const double p[4], const double q[4], const double* r, double result[3])
 {
   double pq[3], qr[3], rp[3];
@@ -32,7 +33,7 @@ static bool meet(const double p[4], const double q[4], const double* r, double r
   return isfinite(result[0]) && isfinite(result[1]) && isfinite(result[2]);
 }
 
-/* True if the corner is in the frustum that it is said to be a corner of. */
+/* True if the corner lies in the frustum: half-spaces that bound no solid have corners outside. */
 static bool corner_is_inside(const stratus_frustum_plan* plan, int corner)
 {
   const double* point = plan->corners[corner];
@@ -51,14 +52,14 @@ static void add_edge(stratus_frustum_plan* plan, int from, int to)
 {
   double edge[3], along[3];
   if (plan->directions[from] && plan->directions[to]) {
-    return; /* an edge of what lies at infinity */
+    return; /* both corners lie at infinity */
   }
   for (int a = 0; a < 3; ++a) {
     const double* finite = plan->corners[from];
     edge[a] = plan->directions[to] ? plan->corners[to][a] : plan->directions[from] ? finite[a] : plan->corners[to][a] - finite[a];
   }
   if (stratus_vector_normalize(edge) == 0.0) {
-    return; /* the tip of a pyramid */
+    return; /* both corners are the tip of a pyramid */
   }
   for (int e = 0; e < plan->edge_count; ++e) {
     stratus_vector_cross(edge, plan->edges[e], along);
@@ -82,7 +83,7 @@ bool stratus_plan_find_corners(stratus_frustum_plan* plan)
     if (!meet(plan->planes[c & 1], plan->planes[2 + (c >> 1 & 1)], missing ? NULL : plan->planes[4 + (c >> 2)], corner)) {
       return false;
     }
-    /* Two planes meet in a line: its end at infinity is the one inside the plane at the other end. */
+    /* Without an end plane, the corner is one end of the line in which two sides meet: the end that lies inside the opposite end plane. */
     if (missing && stratus_vector_dot(corner, plan->planes[4 + !(c >> 2)]) < 0.0) {
       for (int a = 0; a < 3; ++a) {
         corner[a] = -corner[a];
@@ -115,7 +116,7 @@ double stratus_solid_box_radius(const stratus_solid_box* box)
   return sqrt(sum);
 }
 
-/* corners: relative to the box's centre where finite. */
+/* Finite corners are relative to the box's centre. */
 static bool axis_separates(
   const stratus_frustum_plan* plan, const stratus_solid_box* box, double corners[8][3], const double axis[3], double size)
 {
@@ -123,7 +124,7 @@ static bool axis_separates(
     fabs(stratus_vector_dot(axis, box->half[2]));
   const double length = sqrt(stratus_vector_dot(axis, axis));
   if (!(length > STRATUS_DEPENDENT_BELOW)) {
-    return false; /* edges that are parallel */
+    return false; /* parallel edges have no common normal */
   }
   double low = INFINITY, high = -INFINITY;
   for (int c = 0; c < 8; ++c) {
@@ -154,7 +155,7 @@ bool stratus_plan_separated(const stratus_frustum_plan* plan, const stratus_soli
     }
   }
   for (int i = 0; i < 3; ++i) {
-    /* A flat box along the axes still has edges in all three. */
+    /* A box along the axes has edges along all three, even where it is flat. */
     const double unit[3] = { i == 0, i == 1, i == 2 };
     memcpy(edges[i], box->turned ? box->half[i] : unit, sizeof unit);
     (void)stratus_vector_normalize(edges[i]);

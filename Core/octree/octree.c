@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The octree as an object: its options, its making and end, and what can be asked of it without looking at the tree. */
+ * The octree as an object: its options, creation and destruction, and the questions that need no walk through the tree. */
 #include "octree.h"
 
 #include <string.h>
@@ -111,7 +111,7 @@ void stratus_octree_clear(stratus_octree* tree)
     return;
   }
   stratus_context* context = tree->context;
-  /* Level 0 keeps its one group: what has been made needs no memory again. */
+  /* Level 0 keeps its one group, so that a cleared tree needs no allocation. */
   for (int l = 0; l <= tree->depth; ++l) {
     for (size_t n = 0; n < 8 * tree->levels[l].groups; ++n) {
       stratus_list_release(context, &tree->levels[l].nodes[n]);

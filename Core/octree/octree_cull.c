@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a frustum sees of an octree: nodes from the root down (Li & Huang 2024, section 4), their boxes sixteen at a time in floats, and in
- * double precision those that floats cannot decide. So the answer is that of testing every object, whatever the tree. */
+ * Culling: which objects of an octree a frustum sees. Nodes are tested from the root down (Li & Huang 2024, section 4), then their boxes,
+ * sixteen at a time in floats, and those that floats cannot decide in double precision. The answer therefore equals that of testing every
+ * object, whatever the tree. */
 #include "octree.h"
 
 #include <string.h>
 
-#define PACKS_A_THREAD 1024 /* fewer are not worth waking a thread */
+#define PACKS_A_THREAD 1024 /* fewer packs are not worth a second thread */
 
 /* ---- nodes */
 
@@ -21,7 +22,8 @@ static void look_at_children(
   stratus_octree_test_children(&look->planes, mask, center, quarter, 1.0 + 2.0 * tree->pad, masks);
 }
 
-/* Of the window's height, at the depth of the point: from the lower and the upper plane's distances. INFINITY behind the eye. */
+/* `width` as a share of the window's height at the depth of the point. That height is the sum of the distances from the bottom and the top
+ * plane. INFINITY behind the eye or without one of these planes. */
 static double share_of_window(const stratus_frustum_plan* plan, const double point[3], double width)
 {
   double height = 0.0;
@@ -72,7 +74,7 @@ static bool object_is_seen(const stratus_octree* tree, const stratus_frustum_pla
   return side == STRATUS_SIDE_INSIDE || (side == STRATUS_SIDE_CROSSING && !(exact && plan->solid && stratus_plan_separated(plan, &box)));
 }
 
-/* Fills keep[] of the job's packs, counts what is kept, and returns how many boxes were asked in double precision. */
+/* Fills keep[] of the job's packs and job->kept. Returns how many boxes were tested again in double precision. */
 static uint64_t test_job(const stratus_octree_view* view, const looker* look, bool exact, stratus_octree_job* job)
 {
   const stratus_octree* tree = view->tree;
@@ -137,7 +139,7 @@ static stratus_status reserve_results(stratus_octree_view* view)
   return STRATUS_OK;
 }
 
-/* Runs the jobs, and leaves in the view the ids of what is seen. */
+/* Tests the boxes of all jobs and leaves the ids of the visible objects in the view. */
 static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bool exact, stratus_octree_visible* visible)
 {
   const stratus_octree* tree = view->tree;
@@ -168,7 +170,7 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
   }
   size_t told = tree->unbounded.count;
   for (int64_t j = 0; j < jobs; ++j) {
-    if (view->jobs[j].kept > 0) { /* without any there may be no place to tell them */
+    if (view->jobs[j].kept > 0) { /* view->ids may be NULL where no job keeps a box */
       tell_job(view, &view->jobs[j], view->ids + told);
       told += view->jobs[j].kept;
     }
@@ -183,7 +185,7 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
   return STRATUS_OK;
 }
 
-/* ---- how large, how far */
+/* ---- coverage and depth */
 
 static double gap(const stratus_frustum_plan* plan, int p, const double point[3])
 {
@@ -191,7 +193,7 @@ static double gap(const stratus_frustum_plan* plan, int p, const double point[3]
   return (n[0] * point[0] + n[1] * point[1] + n[2] * point[2] + n[3]) / plan->lengths[p];
 }
 
-/* Of one direction of the window: how much of it the square takes. */
+/* Share of the window that the square covers in one direction. low and high: distances of its centre from the two planes. */
 static double covered(double low, double high, double radius)
 {
   const double whole = low + high;
@@ -236,9 +238,10 @@ static stratus_status measure_all(stratus_octree_view* view, const stratus_frust
   return STRATUS_OK;
 }
 
-/* ---- one look */
+/* ---- one call */
 
-/* The planes that cut through what there is: where all of it is in sight, nothing needs a tree. The linear list knows no hull. */
+/* Planes that cut the hull of all objects. If there are none, everything is in sight and no tree is needed. The linear list (levels 0)
+ * tests every object, so that it keeps all planes. */
 static unsigned planes_that_cut(const stratus_octree* tree, const stratus_frustum_plan* plan)
 {
   unsigned mask = plan->used;
@@ -250,7 +253,8 @@ static unsigned planes_that_cut(const stratus_octree* tree, const stratus_frustu
   return mask;
 }
 
-/* Now and then, what no border has crossed for long becomes whole: from below, since a node goes before its parent. */
+/* Merges nodes that no border has crossed for collapse_after calls. The deepest level goes first, since a node merges only after its
+ * children have. */
 static stratus_status collapse_unseen(stratus_octree* tree, uint64_t* collapses)
 {
   const uint32_t after = (uint32_t)tree->options.collapse_after, every = after / 8 > 0 ? after / 8 : 1;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Levels of the octree as arrays in Morton order (Li & Huang 2024, 3.1): the root's cell, nodes that are made whole again (those of a level
- * together, since what lies behind them moves), and the root that grows. */
+ * Levels of the octree as arrays in Morton order (Li & Huang 2024, 3.1): the root's cell, the root's growth, and nodes that merge with
+ * their children. A level's nodes merge in one pass, since each merge moves all groups behind it. */
 #include "octree.h"
 
 #include <float.h>
 #include <string.h>
 
-#define FIRST_GRID 1024.0    /* the root's corner is a multiple of its width over this: all cells stay exact in double .. */
-#define FIRST_GROWTH 65536.0 /* .. while it has not grown by more than this */
+#define FIRST_GRID 1024.0    /* the root's first corner is a multiple of its width / 1024, so that all cells are exact in double */
+#define FIRST_GROWTH 65536.0 /* growth of the root's width beyond which cells might be inexact */
 
 stratus_status stratus_octree_reserve_groups(stratus_context* context, stratus_octree_level* level, size_t needed)
 {
@@ -83,7 +83,8 @@ void stratus_octree_count_splits(stratus_octree_level* level)
 
 /* ---- the root's cell */
 
-/* The smallest cube that holds what its list holds: objects get an origin in their midst, so that floats tell them apart. */
+/* Fits the root's cell to its list: a cube whose width is a power of two. The origin moves to the objects' middle, where floats resolve
+ * them best. */
 static void fit_root(stratus_octree* tree)
 {
   const stratus_octree_list* list = &tree->levels[0].nodes[0];
@@ -120,7 +121,7 @@ static void fit_root(stratus_octree* tree)
   (void)frexp(fmax(1.01 * width, (double)FLT_MIN), &exponent);
   tree->edge = tree->first_edge = ldexp(1.0, exponent);
   for (int a = 0; a < 3; ++a) {
-    /* In the cube's middle, so that what spreads finds room on each side. */
+    /* Objects lie in the cube's middle, so that they can spread to each side. */
     const double corner = 0.5 * (least[a] + greatest[a]) - 0.5 * tree->edge;
     tree->corner[a] = floor(corner * (FIRST_GRID / tree->edge) + 0.5) * (tree->edge / FIRST_GRID);
   }
@@ -135,7 +136,7 @@ void stratus_octree_make_root(stratus_octree* tree)
   }
 }
 
-/* ---- whole again */
+/* ---- merging */
 
 static void gather(stratus_octree* tree, const stratus_octree_list* from, stratus_octree_list* to)
 {
@@ -143,7 +144,7 @@ static void gather(stratus_octree* tree, const stratus_octree_list* from, stratu
   for (uint32_t i = 0; i < from->count; ++i) {
     const uint32_t guess = tree->slot[ids[i]];
     float box[6];
-    /* An object of several children comes once: its place is then known to be in the new list. */
+    /* An object may be in several children. Its slot then shows that the new list already holds it. */
     if (tree->options.placement == STRATUS_OCTREE_TOUCHING && guess < to->count && stratus_list_ids(to)[guess] == ids[i]) {
       continue;
     }
@@ -160,7 +161,7 @@ static bool is_stale(const stratus_octree* tree, const stratus_octree_level* bel
   return below->split[group] == 0 && (int64_t)(uint32_t)(tree->clock - below->used[group]) > age;
 }
 
-/* Room for what the node and its children hold. */
+/* Allocates a list with room for the node's objects and its children's. */
 static stratus_status allocate_whole(
   stratus_octree* tree, const stratus_octree_list* own, const stratus_octree_list* children, stratus_octree_list* whole)
 {
@@ -171,7 +172,7 @@ static stratus_status allocate_whole(
   return stratus_list_allocate(tree->context, count, whole);
 }
 
-/* One node after the other: what is gathered before memory runs out stays so, and the groups behind close up at the end. */
+/* Nodes merge one at a time. When memory runs out, merged nodes stay so, and the loop goes on only to close the gaps between groups. */
 stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t age, uint64_t* collapses)
 {
   stratus_octree_level *above = &tree->levels[level], *below = &tree->levels[level + 1];
@@ -228,7 +229,8 @@ static stratus_status flatten(stratus_octree* tree)
   return STRATUS_OK;
 }
 
-/* The root becomes one of eight in the next level; one that is not split gets a new cell at its next split. */
+/* Makes the root one of eight children of a new root, twice as wide. A root that is not split only loses its cell: its next split fits a
+ * new one. */
 static stratus_status raise_root(stratus_octree* tree, unsigned octant)
 {
   uint64_t collapses = 0;
@@ -241,7 +243,7 @@ static stratus_status raise_root(stratus_octree* tree, unsigned octant)
   }
   stratus_octree_level top = { 0 };
   TRY(stratus_octree_reserve_groups(tree->context, &top, 1));
-  /* The level that nothing is left in, whose arrays the shift would lose. */
+  /* The shift below overwrites this level. It has no groups left, but it still owns arrays. */
   release_level(tree->context, &tree->levels[tree->depth + 1]);
   memmove(tree->levels + 1, tree->levels, (size_t)(tree->depth + 1) * sizeof *tree->levels);
   stratus_octree_level* old = &tree->levels[1];
@@ -272,7 +274,7 @@ stratus_status stratus_octree_grow(stratus_octree* tree, const float box[6])
     unsigned octant = 0;
     stratus_octree_extent(tree, box, lo, hi);
     for (int a = 0; a < 3; ++a) {
-      /* Towards the object: what was the root is the upper half where the object is below it. */
+      /* The new root extends towards the box: on each axis where the box reaches below the old root, that root becomes the upper half. */
       octant |= (unsigned)(lo[a] <= tree->corner[a]) << a;
     }
     if (tree->edge >= tree->first_edge * FIRST_GROWTH) {

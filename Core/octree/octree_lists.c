@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A node's list of boxes: packs of sixteen, so that one instruction tests as many as the machine is wide, and ids beside them, so that a
- * list that is seen whole is copied as it stands. */
+ * A node's list of boxes. Packs of sixteen boxes let one instruction test as many as the machine is wide. Ids lie apart from them, so that
+ * the ids of a list that is seen whole are copied as they stand. */
 #include "octree.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The octree shown and counted: its nodes for people, its bytes, and a check of everything that it promises itself. */
+ * Inspection of the octree: its nodes, its bytes, and a check of its invariants. */
 #include "octree.h"
 
 #include <string.h>
@@ -122,7 +122,7 @@ stratus_status stratus_octree_nodes(const stratus_octree* tree, const stratus_fr
 /* ---- check */
 
 typedef struct checker {
-  uint32_t* seen; /* by id: lists that it is in */
+  uint32_t* seen; /* number of lists that hold the object, by id */
   size_t references;
   int level;
   size_t node;
@@ -219,7 +219,7 @@ stratus_status stratus_octree_check(const stratus_octree* tree)
   if (status == STRATUS_OK) {
     status = check_objects(tree, &c);
   }
-  /* What nobody reaches from the root would be counted in the levels only. */
+  /* Only the levels' count includes nodes that no parent leads to. */
   if (status == STRATUS_OK && c.references != statistics.references) {
     status = stratus_fail(tree->context, STRATUS_INVALID_ARGUMENT, "octree: %zu references in the levels, %zu from the root",
       statistics.references, c.references);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Objects of the octree as they come, move and go: their ids, their bounds, and the nodes that they belong in. */
+ * Objects of the octree: insertion, movement and removal. Manages their ids, their bounds, and their places in the nodes' lists. */
 #include "octree.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ static stratus_status reserve_objects(stratus_octree* tree, size_t needed)
     return stratus_fail(context, STRATUS_OVERFLOW, "octree: %zu objects, at most %zu", needed, IDS_MAX);
   }
   const size_t room = tree->capacity + tree->capacity / 2 > needed ? tree->capacity + tree->capacity / 2 : needed;
-  /* Each array remembers what it has room for until all four do: then capacity is raised. */
+  /* Each array counts its own capacity here. The tree's capacity rises only after all four have grown. */
   size_t have[4] = { tree->capacity, tree->capacity, tree->capacity, tree->capacity };
   void *bounds = tree->bounds, *slot = tree->slot, *kind = tree->kind, *turned = tree->turned;
   stratus_status status = stratus_octree_reserve(context, &bounds, &have[0], room, tree->limit, sizeof *tree->bounds);
@@ -76,7 +76,7 @@ static bool is_used(const stratus_octree* tree, uint32_t id)
 
 /* ---- bounds */
 
-/* What a caller gave, checked: bounds, and the turned box that they are about. */
+/* An object as the caller gave it: its bounds and, unless NULL, the turned box within them. */
 typedef struct given {
   double bounds[6];
   const double* turned;
@@ -89,7 +89,7 @@ static stratus_status read_bounds(stratus_context* context, const double* number
   g->kind = turned ? STRATUS_OBJECT_TURNED : STRATUS_OBJECT_BOX;
   for (int a = 0; a < 3; ++a) {
     if (turned) {
-      /* One step outward covers what the sum rounds. */
+      /* One step outward covers the rounding of the sum. */
       const double half = (fabs(numbers[3 + a]) + fabs(numbers[6 + a]) + fabs(numbers[9 + a])) * (1.0 + 1e-15);
       g->bounds[2 * a] = nextafter(numbers[a] - half, -INFINITY);
       g->bounds[2 * a + 1] = nextafter(numbers[a] + half, INFINITY);
@@ -129,7 +129,7 @@ static stratus_status check_call(const stratus_octree* tree, const double* numbe
 typedef struct visitor {
   const float* box;
   uint32_t id;
-  /* finding one place: of enclosing placement, or of a tree that has only one */
+  /* the last place that note_place() met: the only one where places is 1 */
   int level;
   size_t node;
   size_t places;
@@ -149,7 +149,7 @@ static stratus_status take_from(stratus_octree* tree, int level, size_t node, vo
   const visitor* v = user;
   stratus_octree_list* list = &tree->levels[level].nodes[node];
   const uint32_t slot = stratus_list_find(list, v->id, tree->slot[v->id]);
-  if (slot != UINT32_MAX) { /* absent where memory ran out while it was entered */
+  if (slot != UINT32_MAX) { /* absent if memory ran out before it was added here */
     stratus_list_remove(list, slot, tree->slot);
   }
   return STRATUS_OK;
@@ -178,7 +178,7 @@ static void unplace(stratus_octree* tree, uint32_t id)
   }
 }
 
-/* Enters the object where its bounds belong. On failure it is nowhere. */
+/* Adds the object to every list where its bounds belong. After a failure no list holds it. */
 static stratus_status place(stratus_octree* tree, uint32_t id)
 {
   float box[6] = { 0 };
@@ -235,7 +235,7 @@ static stratus_status insert(stratus_octree* tree, const double* numbers, size_t
   if (turned && count > 0) {
     TRY(reserve_turned(tree));
   }
-  /* Many at once need no spare room; a few do, or each call would copy the list. */
+  /* A large batch gets exact room. A small one grows the list by half, since exact room would copy the list at every call. */
   stratus_octree_list* root = &tree->levels[0].nodes[0];
   if (!tree->rooted && count > root->count / 2) {
     TRY(stratus_list_reserve(tree->context, root, root->count + count));
@@ -269,7 +269,7 @@ stratus_status stratus_octree_insert_oriented(stratus_octree* tree, const double
   return insert(tree, boxes, count, ids, true);
 }
 
-/* True if the object stays in its one node, whose list then has the new box. */
+/* Moves an object that stays in its one node: only its box in the list changes. Returns false if the object must leave its node. */
 static bool move_within(stratus_octree* tree, uint32_t id, const given* g)
 {
   float from[6], to[6];
@@ -301,7 +301,7 @@ static bool move_within(stratus_octree* tree, uint32_t id, const given* g)
   return true;
 }
 
-/* Where memory runs out: back to where it was, whose list has room for it. */
+/* Out of memory: the object returns to its old node, whose list still has room. */
 static stratus_status move_one(stratus_octree* tree, uint32_t id, const given* g)
 {
   if (move_within(tree, id, g)) {
@@ -314,7 +314,7 @@ static stratus_status move_one(stratus_octree* tree, uint32_t id, const given* g
     memcpy(numbers, tree->turned[id], sizeof numbers);
     old.turned = numbers;
   }
-  /* Growing may take memory and rearrange the tree: before the object leaves it. */
+  /* Growth may fail or rearrange the tree, so it comes before the object leaves its node. */
   if (g->kind != STRATUS_OBJECT_UNBOUNDED && tree->has_origin) {
     float box[6];
     stratus_octree_relative(tree, g->bounds, box);
@@ -377,7 +377,7 @@ stratus_status stratus_octree_remove(stratus_octree* tree, const uint32_t* ids, 
   }
   TRY(stratus_array_check(tree->context, "ids", count, sizeof *ids));
   TRY(stratus_octree_check_ids(tree, ids, count));
-  /* A high bit on each kind finds those that come twice. */
+  /* The top bit of kind marks an id that the call has named, so that a second mention is found. */
   stratus_status status = STRATUS_OK;
   size_t marked = 0;
   for (; marked < count && status == STRATUS_OK; ++marked) {

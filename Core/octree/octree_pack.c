@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Sixteen boxes, or eight nodes, against a frustum's planes at once: by the corner farthest inside (p-vertex) and, where it matters, the
- * one farthest outside (n-vertex). Plane coherency: the plane that rejected a pack last time is asked first. */
+ * one farthest outside (n-vertex). Plane coherency: the plane that last rejected a pack is tested first. */
 #include "clones.h"
 #include "octree.h"
 
 #include <float.h>
 #include <string.h>
 
-/* Six roundings of floats and the outward step of the boxes, relative to the largest term. */
+/* Bound on the rounding error of a plane's value in floats, relative to its largest term: six roundings and the boxes' outward step. */
 #define FLOAT_SLACK 8e-7
 #define OUTSIDE 0x80
 
@@ -28,7 +28,7 @@ void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_fru
     }
     const double band = FLOAT_SLACK * (sum * reach + fabs(offset)) + 4.0 * STRATUS_PLANE_SLACK * (size + sum * reach) + (double)FLT_MIN;
     if (!(band < 1e30)) {
-      /* Beyond floats: every box is told as near the plane, and doubles decide. */
+      /* Floats cannot hold this plane. With an infinite band every box is near it, and doubles decide. */
       planes->band[p] = FLT_MAX;
       continue;
     }
@@ -44,7 +44,7 @@ void stratus_octree_planes_prepare(const stratus_octree* tree, const stratus_fru
 
 /* ---- packs */
 
-/* Lanes of one pack that plane p rejects, and those (of the kept, too) that are near it. */
+/* Adds the lanes that plane p rejects to *rejected, and the lanes that are near it, rejected ones included, to *near. */
 static ALWAYS_INLINE void test_pack(
   const stratus_octree_planes* planes, int p, int turned, const float* restrict box, unsigned* restrict rejected, unsigned* restrict near)
 {
@@ -95,8 +95,8 @@ static ALWAYS_INLINE void test_packs(const stratus_octree_planes* planes, unsign
 
 /* ---- children */
 
-/* A cube's distance to a plane is its centre's less a constant: the same for all eight, whether of its sphere or of the cube. So the
- * sphere, which comes first in the paper, would save nothing. */
+/* A cube lies outside a plane when its centre does by more than a constant, which is the same for all eight children. The same is true of
+ * its sphere, so that testing the sphere first, as the paper does, would save nothing. */
 static ALWAYS_INLINE void test_children(
   const stratus_octree_planes* planes, unsigned mask, const double center[3], double quarter, double looseness, uint8_t* restrict masks)
 {
@@ -120,7 +120,7 @@ static ALWAYS_INLINE void test_children(
   }
 }
 
-/* ---- one clone for each instruction set: comparisons and sums only, so all give the same bits */
+/* ---- one clone for each instruction set: they compare and add only, so that all give the same bits */
 
 #define CLONE(name, attribute)                                                                                                             \
   attribute static void packs_##name(const stratus_octree_planes* planes, unsigned mask, int turned, const float* boxes, uint8_t* hints,   \

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where a box belongs: a function of the box and the root's cell alone, so that an object is found again without a link to its node. Cells
- * are exact in double (widths are powers of two), and the same before and after the root has grown. */
+ * Nodes where a box belongs. They follow from the box and the root's cell alone, so that no object stores a link to its node. Cells are
+ * exact in double (their widths are powers of two) and stay the same when the root grows. */
 #include "octree.h"
 
-/* nextafterf() by a step of the bits: it is asked for every bound of every object. */
+/* nextafterf() as one step of the bits, since every bound of every object needs it. */
 static float next_above(float value)
 {
   union {
     float value;
     int32_t bits;
-  } u = { value + 0.0f }; /* no zero is negative then */
+  } u = { value + 0.0f }; /* -0 becomes +0 */
   u.bits += 1 | u.bits >> 31;
   return u.value;
 }
@@ -23,7 +23,7 @@ void stratus_octree_relative(const stratus_octree* tree, const double bounds[6],
   }
 }
 
-/* Centre and radius of the sphere about a box. */
+/* Centre of a box's bounding sphere; returns its radius. */
 static double sphere_of(const float box[6], double center[3])
 {
   double sum = 0.0;
@@ -73,7 +73,7 @@ static unsigned enclosing_octant(double pad, const double corner[3], double size
   return octant;
 }
 
-/* The six bits of the paper, two an axis: which halves the sphere touches. */
+/* The paper's six bits, two for each axis, tell which halves of the cell the sphere touches. */
 static unsigned touched_octants(const double corner[3], double size, const float box[6])
 {
   static const unsigned lower[3] = { 0x55, 0x33, 0x0f };
@@ -96,7 +96,7 @@ unsigned stratus_octree_octants(const stratus_octree* tree, const double corner[
 
 stratus_status stratus_octree_visit_places(stratus_octree* tree, const float box[6], stratus_octree_visit visit, void* user)
 {
-  /* At most seven siblings wait on each level. */
+  /* A depth-first walk leaves at most seven siblings waiting on each level. */
   struct {
     stratus_octree_place place;
     int level;

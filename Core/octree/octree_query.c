@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What else is asked of an octree: boxes, spheres, rays, nearest objects. Nodes are tested with room for rounding, objects as they were
- * given, in double precision: the answer is that of a loop over all of them. */
+ * Queries of an octree: boxes, spheres, rays, nearest objects. Nodes are tested with room for rounding, objects by their given bounds in
+ * double precision, so that the answer equals that of a loop over all objects. */
 #include "octree.h"
 
 #include <stdlib.h>
@@ -10,14 +10,14 @@ typedef enum query_kind { QUERY_BOX, QUERY_SPHERE, QUERY_RAY } query_kind;
 
 typedef struct query {
   query_kind kind;
-  double bounds[6];    /* box */
-  double point[3];     /* sphere's centre, ray's origin */
-  double radius;       /* sphere; length of a ray in its direction's */
-  double direction[3]; /* ray */
+  double bounds[6];    /* of a box query */
+  double point[3];     /* the sphere's centre or the ray's origin */
+  double radius;       /* the sphere's radius, or the ray's t_max in lengths of its direction */
+  double direction[3]; /* of a ray */
 } query;
 
 typedef struct found {
-  double value; /* distance, or place on the ray */
+  double value; /* distance, or t where the ray enters */
   uint32_t id;
 } found;
 
@@ -38,7 +38,7 @@ static bool overlaps(const double a[6], const double b[6])
   return a[0] <= b[1] && b[0] <= a[1] && a[2] <= b[3] && b[2] <= a[3] && a[4] <= b[5] && b[4] <= a[5];
 }
 
-/* Where the ray enters, 0 if it begins inside; INFINITY: it misses. */
+/* t where the ray enters the box: 0 if it begins inside, INFINITY if it misses. */
 static double enters(const double bounds[6], const query* q)
 {
   double from = 0.0, to = q->radius;
@@ -56,7 +56,7 @@ static double enters(const double bounds[6], const query* q)
   return from <= to ? from : INFINITY;
 }
 
-/* True if the query has the box; its distance or entry. */
+/* True if the query hits the box; *value is then its distance, or t of the ray's entry. */
 static bool has(const query* q, const double bounds[6], double* value)
 {
   switch (q->kind) {
@@ -75,7 +75,7 @@ static bool has(const query* q, const double bounds[6], double* value)
 
 /* ---- the walk */
 
-/* True if the box lies in the query, beyond rounding, so that splitting it tells nothing. */
+/* True if the query contains the whole box, so that splitting the node would gain nothing. */
 static bool swallows(const query* q, const double bounds[6])
 {
   double far = 0.0;
@@ -99,7 +99,7 @@ static void ask_children(
     double bounds[6], value;
     for (int a = 0; a < 3; ++a) {
       const double middle = center[a] + (o >> a & 1 ? quarter : -quarter);
-      /* Lists hold boxes rounded to floats; and a double rounds where the origin is far away. */
+      /* `room` covers the lists' rounding to floats, and the rounding of doubles where the origin is far away. */
       const double room = 1e-6 * (fabs(middle) + half) + 1e-14 * (fabs(tree->origin[a]) + fabs(q->point[a]));
       bounds[2 * a] = tree->origin[a] + (middle - half - room);
       bounds[2 * a + 1] = tree->origin[a] + (middle + half + room);
@@ -126,7 +126,7 @@ static int by_value(const void* a, const void* b)
   return x->value < y->value ? -1 : x->value > y->value ? 1 : by_id(a, b);
 }
 
-/* All objects of the query, in no order; *list is released by the caller. */
+/* Collects all objects of the query in no particular order. The caller releases *list. */
 static stratus_status collect(stratus_octree* tree, const query* q, found** list, size_t* count)
 {
   stratus_octree_view* view = tree->walker;
@@ -288,7 +288,7 @@ stratus_status stratus_octree_query_ray(stratus_octree* tree, const double origi
   return STRATUS_OK;
 }
 
-/* Spheres twice as large each time, from one that would hold about k were they spread evenly. */
+/* Searches spheres of doubling radius. The first would hold about k objects if these were spread evenly. */
 stratus_status stratus_octree_query_nearest(
   stratus_octree* tree, const double point[3], size_t k, uint32_t* ids, double* distances, size_t* count)
 {

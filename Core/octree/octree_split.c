@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Splitting: the nodes of one level that are to be split hand down what they hold, each to eight children, which then stand in Morton order
- * among those of the level below. Memory is there before anything changes. */
+ * Splitting: several nodes of one level each hand their objects down to eight children, which take their places in Morton order in the
+ * level below. All memory is allocated before the tree changes. */
 #include "octree.h"
 
 #include <string.h>
 
-#define PARTED 32  /* a split that hands down less than one in so many is none */
-#define REPEATED 4 /* nor is one that makes more than so many of each */
+#define PARTED 32  /* a split must hand down at least one object in so many */
+#define REPEATED 4 /* touching: a split must make at most this many copies of each object on average */
 
-/* The lists that take a node's place: its own in [8]. */
+/* Lists that replace a split node's list: the children's in [0..7], its own in [8]. */
 typedef struct parted {
   stratus_octree_list lists[9];
 } parted;
@@ -18,7 +18,7 @@ static size_t octants_of(unsigned code, bool touching)
   return touching ? (size_t)__builtin_popcount(code) : code < 8;
 }
 
-/* Octants of each object into codes[], and room for them. *productive: the split parts the objects. */
+/* Fills codes[] with each object's octants and allocates the new lists. *productive: the split separates the objects. */
 static stratus_status part(
   const stratus_octree* tree, int level, const stratus_octree_place* place, uint8_t* codes, parted* parts, bool* productive)
 {
@@ -53,7 +53,7 @@ cleanup:
   return status;
 }
 
-/* Cannot fail: there is room. */
+/* Cannot fail: part() has allocated the lists. */
 static void hand_down(stratus_octree* tree, const stratus_octree_list* list, const uint8_t* codes, parted* parts)
 {
   const bool touching = tree->options.placement == STRATUS_OCTREE_TOUCHING;
@@ -72,7 +72,7 @@ static void hand_down(stratus_octree* tree, const stratus_octree_list* list, con
   }
 }
 
-/* Makes room for `count` new groups of eight in the level below the nodes, from behind, and puts their lists there. */
+/* Inserts `count` new groups into the level below, from its end backwards, and moves the new lists there. */
 static void insert_groups(stratus_octree* tree, int level, const stratus_octree_place* places, const parted* parts, size_t count)
 {
   stratus_octree_level *above = &tree->levels[level], *below = &tree->levels[level + 1];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From the root down, one level after the other: a level's nodes that are to be split are split together (Li & Huang 2024, 3.2), and what
- * is met is left as jobs. Each level is visited in Morton order, so that the jobs of a tree are always the same. */
+ * The walk through the tree, one level after the other. The nodes of a level that are to be split are split together (Li & Huang
+ * 2024, 3.2). The lists that the walk reaches become jobs. Each level is visited in Morton order, so that a tree always gives the same
+ * jobs. */
 #include "octree.h"
 
 stratus_status stratus_octree_view_create(stratus_octree* tree, stratus_octree_view** out)
@@ -47,7 +48,7 @@ stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view)
     view->stamps[i] = view->stamp;
   }
   if (++view->stamp == 0) {
-    /* Once in four thousand million calls all stamps are old. */
+    /* The stamp has wrapped after 2^32 calls: old stamps could seem new. */
     for (size_t i = 0; i < view->stamps_capacity; ++i) {
       view->stamps[i] = 0;
     }
@@ -84,7 +85,7 @@ static stratus_status add_jobs(stratus_octree_view* view, const stratus_octree_l
   return STRATUS_OK;
 }
 
-/* What every stop rule asks first. */
+/* Conditions that every stop rule shares. */
 static bool may_split(const stratus_octree* tree, int level, const stratus_octree_place* place)
 {
   const stratus_octree_level* nodes = &tree->levels[level];
@@ -112,7 +113,7 @@ static stratus_status split_level(stratus_octree_view* view, stratus_octree_walk
   return stratus_octree_split(tree, level, view->batch, batch, &walk->splits, &walk->handed_down);
 }
 
-/* Children of one split node to the other side's places; returns how many there are then. */
+/* Adds the children of one split node to places[side]; returns the new count. */
 static size_t enter_children(
   stratus_octree_view* view, stratus_octree_walk* walk, int level, const stratus_octree_place* place, int side, size_t count)
 {
@@ -141,7 +142,7 @@ static size_t enter_children(
   return count;
 }
 
-/* The root as the upper child of a cell whose centre is the root's least corner. */
+/* Tests the root as the upper child (octant 7) of a cell whose centre is the root's least corner. */
 static unsigned root_mask(const stratus_octree* tree, stratus_octree_walk* walk)
 {
   uint8_t masks[8];
