@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Bounding volume hierarchies over boxes: checks, choice of the builder, and the measures that all are judged by. */
+ * Bounding volume hierarchies over boxes: checks of the input, choice of the builder, and the checks and the cost measure that apply to
+ * every tree. */
 #include "bvh_build.h"
 
 static bool box_is_sound(const stratus_box* box)
@@ -81,7 +82,7 @@ stratus_status stratus_bvh_create(
     TRY_CLEANUP(run_builder(options->method, &build));
     TRY_CLEANUP(stratus_progress(context, "hierarchy", 0.8));
   }
-  stratus_release(context, build.codes); /* the layout has no use for them, and needs memory */
+  stratus_release(context, build.codes); /* the layout does not use them, and it needs memory */
   build.codes = NULL;
   TRY_CLEANUP(stratus_bvh_layout(&build, options->leaf_boxes, bvh));
 
@@ -110,7 +111,7 @@ typedef struct checker {
   const stratus_box* boxes;
   uint32_t count;
   uint8_t *node_seen, *box_seen;
-  stratus_box* tight; /* a node's */
+  stratus_box* tight; /* by node: the box that its boxes require */
 } checker;
 
 #define WRONG(c, ...) stratus_fail((c)->context, STRATUS_INVALID_ARGUMENT, __VA_ARGS__)

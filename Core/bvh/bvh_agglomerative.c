@@ -1,23 +1,25 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is least merge, again and again. By surface, as the paper has
- * it, single voxels far apart along one axis are near, and merge into slivers that overlap all that comes later: on the sets of record
- * trees are 1.19 to 1.24 times as costly as the sweep's. By the sum of the edges it is 1.10 to 1.14, so that is the builder's measure.
+ * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is least merge, until one is left. With the union's surface
+ * area as its size, as in the paper, single voxels far apart along one axis count as near and merge into slivers, which overlap all later
+ * clusters: on the sets of record such trees cost 1.19 to 1.24 times as much as the sweep's. With the sum of the union's edges they cost
+ * 1.10 to 1.14 times as much, so the builder uses that sum.
  *
- * By either measure the distance of two clusters never shrinks by merging, so any two that are each other's nearest may merge at once, in
- * any order, and the tree is the greedy one's; rounds of that find the nearest in parallel.
+ * By either measure, merging never shrinks the distance of two clusters. Two clusters that are each other's nearest may therefore merge at
+ * once, in any order, and the tree is the one of the greedy method. The search for nearest clusters runs in rounds, and in parallel.
  *
- * A merged cluster keeps the lower of its two places. Of equal distances the one between places that differ in the lowest bits is the
- * lesser: a total order that merging respects too, so equal distances (in a lattice nearly all are) leave no choice.
+ * A merged cluster keeps the lower of its two places. Among clusters at equal distance the nearest is the one whose place gives the least
+ * XOR with the searching place. Merging preserves this order too, so that ties, which are the rule in a lattice, leave no choice.
  *
- * Nearest clusters are searched in a binary tree over places. A node keeps, an axis, the greatest lo and the least hi of its clusters: no
- * union with any of them is smaller than the one with that. Nodes are met in the order of how their places differ, so an equal distance
- * found later never wins. */
+ * A binary tree over places bounds the search. A node keeps the greatest lo and the least hi of its clusters along each axis: a union with
+ * any of them is at least as large as the union with that interval. The search visits nodes in rising order of the XOR of places, so that a
+ * tie found later never wins. */
 #include "bvh_build.h"
 
 #define LEVELS_MAX 32
-#define SEARCHES_SHARED 64 /* fewer are done by one thread */
+#define SEARCHES_SHARED 64 /* searches in a round that are worth several threads */
 
-/* hi < lo as a rule: what every box in the node reaches, not what holds them. lo INT32_MIN, hi INT32_MAX: no box. */
+/* Interval that each box of a node reaches across: the greatest lo and the least hi, so that hi < lo as a rule. lo INT32_MIN and hi
+ * INT32_MAX: the node has no box. */
 typedef struct reach {
   int32_t lo[3], hi[3];
 } reach;
@@ -27,15 +29,15 @@ typedef struct agglomeration {
   stratus_bvh_measure measure;
   uint32_t count;
   stratus_bvh_pair* pairs;
-  uint32_t made;    /* pairs */
-  stratus_box* box; /* a place's, as of the following */
+  uint32_t made;    /* number of pairs */
+  stratus_box* box; /* by place, as are the next three arrays */
   uint32_t* child;  /* as in a pair */
   uint32_t* nearest;
-  uint32_t* changed; /* the round in which it merged */
+  uint32_t* changed; /* round of the place's last merge */
   uint32_t* live;    /* places that hold a cluster */
-  uint32_t* search;  /* places whose nearest is sought in this round */
+  uint32_t* search;  /* places whose nearest cluster is searched in this round */
   uint32_t live_count, search_count, round;
-  reach* level[LEVELS_MAX]; /* node n of level v: places n << v .. ((n+1) << v) - 1 */
+  reach* level[LEVELS_MAX]; /* node n of level v covers places n << v .. ((n+1) << v) - 1 */
   int levels;
 } agglomeration;
 
@@ -92,7 +94,7 @@ static void search_node(nearest_search* s, int level, uint32_t node)
     s->best_distance = distance;
     return;
   }
-  const uint32_t near = 2 * node + (s->place >> (level - 1) & 1); /* agrees with the place in one bit more */
+  const uint32_t near = 2 * node + (s->place >> (level - 1) & 1); /* the half that shares one more bit with the place */
   for (int c = 0; c < 2; ++c) {
     const uint32_t child = near ^ (uint32_t)c;
     if (child < level_size(s->g->count, level - 1)) {
@@ -139,12 +141,13 @@ static void merge(agglomeration* g, uint32_t low, uint32_t high)
   g->child[low] = g->made++;
   stratus_box_add(g->box + low, g->box + high);
   g->changed[low] = g->changed[high] = g->round;
-  g->nearest[high] = high; /* tells that it is gone */
+  g->nearest[high] = high; /* marks the place as empty */
   update_reach(g, low, true);
   update_reach(g, high, false);
 }
 
-/* A nearest cluster stays so until it merges: whom others merge to is no nearer. */
+/* Runs one round. A cluster's nearest remains so until one of the two merges, since no merged cluster is nearer than its parts were. All
+ * others are searched again. */
 static void run_round(agglomeration* g)
 {
   uint32_t live = 0;
@@ -164,7 +167,7 @@ static void run_round(agglomeration* g)
   for (uint32_t i = 0; i < g->search_count; ++i) {
     g->nearest[g->search[i]] = find_nearest(g, g->search[i]);
   }
-  /* Two who are each other's nearest had one of them searched now, else they would have merged before. */
+  /* Of two clusters that are each other's nearest, at least one was searched in this round: else they would have merged before. */
   for (uint32_t i = 0; i < g->search_count; ++i) {
     const uint32_t place = g->search[i], other = g->nearest[place];
     if (g->changed[place] != g->round && other != place && g->nearest[other] == place) {

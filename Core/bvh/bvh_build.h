@@ -9,38 +9,40 @@
 
 #define STRATUS_BVH_LEAF 0x80000000u
 #define STRATUS_BVH_BOXES_MAX 0x1fffffffu
-#define STRATUS_BVH_COORDINATE_MAX (1 << 28) /* differences of sums of two fit an int32_t */
+#define STRATUS_BVH_COORDINATE_MAX (1 << 28) /* sums of two coordinates, and differences of such sums, fit an int32_t */
 
-/* An inner node. A child is the number of a pair, or STRATUS_BVH_LEAF | rank of a box. */
+/* An inner node. A child is the index of a pair, or STRATUS_BVH_LEAF | rank of a box. */
 typedef struct stratus_bvh_pair {
   uint32_t child[2];
 } stratus_bvh_pair;
 
-/* Boxes in the order of their Morton codes, equal codes in the caller's order; a box's place there is its rank. */
+/* Input and result of a builder. Boxes are in the order of their Morton codes; equal codes keep the caller's order. A box's rank is its
+ * index in that order. */
 typedef struct stratus_bvh_build {
   stratus_context* context;
-  uint32_t count; /* of boxes, >= 2 where builders are called */
-  int max_depth;  /* deeper a builder may split as it likes: the layout will split at the median */
+  uint32_t count; /* of boxes; builders are called with at least 2 */
+  int max_depth;  /* below this depth the layout splits at the median, whatever the builder did */
   stratus_box* boxes;
-  uint32_t* number;        /* the caller's, by rank */
+  uint32_t* number;        /* index in the caller's boxes, by rank */
   uint64_t* codes;         /* by rank */
-  stratus_bvh_pair* pairs; /* count - 1, the builder's result: every box and every pair but the root is a child once */
+  stratus_bvh_pair* pairs; /* count - 1 pairs, the builder's result: each box, and each pair but the root, is a child exactly once */
   uint32_t root;
 } stratus_bvh_build;
 
 /* ---- bvh_morton.c */
-/* Sorts boxes into `build`, whose context, count and max_depth are set. On failure what was allocated is the caller's to release. */
+/* Sorts boxes into `build`, whose context, count and max_depth are set. After a failure the caller releases the arrays that it finds
+ * there. */
 stratus_status stratus_bvh_sort_boxes(stratus_bvh_build* build, const stratus_box* boxes);
 
-/* ---- bvh_device.c: the same to the bit as on the host. */
-/* Whether the context's device should build structures, and can take as many boxes. */
+/* ---- bvh_device.c: gives the same bits as the host */
+/* True if the context's device builds structures and can hold so many boxes. */
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count);
-/* least: of lo + hi; codes: count, in the order of boxes. */
+/* Fills `count` codes in the order of the boxes. least: least lo + hi of all boxes along each axis. */
 stratus_status stratus_device_morton_codes(
   stratus_context* context, const stratus_box* boxes, uint32_t count, const int32_t least[3], int shift, uint64_t* codes);
 stratus_status stratus_device_morton_hierarchy(stratus_context* context, const uint64_t* codes, uint32_t count, stratus_bvh_pair* pairs);
 
-/* ---- builders: fill pairs and root */
+/* ---- builders: each fills pairs and root */
 stratus_status stratus_bvh_build_sah(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_sweep(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_lbvh(stratus_bvh_build* build);
@@ -49,47 +51,48 @@ stratus_status stratus_bvh_build_agglomerative(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_k_means(stratus_bvh_build* build);
 
-/* bvh_density_peaks.c: each box's cluster by rank, numbered in the order of ranks; *clusters: how many. */
+/* bvh_density_peaks.c: fills each box's cluster by rank. Clusters are numbered in the order of their first ranks; *clusters is their
+ * number. */
 stratus_status stratus_bvh_density_clusters(const stratus_bvh_build* build, uint32_t* cluster, uint32_t* clusters);
 
-/* A box and its rank, where a builder moves boxes. */
+/* A box and its rank, for builders that reorder boxes. */
 typedef struct stratus_bvh_item {
   stratus_box box;
   uint32_t rank;
 } stratus_bvh_item;
 
 stratus_status stratus_bvh_items_create(const stratus_bvh_build* build, stratus_bvh_item** items);
-/* Binned SAH over items [begin, end), which it reorders. The pair that splits a range before item m is pair m - 1: every place splits once,
- * so pairs need no counter and no order of threads. *child: the range's root, as in a pair. To be called within a parallel region, by one
- * thread. */
+/* Splits items [begin, end) by the binned surface area heuristic (SAH) and reorders them. A split before item m becomes pair m - 1. Each
+ * place splits at most once, so that pairs need no counter and do not depend on the order of threads. *child: the range's root, as in a
+ * pair. One thread of a parallel region calls it. */
 void stratus_bvh_split_items(
   stratus_bvh_item* items, uint32_t begin, uint32_t end, int depth, int max_depth, stratus_bvh_pair* pairs, uint32_t* child);
 
-/* Of a union of two clusters: how far they are from each other. */
+/* Distance of two clusters: the size of their union, as its surface area or the sum of its edges. */
 typedef enum stratus_bvh_measure { STRATUS_BVH_SURFACE, STRATUS_BVH_EDGES } stratus_bvh_measure;
 
-/* Locally optimal merging of 2 <= count boxes; pairs: count - 1, leaves are places in `boxes`. Near places win ties, so boxes come in an
- * order that keeps neighbours together. */
+/* Merges clusters that are each other's nearest, beginning with `count` >= 2 boxes. Fills count - 1 pairs, whose leaves are indices in
+ * `boxes`. Ties go to boxes with near indices, so the boxes' order should keep neighbours together. */
 stratus_status stratus_bvh_agglomerate(
   stratus_context* context, stratus_bvh_measure measure, const stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs, uint32_t* root);
-/* ---- bvh_join.c: joins consecutive ranges of items by a tree over the ranges: puts the ranges in the tree's order, fills the pairs of the
- * places between them, and tells where the root of each range is to be stored. */
+/* ---- bvh_join.c: joins consecutive ranges of items by a tree over the ranges. The function reorders the ranges to the order of that tree,
+ * fills the pairs that split between them, and tells where each range's root is to be stored. */
 typedef struct stratus_bvh_join {
   uint32_t ranges;            /* >= 2 */
-  const stratus_bvh_pair* of; /* ranges - 1, over the ranges as they lie at first */
+  const stratus_bvh_pair* of; /* ranges - 1 pairs; their leaves are indices of ranges in the original order */
   uint32_t root;              /* in `of` */
-  uint32_t* start;            /* ranges + 1, in items; changes with the order */
-  uint32_t** child;           /* out: by range, as they lie at the end */
-  uint32_t* room;             /* 3 * ranges + 1, for the function itself */
+  uint32_t* start;            /* first item of each range, and the end: ranges + 1 numbers; updated with the order */
+  uint32_t** child;           /* result: where to store the root of each range, in the new order */
+  uint32_t* room;             /* scratch of 3 * ranges + 1 numbers */
 } stratus_bvh_join;
-/* spare: a copy of the ranges' items finds room there, at the same places. *child: the root, as in a pair. */
+/* spare: scratch for a copy of the items, at the same indices. *child: the root, as in a pair. */
 void stratus_bvh_join_ranges(
   const stratus_bvh_join* join, stratus_bvh_item* items, stratus_bvh_item* spare, stratus_bvh_pair* pairs, uint32_t* child);
 
-/* ---- bvh_layout.c: from pairs to nodes; leaf_boxes as in the options. */
+/* ---- bvh_layout.c: turns pairs into nodes; leaf_boxes as in the options */
 stratus_status stratus_bvh_layout(const stratus_bvh_build* build, int leaf_boxes, stratus_bvh* bvh);
 
-/* ---- small change */
+/* ---- helpers */
 
 static inline void stratus_box_add(stratus_box* box, const stratus_box* other)
 {
@@ -104,7 +107,7 @@ static inline stratus_box stratus_box_none(void)
   return (stratus_box){ { INT32_MAX, INT32_MAX, INT32_MAX }, { INT32_MIN, INT32_MIN, INT32_MIN } };
 }
 
-/* Half of the surface. */
+/* Half of the box's surface area. */
 static inline double stratus_box_area(const stratus_box* box)
 {
   const double x = (double)box->hi[0] - (double)box->lo[0], y = (double)box->hi[1] - (double)box->lo[1],
@@ -112,7 +115,7 @@ static inline double stratus_box_area(const stratus_box* box)
   return x * y + y * z + z * x;
 }
 
-/* Twice the middle along an axis. */
+/* Twice the box's middle along an axis. */
 static inline int32_t stratus_box_middle(const stratus_box* box, int axis)
 {
   return box->lo[axis] + box->hi[axis];

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Clustering by density peaks (Rodriguez & Laio 2014): a box's density is how many boxes lie within a cutoff distance, delta how far the
- * nearest one of higher density is; those with the greatest density * delta are centres, and every other box belongs to the cluster of its
- * nearest denser neighbour.
+ * Clustering by density peaks (Rodriguez & Laio 2014). A box's density is the number of boxes within a cutoff distance. Its delta is the
+ * distance to the nearest box of higher density. The boxes with the greatest density * delta are centres; every other box joins the cluster
+ * of its nearest denser neighbour.
  *
- * Boxes in one place are one site with a weight. Both searches go through a binary tree over sites in Morton order, bounded by boxes, so
- * none looks at all pairs. Lengths are half voxels, squared, in integers; of equal densities the site that comes first is the higher. */
+ * Boxes with the same middle form one site with a weight. Both searches use a binary tree over the sites in Morton order, whose bounds
+ * spare them most pairs. Lengths are squares of half voxels, in integers. Among equal densities the site that comes first counts as
+ * denser. */
 #include "bvh_build.h"
 
 #include "radix_sort.h"
@@ -12,29 +13,29 @@
 #include <string.h>
 
 #define LEVELS_MAX 32
-#define BOXES_A_CENTRE 64   /* a cluster for as many boxes .. */
-#define CENTRES_MAX 1024    /* .. but no more of them */
-#define NEIGHBOURS .01      /* within the cutoff, of all sites, as the paper has it .. */
-#define NEIGHBOURS_MAX 128. /* .. but no more of them */
+#define BOXES_A_CENTRE 64   /* boxes for each cluster, on average */
+#define CENTRES_MAX 1024    /* limit on the number of clusters */
+#define NEIGHBOURS .01      /* share of all sites within the cutoff, as in the paper */
+#define NEIGHBOURS_MAX 128. /* limit on the number of sites within the cutoff */
 #define SAMPLES_FROM 128u
 #define SAMPLES_TO 2048u
 
 typedef struct block {
-  stratus_box bounds; /* of middles, hi included */
+  stratus_box bounds; /* of twice the boxes' middles, hi included */
   uint64_t weight;
-  uint64_t densest; /* rank of density: density << 32 | ~site */
+  uint64_t densest; /* greatest density in the block, as density << 32 | ~site */
 } block;
 
 typedef struct density_peaks {
   const stratus_bvh_build* build;
   uint32_t sites;
-  uint32_t* first;          /* a site's first box, by rank; sites + 1 */
-  uint32_t* denser;         /* a site's nearest denser one; itself for the densest */
-  uint64_t* delta;          /* to it, squared */
-  uint32_t* cluster;        /* a site's */
+  uint32_t* first;          /* rank of a site's first box; sites + 1 entries */
+  uint32_t* denser;         /* a site's nearest denser site; the densest site names itself */
+  uint64_t* delta;          /* squared distance to the nearest denser site */
+  uint32_t* cluster;        /* by site */
   uint32_t* order;          /* sites by rising density, or by rising density * delta */
-  uint64_t* keys;           /* of that order */
-  block* level[LEVELS_MAX]; /* block b of level v: sites b << v .. ((b+1) << v) - 1 */
+  uint64_t* keys;           /* keys of that order */
+  block* level[LEVELS_MAX]; /* block b of level v covers sites b << v .. ((b+1) << v) - 1 */
   int levels;
   uint64_t cutoff; /* squared */
 } density_peaks;
@@ -51,7 +52,7 @@ static uint64_t squared(int64_t x, int64_t y, int64_t z)
   return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
 }
 
-static uint64_t distance_between(const stratus_box* a, const stratus_box* b) /* of points: their lo */
+static uint64_t distance_between(const stratus_box* a, const stratus_box* b) /* between two points, given by their lo */
 {
   return squared((int64_t)a->lo[0] - b->lo[0], (int64_t)a->lo[1] - b->lo[1], (int64_t)a->lo[2] - b->lo[2]);
 }
@@ -131,7 +132,7 @@ static stratus_status make_levels(density_peaks* p)
   return STRATUS_OK;
 }
 
-/* The distance within which a site has NEIGHBOURS of the others on average, by a sample of pairs. */
+/* Finds the distance within which a site has, on average, the share NEIGHBOURS of all sites. A sample of pairs estimates it. */
 static stratus_status find_cutoff(density_peaks* p)
 {
   stratus_status status = STRATUS_OK;
@@ -173,7 +174,7 @@ static uint64_t count_near(const density_peaks* p, const stratus_box* point, int
   if (greatest_distance(point, &at->bounds) <= p->cutoff) {
     return at->weight;
   }
-  const uint32_t first = 2 * b; /* a single site is either near or not: below are two */
+  const uint32_t first = 2 * b; /* a block of one site never comes here, since its least and greatest distances are equal */
   return count_near(p, point, level - 1, first) +
     (first + 1 < level_size(p->sites, level - 1) ? count_near(p, point, level - 1, first + 1) : 0);
 }
@@ -220,7 +221,7 @@ static void search_block(denser_search* s, int level, uint32_t b)
   }
 }
 
-/* Nearest first: what agrees with the site in most bits of its number. */
+/* Searches near blocks first: those whose numbers share the most bits with the site's. */
 static void find_denser(const density_peaks* p)
 {
 #pragma omp parallel for schedule(dynamic, 64) num_threads(p->build->context->threads)
@@ -233,7 +234,7 @@ static void find_denser(const density_peaks* p)
       }
     }
     p->denser[number] = s.best;
-    /* The densest of all has none: farther than any other's, so that it is a centre. */
+    /* The densest site has no denser one. A delta above all others makes it a centre. */
     p->delta[number] = s.best != number ? s.distance : 4 * greatest_distance(&s.site->bounds, &p->level[p->levels - 1]->bounds);
   }
 }
@@ -248,13 +249,13 @@ static stratus_status sort_sites(const density_peaks* p)
   return stratus_radix_sort(p->build->context, p->keys, p->order, p->sites, 64);
 }
 
-/* Each site's cluster, numbered in the order of the sites. *clusters: how many. */
+/* Finds each site's cluster. Clusters are numbered in the order of the sites; *clusters is their number. */
 static stratus_status find_clusters(const density_peaks* p, uint32_t* number, uint32_t* clusters)
 {
   const uint32_t wanted = p->build->count / BOXES_A_CENTRE, most = wanted < 2 ? 2 : wanted < CENTRES_MAX ? wanted : CENTRES_MAX;
   for (uint32_t s = 0; s < p->sites; ++s) {
     const double gamma = (double)(p->level[0][s].densest >> 32) * sqrt((double)p->delta[s]);
-    memcpy(p->keys + s, &gamma, sizeof gamma); /* positive doubles sort as integers do */
+    memcpy(p->keys + s, &gamma, sizeof gamma); /* positive doubles sort as their bits do */
     p->cluster[s] = UINT32_MAX;
   }
   TRY(sort_sites(p));

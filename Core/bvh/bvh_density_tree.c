@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree over density peaks' clusters: an agglomerative one over the clusters' boxes, and a SAH one in each. */
+ * Tree over the clusters of density peaks: an agglomerative tree over the clusters' boxes, with a SAH tree in each cluster. */
 #include "bvh_build.h"
 
 #include <string.h>
 
 typedef struct cluster_lists {
-  const uint32_t* of; /* a box's cluster, by rank */
+  const uint32_t* of; /* cluster of each box, by rank */
   uint32_t count;
   uint32_t *start, *room, **child;
   stratus_box* boxes;
   stratus_bvh_pair* pairs;
 } cluster_lists;
 
-/* Items by cluster, and each cluster's box. */
+/* Sorts the items by cluster and computes each cluster's box. */
 static void sort_items(const stratus_bvh_build* build, const cluster_lists* c, const stratus_bvh_item* from, stratus_bvh_item* to)
 {
   memset(c->start, 0, (c->count + 1) * sizeof *c->start);

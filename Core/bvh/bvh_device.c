@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Morton codes and the hierarchy over them on the context's OpenCL device: buffers and launches of kernels/morton.cl. */
+ * Morton codes and the hierarchy over them on the context's OpenCL device: buffers for the kernels in morton.cl, and their launches. */
 #include "bvh_build.h"
 #include "device.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The seam between clusters and what is inside them: a tree over ranges of items becomes the upper part of the tree over the items. */
+ * Joining clusters: a tree over ranges of items becomes the upper part of the tree over the items. */
 #include "bvh_build.h"
 
 #include <string.h>
@@ -8,10 +8,10 @@ typedef struct joint {
   const stratus_bvh_join* join;
   stratus_bvh_pair* pairs;
   uint32_t* order; /* ranges from left to right */
-  uint32_t* left;  /* ranges on the left side, of each pair in join->of */
+  uint32_t* left;  /* by pair of join->of: number of ranges under its left child */
 } joint;
 
-/* Lists the ranges under a child, `listed` being listed already; returns how many there are then. */
+/* Appends the ranges under a child to the first `listed` entries of the order; returns their new number. */
 static uint32_t list_ranges(const joint* j, uint32_t child, uint32_t listed)
 {
   if (child & STRATUS_BVH_LEAF) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * k-means clustering (Meister & Bittner 2016), top-down: each node's boxes fall into at most 8 clusters by the distance of their corners to
- * the clusters' mean corners; the clusters are joined by agglomerative clustering, and each is a node again. Sums are of integers, so means
- * do not depend on the order of threads. */
+ * k-means clustering (Meister & Bittner 2016), top-down. Each node's boxes form at most 8 clusters by the distance of their corners to the
+ * clusters' mean corners. Agglomerative clustering joins the clusters, and each cluster becomes a node in turn. Means come from sums of
+ * integers, so that they do not depend on the order of threads. */
 #include "bvh_build.h"
 
 #include <string.h>
@@ -9,12 +9,12 @@
 #define CLUSTERS 8
 #define ITERATIONS 5
 #define CANDIDATES 64
-#define TASK_ITEMS 1024       /* smaller clusters stay with the thread that finds them */
+#define TASK_ITEMS 1024       /* a smaller cluster stays with the thread that finds it */
 #define CHUNK_ITEMS (1 << 14) /* larger nodes are assigned by several threads */
 
 typedef struct k_means {
   stratus_bvh_item *items, *spare;
-  uint8_t* cluster; /* an item's */
+  uint8_t* cluster; /* by item */
   stratus_bvh_pair* pairs;
   int max_depth;
 } k_means;
@@ -43,7 +43,7 @@ static mean mean_of_one(const stratus_box* box)
   return (mean){ { box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2] } };
 }
 
-/* The first means: boxes far from each other, out of some that lie evenly in the node's order. */
+/* Chooses the first means: boxes far from each other, among candidates evenly spaced in the node's order. */
 static void choose_means(const k_means* k, uint32_t begin, uint32_t end, mean means[CLUSTERS])
 {
   double least[CANDIDATES];
@@ -109,7 +109,8 @@ static void assign_by_chunks(const k_means* k, uint32_t begin, uint32_t end, con
   }
 }
 
-/* Puts the items in the order of their clusters; start: of those that have any. Returns how many those are. */
+/* Sorts the items by cluster. start[] gets the first item of each cluster that has any, and the end. Returns the number of these
+ * clusters. */
 static uint32_t sort_items(const k_means* k, uint32_t begin, uint32_t end, const int64_t counts[CLUSTERS], uint32_t start[CLUSTERS + 1])
 {
   uint32_t to[CLUSTERS], at = begin, clusters = 0;
@@ -150,7 +151,7 @@ static uint32_t find_clusters(const k_means* k, uint32_t begin, uint32_t end, ui
   }
 }
 
-/* Agglomerative clustering of few boxes, 2 to CLUSTERS, which it merges in place. */
+/* Agglomerative clustering of 2 to CLUSTERS boxes, which it overwrites. */
 static void merge_few(stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs)
 {
   uint32_t child[CLUSTERS];
@@ -180,7 +181,8 @@ static void merge_few(stratus_box* boxes, uint32_t count, stratus_bvh_pair* pair
   }
 }
 
-/* Ranges of a node: single items where these are few; its clusters; halves, where all boxes agree or the depth's bound is passed. */
+/* Finds the ranges that a node splits into: single items if there are few, else its clusters. A node splits into halves if it has only one
+ * cluster or lies at the depth's bound. */
 static uint32_t find_ranges(const k_means* k, uint32_t begin, uint32_t end, int depth, uint32_t start[CLUSTERS + 1])
 {
   uint32_t ranges = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From a builder's binary tree over single boxes to nodes. Bottom-up: tight boxes, and subtrees whose boxes cost less as one leaf become
- * one. Where the tree is too deep, what lies below is parted at the median. Top-down: each subtree has its own stretch of nodes and of the
- * order, in depth-first order but for siblings, which are neighbours. Threads share the work by subtree; every place follows from the tree
- * alone. */
+ * Layout: a builder's binary tree over single boxes becomes an array of nodes. A bottom-up pass computes tight boxes and turns subtrees
+ * into leaves where that costs less. Subtrees below the depth's bound are split anew at the median. A top-down pass gives each subtree its
+ * own stretch of the nodes and of the order: siblings are neighbours, the rest is depth-first. Threads share the work by subtree, and every
+ * index follows from the tree alone. */
 #include "bvh_build.h"
 
 #include "radix_sort.h"
@@ -10,14 +10,14 @@
 #include <stdatomic.h>
 
 #define NO_PARENT UINT32_MAX
-#define TASK_BOXES 4096 /* smaller subtrees are laid out by the thread that finds them */
+#define TASK_BOXES 4096 /* a smaller subtree stays with the thread that finds it */
 
 typedef struct subtree {
   stratus_box box;
   uint32_t boxes;
-  uint32_t nodes;  /* that it will have; 1: a leaf */
-  uint32_t height; /* of its deepest node over its root */
-  uint32_t forced; /* 1: at the depth's bound, a leaf if it has few enough boxes whatever it costs */
+  uint32_t nodes;  /* number of its nodes in the layout; 1: a leaf */
+  uint32_t height; /* levels below its root */
+  uint32_t forced; /* 1: at the depth's bound, so that it becomes a leaf if it has few enough boxes, whatever the cost */
   double cost;
 } subtree;
 
@@ -25,10 +25,10 @@ typedef struct layout {
   const stratus_bvh_build* build;
   uint32_t leaf_boxes;
   uint32_t max_depth;
-  subtree* subtrees;           /* a pair's */
-  uint32_t* pair_parent;       /* a pair's */
-  uint32_t* box_parent;        /* a box's */
-  atomic_uchar* children_done; /* a pair's */
+  subtree* subtrees;           /* by pair */
+  uint32_t* pair_parent;       /* by pair */
+  uint32_t* box_parent;        /* by box */
+  atomic_uchar* children_done; /* by pair */
   stratus_tree_node* nodes;
   uint32_t* order;
 } layout;
@@ -75,7 +75,8 @@ static void merge_children(const layout* l, uint32_t pair)
   }
 }
 
-/* Each box climbs until it comes first to a pair; who comes second finds both children done. */
+/* Computes all subtrees. Each box climbs towards the root: the first of two children that arrives at a pair stops there, the second finds
+ * both done and merges them. */
 static void merge_all(const layout* l)
 {
   find_parents(l);
@@ -89,12 +90,12 @@ static void merge_all(const layout* l)
   }
 }
 
-/* ---- too deep */
+/* ---- bounding the depth */
 
 typedef struct median_split {
   const layout* layout;
-  const uint32_t* ranks; /* ascending */
-  const uint32_t* pairs; /* to be used again, one less */
+  const uint32_t* ranks; /* in rising order */
+  const uint32_t* pairs; /* pairs to use again, one fewer than ranks */
   uint32_t used;
 } median_split;
 
@@ -110,7 +111,7 @@ static uint32_t split_at_median(median_split* m, uint32_t begin, uint32_t end)
   return pair;
 }
 
-/* What lies under a pair at the depth's bound; pairs and ranks have room for all. The root of it stays the same pair. */
+/* Splits the subtree of a pair at the depth's bound anew. The arrays have room for any subtree. Its root remains the same pair. */
 static stratus_status part_again(const layout* l, uint32_t root, uint32_t* pairs, uint32_t* ranks, uint64_t* keys)
 {
   stratus_context* context = l->build->context;
@@ -190,7 +191,7 @@ static uint32_t* list_boxes(const layout* l, uint32_t child, uint32_t* order)
   return list_boxes(l, l->build->pairs[child].child[1], list_boxes(l, l->build->pairs[child].child[0], order));
 }
 
-/* Writes the subtree: its root at `node`, what is below from `below` on, its boxes from `first` on. */
+/* Writes a subtree: its root at index `node`, the nodes below it from `below` on, its boxes from `first` on. */
 static void write_nodes(const layout* l, uint32_t child, uint32_t node, uint32_t below, uint32_t first)
 {
   for (;;) {

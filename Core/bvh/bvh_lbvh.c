@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * LBVH (Lauterbach et al. 2009): boxes are parted where the highest bit of their Morton codes differs; every node finds its own range
- * (Karras 2012), on the device or on the host, by the same text. */
+ * Linear BVH (Lauterbach et al. 2009): a range of boxes splits at the highest bit in which their Morton codes differ. Each node finds its
+ * own range (Karras 2012). Device and host compile the same source. */
 #include "bvh_build.h"
 
 #include "morton.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Boxes in Morton order, which every builder begins with: neighbours in space become neighbours in memory. Codes come from the device or
- * the host, the same to the bit; the sort is the host's, a radix sort that is stable, so the order is the same at any number of threads. */
+ * Sorting of boxes in Morton order, the first step of every builder: neighbours in space become neighbours in memory. Device and host
+ * compute the same codes to the bit. The host's radix sort is stable, so that the order does not depend on the number of threads. */
 #include "bvh_build.h"
 
 #include "morton.h"
@@ -27,7 +27,7 @@ static void middle_bounds(stratus_context* context, const stratus_box* boxes, ui
   memcpy(most, (const int32_t[]){ mx, my, mz }, 3 * sizeof *most);
 }
 
-/* *bits: of the codes. */
+/* *bits: length of the codes. */
 static stratus_status make_codes(stratus_bvh_build* build, const stratus_box* boxes, int* bits)
 {
   int32_t least[3], most[3];

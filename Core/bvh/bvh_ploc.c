@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Parallel locally-ordered clustering (Meister & Bittner 2018): clusters in Morton order; each finds the neighbour, at most RADIUS places
- * away, that makes the least box with it; those who chose each other merge; again, until one is left. Of neighbours equally good the one
- * whose place differs in the lowest bits wins: then the pair chosen is the same from both sides, so every round merges something, and in a
- * lattice or among boxes in one place half of the clusters at once. */
+ * Parallel locally-ordered clustering (Meister & Bittner 2018). Clusters are in Morton order. Each finds the neighbour, at most RADIUS
+ * places away, that makes the least box with it, and two clusters that chose each other merge. Rounds repeat until one cluster is left.
+ * Ties go to the neighbour whose place gives the least XOR with the cluster's own. Both sides then choose the same pair, so that every
+ * round merges something, and in a lattice or among boxes in one place half of the clusters. */
 #include "bvh_build.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 #define RADIUS 16
 #define CHUNK 2048
 
-/* Boxes as floats, apart by coordinate, which vectorises; they only steer, the layout computes boxes anew. */
+/* Boxes as floats, one array for each coordinate, which vectorises. They only guide the merging; the layout computes exact boxes. */
 typedef struct clusters {
   float* side[6];  /* lo x y z, hi x y z */
   uint32_t* child; /* as in a pair */
@@ -19,13 +19,14 @@ typedef struct clusters {
 typedef struct ploc {
   stratus_bvh_build* build;
   clusters now, next;
-  uint32_t* nearest; /* a cluster's place */
-  uint32_t* kept;    /* a chunk's clusters that stay or merge into their place; then, of all chunks before it */
-  uint32_t* merged;  /* the same of merges */
+  uint32_t* nearest; /* by cluster: place of its nearest cluster */
+  uint32_t* kept;    /* by chunk: clusters that remain after the round, then the sum over all chunks before */
+  uint32_t* merged;  /* by chunk: merges, then the same sum */
   uint32_t count, pairs;
 } ploc;
 
-/* Half of the surface of the union of cluster i and each of those from first on. Symmetric to the bit. */
+/* Half of the surface area of the union of cluster i with each of `count` clusters from `first` on. The function is symmetric to the
+ * bit. */
 static void union_areas(const clusters* c, uint32_t i, uint32_t first, uint32_t count, float* areas)
 {
   const float lx = c->side[0][i], ly = c->side[1][i], lz = c->side[2][i], hx = c->side[3][i], hy = c->side[4][i], hz = c->side[5][i];

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Binned surface area heuristic (Wald 2007), top-down: at each node the boxes fall into bins by their middles, along every axis, and the
- * cheapest border between bins parts them. Where the middles span fewer places than there are bins, a bin is a place, and the split exact.
- * Bins hold integers, so the tree is the same however threads share the work. */
+ * Binned surface area heuristic (SAH; Wald 2007), top-down. At each node the boxes' middles sort them into bins along every axis, and the
+ * node splits at the cheapest border between bins. Where the middles span fewer values than there are bins, each value has its own bin and
+ * the split is exact. Bins hold integers, so that the tree does not depend on how threads share the work. */
 #include "bvh_build.h"
 
 #define BINS 32
-#define TASK_ITEMS 2048       /* smaller ranges stay with the thread that finds them */
+#define TASK_ITEMS 2048       /* a smaller range stays with the thread that finds it */
 #define CHUNK_ITEMS (1 << 15) /* larger ranges are binned by several threads */
 
 typedef struct bin {
@@ -15,15 +15,15 @@ typedef struct bin {
 
 typedef struct binning {
   int32_t least[3];
-  int bins[3]; /* 1: all middles agree along the axis */
+  int bins[3]; /* 1 if all middles agree along the axis */
   double scale[3];
   bin bin[3][BINS];
 } binning;
 
 typedef struct split {
   double cost;
-  int axis; /* -1: none */
-  int bin;  /* the first on the right */
+  int axis; /* -1 if there is none */
+  int bin;  /* first bin of the right side */
 } split;
 
 static int bin_of(const binning* b, const stratus_box* box, int axis)
@@ -31,7 +31,7 @@ static int bin_of(const binning* b, const stratus_box* box, int axis)
   return (int)((double)(stratus_box_middle(box, axis) - b->least[axis]) * b->scale[axis]);
 }
 
-/* ---- middles' bounds: a box around them, hi included */
+/* ---- bounds of the middles, hi included */
 
 static stratus_box bound_middles(const stratus_bvh_item* items, uint32_t begin, uint32_t end)
 {
@@ -131,15 +131,15 @@ static void find_split_along(const binning* b, int axis, split* best)
   for (int i = 1; i < b->bins[axis]; ++i) {
     stratus_box_add(&left.box, &b->bin[axis][i - 1].box);
     left.count += b->bin[axis][i - 1].count;
-    const double cost =
-      stratus_box_area(&left.box) * (double)left.count + right_cost[i]; /* the first bin and the last one are never empty */
+    /* The first and the last bin are never empty, so neither side is. */
+    const double cost = stratus_box_area(&left.box) * (double)left.count + right_cost[i];
     if (cost < best->cost) {
       *best = (split){ cost, axis, i };
     }
   }
 }
 
-/* The first item on the right; items are reordered. */
+/* Partitions the items by side; returns the first item of the right side. */
 static uint32_t part_items(const binning* b, const split* s, stratus_bvh_item* items, uint32_t begin, uint32_t end)
 {
   for (;;) {

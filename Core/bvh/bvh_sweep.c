@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Surface area heuristic with every split tried, top-down: boxes are sorted once by their middles along each axis, and each split keeps all
- * three orders sorted. The measure of the other builders' trees. */
+ * Full-sweep surface area heuristic, top-down: every split is tried. Boxes are sorted once by their middles along each axis, and each split
+ * keeps all three orders sorted. The other builders' trees are measured against this one. */
 #include "bvh_build.h"
 
 #include "radix_sort.h"
 
 #include <string.h>
 
-#define TASK_BOXES 1024 /* smaller ranges stay with the thread that finds them */
+#define TASK_BOXES 1024 /* a smaller range stays with the thread that finds it */
 
 typedef struct sweep {
   const stratus_box* boxes;
   stratus_bvh_pair* pairs;
-  uint32_t* order[3]; /* ranks along each axis; a node has the same range of all three */
-  uint32_t* spare;    /* a range of it is the node's, as of the next two */
+  uint32_t* order[3]; /* ranks along each axis; a node owns the same range of all three */
+  uint32_t* spare;    /* scratch; a node uses only its own range of this array and the next */
   double* right_cost;
   uint8_t* on_right; /* by rank */
   int max_depth;
@@ -21,7 +21,7 @@ typedef struct sweep {
 
 typedef struct best_split {
   double cost;
-  uint32_t uneven; /* difference between the two sides: among equals, as for boxes in one place, the least */
+  uint32_t uneven; /* difference between the counts of the two sides; the least breaks ties, so that boxes in one place split evenly */
   uint32_t middle;
   int axis;
 } best_split;
@@ -44,7 +44,7 @@ static void sweep_axis(const sweep* s, uint32_t begin, uint32_t end, int axis, b
   }
 }
 
-/* Brings the other orders' left boxes to the front, both sides in their order. */
+/* Partitions the other two orders into the left and the right side; both remain sorted. */
 static void part_orders(const sweep* s, uint32_t begin, uint32_t end, int axis, uint32_t middle)
 {
   for (uint32_t i = begin; i < end; ++i) {
@@ -71,7 +71,7 @@ static void split_ranks(const sweep* s, uint32_t begin, uint32_t end, int depth,
     }
     const uint32_t middle = best.middle;
     part_orders(s, begin, end, best.axis, middle);
-    stratus_bvh_pair* pair = s->pairs + (middle - 1); /* as in stratus_bvh_split_items(): every place splits once */
+    stratus_bvh_pair* pair = s->pairs + (middle - 1); /* as in stratus_bvh_split_items() */
     *child = middle - 1;
 #pragma omp task if (middle - begin >= TASK_BOXES)
     split_ranks(s, begin, middle, depth + 1, pair->child);

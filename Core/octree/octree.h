@@ -169,8 +169,8 @@ void stratus_octree_relative(const stratus_octree* tree, const double bounds[6],
 /* Part of space that the root's cell must hold: the box itself, or, for touching placement, a cube about the box's bounding sphere. */
 void stratus_octree_extent(const stratus_octree* tree, const float box[6], double lo[3], double hi[3]);
 bool stratus_octree_root_holds(const stratus_octree* tree, const float box[6]);
-/* Enclosing: the octant of the child that holds the box, or 8 if none does. Touching: a bit for each octant that the box's sphere touches.
- */
+/* Enclosing: the octant of the child that holds the box, or 8 if none does. Touching: a bit for each octant that the box's sphere
+ * touches. */
 unsigned stratus_octree_octants(const stratus_octree* tree, const double corner[3], double size, const float box[6]);
 /* Calls `visit` for each node in whose list the box belongs. The first status that is not STRATUS_OK ends the walk. */
 typedef stratus_status (*stratus_octree_visit)(stratus_octree* tree, int level, size_t node, void* user);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The walk through the tree, one level after the other. The nodes of a level that are to be split are split together (Li & Huang
- * 2024, 3.2). The lists that the walk reaches become jobs. Each level is visited in Morton order, so that a tree always gives the same
- * jobs. */
+ * The walk through the tree, one level after the other. The nodes of a level that are to be split are split together (Li & Huang 2024,
+ * 3.2). The lists that the walk reaches become jobs. Each level is visited in Morton order, so that a tree always gives the same jobs. */
 #include "octree.h"
 
 stratus_status stratus_octree_view_create(stratus_octree* tree, stratus_octree_view** out)
