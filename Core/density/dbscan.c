@@ -6,10 +6,11 @@
 typedef struct cluster {
   int32_t first, last; /* core coordinates */
   int32_t cores;
-  int32_t floor; /* what is below belongs to the cluster before */
+  int32_t floor; /* least coordinate that does not belong to the cluster before */
 } cluster;
 
-/* The cluster's [*lo, *hi), with what it reaches beyond its cores; 1 if that holds `peak`. */
+/* Sets [*lo, *hi) to the cluster's interval, the border points within eps of its cores included, and returns 1 if that interval holds
+ * `peak`; else returns 0. */
 static int closes_on(const int64_t* counts, int32_t n, int32_t eps, int32_t peak, const cluster* c, int32_t* lo, int32_t* hi)
 {
   int32_t first = c->first - eps > c->floor ? c->first - eps : c->floor, last = c->last > n - 1 - eps ? n - 1 : c->last + eps;
@@ -36,7 +37,7 @@ int32_t stratus_dbscan_counts(
   *lo = *hi = peak;
   *clusters = 0;
   if (peak < 0 || peak >= n || counts[peak] == 0) {
-    peak = -1; /* no cluster holds it, but they are still counted */
+    peak = -1; /* no cluster holds it, but clusters are still counted */
   }
   eps = eps < n ? eps : n;
   for (int32_t i = 0; i < n && i < eps; ++i) {

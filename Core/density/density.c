@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The density of a set of bricks as a tree splits by it (Guo et al. 2025, eq. 5): a number a voxel, or a number a brick; and its peak.
+ * The density by which a tree splits a set of bricks (Guo et al. 2025, eq. 5): one number for each voxel or for each brick, and its peak.
  *
- * Over bricks, a brick's voxels count as if they were spread evenly over its 64 places, seen from its middle. That is exact for full
- * bricks. Else the density at the middle errs by at most the sum over the bricks in reach of count * min(1, 4.72 / bandwidth), in units of
- * what a voxel adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 a bandwidth, and 3.065 voxels is the mean distance
- * from a brick's corner voxel, the worst, to its 64 places. For bandwidths beyond 30 voxels see density_cells.c. */
+ * Over bricks, the voxels of a brick count as if they were spread evenly over its 64 places, and the density is that at a brick's middle.
+ * This is exact for full bricks. Otherwise the density errs by at most the sum over the bricks in reach of count * min(1, 4.72 /
+ * bandwidth), in units of what a voxel adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 per bandwidth, and 3.065
+ * voxels is the mean distance to a brick's 64 places from its corner voxel, the worst case. density_cells.c sums bandwidths beyond 30
+ * voxels. */
 #include "density.h"
 #include "volume_device.h"
 #include "device.h"
@@ -24,7 +25,7 @@ static stratus_status number_voxels(stratus_context* context, const stratus_bric
   return STRATUS_OK;
 }
 
-/* By the device where the context builds on one and the set fits, by rows where few bricks are in reach, else by cells. */
+/* The device computes the sums where the context builds on one and the set fits; else rows where few bricks are in reach, else cells. */
 static stratus_status sum_weights(
   stratus_context* context, const stratus_brick* bricks, int64_t count, const stratus_density* density, int64_t voxels, uint64_t* sums)
 {
@@ -108,7 +109,7 @@ void stratus_density_destroy(stratus_density* density)
 
 typedef struct peak_search {
   float density;
-  int64_t order; /* z, y, x in one number: the lesser comes first */
+  int64_t order; /* z, y and x in one number; the least wins ties */
   int32_t at[3];
 } peak_search;
 
@@ -122,7 +123,7 @@ static void offer(peak_search* best, float density, const stratus_brick* brick, 
   }
 }
 
-/* The bit nearest to the brick's middle; of several the first. */
+/* Bit of the voxel nearest to the brick's middle, the first of several. */
 static int middle_bit(uint64_t mask)
 {
   int best = 0, least = 64;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The bandwidth of density by a rule of thumb (Guo et al. 2025, eq. 3 and 4): spread of the voxels' distances to their mean place, over the
- * fifth root of their number. Sums run in chunks that depend on the number of bricks alone, so that threads change no bit. */
+ * Bandwidth of the density by a rule of thumb (Guo et al. 2025, eq. 3 and 4): the spread of the voxels' distances to their mean position,
+ * over the fifth root of their number. Sums run in chunks that depend only on the number of bricks, so that threads change no bit. */
 #include "density.h"
 
 #include "density_plan.h"
@@ -9,9 +9,9 @@
 #include <string.h>
 
 #define CHUNKS 64
-#define BINS 4096 /* of a histogram of distances; three refinements leave 2^-36 of the largest squared distance */
+#define BINS 4096 /* of the histogram of squared distances; three refinements leave 2^-36 of the largest */
 
-/* Calls `body` with the offset (x, y, z), in voxels from `origin`, of every voxel of brick `brick`. */
+/* Runs `body` for each voxel of the brick, with its offset (x, y, z) from `origin` in voxels. */
 #define FOR_EACH_VOXEL(brick, origin, x, y, z, body)                                                                                       \
   for (uint64_t bits = (brick)->mask; bits; bits &= bits - 1) {                                                                            \
     const int bit = __builtin_ctzll(bits);                                                                                                 \
@@ -21,7 +21,7 @@
     body                                                                                                                                   \
   }
 
-/* Whole numbers: the mean is right to the last bit, in any order. Returns the number of voxels. */
+/* Mean position of the voxels; returns their number. Integer sums make the mean independent of their order. */
 static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean[3])
 {
   int64_t voxels = 0, sum[3] = { 0, 0, 0 };
@@ -40,8 +40,8 @@ static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean
   return voxels;
 }
 
-/* Standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances count from the first one's: a shell's
- * differ by little, and squares of the whole would lose that. */
+/* Standard deviation of the distances to `mean` (eq. 4); *largest: the largest squared distance. Distances are taken relative to one
+ * voxel's: those of a shell differ by little, which the squares of whole distances would lose. */
 static double find_deviation(
   stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double* largest)
 {
@@ -74,7 +74,7 @@ static double find_deviation(
   return variance > 0.0 ? sqrt(variance) : 0.0;
 }
 
-/* Voxels whose squared distance to `mean` is below `limit`. */
+/* Number of voxels whose squared distance to `mean` is below `limit`. */
 static int64_t count_below(stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double limit)
 {
   int64_t below = 0;
@@ -85,13 +85,13 @@ static int64_t count_below(stratus_context* context, const stratus_brick* bricks
   return below;
 }
 
-/* A histogram, and what each thread counts for it: stacks of threads may be small. */
+/* A histogram and the bins that each thread fills for it. They are allocated because threads' stacks may be small. */
 typedef struct histogram {
   int64_t bins[BINS];
   uint32_t own[][BINS];
 } histogram;
 
-/* Counts the squared distances in [low, high) by bin. Returns how many are below low. */
+/* Counts the squared distances in [low, high) by bin. Returns the number of distances below low. */
 static int64_t fill_bins(
   stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double low, double high, histogram* histogram)
 {
@@ -127,7 +127,7 @@ static int64_t fill_bins(
   return below;
 }
 
-/* The distance that as many voxels are nearer than as are farther (of an even number the upper one of the middle two). */
+/* Median of the distances to `mean`: of an even number, the upper of the middle two. */
 static stratus_status find_median(stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels,
   const double mean[3], double largest, double* median)
 {
@@ -158,7 +158,7 @@ stratus_status stratus_density_bandwidth_of(
   const int64_t voxels = find_mean(bricks, count, mean);
   if (voxels >= 2) {
     double spread = find_deviation(context, bricks, count, voxels, mean, &largest);
-    /* The median is looked for only where it is the lesser: where more than half of the voxels are that near. */
+    /* The median matters only if it gives less than the deviation does, which is when more than half of the voxels are this near. */
     const double near = spread / widen;
     if (count_below(context, bricks, count, mean, near * near) > voxels / 2) {
       double median;

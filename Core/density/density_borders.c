@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Density and its derivatives at a point, and the borders of a peak: where density falls most steeply along an axis.
+ * Density and its derivatives at a point, and the borders of a peak: the positions along an axis where density falls most steeply.
  *
- * With u = (distance / h)^2 a voxel within h adds, c being 105 / (32 pi) and n the number of voxels,
- *   c / (n h^3) (1 - u)^2,   its derivative along x   -4 c / (n h^5) (x - xi) (1 - u),   the second   -4 c / (n h^5) (1 - u - 2 (x - xi)^2
- * / h^2). Guo et al. 2025 print the same (eq. 9 to 11) with 15/16, and 15/4 for 4 c: the constant of one dimension. */
+ * With u = (distance / h)^2, c = 105 / (32 pi) and n the number of voxels, a voxel within h adds
+ *    c / (n h^3) (1 - u)^2                                to the density,
+ *   -4 c / (n h^5) (x - xi) (1 - u)                       to its first derivative along x,
+ *   -4 c / (n h^5) (1 - u - 2 (x - xi)^2 / h^2)           to its second derivative along x.
+ * Guo et al. 2025 print the same formulas (eq. 9 to 11) with 15/16 for c and 15/4 for 4 c: the constant of one dimension. */
 #include "density.h"
 
 #include "density_plan.h"
@@ -11,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALL_BANDWIDTH 16.0 /* below, bricks are too coarse as weights along a line, and their voxels in reach are few */
+#define SMALL_BANDWIDTH 16.0 /* below it bricks are too coarse to stand for their voxels along a line, and few voxels are in reach */
 
 /* ---- at a point */
 
@@ -36,7 +38,7 @@ static void add_brick(const stratus_brick* brick, const double point[3], double 
   }
 }
 
-/* Sums over the voxels in reach: row by row of bricks where those are fewer than the bricks. */
+/* Sums over the voxels in reach. Bricks are searched row by row, unless a scan of all bricks is cheaper. */
 static void sum_at(const stratus_voxels* voxels, double bandwidth, const double point[3], point_sums* sums)
 {
   int64_t lo[3], hi[3];
@@ -99,26 +101,26 @@ stratus_status stratus_density_at(stratus_context* context, const stratus_voxels
 }
 
 /* ---- borders
- * Along a line through the peak, at planes between voxels, distances are halves: with D twice the offset along the line and q the squared
- * distance across, 4 h^2 times the sums above are sums of whole numbers and of h^2 times their number, so that no order of bricks matters.
- */
+ * The line through the peak has its planes between voxels, where offsets are multiples of 1/2. D is twice the offset along the line, q
+ * the squared distance across it. Multiplied by 4 h^2, the sums above become sums of integers, exact in double, and h^2 times their
+ * number. The order of bricks therefore changes nothing. */
 
 typedef struct line_sums {
-  double count;       /* of voxels in reach */
-  double curvature;   /* 3 D^2 + 4 q */
-  double slope;       /* D */
-  double slope_cubic; /* D (D^2 + 4 q) */
+  double count;       /* voxels in reach */
+  double curvature;   /* sum of 3 D^2 + 4 q */
+  double slope;       /* sum of D */
+  double slope_cubic; /* sum of D (D^2 + 4 q) */
 } line_sums;
 
 typedef struct line {
   int axis;
-  double reach; /* 4 h^2 */
+  double reach; /* squared reach in doubled coordinates: 4 h^2 */
   int32_t peak[3];
-  int32_t lo, hi; /* planes lo .. hi */
+  int32_t lo, hi; /* first and last plane */
   line_sums* planes;
 } line;
 
-/* A mass at half the doubled coordinates `at`. */
+/* Adds a mass at the doubled coordinates `at` to all planes in reach. */
 static void add_mass(const line* line, const int32_t at[3], double mass)
 {
   const int u = (line->axis + 1) % 3, v = (line->axis + 2) % 3;
@@ -126,7 +128,7 @@ static void add_mass(const line* line, const int32_t at[3], double mass)
   if (across >= line->reach) {
     return;
   }
-  /* Plane p is at 2 p - 1 in doubled coordinates. */
+  /* Plane p has the doubled coordinate 2 p - 1. */
   const double half = sqrt(line->reach - across), middle = 0.5 * (at[line->axis] + 1);
   const int32_t first = (int32_t)fmax(floor(middle - 0.5 * half), line->lo), last = (int32_t)fmin(ceil(middle + 0.5 * half), line->hi);
   for (int32_t p = first; p <= last; ++p) {
@@ -159,7 +161,7 @@ static void add_bricks(const line* line, const stratus_brick* bricks, const uint
   }
 }
 
-/* 4 h^2 times the sums of the first and the second derivative, their sign turned by -4 c / (n h^5). */
+/* Magnitude of the first derivative, without its factor 4 c / (n h^5), times 8 h^2. bend_at() has the sign of the second derivative. */
 static double fall_at(const line* line, int32_t plane)
 {
   const line_sums* sums = line->planes + (plane - line->lo);
@@ -172,8 +174,8 @@ static double bend_at(const line* line, int32_t plane)
   return sums->curvature - line->reach * sums->count;
 }
 
-/* From the peak outward to the first plane where the second derivative is positive after it was negative, or where nothing is in reach any
- * more (it jumps at the kernel's end). Of that plane and the one before it, the steeper is the border. */
+/* Walks from the peak outward to the first plane where the second derivative is positive or no voxel is in reach (the second derivative
+ * jumps at the kernel's end). The border is the steeper of that plane and the one before it. */
 static void scan_side(const line* line, int side, int32_t* position, double* fall)
 {
   const int32_t step = side ? 1 : -1, start = line->peak[line->axis] + (side ? 1 : 0);
@@ -214,7 +216,7 @@ stratus_status stratus_density_find_borders(stratus_context* context, const stra
     for (int side = 0; side < 2; ++side) {
       double fall;
       scan_side(&line, side, &borders->position[a][side], &fall);
-      /* -4 c / (n h^5) sum (D / 2) (1 - (D^2 + 4 q) / (4 h^2)) */
+      /* 4 c / (n h^5) |sum of (D / 2) (1 - (D^2 + 4 q) / (4 h^2))| */
       borders->fall[a][side] = fall * 4.0 * unit / h2 / (2.0 * line.reach);
     }
   }

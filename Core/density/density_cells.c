@@ -7,11 +7,11 @@
 
 #include <stdlib.h>
 
-#define SLICES 64 /* between which the caller may cancel: voxel by voxel, the work can be quadratic */
+#define SLICES 64 /* steps between which the caller may cancel, since the work can be quadratic voxel by voxel */
 
-/* Coordinates are doubled: a bin's middle lies between voxels. */
+/* A point in doubled coordinates, which are integers even for a bin's middle between voxels. */
 typedef struct density_point {
-  uint64_t key; /* of the cell: z, y, x, 20 bits each, counted from 1 */
+  uint64_t key; /* of the cell: z, y, x, 20 bits each, plus 1 */
   int64_t number;
   uint64_t weight;
   uint64_t sum;
@@ -66,7 +66,7 @@ static int compare_points(const void* left, const void* right)
   return a->number < b->number ? -1 : a->number > b->number;
 }
 
-/* Makes one of the points in the same place; which[number] is what became of it. Returns how many are left. */
+/* Merges points at the same place. which[number] becomes the index of the merged point. Returns the number of points that remain. */
 static int64_t merge_points(density_point* points, int64_t count, uint64_t* which)
 {
   int64_t merged = 0;
@@ -97,7 +97,7 @@ static int64_t first_point(const density_point* points, int64_t count, uint64_t 
   return low;
 }
 
-/* The points in reach of those of a cell: nine rows of up to three cells, [first, end) each. */
+/* Finds the points in reach of a cell: nine rows of up to three cells, each a range [first, end) of points. */
 static void find_ranges(const density_point* points, int64_t count, uint64_t key, int64_t ranges[9][2])
 {
   const uint64_t z = (uint64_t)1 << 40, y = (uint64_t)1 << 20;
@@ -139,7 +139,7 @@ stratus_status stratus_density_cells(
 {
   const int64_t values = exact ? start[count] : count;
   void* memory;
-  int shift = 1; /* of doubled coordinates; cells larger than the grid are no use */
+  int shift = 1; /* cells of 2^shift doubled coordinates, at most as large as the grid */
   while (shift < 20 && (double)(1 << shift) < 2.0 * bandwidth) {
     ++shift;
   }

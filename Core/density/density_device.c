@@ -37,7 +37,8 @@ static stratus_status run_sums(stratus_context* context, const density_plan* pla
     { side * side * sizeof(cl_ulong), NULL } };
   const stratus_kernel_argument binned[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(plan->reach), ARGUMENT(b->table),
     ARGUMENT(b->sums) };
-  if (plan->exact) { /* a group a brick, an item for each of its voxels */
+  /* A brick has a work-group, and each of its 64 places an item. */
+  if (plan->exact) {
     const int64_t items[3] = { count * STRATUS_DEVICE_GROUP, 1, 1 };
     return stratus_device_launch(context, "density", "", "exact", exact, COUNT_OF(exact), items);
   }

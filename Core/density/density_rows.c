@@ -13,7 +13,7 @@
 
 static int reach_of(double bandwidth, int exact)
 {
-  /* A brick's nearest voxel is 4 reach - 3 from a brick's own last voxel, 4 reach - 1.5 from its middle. */
+  /* The nearest voxel of a brick `reach` bricks away is 4 reach - 3 from a brick's last voxel and 4 reach - 1.5 from its middle. */
   const double nearest = exact ? bandwidth + 3.0 : bandwidth + 1.5;
   return nearest >= 4.0 * (DENSITY_REACH_MAX + 1) ? DENSITY_REACH_MAX + 1 : (int)(nearest / 4.0);
 }
@@ -23,7 +23,8 @@ bool stratus_density_plan_fits(double bandwidth, int exact)
   return reach_of(bandwidth, exact) <= DENSITY_REACH_MAX;
 }
 
-/* Sums of weights of all bits of a window of the row whose squared distance is `across`. */
+/* Fills a row's table: for each piece of the window and each pattern of its bits, the sum of the weights of the bits that are set. across:
+ * the row's squared distance. */
 static void fill_row_table(const density_plan* plan, int across, uint32_t* table)
 {
   for (int chunk = 0; chunk < plan->chunks; ++chunk, table += (size_t)1 << plan->width) {
@@ -40,9 +41,9 @@ static stratus_status plan_exact(density_plan* plan)
 {
   const int radius = plan->radius, side = STRATUS_BRICK * (2 * plan->reach + 1), window = 2 * radius + 1;
   const double limit = plan->bandwidth * plan->bandwidth;
-  int32_t slots[2 * RADIUS_MAX * RADIUS_MAX + 1]; /* of each squared distance across: its table, -1 out of reach */
+  int32_t slots[2 * RADIUS_MAX * RADIUS_MAX + 1]; /* index of the table of each squared distance across; -1: out of reach */
   void* memory;
-  plan->width = window <= 11 ? window : 8; /* tables stay small, and a sum in them fits 32 bits */
+  plan->width = window <= 11 ? window : 8; /* tables stay small, and their sums fit 32 bits */
   plan->chunks = (window + plan->width - 1) / plan->width;
   const size_t entries = (size_t)plan->chunks << plan->width;
   int slot_count = 0;
@@ -77,7 +78,7 @@ static stratus_status plan_exact(density_plan* plan)
   return STRATUS_OK;
 }
 
-/* The mean weight of a brick's places, `d` bricks away, seen from a brick's middle. */
+/* Mean weight of the 64 places of a brick `d` bricks away, seen from a brick's middle. */
 static uint32_t mean_weight(const int d[3], double bandwidth)
 {
   uint64_t sum = 0;
@@ -118,7 +119,7 @@ void stratus_density_plan_release(density_plan* plan)
 
 /* ---- sums */
 
-/* Moves the cursor of row (dy, dz) to the first brick in reach of brick `b`; *last: the key of the last place in reach. */
+/* Moves the cursor of row (dy, dz) to the first brick in reach and returns its index. *last: key of the last place in reach. */
 static inline int64_t first_in_row(
   const stratus_brick* bricks, int64_t count, const stratus_brick* brick, int reach, int dy, int dz, int64_t* cursor, uint64_t* last)
 {
@@ -135,7 +136,7 @@ static inline int64_t first_in_row(
   return i;
 }
 
-/* The rows of bits in reach of brick `b`: bit x of rows[z*side + y], counted from the first voxel in reach. */
+/* Gathers the rows of bits in reach of brick `b`: bit x of rows[z*side + y], counted from the first voxel in reach. */
 static void gather_rows(const density_plan* plan, const stratus_brick* bricks, int64_t count, int64_t b, int64_t* cursors, uint64_t* rows)
 {
   const int reach = plan->reach, side = STRATUS_BRICK * (2 * reach + 1);
@@ -194,7 +195,7 @@ static uint64_t sum_neighbours(const density_plan* plan, const stratus_brick* br
   return sum;
 }
 
-/* What a thread works in: stacks of threads may be small. */
+/* Scratch of one thread, allocated because threads' stacks may be small. */
 typedef struct room {
   uint64_t rows[DENSITY_SIDE_MAX * DENSITY_SIDE_MAX];
   int64_t cursors[ROWS_MAX];
