@@ -22,7 +22,7 @@ static void fill_block(const stratus_context* context, const stratus_occupancy* 
   }
 }
 
-/* Traversal may read what lies beyond a row's end, though it uses nothing of it. */
+/* Traversal may read beyond a row's end. It does not use these bytes, but they must be initialized. */
 static void fill_padding(stratus_distance_map* map, size_t maps)
 {
   const size_t n = (size_t)map->blocks[0], rows = maps * (size_t)(map->blocks[1] * map->blocks[2]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The transform of Deakin & Knackstedt 2019 as published, O(n D): along x by two scans, then along y and z each block looks as far
- * as its own distance for a nearer one. The baseline that the sweeps are compared with, equal to the bit. */
+ * The transform of Deakin & Knackstedt 2019 as published, O(n D). Two scans give the distances along x. Then, along y and z, each block
+ * searches as far as its own distance for a nearer block. This is the baseline for the sweeps, and equal to them to the bit. */
 #include "distance_sweep.h"
 
 /* Distances along a line, from seeds of 0 and DISTANCE_MAX. */
@@ -14,7 +14,7 @@ static void scan_line(uint8_t* line, int64_t n)
   }
 }
 
-/* Equation of the paper's second and third pass: the least over k of max(|k|, line[x+k]). */
+/* The paper's second and third pass: the least over k of max(|k|, line[x+k]). */
 static uint8_t search_line(const uint8_t* line, int64_t x, int64_t n)
 {
   int nearest = line[x];
@@ -30,7 +30,7 @@ static uint8_t search_line(const uint8_t* line, int64_t x, int64_t n)
   return (uint8_t)nearest;
 }
 
-/* One axis of `to` from `from`. */
+/* One pass along y or z, from `from` to `to`. lines: scratch, one line for each row of the other axis. */
 static void search_axis(const stratus_context* context, const int64_t n[3], int axis, const uint8_t* from, uint8_t* to, uint8_t* lines)
 {
   const int64_t length = n[axis], stride = axis == 1 ? n[0] : n[0] * n[1], others = axis == 1 ? n[2] : n[1];
@@ -50,7 +50,8 @@ static void search_axis(const stratus_context* context, const int64_t n[3], int 
   }
 }
 
-/* Distance to the nearest block whose occupancy is `target`. swap: as large as distance; lines: the larger of the y and z planes. */
+/* Computes each block's distance to the nearest block whose occupancy is `target`. swap: scratch as large as `distance`; lines: scratch of
+ * n[1]*n[2] bytes. */
 static void transform(
   const stratus_context* context, const stratus_occupancy* occupancy, int target, uint8_t* distance, uint8_t* swap, uint8_t* lines)
 {

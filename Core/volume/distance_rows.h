@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Rows of distances, a byte a block, none above 127: so one can be added without overflow, and every loop is a few unsigned byte
- * minima and additions that any compiler vectorises. `side` tells where along x the other blocks lie: -1, 0 (both), +1. */
+ * Operations on rows of distances, one byte for each block. No distance exceeds 127, so that one can be added without overflow. Every loop
+ * consists of a few unsigned byte minima and additions, which any compiler vectorises. `side` tells where along x the other blocks lie: -1,
+ * 0 (both sides), +1. */
 #ifndef STRATUS_DISTANCE_ROWS_H
 #define STRATUS_DISTANCE_ROWS_H
 
@@ -8,14 +9,14 @@
 
 #include <string.h>
 
-#define ROW_MARGIN 64 /* the longest step of row_spread(): cells on either side that say "nothing here" */
+#define ROW_MARGIN 64 /* longest step of row_spread(): a row has so many cells of DISTANCE_MAX on either side */
 
 static inline uint8_t least(uint8_t a, uint8_t b)
 {
   return a < b ? a : b;
 }
 
-/* 0 where occupied is `target`, else DISTANCE_MAX. Returns how many are target. */
+/* Sets seeds to 0 where occupied is `target`, else to DISTANCE_MAX. Returns the number of targets. */
 static inline int64_t row_seed(const uint8_t* restrict occupied, uint8_t target, int64_t n, uint8_t* restrict seeds)
 {
   int64_t others = 0;
@@ -43,8 +44,8 @@ static inline void row_spread_step(const uint8_t* restrict b, int64_t n, int64_t
   }
 }
 
-/* Distance along x from the seeds in `rows`: steps of 1, 2, 4 .. 64 make up every distance to 127. rows: two rows of n with
- * ROW_MARGIN cells of DISTANCE_MAX on either side, `apart` bytes apart. Returns the row that holds the result. */
+/* Distances along x from the seeds in `rows`: steps of 1, 2, 4 .. 64 make up every distance to 127. rows: two rows of n, `apart` bytes
+ * apart, with ROW_MARGIN cells of DISTANCE_MAX on either side. Returns the row that holds the result. */
 static inline uint8_t* row_spread(uint8_t* rows, size_t apart, int64_t n, int side)
 {
   uint8_t *from = rows, *to = rows + apart;
@@ -65,7 +66,7 @@ static inline void row_step(const uint8_t* restrict near, int64_t n, uint8_t* re
   }
 }
 
-/* The same from the nearest of two and of three rows. */
+/* The same from the least of two rows; row_step3() takes three. */
 static inline void row_step2(const uint8_t* restrict a, const uint8_t* restrict b, int64_t n, uint8_t* restrict row)
 {
   for (int64_t x = 0; x < n; ++x) {
@@ -81,7 +82,7 @@ static inline void row_step3(
   }
 }
 
-/* near[x] = least of row[x] and its neighbours on `side`, for rows above or below to step from. */
+/* near[x] = least of row[x] and its neighbours on `side`. Rows above or below step from this. */
 static inline void row_near(const uint8_t* restrict row, int64_t n, int side, uint8_t* restrict near)
 {
   if (n == 1) {
@@ -105,7 +106,7 @@ static inline void row_near(const uint8_t* restrict row, int64_t n, int side, ui
   }
 }
 
-/* row[x]: the empty block's distance, or the occupied block's inner one with its mark. */
+/* Merges the distance of empty blocks in `row` with that of occupied blocks in `inner`, which gets its mark. One of the two is 0. */
 static inline void row_merge(const uint8_t* restrict inner, int64_t n, uint8_t* restrict row)
 {
   for (int64_t x = 0; x < n; ++x) {

@@ -1,32 +1,32 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Chebyshev distance by sweeps, O(n): along x by doubling steps, then row after row along y, plane after plane along z. A block one
- * row on is one step away, and so are its neighbours in that row: D = min(D, 1 + least of them). Along z they are 3x3 (in one
- * octant 2x2). The sweeps up and down z are independent, and their minimum is the distance: that, and the octants, is what threads share.
+ * Chebyshev distances by sweeps, O(n): along x by doubling steps, then row by row along y and plane by plane along z. All neighbours of a
+ * block in the next row are one step away: D = min(D, 1 + least of them). Along z these are 3x3 neighbours, in one octant 2x2. The sweeps
+ * up and down z are independent, and the distance is the minimum of both. Threads share these sweeps and the octants.
  *
- * An octant's distance is to the nearest occupied block of those not behind it on any axis, so each axis is swept one way. */
+ * An octant's distance is that to the nearest occupied block which is behind on no axis, so that each axis is swept one way only. */
 #include "distance_sweep.h"
 #include "distance_rows.h"
 
 #include <omp.h>
 
-/* A box of the occupancy and what is to be found in it. */
+/* A box of the occupancy, and the distances computed in it. */
 typedef struct field {
-  const uint8_t* occupied; /* of the box's first block */
+  const uint8_t* occupied; /* at the box's first block */
   int64_t row, plane;      /* strides of occupied */
   int64_t n[3];
-  uint8_t target; /* 1: distance to occupied blocks, 0: to empty ones */
+  uint8_t target; /* 1: distances to occupied blocks, 0: to empty ones */
   size_t pitch;   /* of out and back */
-  uint8_t* out;   /* distances; the sweep towards +z leaves its result here */
-  uint8_t* back;  /* what the sweep towards -z starts from and leaves */
+  uint8_t* out;   /* distances; start and result of the sweep towards +z */
+  uint8_t* back;  /* start and result of the sweep towards -z */
 } field;
 
-/* A thread's rows: two to spread in, three of near distances, and two planes of those for the sweep along z. */
+/* Scratch of one thread: two rows to spread in, two rows of near distances, and two planes of these for the sweep along z. */
 typedef struct room {
   uint8_t* spread;
   size_t apart;
   uint8_t* near[2];
   uint8_t* planes[2];
-  uint8_t* plane; /* of distances in the plane */
+  uint8_t* plane; /* distances in one plane */
   size_t pitch;
 } room;
 
@@ -38,7 +38,7 @@ static size_t room_bytes(const int64_t blocks[3], size_t pitch)
 static room make_room(uint8_t* memory, const int64_t blocks[3], size_t pitch)
 {
   room r = { .apart = pitch + 2 * ROW_MARGIN, .pitch = pitch };
-  /* The margins beyond a row's end stay so, for rows only grow longer: run_sweeps() spreads the inner box's first. */
+  /* Margins keep DISTANCE_MAX because a thread's rows only grow longer: run_sweeps() spreads the rows of the inner box first. */
   memset(memory, DISTANCE_MAX, 2 * r.apart);
   r.spread = memory + ROW_MARGIN;
   memory += 2 * r.apart;
@@ -64,7 +64,7 @@ static void spread_row(const room* r, const uint8_t* occupied, uint8_t target, i
   memcpy(out, result, (size_t)n);
 }
 
-/* Sweeps a plane's rows towards higher y (from lower ones) if `up`, each stepping from the row before. */
+/* Sweeps a plane's rows towards higher y if `up`, else towards lower y. Each row steps from the row before. */
 static void sweep_rows(const room* r, uint8_t* plane, int64_t nx, int64_t ny, int side, int up)
 {
   for (int64_t i = 0; i < ny; ++i) {
@@ -76,7 +76,7 @@ static void sweep_rows(const room* r, uint8_t* plane, int64_t nx, int64_t ny, in
   }
 }
 
-/* Distances within plane k, in all directions, into out and back. */
+/* Fills plane k of out and back with the distances within the plane, in all directions. */
 static void full_plane(const field* f, const room* r, int64_t k)
 {
   const size_t bytes = f->pitch * (size_t)f->n[1];
@@ -91,7 +91,7 @@ static void full_plane(const field* f, const room* r, int64_t k)
   memcpy(f->back + (size_t)k * bytes, plane, bytes);
 }
 
-/* Sweeps planes along z, in place, each stepping from the 3x3 nearest of the plane before. */
+/* Sweeps planes along z in place. Each plane steps from the 3x3 nearest blocks of the plane before. */
 static void full_sweep(const field* f, const room* r, int up)
 {
   const int64_t nx = f->n[0], ny = f->n[1], nz = f->n[2];
@@ -109,7 +109,7 @@ static void full_sweep(const field* f, const room* r, int up)
   }
 }
 
-/* The row of inner distances of block row (j, k), if any, merged into the map's. */
+/* Merges the inner distances of block row (j, k), if there are any, into the map's row. */
 static void merge_inner(
   const stratus_distance_map* map, const distance_inner* inner, const uint8_t* occupied, int64_t j, int64_t k, uint8_t* row)
 {
@@ -125,7 +125,7 @@ static void merge_inner(
   }
 }
 
-/* One octant, from the distances along x: the rest of each plane, then the step from the plane before. */
+/* Sweeps one octant from the distances along x: each plane's rows, then the step from the plane before. */
 static void octant_sweep(const stratus_occupancy* occupancy, const distance_inner* inner, const uint8_t* spread, int octant,
   const stratus_distance_map* map, const room* r)
 {
@@ -133,7 +133,7 @@ static void octant_sweep(const stratus_occupancy* occupancy, const distance_inne
   const int side = octant & 1 ? 1 : -1, y_up = octant & 2, z_up = octant & 4;
   const size_t pitch = map->pitch, plane_bytes = pitch * (size_t)ny;
   for (int64_t i = 0; i < nz; ++i) {
-    const int64_t k = z_up ? nz - 1 - i : i; /* a ray towards +z meets what lies above: distances come down from there */
+    const int64_t k = z_up ? nz - 1 - i : i; /* a ray towards +z meets the planes above, so that distances are swept downwards */
     const uint8_t* before = r->planes[(i + 1) & 1];
     memcpy(r->plane, spread + (size_t)k * plane_bytes, plane_bytes);
     sweep_rows(r, r->plane, nx, ny, side, !y_up);
@@ -152,15 +152,15 @@ static void octant_sweep(const stratus_occupancy* occupancy, const distance_inne
   }
 }
 
-/* ---- the order of things */
+/* ---- order of the sweeps */
 
 typedef struct sweep {
   const stratus_occupancy* occupancy;
   stratus_distance_map* map;
   field outer;
-  field within; /* n[2] is 0 where there is nothing to find */
+  field within; /* n[2] is 0 if all blocks are occupied or none is */
   distance_inner inner;
-  uint8_t* along[2]; /* OCTANT: distances along x towards - and + */
+  uint8_t* along[2]; /* OCTANT: distances along x towards - and towards + */
   uint8_t* rooms;
   size_t room_size;
 } sweep;
@@ -180,7 +180,7 @@ static void outer_planes(const sweep* s, const room* r, int64_t k)
   }
 }
 
-/* Both sweeps of a field meet in out. */
+/* Leaves the minimum of a field's two sweeps in plane k of out. */
 static void meet(const field* f, int64_t k)
 {
   const size_t bytes = f->pitch * (size_t)f->n[1], at = (size_t)k * bytes;
@@ -234,7 +234,7 @@ static void run_sweeps(const stratus_context* context, const sweep* s)
   }
 }
 
-/* The occupied blocks and a layer of empty ones around, as far as the grid goes: nearer empty blocks than these there are not. */
+/* The inner box holds the occupied blocks and a layer of blocks around them, cut at the grid: no empty block outside it is nearer. */
 static void choose_inner_box(sweep* s, int64_t total)
 {
   const stratus_occupancy* occupancy = s->occupancy;

@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Chebyshev distances of a grid of blocks: what distance_map.c chooses from. */
+ * Transforms from which distance_map.c chooses: Chebyshev distances in a grid of blocks. */
 #ifndef STRATUS_DISTANCE_SWEEP_H
 #define STRATUS_DISTANCE_SWEEP_H
 
 #include "volume.h"
 
-#define DISTANCE_MAX 127      /* longer ones are told as this */
+#define DISTANCE_MAX 127      /* a longer distance is stored as this */
 #define DISTANCE_OCCUPIED 128 /* added to the inner distance of an occupied block */
 
-/* Distance of occupied blocks to the nearest empty one, known in the box [lo, lo+n), which holds all occupied blocks. */
+/* Distances of occupied blocks to the nearest empty block, within the box [lo, lo+n), which holds all occupied blocks. */
 typedef struct distance_inner {
   int64_t lo[3], n[3];
   size_t pitch;
-  uint8_t* bytes; /* n[2]*n[1] rows, pitch apart; 0 in empty blocks. NULL: no empty block at all: it is DISTANCE_MAX everywhere */
+  uint8_t* bytes; /* n[2]*n[1] rows, pitch apart; 0 in empty blocks. NULL: no block is empty, and all distances are DISTANCE_MAX */
 } distance_inner;
 
 /* Fills map->bytes by O(n) sweeps, STRATUS_DISTANCE_FULL or STRATUS_DISTANCE_OCTANT. */
 stratus_status stratus_distance_sweep(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
 
-/* Fills map->bytes by the paper's transform, O(n D): the same bytes as STRATUS_DISTANCE_FULL. */
+/* Fills map->bytes by the paper's O(n D) transform: the same bytes as STRATUS_DISTANCE_FULL. */
 stratus_status stratus_distance_paper(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
 
 #endif

@@ -2,12 +2,12 @@
  * What the ghost flags of points and cells say of a volume: which cells are transparent, which another piece draws. */
 #include "volume.h"
 
-/* Flags of points and of cells, whichever way the values lie. Along a flat axis VTK counts one cell. */
+/* Flags of points and cells in one form. Along a flat axis VTK counts one cell. */
 typedef struct ghosts {
-  const uint8_t* points; /* NULL: none */
-  const uint8_t* cells;  /* NULL: none */
-  int64_t n[3];          /* cells */
-  int64_t p[3];          /* points */
+  const uint8_t* points; /* NULL if there are none */
+  const uint8_t* cells;  /* NULL if there are none */
+  int64_t n[3];          /* number of cells */
+  int64_t p[3];          /* number of points */
 } ghosts;
 
 static ghosts ghosts_of(const stratus_volume* volume)
@@ -20,7 +20,7 @@ static ghosts ghosts_of(const stratus_volume* volume)
   return g;
 }
 
-/* `flag` in any corner of the cell, and in all of them. */
+/* *any: a corner of the cell has `flag`; *all: each corner has it. */
 static void corner_flags(const ghosts* g, int64_t i, int64_t j, int64_t k, unsigned flag, bool* any, bool* all)
 {
   unsigned some = 0, every = flag;
@@ -76,7 +76,7 @@ stratus_status stratus_volume_hidden_cells(stratus_context* context, const strat
   return STRATUS_OK;
 }
 
-/* Without flags of cells, a cell is another piece's if all its corners are: one corner tells nothing, for pieces share their border. */
+/* Without flags of cells, a cell belongs to another piece only if all its corners do: pieces share the points of their border. */
 static bool is_duplicate(const ghosts* g, int64_t i, int64_t j, int64_t k)
 {
   if (g->cells) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which blocks the transfer function shows: the range test of Deakin & Knackstedt 2019 on hulls with their halo. */
+ * Occupancy: which blocks the transfer function shows, by the range test of Deakin & Knackstedt 2019 on value ranges that include the
+ * halo. */
 #include "clones.h"
 #include "volume.h"
 #include "volume_device.h"
@@ -10,7 +11,7 @@
 
 #define RUN 256 /* blocks tested at once: their entries stay in the first cache */
 
-/* stratus_table_shows() of a run of blocks, cut in two so that the half with the arithmetic vectorises. */
+/* Does what stratus_table_shows() does, for a run of blocks. Two loops keep the arithmetic apart, which then vectorises. */
 static ALWAYS_INLINE void test_run(
   const stratus_table* table, const float* restrict lo, const float* restrict hi, int64_t count, uint8_t* restrict occupied)
 {
@@ -35,7 +36,7 @@ static void test_run_portable(const stratus_table* table, const float* lo, const
 }
 
 #if HAVE_CLONES
-/* The entry of a value is a fused operation; without an instruction for it each one is a call. */
+/* stratus_table_entry() is a fused multiply-add, which is a library call where this instruction set lacks. */
 __attribute__((target("avx2,fma"))) static void test_run_fused(
   const stratus_table* table, const float* lo, const float* hi, int64_t count, uint8_t* occupied)
 {
@@ -53,7 +54,7 @@ static test_function choose_test(void)
   return test_run_portable;
 }
 
-/* Count and bounds of one row of blocks, widened into the whole's. */
+/* Number and bounds [lo, hi) of occupied blocks. widen_extent() adds one row of blocks. */
 typedef struct extent {
   int64_t count, lo[3], hi[3];
 } extent;
@@ -81,7 +82,7 @@ static void widen_extent(extent* whole, const uint8_t* row, int64_t n, int64_t j
   }
 }
 
-/* ranges and table NULL: occupied[] is there already. */
+/* ranges and table may be NULL: occupied[] is then set already and only counted. */
 static void test_rows(
   const stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy)
 {
@@ -167,7 +168,7 @@ void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy
   for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] |= other->occupied[b];
   }
-  test_rows(occupancy->context, NULL, NULL, occupancy); /* counts and bounds */
+  test_rows(occupancy->context, NULL, NULL, occupancy); /* updates the count and the bounds */
 }
 
 stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges, const stratus_transfer* transfer,
@@ -184,7 +185,7 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
       STRATUS_SAMPLING_PREINTEGRATED);
   }
   TRY(stratus_transfer_check(context, transfer));
-  /* What pre-integration shows includes what single samples show. */
+  /* Pre-integration shows whatever single samples show, so it serves for both. */
   const stratus_sampling used = sampling == STRATUS_SAMPLING_AUTO ? STRATUS_SAMPLING_PREINTEGRATED : sampling;
   const int any = ranges->whole_lo <= ranges->whole_hi;
   stratus_table* table = NULL;
@@ -195,11 +196,11 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   return status;
 }
 
-/* The least and the greatest of the fetched values that may stand for one in lower..upper. Wide types: fetching is monotone, so that what a
- * value beyond an end is fetched as lies beyond what the end is, or is the same. */
+/* Finds the least and the greatest fetched value that may stand for a value in lower..upper. For wide types the fetched ends serve:
+ * fetching is monotone, so a value beyond an end is fetched as a float beyond that end or as the same float. */
 static void find_ends(const stratus_value_range* ranges, double lower, double upper, float* first, float* last)
 {
-  *first = ranges->wide ? (float)(lower - ranges->bias) : stratus_float_above(lower); /* narrow types are floats as they are */
+  *first = ranges->wide ? (float)(lower - ranges->bias) : stratus_float_above(lower); /* narrow types are fetched exactly */
   *last = ranges->wide ? (float)(upper - ranges->bias) : stratus_float_below(upper);
 }
 
@@ -224,7 +225,7 @@ stratus_status stratus_occupancy_create_between(
   for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
   }
-  test_rows(context, NULL, NULL, occupancy); /* counts and bounds */
+  test_rows(context, NULL, NULL, occupancy); /* updates the count and the bounds */
   const stratus_status status = stratus_progress(context, "occupancy", 1.0);
   if (status != STRATUS_OK) {
     stratus_occupancy_destroy(occupancy);

@@ -5,21 +5,22 @@
 
 #include <string.h>
 
-/* Entries, and how many the narrowest feature of the function shall have. */
+/* Entries by sampling, entries at most, and entries that the function's narrowest feature shall have. */
 #define MIDPOINT_ENTRIES 4096
 #define PREINTEGRATED_ENTRIES 16384
 #define MOST_ENTRIES 65536
 #define ENTRIES_A_FEATURE 32
-/* Opacity 1 is an infinite optical depth. A midpoint sample's stands for it in any part of a sample that floats tell from none. */
+/* Optical depth of a midpoint sample of opacity 1, in place of infinity: any part of the sample that floats tell from none stays opaque. */
 #define OPAQUE_DEPTH 1e30f
-/* Sums have no room for an infinite depth: entries of opacity 1 have this one per unit distance, and fill_opaque() tells them apart.
- * Opacities just below 1 may have more. */
+/* Optical depth per unit distance of entries of opacity 1, in place of infinity, which running sums cannot hold. fill_opaque() marks these
+ * entries, since opacities just below 1 may be deeper. */
 #define OPAQUE_TAU 16.0
-/* Optical depths per length, whose unit may be next to nothing, up to a bound: their sums stay doubles. */
+/* Bound on the optical depth per length, whose unit may be next to nothing: sums of it stay finite. */
 #define TAU_MOST 1e290
-/* Segments are cut into pieces where averaging their colours could be wrong by more than about 1/12 of one over this: half of 1/255. */
+/* Inverse of the colour change allowed within a piece of a segment; longer pieces are cut. Averaging a piece's colours is wrong by about
+ * 1/12 of that change, half of 1/255. */
 #define COLOR_ERROR_INVERSE 48.0
-/* Largest running sum: differences of sums stay positive ints. */
+/* Largest running sum: differences of sums are positive ints. */
 #define SUM_MOST 2147483000.0
 
 stratus_transfer stratus_transfer_default(void)
@@ -71,7 +72,7 @@ stratus_status stratus_transfer_check(stratus_context* context, const stratus_tr
   return STRATUS_OK;
 }
 
-/* Piecewise linear at ascending x: *at is the walk's place, the last point with value <= x, or -1. */
+/* Piecewise linear function at x, in calls with rising x. *at: the last point with value <= x, or -1; begins at -1. */
 static double walk(const double* points, size_t count, size_t width, size_t component, double x, ptrdiff_t* at)
 {
   while (*at + 1 < (ptrdiff_t)count && points[(size_t)(*at + 1) * width] <= x) {
@@ -109,7 +110,7 @@ static double tau_of(const stratus_transfer* transfer, double opacity)
   return fmin((opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance, TAU_MOST);
 }
 
-/* Smallest distance between points of different value, where the function does anything, or is 1. */
+/* Width of the narrowest interval between points where the opacity changes or is 1; at most `range`. */
 static double narrowest_feature(const stratus_transfer* transfer, double range)
 {
   double narrowest = range;
@@ -122,7 +123,7 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* The values that the table spans: the data's, but not far beyond the function's points, where nothing changes. */
+/* Shrinks lo..hi, the data's values, to the function's points and a margin, beyond which nothing changes. */
 static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
 {
   const double* first = transfer->opacity;
@@ -167,8 +168,8 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
   }
 }
 
-/* Writes the four running sums in doubles; returns the most that a colour changes from one entry to the next where either shows. The
- * function is taken at the entry's middle, not over its width: a value that is transparent must stay so beside one that is not. */
+/* Writes the four running sums in doubles. Returns the largest change of a colour between neighbouring entries of which one shows. An entry
+ * is the function at its middle, not the mean over its width: a value that is transparent must stay so beside one that is not. */
 static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
@@ -190,8 +191,8 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   return steepest;
 }
 
-/* Whether a value where the function is 1 is one of several in a row. *at: a point below it, of one call after the other with rising
- * values. */
+/* True if the function is 1 not only at `value`, where it is known to be 1, but over an interval. *at: a point below the value, kept
+ * between calls with rising values. */
 static bool stays_opaque(const stratus_transfer* transfer, double value, size_t* at)
 {
   const double* p = transfer->opacity;
@@ -206,10 +207,11 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
   return stays;
 }
 
-/* Behind the sums, where rays meet opacity 1: for each entry the next one upwards, `size` if there is none, then the next one downwards, or
- * -1. A ray stops at once at an entry of opacity 1, on its way to others at the first where the function stays 1. A value at which it no
- * more than touches 1 has an infinite depth, too, but a logarithm's: it adds up to little on the way through, and to all for those who
- * stay. */
+/* Fills the two rows behind the sums, which tell where rays meet opacity 1. For an entry of opacity 1 both rows hold the entry itself. For
+ * any other, the first row holds the next entry upwards where the function stays 1 over an interval, or `size`; the second row holds the
+ * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray on its way to other entries stops at the first where the
+ * function stays 1. Where the function only touches 1 its depth is infinite, too, but as a logarithm is: it adds little to rays that pass,
+ * and everything to rays that stay. */
 static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
 {
   const int size = table->size;
@@ -246,7 +248,7 @@ static stratus_status fill_preintegrated(
     for (size_t which = 0; which < 3; ++which) {
       table->sums[which * row + e] = any ? (int32_t)llrint(sums[4 * e + which] * scale) : 0;
     }
-    if (e > 0 && any) { /* what shows at all counts for something, however faint beside the rest */
+    if (e > 0 && any) { /* an entry that shows raises the sum by at least 1, however faint it is beside the rest */
       const int64_t rounded = llrint(sums[4 * e + 3] * scale), least = tau + (sums[4 * e + 3] > sums[4 * e - 1]);
       tau = rounded > least ? rounded : least;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Least and greatest value of each block of cells, the halo that interpolation reads included.
+ * Least and greatest value of each block of cells, including the halo that interpolation reads.
  *
  * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
  * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
@@ -12,20 +12,20 @@
 
 #define BLOCK_SIZE_DEFAULT 4
 #define LANES 16
-#define ROW_BYTES 8 /* of the widest value or extreme */
+#define ROW_BYTES 8 /* bytes of the widest value or extreme */
 
-/* One row of blocks, and a thread's room to reduce it in. */
+/* One row of blocks, and one thread's scratch to reduce it. */
 typedef struct span {
   const stratus_volume* volume;
   double bias;
   int64_t nx;         /* values along x */
-  int64_t y0, z0, ny; /* first row, and rows along y */
-  int64_t rows;       /* in all */
-  int64_t blocks;     /* along x */
-  int size;           /* of a block */
-  void *lo, *hi;      /* nx extremes */
+  int64_t y0, z0, ny; /* first row of values, and number of rows along y */
+  int64_t rows;       /* number of rows in all */
+  int64_t blocks;     /* number of blocks along x */
+  int size;           /* width of a block in cells */
+  void *lo, *hi;      /* nx extremes each */
   void* strided;      /* four rows of nx values */
-  uint8_t* bad;       /* nx */
+  uint8_t* bad;       /* nx flags */
   float *block_lo, *block_hi;
   uint8_t* gaps;
 } span;
@@ -106,7 +106,7 @@ typedef struct span {
 #define FLOATS 1
 #include "value_range_rows.h"
 
-/* A double is fetched first: what overflows a float is not finite for anybody. */
+/* A double is fetched before it is compared: one that overflows a float counts as not finite, as it does everywhere else. */
 #define TYPE double
 #define ACC float
 #define NAME(f) f##_float64
@@ -145,7 +145,7 @@ static reduce_function reduce_of(stratus_type type)
   return NULL;
 }
 
-/* A thread's room, from `memory` of room_bytes(). */
+/* Bytes of a thread's scratch, which give_room() divides. */
 static size_t room_bytes(int64_t nx)
 {
   const size_t row = ((size_t)nx * ROW_BYTES + 63) / 64 * 64;
@@ -204,7 +204,7 @@ static stratus_status reduce_on_host(stratus_context* context, const stratus_vol
         continue;
       }
       reduce_row(&s, ranges, reduce, row % ranges->blocks[1], row / ranges->blocks[1]);
-      /* Only the caller's thread reports: it has the first share of the rows. */
+      /* Only the calling thread reports progress; the first rows are its share. */
       if (thread == 0 && row % ranges->blocks[1] == 0) {
         status = stratus_progress(context, "value ranges", (double)row * threads / (double)rows);
         if (status != STRATUS_OK) {
@@ -218,8 +218,8 @@ static stratus_status reduce_on_host(stratus_context* context, const stratus_vol
   return status;
 }
 
-/* Blocks, at most two along each axis, whose values or cells include `at`. cell_centered: a flag is a value's, and a value on a block's
- * border belongs to both. */
+/* Finds the blocks, at most two along each axis, that hold `at`. shared (cell_centered): `at` is a value, and one on the border of two
+ * blocks belongs to both. */
 static int touched(int64_t at, int64_t size, int64_t blocks, int shared, int64_t first[2])
 {
   int count = 0;
@@ -257,7 +257,7 @@ static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, str
   }
 }
 
-/* In lanes, for a single running minimum waits for itself. */
+/* Lanes are independent, where a single running minimum would wait for itself. */
 static void widen_lanes(const float* restrict lo, const float* restrict hi, float* restrict least, float* restrict most)
 {
   for (int lane = 0; lane < LANES; ++lane) {
@@ -266,7 +266,7 @@ static void widen_lanes(const float* restrict lo, const float* restrict hi, floa
   }
 }
 
-/* A block without values holds INFINITY and -INFINITY, the wrong way round: neither ever wins. */
+/* Reduces the ranges of all blocks. A block without values holds INFINITY and -INFINITY, which never win. */
 static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
 {
   const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2], groups = count / LANES;
@@ -274,7 +274,7 @@ static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
 #pragma omp parallel num_threads(context->threads) reduction(min : lo) reduction(max : hi)
   {
     float least[LANES], most[LANES];
-    lo = INFINITY; /* the reduction's own start may be FLT_MAX, which is a value */
+    lo = INFINITY; /* the reduction itself may start at FLT_MAX, which is a value */
     hi = -INFINITY;
     for (int lane = 0; lane < LANES; ++lane) {
       least[lane] = INFINITY;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The inner loops of value_range.c for one type. Included once a type, with
- *   TYPE     of the values
- *   ACC      of the extremes: TYPE itself for integers (a range of integers is exact and cheap), float for both floats
+ * The inner loops of value_range.c for one type. value_range.c includes this file once for each type and defines
+ *   TYPE     the type of the values
+ *   ACC      the type of the extremes: TYPE itself for integers (a range of integers is exact and cheap), float for both floats
  *   NAME(f)  a function's name with the type's suffix
  *   LOAD(v)  a value as an ACC; `bias` is in scope
  *   FETCH(a) an ACC as the fetched value; `bias` is in scope
  *   FLOATS   1 if values may be NaN or infinite (as floats)
- * A row is a run of `nx` values along x, already at unit stride. */
+ * A row is a run of `nx` values along x with unit stride. */
 
-/* Row r of a span, copied to unit stride if need be. */
+/* Row r of a span, copied to `scratch` if its stride is not 1. */
 static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
 {
   const int64_t y = s->y0 + r % s->ny, z = s->z0 + r / s->ny;
@@ -23,8 +23,8 @@ static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
   return copy;
 }
 
-/* Widens lo and hi, elementwise, by four rows at once: the extremes are loaded and stored once for four values. NaN never wins a
- * comparison. Returns non-zero if a value is not finite: an infinity that got in must be taken out again by NAME(careful). */
+/* Widens lo and hi elementwise by four rows at once, so that the extremes are loaded and stored once for four values. NaN never wins a
+ * comparison. Returns non-zero if a value is not finite; NAME(careful) must then remove infinities. */
 static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* restrict lo, ACC* restrict hi)
 {
   const TYPE* restrict a = rows[0], * restrict b = rows[1], * restrict c = rows[2], * restrict d = rows[3];
@@ -48,11 +48,11 @@ static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* 
   return bad;
 }
 
-/* Makes lo[x] the least of lo[x .. x+size], cut at the row's end, by doubling windows; hi likewise. */
+/* Makes lo[x] the least of lo[x .. x+size], cut at the row's end, by doubling windows; hi likewise the greatest. */
 static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
 {
   for (int step = 1; step <= size; step *= 2) {
-    const int64_t ahead = step < size ? step : 1; /* windows of 2, 4 .. size, and one more value: the halo */
+    const int64_t ahead = step < size ? step : 1; /* windows of 2, 4 .. size values, then one more value: the halo */
     for (int64_t x = 0; x < nx - ahead; ++x) {
       lo[x] = lo[x + ahead] < lo[x] ? lo[x + ahead] : lo[x];
       hi[x] = hi[x + ahead] > hi[x] ? hi[x + ahead] : hi[x];
@@ -61,7 +61,7 @@ static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
 }
 
 #if FLOATS
-/* The same extremes of the finite values alone, and in bad[x] whether one is not finite. */
+/* Recomputes lo and hi from the finite values alone. bad[x]: a value of column x is not finite. */
 static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
 {
   const double bias = s->bias;
@@ -84,7 +84,7 @@ static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
 }
 #endif
 
-/* The ranges of a row of blocks. */
+/* Reduces a row of blocks to their ranges. */
 static void NAME(reduce)(const span* s)
 {
   ACC *lo = s->lo, *hi = s->hi;
@@ -97,7 +97,7 @@ static void NAME(reduce)(const span* s)
   }
   for (int64_t r = 0; r < s->rows; r += 4) {
     const TYPE* rows[4];
-    for (int64_t i = 0; i < 4; ++i) { /* the last row again where there are no more: it changes nothing */
+    for (int64_t i = 0; i < 4; ++i) { /* where no row is left, the last one again, which changes nothing */
       const int64_t at = r + i < s->rows ? r + i : s->rows - 1;
       rows[i] = NAME(row)(s, at, (TYPE*)s->strided + i * s->nx);
     }
@@ -122,7 +122,7 @@ static void NAME(reduce)(const span* s)
   NAME(window)(s->nx, s->size, lo, hi);
   for (int64_t b = 0; b < s->blocks; ++b) {
     const ACC least = lo[b * s->size], most = hi[b * s->size];
-    s->block_lo[b] = FETCH(least) + 0.0f; /* -0 becomes 0: which zero comes first must not show in the bits */
+    s->block_lo[b] = FETCH(least) + 0.0f; /* -0 becomes 0: the order of zeros must not show in the bits */
     s->block_hi[b] = FETCH(most) + 0.0f;
   }
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Structures on the context's OpenCL device: buffers, arguments and launches of the kernels of the same names. */
+ * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in value_range.cl, occupancy.cl
+ * and distance_map.cl. */
 #include "volume_device.h"
 
 #include "device.h"
@@ -33,7 +34,7 @@ static size_t volume_bytes(const stratus_volume* volume)
 
 bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume)
 {
-  /* Columns of extremes: at most a float for every two values along y and z. */
+  /* The buffers of column extremes hold at most one float for every 2x2 values along y and z. */
   const size_t columns = (size_t)volume->dimensions[0] * ((size_t)volume->dimensions[1] / 2 + 1) * ((size_t)volume->dimensions[2] / 2 + 1);
   const size_t largest = stratus_device_largest_allocation(context->device);
   return volume_bytes(volume) <= largest && columns <= largest / sizeof(float) &&
@@ -132,7 +133,7 @@ static size_t sums_count(const int64_t blocks[3])
 
 bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3])
 {
-  const size_t sums = sums_count(blocks); /* which bounds the number of blocks, and a 32-bit sum must hold that */
+  const size_t sums = sums_count(blocks); /* more than the number of blocks, which the 32-bit sums must hold */
   return sums <= UINT32_MAX && sums <= stratus_device_largest_allocation(context->device) / sizeof(cl_uint);
 }
 
@@ -172,7 +173,7 @@ cleanup:
   return status;
 }
 
-/* The paper's three passes for blocks of occupancy `target`. The result is in distance[1]. */
+/* Runs the paper's three passes towards blocks of occupancy `target`. The result is in distance[1]. */
 static stratus_status run_paper(stratus_context* context, const int64_t blocks[3], cl_mem occupied, cl_int target, const cl_mem distance[2])
 {
   const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2];

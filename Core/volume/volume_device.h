@@ -7,20 +7,21 @@
 #include "volume.h"
 #include "device.h"
 
-/* Whether the device can take the volume: it fits an allocation, and wide types find doubles. */
+/* True if the device can hold the volume: it fits an allocation, and the device has doubles for wide types. */
 bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume);
 
-/* Fills lo, hi and gaps (of values that are not finite; hidden cells are the caller's) of ranges, whose other fields are set. */
+/* Fills lo, hi and gaps of ranges, whose other fields are set. gaps tells only of values that are not finite; the caller adds hidden
+ * cells. */
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges);
 
 /* Fills occupied[]. */
 stratus_status stratus_device_occupancy(
   stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy);
 
-/* Whether the running sums that the device counts with fit one of its allocations. */
+/* True if the running sums, with which the device counts, fit one of its allocations. */
 bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3]);
 
-/* Fills bytes[] up to the padding. Not for STRATUS_DISTANCE_BLOCK. */
+/* Fills bytes[] except its padding. `kind` must not be STRATUS_DISTANCE_BLOCK. */
 stratus_status stratus_device_distance_map(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
 
 #endif

@@ -6,7 +6,7 @@
 #include <omp.h>
 #include <string.h>
 
-/* Odd constants with bits well mixed. */
+/* Odd constants with well-mixed bits. */
 #define MIX_A UINT64_C(0x9fb21c651e98df25)
 #define MIX_B UINT64_C(0xd6e8feb86659fd93)
 
@@ -22,7 +22,7 @@ static inline uint64_t read_word(const uint8_t* bytes)
   return word;
 }
 
-/* Every bit of x changes half the result's. */
+/* Mixes x: each of its bits changes half of the result's. */
 static uint64_t finish(uint64_t x)
 {
   x = (x ^ x >> 32) * MIX_A;
@@ -30,7 +30,7 @@ static uint64_t finish(uint64_t x)
   return x ^ x >> 32;
 }
 
-/* Four chains, so that a multiplication needs not wait for the last. */
+/* Four chains, so that no multiplication waits for the one before. */
 static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
 {
   uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
@@ -66,7 +66,7 @@ const void* stratus_volume_row(const stratus_volume* volume, int64_t j, int64_t 
   if (volume->value_stride == 1) {
     return (const uint8_t*)volume->values + (size_t)first * size;
   }
-  switch (size) { /* bits as they are: a type of the same size serves */
+  switch (size) { /* only bits are copied, so any type of the same size serves */
     case 1:
       GATHER(uint8_t)
     case 2:
@@ -78,7 +78,7 @@ const void* stratus_volume_row(const stratus_volume* volume, int64_t j, int64_t 
   }
 }
 
-/* Flags of one row that matter, 0 if there are none, so that flags of 0 throughout are no flags. */
+/* Hash of the wanted flags of one row. It is 0 if none is set, so that flags of 0 throughout equal no flags. */
 static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint64_t seed)
 {
   uint64_t sum = 0;
