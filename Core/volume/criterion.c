@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a criterion shows, as intervals of values, and when one set of them may stand in for another.
+ * The intervals of values that a criterion shows, and the test whether one set of intervals may stand in for another.
  *
  * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers; of doubles, every one of them is closed.
  * For ray casting the question is what a table shows that samples the function at its entries: an entry stands for all values that round to
@@ -8,9 +8,9 @@
 
 #include <string.h>
 
-/* Of a sample distance so long that any opacity above 0 is one in a float, too. */
+/* Sample distance, in unit distances, so long that any opacity above 0 is above 0 in a float, too. */
 #define LONG_SAMPLE 1e30
-/* Part of a table's size by which fma() and the step to floats can shift a value's entry; the bounds of intervals move outward by it. */
+/* Share of a table's size by which fma() and rounding to floats can shift a value's entry. The bounds of intervals move outward by it. */
 #define ENTRY_ROUNDING 2.4e-7
 
 stratus_criterion stratus_criterion_default(void)
@@ -35,7 +35,7 @@ stratus_status stratus_criterion_check(stratus_context* context, const stratus_c
 
 /* ---------------------------------------------------------------- values of single voxels */
 
-/* Appends lo..hi, or lengthens the last interval where no double lies between. Nothing where lo > hi. */
+/* Appends lo..hi if lo <= hi. If no double lies between it and the last interval, it lengthens that one. */
 static void append(stratus_intervals* list, double lo, double hi)
 {
   if (!(lo <= hi)) {
@@ -50,7 +50,7 @@ static void append(stratus_intervals* list, double lo, double hi)
   ++list->count;
 }
 
-/* At points of equal value the last one counts there, the first one towards smaller values. */
+/* Of points of equal value, the last counts at that value and the first towards smaller values. */
 static void append_opacity(stratus_intervals* list, const stratus_transfer* transfer)
 {
   const double(*point)[2] = (const double(*)[2])transfer->opacity;
@@ -86,9 +86,9 @@ stratus_status stratus_intervals_create(stratus_context* context, const stratus_
   return STRATUS_OK;
 }
 
-/* ---------------------------------------------------------------- what is kept of them */
+/* ---------------------------------------------------------------- intervals of an origin */
 
-/* The list cut to what fits by filling its narrowest gaps. */
+/* Fills the narrowest gaps until the list fits. */
 static void merge_narrowest(stratus_intervals* list)
 {
   while (list->count > STRATUS_INTERVALS_MAX) {
@@ -123,14 +123,14 @@ void stratus_origin_take(stratus_origin* origin, const stratus_intervals* interv
 
 /* ---------------------------------------------------------------- values of cells */
 
-/* The value between entries e-1 and e of a table, moved outward by `outward` entries and past what adding the bias rounds. */
+/* Value between entries e-1 and e of a table, moved outward by `outward` entries and by the rounding of the bias. */
 static double entry_bound(const stratus_table* table, double bias, int e, double outward)
 {
   const double value = ((double)e + outward - (double)table->offset) / (double)table->scale + bias;
   return nextafter(value, outward > 0.0 ? INFINITY : -INFINITY);
 }
 
-/* The runs of entries with opacity, as values; without scale all values come to one entry. */
+/* Appends the runs of entries with opacity, as values. In a table without scale all values have one entry. */
 static void append_runs(stratus_intervals* list, const stratus_table* table, double bias)
 {
   const double outward = ENTRY_ROUNDING * table->size;
@@ -146,7 +146,7 @@ static void append_runs(stratus_intervals* list, const stratus_table* table, dou
   }
 }
 
-/* Both ascending; into a third. */
+/* Appends the union of a and b, both in ascending order, to `both`. */
 static void unite(const stratus_intervals* a, const stratus_intervals* b, stratus_intervals* both)
 {
   for (int64_t i = 0, j = 0; i < a->count || j < b->count;) {
@@ -175,7 +175,7 @@ static stratus_status append_tables(stratus_context* context, const stratus_valu
   return STRATUS_OK;
 }
 
-/* Beyond the volume's values an interval's end tells nothing: put to infinity, it compares equal whatever made it. */
+/* Makes ends beyond the volume's values infinite. They say nothing about the volume, and then compare equal whatever made them. */
 static void open_ends(stratus_intervals* list, const stratus_value_range* ranges)
 {
   const double lo = (double)ranges->whole_lo + ranges->bias, hi = (double)ranges->whole_hi + ranges->bias;
@@ -212,7 +212,7 @@ cleanup:
   return status;
 }
 
-/* ---------------------------------------------------------------- the two together */
+/* ---------------------------------------------------------------- both uses */
 
 stratus_status stratus_criterion_intervals(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin)
@@ -232,7 +232,7 @@ stratus_status stratus_criterion_intervals(
   return STRATUS_OK;
 }
 
-/* Each wanted interval within one of the tree's. */
+/* True if each wanted interval lies within one of the tree's. */
 static bool is_within(const stratus_origin* wanted, const stratus_origin* tree)
 {
   for (int32_t i = 0, j = 0; i < wanted->intervals; ++i) {

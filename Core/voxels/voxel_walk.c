@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits by walking from voxel to voxel (Amanatides & Woo 1987) in double precision: what every faster way is measured by.
+ * First hits by walking from voxel to voxel (Amanatides & Woo 1987) in double precision: the reference for every faster method.
  *
- * A ray crosses the plane p of an axis at t = (p - origin) / direction, and nothing else is ever computed of a crossing. Crossings are
- * taken in the order of t, and at equal t in the order of the axes, so that a ray through an edge or a corner steps along x before y before
- * z and meets the voxels between. A crossing at t_min has been made already: who begins on a face is in the voxel that the ray moves into.
- * A ray that runs within a plane between voxels is in the upper one. */
+ * A ray crosses plane p of an axis at t = (p - origin) / direction, and nothing else is computed of a crossing. Crossings are taken in the
+ * order of t, and at equal t in the order of the axes: a ray through an edge or a corner steps along x before y before z and meets the
+ * voxels between. A crossing at t_min counts as made already, so that a ray that begins on a face begins in the voxel that it moves into. A
+ * ray that runs within a plane between voxels is in the upper voxel. */
 #include "voxels.h"
 
 #include "vector.h"
@@ -14,11 +14,11 @@
 
 typedef struct walk {
   const stratus_voxels* voxels;
-  double origin[3], direction[3]; /* where voxel (i,j,k) fills [i,i+1] */
+  double origin[3], direction[3]; /* in the frame where voxel (i,j,k) fills [i,i+1] */
   double t_min, t_max;
 } walk;
 
-/* A crossing. axis 3: the ray's own beginning, after every crossing of the same t. */
+/* A crossing. axis 3: the ray's beginning, which comes after every crossing at the same t. */
 typedef struct crossing {
   double t;
   int axis;
@@ -34,13 +34,14 @@ static double time_of(const walk* w, int axis, int64_t plane)
   return ((double)plane - w->origin[axis]) / w->direction[axis];
 }
 
-/* Planes lo .. hi along an axis, in the order that the ray crosses them: number n of them. */
+/* The n-th of the planes lo .. hi along an axis, in the order in which the ray crosses them. */
 static int64_t plane_of(const walk* w, int axis, int64_t n)
 {
   return w->direction[axis] > 0.0 ? w->voxels->lo[axis] + n : w->voxels->hi[axis] - n;
 }
 
-/* The last crossing into the box of all voxels, or the beginning if it is later; false if the ray never is in it. */
+/* Finds the last crossing into the box of all voxels, or the ray's beginning if that is later. Returns false if the ray lies outside along
+ * an axis on which it does not move. */
 static bool enter_box(const walk* w, crossing* entry)
 {
   *entry = (crossing){ w->t_min, 3 };
@@ -60,8 +61,8 @@ static bool enter_box(const walk* w, crossing* entry)
   return true;
 }
 
-/* Where the ray is along an axis right after a crossing: the planes behind it are counted by bisection, for rounding far away can put the
- * point itself anywhere. lo-1 or hi: outside. */
+/* Coordinate of the ray's voxel along an axis right after a crossing; lo-1 or hi: outside. Bisection counts the planes behind the ray,
+ * since rounding at a far origin can put the point itself anywhere. */
 static int64_t place_after(const walk* w, int axis, crossing entry)
 {
   if (w->direction[axis] == 0.0) {
@@ -84,7 +85,7 @@ static double next_time(const walk* w, int axis, int64_t place)
   return w->direction[axis] == 0.0 ? INFINITY : time_of(w, axis, w->direction[axis] > 0.0 ? place + 1 : place);
 }
 
-/* The mask of the brick around a voxel, looked up only where the brick changes. */
+/* Mask of the brick that holds the last voxel, so that only a change of brick costs a search. */
 typedef struct brick_cache {
   int64_t at[3];
   uint64_t mask;
@@ -100,7 +101,7 @@ static bool is_effective(const walk* w, brick_cache* cache, const int64_t at[3])
   return cache->mask >> ((at[2] % 4 * 4 + at[1] % 4) * 4 + at[0] % 4) & 1;
 }
 
-/* Sets t, voxel, face and visited of a hit; the others are the caller's. */
+/* Sets t, voxel, face and visited of a hit; the caller sets its other fields. */
 static void walk_ray(const walk* w, brick_cache* cache, stratus_hit* hit)
 {
   crossing last;
@@ -190,7 +191,7 @@ static stratus_status check_rays(stratus_context* context, const double to_voxel
   return STRATUS_OK;
 }
 
-/* Of length 1, whatever the length of v. */
+/* Scales v to length `sign`, whatever its length. */
 static void normalize(const double v[3], double sign, float normal[3])
 {
   const double longest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
@@ -200,7 +201,8 @@ static void normalize(const double v[3], double sign, float normal[3])
   normal[2] = (float)(z * scale);
 }
 
-/* A plane's normal goes to the world by the inverse transposed: row `axis` of world to index, whatever is mirrored or sheared. */
+/* A plane's normal goes to the world by the inverse transpose, whatever is mirrored or sheared: row `axis` of the matrix from world to
+ * index. */
 static void set_normal(const double world_to_index[16], const stratus_ray* ray, stratus_hit* hit)
 {
   if (hit->face >= 0) {

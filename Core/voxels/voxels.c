@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels: the set, from a mask for each brick, and what may be asked of it. */
+ * Effective voxels: the set, made from one mask for each brick, and queries of it. */
 #include "voxels_build.h"
 
 #include <string.h>
 
-/* ---------------------------------------------------------------- making */
+/* ---------------------------------------------------------------- construction */
 
 stratus_status stratus_voxels_create_empty(stratus_context* context, const int64_t dimensions[3], stratus_voxels** out)
 {
@@ -36,7 +36,7 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
   return STRATUS_OK;
 }
 
-/* Bricks of each row of masks that hold any voxel. */
+/* Counts the bricks that hold a voxel: start[row] is their number in all rows of masks before. */
 static void count_rows(const stratus_voxels* voxels, const uint64_t* masks, int64_t* start)
 {
   const int64_t n = voxels->bricks_along[0], rows = voxels->bricks_along[1] * voxels->bricks_along[2];
@@ -87,7 +87,8 @@ cleanup:
   return status;
 }
 
-/* Layers of a brick along an axis that hold any voxel: the others' bits folded onto the lowest of each, then those brought together. */
+/* Layers of a brick along an axis that hold any voxel, as four bits. The bits of each layer are folded onto its lowest, and these are moved
+ * together. */
 static unsigned layers_of(uint64_t m, int axis)
 {
   if (axis == 2) {
@@ -109,7 +110,7 @@ static unsigned layers_of(uint64_t m, int axis)
   return (unsigned)(m & 15);
 }
 
-/* Widens [lo, hi) by a brick; most bricks lie within and cost a comparison. */
+/* Widens [lo, hi) by a brick. Most bricks lie within and cost only comparisons. */
 static void widen(const stratus_brick* brick, int64_t lo[3], int64_t hi[3])
 {
   for (int a = 0; a < 3; ++a) {
@@ -149,7 +150,7 @@ void stratus_voxels_measure(stratus_voxels* voxels)
   }
 }
 
-/* ---------------------------------------------------------------- asking */
+/* ---------------------------------------------------------------- queries */
 
 void stratus_voxels_destroy(stratus_voxels* voxels)
 {

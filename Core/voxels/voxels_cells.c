@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels for ray casting: whole blocks of 4^3 cells, each the brick of the same place, wherever the range of the block's values
- * meets an interval that shows. */
+ * Effective voxels for ray casting: whole blocks of 4^3 cells. A block whose range of values meets an interval that shows becomes a full
+ * brick at the same place. */
 #include "voxels_build.h"
 
 #include "volume_hash.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* A block's hull, as wide as occupancy takes it, against all intervals. */
+/* True if a block's range, widened as occupancy widens it, meets an interval. */
 static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
 {
   const float slack = STRATUS_HULL_SLACK * fmaxf(fabsf(lo), fabsf(hi));
@@ -21,7 +21,7 @@ static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
   return false;
 }
 
-/* As stratus_occupancy_build() has it, a block with gaps counts if anything shows at all. */
+/* A block with gaps counts if anything shows at all, as in stratus_occupancy_build(). */
 static void mark_blocks(const stratus_voxels* voxels, const stratus_value_range* ranges, uint64_t* masks)
 {
   const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
@@ -36,7 +36,7 @@ static void mark_blocks(const stratus_voxels* voxels, const stratus_value_range*
   }
 }
 
-/* Voxel (i,j,k) is cell (i,j,k): its middle lies half a step beyond the value of that place. */
+/* Voxel (i,j,k) is cell (i,j,k), whose middle lies half a step beyond value (i,j,k). */
 static void place_cells(const stratus_volume* volume, double index_to_world[16])
 {
   static const double half[3] = { 0.5, 0.5, 0.5 };

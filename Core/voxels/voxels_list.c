@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels from a list of positions. The threads set bits in a field of masks, one for each brick that there could be; where that
- * field would be far larger than the list, brick numbers are sorted instead. */
+ * Effective voxels from a list of positions. Threads set bits in a field of masks, one for each possible brick. Where that field would be
+ * far larger than the list, the numbers of bricks are sorted instead. */
 #include "voxels_build.h"
 
 #include <string.h>
 
-/* Masks are set in place up to so many bytes, and beyond while there are no more bricks than so many a voxel. */
+/* A field of masks is used up to so many bytes, and beyond if it has at most so many bricks for each listed voxel. */
 #define FIELD_BYTES_MAX ((size_t)32 << 20)
 #define FIELD_BRICKS_A_VOXEL 32
 #define DIGIT_BITS 11
@@ -16,7 +16,7 @@ typedef struct voxel_list {
   int64_t count;
 } voxel_list;
 
-/* The first position that lies outside, or the list's length. */
+/* Index of the first position outside the dimensions, or the list's length. */
 static int64_t first_outside(const stratus_voxels* voxels, const voxel_list* list)
 {
   const uint32_t nx = (uint32_t)voxels->dimensions[0], ny = (uint32_t)voxels->dimensions[1], nz = (uint32_t)voxels->dimensions[2];
@@ -56,15 +56,15 @@ static stratus_status take_by_field(stratus_voxels* voxels, const voxel_list* li
   return status;
 }
 
-/* Brick's place, and the voxel in it: 16 bits an axis and 6, as one number that sorts as bricks do. */
+/* Key that sorts as bricks do: the brick's place, 16 bits for each axis, and 6 bits for the voxel in it. */
 static uint64_t key_of(const int32_t p[3])
 {
   return ((uint64_t)(p[2] / 4) << 38) | ((uint64_t)(p[1] / 4) << 22) | ((uint64_t)(p[0] / 4) << 6) |
     (uint64_t)((p[2] % 4 * 4 + p[1] % 4) * 4 + p[0] % 4);
 }
 
-/* Sorts by all bits of the brick's place, digit by digit from the lowest; a digit that all keys share is passed over. Returns where the
- * sorted keys are. start: room for DIGITS numbers. */
+/* Sorts by all bits of the brick's place, digit by digit from the lowest. A digit that all keys share is skipped. Returns the array that
+ * holds the sorted keys. start: scratch of DIGITS numbers. */
 static uint64_t* sort_keys(uint64_t* keys, uint64_t* other, int64_t count, uint64_t* start)
 {
   const uint64_t digit = DIGITS - 1;

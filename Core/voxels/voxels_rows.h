@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which values of a row lie in one of some intervals, for one type of values. Included once a type by voxels_scan.c with
- *   TYPE   of the values, and AS what they are compared as      NAME(f)   f with the type in its name
- *   BOUND  member of `bounds`
- * Every comparison is exact, and false for what is no number. */
+ * Marks the values of a row that lie in one of several intervals, for one type of values. voxels_scan.c includes this file once for each
+ * type and defines
+ *   TYPE     the type of the values
+ *   AS       the type in which they are compared
+ *   NAME(f)  f with the type in its name
+ *   BOUND    the member of `bounds`
+ * Every comparison is exact, and false for NaN. */
 
 static void NAME(mark)(const void* row, int64_t n, const bounds* intervals, int64_t count, uint8_t* restrict flags)
 {

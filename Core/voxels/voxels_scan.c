@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels of a volume: rows of values are compared with the criterion's intervals, a byte a value, and the bytes packed into the
- * masks of a row of bricks. */
+ * Effective voxels of a volume. Rows of values are compared with the criterion's intervals, which gives one byte for each value. The bytes
+ * are packed into the masks of a row of bricks. */
 #include "voxels_build.h"
 
 #include <float.h>
 #include <omp.h>
 #include <string.h>
 
-#define WORD 64 /* values whose flags make a word, and bricks' rows times four */
+#define WORD 64 /* flags in a word: those of 16 bricks' rows of four */
 
-/* An end of an interval as values are compared with it: in their own type, but for 64 bits in double, as everybody sees them. */
+/* End of an interval in the type in which values are compared: their own, or double for 64-bit integers, as everywhere else. */
 typedef union bound {
   int64_t i;
   double d;
@@ -89,9 +89,9 @@ static mark_function mark_of(stratus_type type)
   return marks[type];
 }
 
-/* ---------------------------------------------------------------- intervals as values are compared */
+/* ---------------------------------------------------------------- intervals in the values' type */
 
-/* Whole numbers within lo..hi and least..most. */
+/* Restricts lo..hi to integers within least..most; returns false if there is none. */
 static bool whole_bounds(double lo, double hi, double least, double most, bounds* result)
 {
   const double first = fmax(ceil(lo), least), last = fmin(floor(hi), most);
@@ -103,7 +103,7 @@ static bool whole_bounds(double lo, double hi, double least, double most, bounds
   return true;
 }
 
-/* Finite floats within lo..hi. */
+/* Restricts lo..hi to finite floats; returns false if there is none. */
 static bool float_bounds(double lo, double hi, bounds* result)
 {
   if (lo > FLT_MAX || hi < -FLT_MAX) {
@@ -138,13 +138,13 @@ typedef struct scan {
   const stratus_volume* volume;
   const bounds* intervals;
   int64_t count;
-  const uint8_t* ghosts; /* a flag a value, NULL: none */
-  uint8_t hidden;        /* flags that take a value out */
+  const uint8_t* ghosts; /* one byte of flags for each value; NULL if there are none */
+  uint8_t hidden;        /* flags that exclude a value */
   uint64_t* masks;
   int64_t bricks_along[3];
 } scan;
 
-/* Eight bytes of 0 or 1 as eight bits, the first the lowest. */
+/* Packs eight bytes of 0 or 1 into eight bits, the first byte into the lowest. */
 static uint64_t pack8(const uint8_t* flags)
 {
   uint64_t bytes;
@@ -155,7 +155,7 @@ static uint64_t pack8(const uint8_t* flags)
   return bytes * UINT64_C(0x0102040810204080) >> 56;
 }
 
-/* Flags of a row of voxels into the masks of its bricks, four at the place of row y of layer z. flags: padded with 0 to whole words. */
+/* Adds the flags of a row of voxels to the masks of its bricks, four bits to each at `shift`. flags: padded with 0 to whole words. */
 static void add_row(const uint8_t* flags, int64_t bricks, int shift, uint64_t* masks)
 {
   for (int64_t first = 0; first < bricks; first += WORD / STRATUS_BRICK) {
@@ -170,7 +170,7 @@ static void add_row(const uint8_t* flags, int64_t bricks, int shift, uint64_t* m
   }
 }
 
-/* The masks of row (j, k) of bricks, and the hash of its values. */
+/* Fills the masks of row (j, k) of bricks and returns the hash of its values. */
 static uint64_t scan_bricks(const scan* s, mark_function mark, int64_t j, int64_t k, void* room, uint8_t* flags)
 {
   const int64_t* n = s->volume->dimensions;
@@ -214,7 +214,7 @@ static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* has
   return STRATUS_OK;
 }
 
-/* The intervals that any value of the type can lie in. */
+/* Takes the criterion's intervals that some value of the type can lie in. */
 static stratus_status take_intervals(
   stratus_context* context, const stratus_criterion* criterion, scan* s, stratus_origin* origin, void** out)
 {
