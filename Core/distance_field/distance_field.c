@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields: checks, the choice of who builds one, and reading it. */
+ * Distance fields: checks, the choice of the builder, and reading. */
 #include "distance_field.h"
 
 #include "jump_flooding_passes.h"
@@ -21,7 +21,7 @@ stratus_field_options stratus_field_options_default(void)
 
 /* ---- bits */
 
-/* The first brick at brick plane `plane` or above. */
+/* Index of the first brick at brick plane `plane` or above. */
 static int64_t first_brick(const stratus_voxels* voxels, int64_t plane)
 {
   int64_t low = 0, high = voxels->brick_count;
@@ -85,7 +85,7 @@ static stratus_status check_options(stratus_context* context, const stratus_fiel
   return STRATUS_OK;
 }
 
-/* No effective voxel, or no other: every distance is known without an array. */
+/* Without an effective voxel, or without another, all distances are the same and need no array. */
 static bool make_uniform(const stratus_voxels* voxels, size_t count, stratus_field* field)
 {
   if (voxels->count == 0) {
@@ -183,7 +183,7 @@ void stratus_field_destroy(stratus_field* field)
 
 /* ---- reading */
 
-/* From the voxel to the one that a flooding left as the nearest. */
+/* Distance from the voxel to the one that a flooding found nearest. */
 static double flooded_distance(const stratus_field* field, flood_layout layout, int64_t i, int64_t j, int64_t k)
 {
   const uint32_t nearest = field->nearest[(k * field->n[1] + j) * field->n[0] + i];
@@ -223,7 +223,8 @@ double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64
   }
 }
 
-/* Below 2^24 a float holds the square, and its root rounds as the double's does; 4-byte squares beyond take the double's. */
+/* Below 2^24 a float holds the square exactly, and its root rounds as the double's root does. roots_4() takes double roots, as its squares
+ * may be larger. */
 static void roots_2(const int16_t* restrict squared, int64_t n, float* restrict distances)
 {
   for (int64_t i = 0; i < n; ++i) {
@@ -240,7 +241,7 @@ static void roots_4(const int32_t* restrict squared, int64_t n, float* restrict 
   }
 }
 
-/* Row (j, k) as floats. */
+/* Reads row (j, k) as floats. */
 static void read_row(const stratus_field* field, int64_t j, int64_t k, float* distances)
 {
   const int64_t nx = field->n[0], first = (k * field->n[1] + j) * nx;

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The exact transform for one width of a lane and one instruction set (distance_field_lanes.h), included by distance_field_exact.c.
+ * The exact transform for one lane width and one instruction set (distance_field_lanes.h), included by distance_field_exact.c.
  *
- * One array holds both halves of a signed field: squared distances outside, minus those inside. That works after every axis, for where one
- * half is not 0 the other one is. What a voxel looks for has distance 0 there: so `plus` rows hold what voxels outside look at, `minus`
- * rows what those inside do.
+ * One array holds both halves of a signed field: squared distances outside, and the negated ones inside. This works after every axis,
+ * because one half is 0 wherever the other is not. The targets of a voxel have distance 0 in its own half: voxels outside search `plus`
+ * rows, voxels inside search `minus` rows.
  *
- * Along y distances are counted up and down the plane, with x in the lanes; along x and z lines are searched (distance_field_line.h). */
+ * Along y distances are counted up and down the plane, with x in the lanes. Along x and z lines are searched (distance_field_line.h). */
 #include "distance_field_lanes.h"
 
-/* A thread's memory. Lines have `pad` values FAR on either side, so that x looks beyond the ends without asking. */
+/* Scratch of one thread. Lines have `pad` values of FAR on each side, so that searches need not test for the ends. */
 typedef struct NAME(room) {
-  VALUE *plus, *minus;             /* a row, at x = 0 */
-  VALUE *line, *up, *down, *spare; /* signed; padded to whole vectors */
+  VALUE *plus, *minus;             /* rows, which point to x = 0 */
+  VALUE *line, *up, *down, *spare; /* signed rows, padded to whole vectors */
   VALUE *tile_plus, *tile_minus;
   VALUE *column, *result;
-  uint64_t *any, *all; /* columns of a plane that hold an effective voxel; that hold nothing else */
+  uint64_t *any, *all; /* bits by column of a plane: some voxel is effective, all voxels are */
   field_hull* hull;
 } NAME(room);
 #define room NAME(room)
@@ -78,18 +78,18 @@ static FIELD_TARGET void NAME(clear_lines)(const field_work* w, const room* r)
 
 /* ---- along y and x: a plane */
 
-/* One step along y of signed distances: `before` in the last row, `inside` in this one. */
+/* One step of signed distances along y. before: those of the last row; inside: mask of this row's effective voxels. */
 FIELD_INLINE vector NAME(step)(vector before, vector inside, int is_signed)
 {
   const vector cap = NAME(all)((VALUE)FAR_LINE);
   if (!is_signed) {
     return NAME(least)(before + 1, cap) & ~inside;
   }
-  const vector same = NAME(flip)(before, inside); /* below 0: of the other kind, so this one is its neighbour */
+  const vector same = NAME(flip)(before, inside); /* below 0: the last row's voxel is of the other kind, a target at distance 1 */
   return NAME(flip)(NAME(least)((same & (vector)(same > 0)) + 1, cap), inside);
 }
 
-/* The same in the first row. */
+/* The same for the first row, which has no row before it. */
 FIELD_INLINE vector NAME(border)(vector inside, int is_signed)
 {
   const vector cap = NAME(all)((VALUE)FAR_LINE);
@@ -99,7 +99,7 @@ FIELD_INLINE vector NAME(border)(vector inside, int is_signed)
   return NAME(flip)(cap, inside);
 }
 
-/* Which columns of plane k hold what. Returns bit 0: some effective voxel, bit 1: some other. */
+/* Finds the columns of plane k that hold voxels of each kind. Returns bit 0: some voxel is effective, bit 1: some voxel is not. */
 static FIELD_TARGET int NAME(survey)(const field_work* w, const room* r, int64_t k, field_range* range)
 {
   const int64_t nx = w->n[0];
@@ -152,7 +152,8 @@ static FIELD_TARGET void NAME(row)(const field_work* w, const room* r, const fie
   }
 }
 
-/* Row j on the way down: distances along y from both sides, squared, into r->line and what others see of them. */
+/* Squares a row on the way down, when its distances along y from both sides are known. r->line gets the signed squares, r->plus and
+ * r->minus the two halves that searches read. */
 static FIELD_TARGET void NAME(square_row)(const field_work* w, const room* r, int first)
 {
   const int64_t nx = w->n[0], row = (nx + LANES - 1) / LANES * LANES;
@@ -235,7 +236,7 @@ static FIELD_TARGET void NAME(envelope_tile)(
   }
 }
 
-/* The tile's first `lanes` lanes, into the field. *far becomes 1 where FAR comes out. */
+/* Searches the tile's first `lanes` columns and stores them in the field. *far becomes 1 if a result is FAR. */
 static FIELD_TARGET void NAME(tile)(
   const field_work* w, const room* r, const VALUE* plus, const VALUE* minus, VALUE* field, int64_t lanes, int* far)
 {
@@ -265,7 +266,7 @@ static FIELD_TARGET void NAME(tile)(
   *far |= NAME(positive)(-farthest - NAME(all)((VALUE)(FAR - 1)));
 }
 
-/* Columns of voxels first .. of a plane, FIELD_TILE_VECTORS vectors of them. */
+/* Runs along z over FIELD_TILE_VECTORS vectors of columns, from voxel `first` of a plane on. */
 static FIELD_TARGET void NAME(columns)(field_work* w, unsigned char* memory, int64_t first)
 {
   const room r = NAME(make_room)(w, memory);

@@ -74,7 +74,7 @@ struct flood_device {
   int wide;
   size_t groups;
   cl_mem from, to, sums;
-  cl_uint* host_sums; /* two a group */
+  cl_uint* host_sums; /* two for each work-group */
 };
 
 stratus_status stratus_flood_device_create(stratus_context* context, const int64_t n[3], int wide, const uint32_t* from, flood_device** out)

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Exact Euclidean distances (Saito & Toriwaki 1994: axis by axis; Felzenszwalb & Huttenlocher 2012: envelopes) on the host: planes, then
- * columns, by the narrowest lanes that hold the squares.
+ * Exact Euclidean distances on the host, axis by axis (Saito & Toriwaki 1994) or by envelopes (Felzenszwalb & Huttenlocher 2012): planes,
+ * then columns, in the narrowest lanes that hold the squares.
  *
- * 16 bits hold distances below 176. Larger grids try them all the same, for few sets leave such gaps: a result that is too far
- * is noticed, and the whole done anew in 32 bits. Those hold diagonals below 46339; beyond, 64.
+ * 16 bits hold distances below 176. Larger grids try them, too, because few sets leave such gaps: a distance that does not fit is noticed,
+ * and the field is computed anew in 32 bits. 32 bits hold diagonals below 46339. Larger grids take 64.
  *
- * The rule by which EXACT chooses: in 16 bits zigzag, which takes at most 176 steps a vector and was always the cheaper. Wider, each line
- * (or tile of columns) searches 8 samples; where they take more than FIELD_STEPS_A_LANE steps a lane on the mean, envelopes are cheaper. */
+ * EXACT chooses between the two methods. In 16 bits it always takes the zigzag, which needs at most 176 steps for a vector and was always
+ * cheaper. In wider lanes each line (or tile of columns) searches 8 samples. Where these take more than FIELD_STEPS_A_LANE steps for each
+ * lane on average, envelopes are cheaper. */
 #include "clones.h"
 #include "distance_field.h"
 
@@ -20,16 +21,17 @@
 #define FIELD_FAR_LINE_16 176
 #define FIELD_FAR_LINE_32 46339
 #define FIELD_FAR_LINE_64 (1 << 30)
-#define FIELD_TILE_VECTORS 4 /* columns are read in runs of as many: a tile stays in the second cache, one of its vectors in the first */
+/* Vectors in a tile of columns: the tile fits the second-level cache, one of its vectors the first. */
+#define FIELD_TILE_VECTORS 4
 #define FIELD_SAMPLES 8
-#define FIELD_STEPS_A_LANE 12 /* measured: a step of a vector against an envelope's share of a lane */
+#define FIELD_STEPS_A_LANE 12 /* measured: so many steps of a vector for each lane cost as much as an envelope */
 
-/* A parabola of an envelope: its least value `height` at `at`, the lowest one from `start` on. */
+/* A parabola of an envelope. Its minimum is `height` at `at`, and it is the lowest parabola from `start` on. */
 typedef struct field_hull {
   int64_t at, height, start;
 } field_hull;
 
-/* Where along a line voxels are that others look for. */
+/* First and last place along a line that holds a target. */
 typedef struct field_range {
   int64_t first, last;
 } field_range;
@@ -40,9 +42,9 @@ typedef struct field_work {
   stratus_field_method method;
   int is_signed;
   void* values;
-  uint8_t* planes;      /* of each plane bit 0: some effective voxel, bit 1: some other */
-  field_range range[2]; /* planes with an effective voxel, with another */
-  int far;              /* a distance does not fit */
+  uint8_t* planes;      /* by plane: bit 0: some voxel is effective, bit 1: some voxel is not */
+  field_range range[2]; /* planes that hold an effective voxel, and planes that hold another */
+  int far;              /* 1: some distance does not fit a lane */
 } field_work;
 
 typedef struct field_passes {
@@ -105,7 +107,7 @@ static const field_passes* choose_passes(const stratus_context* context, int bit
   return bits == 16 ? &passes_16_0 : bits == 32 ? &passes_32_0 : &passes_64_0;
 }
 
-/* Squared length of the diagonal: no distance is longer. */
+/* Squared length of the grid's diagonal, which no distance exceeds. */
 static int64_t diagonal(const int64_t n[3])
 {
   int64_t sum = 0;
@@ -120,7 +122,7 @@ int stratus_field_is_wide(const int64_t n[3])
   return diagonal(n) >= (int64_t)FIELD_FAR_LINE_32 * FIELD_FAR_LINE_32;
 }
 
-/* That of the longest way from a corner to the box of effective voxels: some distance is as long. */
+/* Squared distance from the box of effective voxels to the farthest corner of the grid. Some distance is at least as long. */
 static int64_t farthest_corner(const stratus_voxels* voxels)
 {
   int64_t sum = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lanes of squared distances for distance_field_body.h: FIELD_BITS (16, 32 or 64) a lane, as many as a register of FIELD_ISA holds (2
- * AVX-512, 1 AVX2, 0 any). Included once for each pair; every function carries both numbers in its name and the instruction set it may use,
- * so that no file needs flags of its own. Only the minimum and the question whether any lane is positive are spelled as instructions: the
- * compiler finds the rest. */
+ * Lanes of squared distances for distance_field_body.h. A lane has FIELD_BITS bits (16, 32 or 64), and a vector as many lanes as a register
+ * of FIELD_ISA holds (2: AVX-512, 1: AVX2, 0: any). This file is included once for each pair. Every function carries both numbers in its
+ * name, and as an attribute the instruction set that it may use, so that no file needs compiler flags of its own. Only the minimum and the
+ * test for a positive lane are written as intrinsics: the compiler finds the others. */
 #define FIELD_JOIN3(name, bits, isa) name##_##bits##_##isa
 #define FIELD_JOIN(name, bits, isa) FIELD_JOIN3(name, bits, isa)
 #define NAME(name) FIELD_JOIN(name, FIELD_BITS, FIELD_ISA)
@@ -19,7 +19,7 @@
 #endif
 #define FIELD_INLINE static ALWAYS_INLINE FIELD_TARGET
 
-/* FAR is a squared distance that says "none known", and FAR_LINE its root: sums of squares stay within a lane up to it. */
+/* FAR is the squared distance that means "none known", and FAR_LINE is its root. Sums of squares up to FAR fit a lane. */
 #if FIELD_BITS == 16
 #define VALUE int16_t
 #define FAR_LINE FIELD_FAR_LINE_16
@@ -53,7 +53,7 @@ FIELD_INLINE vector NAME(all)(VALUE a)
   return a - (vector){ 0 };
 }
 
-/* a where the mask's lanes are -1, b where they are 0. */
+/* Returns a where the mask's lanes are -1, b where they are 0. */
 FIELD_INLINE vector NAME(select)(vector mask, vector a, vector b)
 {
   return (a & mask) | (b & ~mask);
@@ -74,7 +74,7 @@ FIELD_INLINE vector NAME(least)(vector a, vector b)
 #endif
 }
 
-/* Whether any lane is above 0. */
+/* True if any lane is above 0. */
 FIELD_INLINE int NAME(positive)(vector a)
 {
 #if FIELD_ISA == 2 && FIELD_BITS == 16
@@ -89,13 +89,13 @@ FIELD_INLINE int NAME(positive)(vector a)
 #endif
 }
 
-/* -a where the mask's lanes are -1. */
+/* Negates a where the mask's lanes are -1. */
 FIELD_INLINE vector NAME(flip)(vector a, vector mask)
 {
   return (a ^ mask) - mask;
 }
 
-/* -1 in lane i where bit first + i of a row of bits is set. `first` is a multiple of LANES. */
+/* Lane i is -1 where bit first + i of a row of bits is set. `first` is a multiple of LANES. */
 FIELD_INLINE vector NAME(spread_bits)(const uint64_t* bits, int64_t first)
 {
   const uint64_t word = bits[first >> 6] >> (first & 63);
@@ -108,7 +108,7 @@ FIELD_INLINE vector NAME(spread_bits)(const uint64_t* bits, int64_t first)
 #else
   vector mine = { 0 };
   for (int i = 0; i < LANES; ++i) {
-    mine[i] = (VALUE)(1u << i); /* folded into a constant */
+    mine[i] = (VALUE)(1u << i); /* the compiler folds this into a constant */
   }
   return (vector)((NAME(all)((VALUE)(word & ((1u << LANES) - 1))) & mine) != 0);
 #endif

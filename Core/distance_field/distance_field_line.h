@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lines of distance_field_body.h, which includes this once its words and rooms are known: the lower envelope of one line, and the zigzag,
- * which searches as many lines as a vector has lanes, or as many voxels of a row.
+ * Lines of distance_field_body.h, which includes this file after its types. The lower envelope works on one line. The zigzag searches as
+ * many lines, or as many voxels of a row, as a vector has lanes.
  *
- * A vector looks outward from itself, n = 1, 2 .., and keeps c = best - n^2, which needs one subtraction a step and no sum that could
- * overflow, and tells when to stop: c <= 0 everywhere. */
+ * The zigzag of a vector looks outward, n = 1, 2 .., and keeps c = best - n^2. This needs one subtraction a step and no sum that could
+ * overflow. The search stops when no lane of c is above 0. */
 
 /* ---- lower envelope */
 
-/* Adds the parabola about u with height g to the hull of a run [first, end); returns its top. */
+/* Adds the parabola about u with height g to the hull of a run [first, end); returns the new top. */
 FIELD_INLINE int64_t NAME(push)(field_hull* hull, int64_t top, int64_t u, int64_t g, int64_t first, int64_t end)
 {
   while (top >= 0) {
@@ -21,7 +21,8 @@ FIELD_INLINE int64_t NAME(push)(field_hull* hull, int64_t top, int64_t u, int64_
   int64_t start = first;
   if (top >= 0) {
     const field_hull h = hull[top];
-    /* They cross at h.start or beyond, so the quotient is not negative; and of whole numbers below 2^53 it never rounds up to the next. */
+    /* The parabolas cross at h.start or beyond, so that the quotient is not negative. It is one of integers below 2^53, which never rounds
+     * up to the next integer. */
     start = 1 + (int64_t)((double)(u * u - h.at * h.at + g - h.height) / (double)(2 * (u - h.at)));
   }
   if (start < end) {
@@ -30,7 +31,8 @@ FIELD_INLINE int64_t NAME(push)(field_hull* hull, int64_t top, int64_t u, int64_
   return top;
 }
 
-/* One line of signed squared distances: each run of one sign sees itself and the zeros at its two ends, beyond which nothing is nearer. */
+/* Envelope of a line of signed squared distances. Each run of one sign needs only its own values and the zeros at its two ends: nothing
+ * beyond these is nearer. */
 static FIELD_TARGET void NAME(envelope_line)(const VALUE* s, int64_t n, field_hull* hull, VALUE* out)
 {
   for (int64_t first = 0, end; first < n; first = end) {
@@ -62,8 +64,8 @@ static FIELD_TARGET void NAME(envelope_line)(const VALUE* s, int64_t n, field_hu
 
 typedef struct NAME(aim) {
   vector c, inside; /* c = best - n^2 */
-  int kinds;        /* bit 0: some lane is outside and can still get nearer, bit 1: inside */
-  int64_t n;        /* the step that comes next */
+  int kinds;        /* bit 0: some lane outside can still get nearer, bit 1: some lane inside */
+  int64_t n;        /* the next step */
 } NAME(aim);
 #define aim NAME(aim)
 
@@ -77,7 +79,7 @@ FIELD_INLINE aim NAME(take_aim)(vector target)
   return a;
 }
 
-/* What the kinds of `a` look for lies at first..last along a line. */
+/* Finds the range first..last of the line that holds targets for the kinds of `a`. */
 FIELD_INLINE void NAME(range_of)(const aim* a, const field_range* range, int64_t* first, int64_t* last)
 {
   const int some = a->kinds == 2, other = a->kinds != 1;
@@ -88,12 +90,12 @@ FIELD_INLINE void NAME(range_of)(const aim* a, const field_range* range, int64_t
 FIELD_INLINE void NAME(start_at)(aim* a, int64_t n)
 {
   if (n > a->n) {
-    a->n = n > FAR_LINE ? FAR_LINE : n; /* where nothing is nearer than FAR */
+    a->n = n > FAR_LINE ? FAR_LINE : n; /* farther targets are not nearer than FAR */
   }
   a->c -= NAME(all)((VALUE)(a->n * a->n));
 }
 
-/* Looks at n*one and n*other from where it stands, for n up to `last`. */
+/* Searches at n*one and n*other from its own place, for n up to `last`. */
 FIELD_INLINE void NAME(look)(aim* a, const VALUE* plus, const VALUE* minus, int64_t one, int64_t other, int64_t last)
 {
   const VALUE* only = a->kinds == 1 ? plus : minus;
@@ -116,13 +118,13 @@ FIELD_INLINE void NAME(look)(aim* a, const VALUE* plus, const VALUE* minus, int6
   a->n = n;
 }
 
-/* Squared distances, at most FAR, without their sign. */
+/* Squared distances found, at most FAR, without their sign. */
 FIELD_INLINE vector NAME(found)(const aim* a)
 {
   return a->c + NAME(all)((VALUE)(a->n * a->n));
 }
 
-/* The vector at x of the row in r. Returns the steps taken. */
+/* Searches the vector at x of the row in r. Returns the number of steps. */
 FIELD_INLINE int64_t NAME(search_row)(const room* r, const field_range* range, int64_t x, VALUE* out)
 {
   aim a = NAME(take_aim)(NAME(load)(r->line + x));
@@ -143,7 +145,7 @@ FIELD_INLINE int64_t NAME(search_row)(const room* r, const field_range* range, i
   return steps;
 }
 
-/* Entry k of a tile of `n`. Returns the steps taken. */
+/* Searches entry k of a tile. Returns the number of steps. */
 FIELD_INLINE int64_t NAME(search_tile)(const VALUE* plus, const VALUE* minus, const field_range* range, int64_t k, vector* out)
 {
   const VALUE *p = plus + k * LANES, *m = minus + k * LANES;

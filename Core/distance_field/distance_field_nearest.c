@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The nearest voxel of each voxel of an exact field, for the paper's layout. A field keeps distances alone; who wants positions gets them
- * by the same three axes, y, x, z, with a position carried along in the layout's own floats: the nearest in the column, then in the plane,
- * then of all. Each voxel looks for the nearest of the other kind, and one of the other kind stands for itself. Of several equally near
- * ones the smallest index wins at each axis, and so at last: z first, then y, then x. */
+ * The nearest voxel of each voxel of an exact field, for the paper's layout. A field keeps distances only. Positions come from the same
+ * three axes, y, x, z, which carry a position along in the layout's own floats: that of the nearest target in the column, then in the
+ * plane, then in the grid. The targets of a voxel are the voxels of the other kind, and each of these stands for itself. Among equally near
+ * ones the smallest index (z first, then y, then x) wins at each axis, and therefore in the end. */
 #include "distance_field.h"
 
 #include <omp.h>
@@ -10,9 +10,9 @@
 
 #define NONE (-1)
 
-/* What a voxel knows, in the bits of three floats. */
+/* A voxel's nearest target so far, kept in the bits of three floats. */
 typedef struct site {
-  int32_t at[3]; /* at[1] NONE: nothing */
+  int32_t at[3]; /* at[1] is NONE if no target is known */
 } site;
 
 static site get_site(const float* rgba, int64_t voxel)
@@ -27,11 +27,11 @@ static void set_site(float* rgba, int64_t voxel, const site* s)
   memcpy(rgba + 4 * voxel, s->at, sizeof s->at);
 }
 
-/* Column (i, k): the nearest of the other kind above and below. */
+/* Finds the nearest voxels of the other kind above and below, in column (i, k). */
 static void find_in_column(const stratus_bits* set, int64_t i, int64_t k, float* rgba)
 {
   const int64_t ny = set->n[1], step = set->n[0];
-  int64_t last[2] = { NONE, NONE }; /* of either kind */
+  int64_t last[2] = { NONE, NONE }; /* the last voxel of each kind */
   const int64_t first = k * ny * step + i;
   for (int64_t j = 0; j < ny; ++j) {
     const int kind = stratus_bits_get(set, i, j, k);
@@ -51,10 +51,10 @@ static void find_in_column(const stratus_bits* set, int64_t i, int64_t k, float*
 
 typedef struct line {
   int64_t n, axis;
-  int64_t at[3];     /* of its first voxel */
-  const site* sites; /* of the axes before */
+  int64_t at[3];     /* position of its first voxel */
+  const site* sites; /* results of the axes before */
   const uint8_t* kinds;
-  int64_t first[2], last[2]; /* places that voxels of either kind can learn from; first > last: none */
+  int64_t first[2], last[2]; /* places from which voxels of each kind can learn a target; first > last: none */
 } line;
 
 static int64_t squared_to(const site* s, const int64_t at[3])
@@ -73,7 +73,7 @@ static bool is_before(const site* a, const site* b)
   return a->at[0] < b->at[0];
 }
 
-/* What voxel `here` of the line learns from voxel `there`. */
+/* Lets voxel `here` of the line learn a target from voxel `there`. */
 static void learn(const line* l, int64_t here, int64_t there, const int64_t at[3], site* best, int64_t* distance)
 {
   if (there < 0 || there >= l->n) {
@@ -109,7 +109,7 @@ static site find_in_line(const line* l, int64_t here)
   return best;
 }
 
-/* Fills the line's sites and kinds from those `step` apart. */
+/* Fills the line's sites and kinds from voxels that are `step` apart. */
 static void read_line(const stratus_bits* set, const float* rgba, int64_t from, int64_t step, line* l, site* sites, uint8_t* kinds)
 {
   int64_t at[3] = { l->at[0], l->at[1], l->at[2] };
@@ -130,7 +130,7 @@ static void read_line(const stratus_bits* set, const float* rgba, int64_t from, 
   }
 }
 
-/* The lines along an axis 0 or 2 through the other two's places; rooms: a site and a byte for each place of a line, a thread. */
+/* Searches all lines along axis 0 or 2. rooms: for each thread a site and a byte for each place of a line. */
 static void find_along(const stratus_context* context, const stratus_bits* set, int axis, float* rgba, unsigned char* rooms, size_t room)
 {
   const int other = 2 - axis;
@@ -154,7 +154,7 @@ static void find_along(const stratus_context* context, const stratus_bits* set, 
   }
 }
 
-/* Whole numbers become floats; effective voxels of an unsigned field are their own nearest. */
+/* Converts positions to floats. Effective voxels of an unsigned field are their own nearest. */
 static void write_positions(const stratus_context* context, const stratus_bits* set, int is_signed, float* rgba)
 {
   const int64_t nx = set->n[0], rows = set->n[1] * set->n[2];

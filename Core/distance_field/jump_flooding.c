@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Jump flooding (Rong & Tan 2006) and the adaptive one of Guo et al. 2025: which steps are taken, and what they did. Passes read one array
- * and write the other, so no order shows.
+ * Jump flooding (Rong & Tan 2006), and the adaptive jump flooding (AJFA) of Guo et al. 2025: the choice of steps, and the record of their
+ * effect. A pass reads one array and writes another, so that no order shows.
  *
- * Steps of JFA are n/2, n/4 .. 1, rounded up: then they add up to n - 1 at least, and one that is at most twice the next leaves nothing
- * unfilled on the way (any offset is a sum of them). The paper's figure 5 falls by more, from 48 to 15 and from 10 to 3: on a line of 128 a
- * voxel at 42 never gets to 16 of the places.
+ * The steps of JFA are n/2, n/4 .. 1, rounded up. They add up to at least n - 1, and no step is more than twice the next, so that every
+ * offset is a sum of them and no voxel stays unfilled. The steps of the paper's figure 5 fall by more, from 48 to 15 and from 10 to 3: on a
+ * line of 128 a voxel at 42 never reaches 16 of the places.
  *
- * The paper gives AJFA's rule without a threshold: after a good pass the step falls more slowly, after a poor one faster. Here a pass is
- * good where it took GOOD of the distance away on the mean over all that searched, E1 (1 - E2); then the next step is 3/4 of this one, else
- * 1/2, never less. At step 1 passes are repeated while more than AGAIN of the voxels come nearer. */
+ * The paper gives AJFA's rule without a threshold: the step falls more slowly after a good pass, faster after a poor one. Here a pass is
+ * good if it shortened the distance by GOOD on average over all voxels that search, E1 (1 - E2). The next step is then 3/4 of this one,
+ * else 1/2, never less. Passes of step 1 are repeated while more than AGAIN of the voxels come nearer. */
 #include "jump_flooding_passes.h"
 
 #include <string.h>
 
 #define GOOD 0.05
 #define AGAIN 0.0005
-#define AGAIN_MAX 4 /* passes of step 1 */
+#define AGAIN_MAX 4 /* greatest number of passes of step 1 */
 #define PASSES_MAX 128
 
 typedef struct flood_plan {
   stratus_field_method method;
   int first;
-  int count; /* passes that are sure; AJFA: so far */
+  int count; /* number of passes; AJFA: so far */
   int steps[PASSES_MAX];
 } flood_plan;
 
@@ -41,7 +41,7 @@ static void add_halves(flood_plan* plan)
   add_step(plan, 1);
 }
 
-/* The list of figure 5, whose grid began at 64, for one that begins at plan->first. */
+/* Adds the list of figure 5, whose grid began at 64, scaled to begin at plan->first. */
 static void add_figure_5(flood_plan* plan)
 {
   static const int printed[] = { 64, 48, 15, 10, 3, 1 };
@@ -87,7 +87,7 @@ static flood_plan make_plan(const int64_t n[3], const stratus_field_options* opt
   return plan;
 }
 
-/* AJFA's next step, from what the last pass did. */
+/* Adds AJFA's next step, which depends on the effect of the last pass. */
 static void adapt(flood_plan* plan, double e1, double e2)
 {
   const int step = plan->steps[plan->count - 1];
@@ -103,14 +103,14 @@ static void adapt(flood_plan* plan, double e1, double e2)
 
 typedef struct flooding {
   int64_t n[3];
-  int64_t searched; /* voxels that are not sought themselves */
+  int64_t searched; /* number of voxels that search, which are all that are not sought */
   int wide;
-  uint32_t *from, *to; /* the result ends up in from */
+  uint32_t *from, *to; /* after each pass the result is in from */
   unsigned char* rooms;
-  flood_device* device; /* NULL: the host floods */
+  flood_device* device; /* NULL if the host floods */
 } flooding;
 
-/* Every voxel of occupancy `sought` knows itself. */
+/* Seeds from[]: each voxel of occupancy `sought` is its own nearest. */
 static void seed(const stratus_context* context, const stratus_bits* set, int sought, flooding* f)
 {
   const flood_layout layout = flood_shifts(f->n);
@@ -169,7 +169,7 @@ static stratus_status run_plan(stratus_context* context, flooding* f, flood_plan
   return STRATUS_OK;
 }
 
-/* Floods for voxels of occupancy `sought`; *nearest is the caller's to release. */
+/* Floods for the nearest voxels of occupancy `sought`. The caller releases *nearest. */
 static stratus_status flood(stratus_context* context, const stratus_bits* set, int sought, const stratus_field_options* options,
   uint32_t** nearest, stratus_field_report* report)
 {
@@ -210,7 +210,7 @@ cleanup:
   return status;
 }
 
-/* Effective voxels take what the flooding for the others found. */
+/* Effective voxels take the result of the flooding for the other voxels. */
 static void merge(const stratus_context* context, const stratus_bits* set, const uint32_t* inner, uint32_t* nearest)
 {
   const int64_t nx = set->n[0], rows = set->n[1] * set->n[2];

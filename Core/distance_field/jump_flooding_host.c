@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A pass of jump flooding on the host, row by row: the same bits as jump_flooding.cl. */
+ * One pass of jump flooding on the host, row by row. It gives the same bits as jump_flooding.cl. */
 #include "clones.h"
 #include "jump_flooding_passes.h"
 

@@ -6,7 +6,7 @@
 #include "jump_flooding.h"
 #include "distance_field.h"
 
-#define FLOOD_BITS 31 /* of a packed position */
+#define FLOOD_BITS 31 /* limit on the bits of a packed position */
 
 typedef struct flood_layout {
   int shift_y, shift_z, bits;
@@ -35,22 +35,22 @@ static inline void flood_unpack(uint32_t position, flood_layout layout, int64_t 
   at[2] = position >> layout.shift_z;
 }
 
-/* What a pass did: voxels brought nearer, and the sum of their new over old distances in units of 1/FLOOD_RATIO_ONE. */
+/* Effect of a pass: the number of voxels brought nearer, and the sum of their new over old distances in units of 1/FLOOD_RATIO_ONE. */
 typedef struct flood_count {
   uint64_t updated, ratios;
 } flood_count;
 
-/* Fills field->nearest. jump_flooding.c */
+/* jump_flooding.c: fills field->nearest. */
 stratus_status stratus_flood(stratus_context* context, const stratus_bits* set, const stratus_field_options* options, stratus_field* field,
   stratus_field_report* report);
 
-/* A pass on the host from[] -> to[]; wide: squared distances need 64 bits. rooms: of stratus_flood_room_bytes() a thread.
- * jump_flooding_host.c */
+/* jump_flooding_host.c: one pass on the host, from[] to to[]. wide: squared distances need 64 bits. rooms: stratus_flood_room_bytes() for
+ * each thread. */
 size_t stratus_flood_room_bytes(const int64_t n[3]);
 void stratus_flood_pass(const stratus_context* context, const int64_t n[3], int step, int wide, const uint32_t* from, uint32_t* to,
   unsigned char* rooms, flood_count* count);
 
-/* On the device: begin copies from[] there, a pass swaps the buffers, end copies the result back. distance_field_device.c */
+/* distance_field_device.c: passes on the device. _create copies from[] there, _pass swaps the buffers, _read copies the result back. */
 typedef struct flood_device flood_device;
 stratus_status stratus_flood_device_create(
   stratus_context* context, const int64_t n[3], int wide, const uint32_t* from, flood_device** device);

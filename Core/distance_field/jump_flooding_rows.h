@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A row of a flooding pass, included by jump_flooding_host.c for each width of squared distances and each instruction set: plain loops over
- * x that the compiler vectorises. FLOOD_NAME(x) names a function, LENGTH and ULENGTH are the distances, LENGTH_MAX says "unknown". */
+ * One row of a flooding pass. jump_flooding_host.c includes this file for each width of squared distances and each instruction set: plain
+ * loops over x, which the compiler vectorises. FLOOD_NAME(x) names a function, LENGTH and ULENGTH are the types of distances, LENGTH_MAX
+ * means "unknown". */
 
-/* Squared distances from voxels (x, j, k) to positions[x]. Unsigned: what the sum of an unknown one may overflow does not matter. */
+/* Squared distance from voxel (x, j, k) to `position`. Unsigned, because the sum for an unknown position may overflow; it is not used. */
 static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(uint32_t position, int32_t x, int32_t j, int32_t k, flood_layout layout)
 {
   const uint32_t mask_x = (1u << layout.shift_y) - 1, mask_y = (1u << (layout.shift_z - layout.shift_y)) - 1;
@@ -13,7 +14,7 @@ static ALWAYS_INLINE FLOOD_TARGET LENGTH FLOOD_NAME(squared)(uint32_t position, 
   return position == FLOOD_UNKNOWN ? LENGTH_MAX : sum;
 }
 
-/* nearest[x] becomes other[x + shift] where that is nearer to voxel (x, j, k), or as near and of a smaller index. */
+/* Replaces nearest[x] by other[x + shift] where that is nearer to voxel (x, j, k), or as near and of a smaller index. */
 static ALWAYS_INLINE FLOOD_TARGET void FLOOD_NAME(ask)(const uint32_t* restrict other, int64_t shift, int64_t n, int32_t j, int32_t k,
   flood_layout layout, uint32_t* restrict nearest, LENGTH* restrict distance)
 {
