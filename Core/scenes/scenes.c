@@ -20,15 +20,15 @@ typedef struct recipe {
   stratus_type type;
   int up_axis;
   double quantile;
-  double top; /* of the scalar range */
+  double top; /* upper end of the scalar range */
   double opacity;
-  void (*field)(const field_tables* tables, int j, int k, float* row); /* NULL: one voxel */
-  /* threshold: the field's quantile; height: its maximum less that. May work in place. */
+  void (*field)(const field_tables* tables, int j, int k, float* row); /* NULL: a single voxel is set */
+  /* threshold: the field's quantile; height: the field's maximum less the threshold. `values` may be `row`. */
   void (*shade)(int j, int k, const float* row, float threshold, float height, void* values);
 } recipe;
 
 typedef struct scene_storage {
-  stratus_scene scene; /* first: the caller's pointer is ours */
+  stratus_scene scene; /* first member, so that stratus_scene_destroy() can cast the caller's pointer */
   void* values;
   double opacity[POINTS_MAX][2], edited_opacity[POINTS_MAX][2];
   double color[3][4], edited_color[3][4];
@@ -49,9 +49,9 @@ static const recipe recipes[] = {
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
 
-/* ---------------------------------------------------------------- building */
+/* ---------------------------------------------------------------- values */
 
-/* Unsigned integers in the order of the floats. */
+/* Maps a float to an unsigned integer; the integers have the floats' order. */
 static uint32_t sort_key(float value)
 {
   uint32_t bits;
@@ -59,12 +59,13 @@ static uint32_t sort_key(float value)
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-/* The rank-th smallest (from 0), exactly, by three counts of 11, 11 and 10 bits: no copy to partition. */
+/* Finds the rank-th smallest value (from 0) exactly. Counts of the keys' upper 11, middle 11 and lower 10 bits need no copy to
+ * partition. */
 static stratus_status select_rank(stratus_context* context, const float* values, int64_t count, int64_t rank, float* value)
 {
   const int threads = context->threads;
   void* memory;
-  TRY(stratus_allocate(context, 1 + (size_t)threads, sizeof(int64_t[2048]), &memory)); /* stacks of threads may be small */
+  TRY(stratus_allocate(context, 1 + (size_t)threads, sizeof(int64_t[2048]), &memory)); /* not on threads' stacks, which may be small */
   int64_t(*const rooms)[2048] = memory;
   int64_t* const total = rooms[threads];
   static const int shifts[] = { 21, 10, 0 };
@@ -103,7 +104,7 @@ static stratus_status select_rank(stratus_context* context, const float* values,
   return STRATUS_OK;
 }
 
-/* Fields and shades slab by slab, so that the caller can stop it; `height` is the field's maximum less the threshold. */
+/* Computes the field and shades it, slab by slab, so that the caller can cancel. */
 static stratus_status build_values(stratus_context* context, const recipe* recipe, const field_tables* tables, float* field, void* values)
 {
   const int nx = recipe->n[0], ny = recipe->n[1], nz = recipe->n[2], threads = context->threads;
@@ -164,7 +165,7 @@ static void measure(stratus_scene* scene, int threads)
   const int64_t row = scene->volume.dimensions[0];
   const int64_t rows = scene->volume.dimensions[1] * scene->volume.dimensions[2];
   int64_t occupied = 0;
-  double slices[512] = { 0 }; /* added in order, so that the mean is the same at any thread count */
+  double slices[512] = { 0 }; /* sums added in order, so that the mean does not depend on the number of threads */
   const int64_t per_slice = scene->volume.dimensions[1];
 #pragma omp parallel for num_threads(threads) reduction(+ : occupied)
   for (int64_t k = 0; k < rows / per_slice; ++k) {
@@ -217,11 +218,11 @@ static void set_transfer(scene_storage* storage, const recipe* recipe)
   storage->scene.transfers = storage->transfers;
 }
 
-/* The first pollutant, made in place the second by how far it has come along x. Exact: whole numbers. */
+/* Splits the plume into two pollutants in place: the first turns into the second on its way along x. Integers make this exact. */
 static void split_plume(const recipe* recipe, uint8_t* values)
 {
   const int64_t count = (int64_t)recipe->n[0] * recipe->n[1] * recipe->n[2];
-  for (int64_t q = count - 1; q >= 0; --q) { /* from the end: what is written is never read again */
+  for (int64_t q = count - 1; q >= 0; --q) { /* backwards, since a value written lies behind the values still to be read */
     const int along = (int)(q % recipe->n[0]), way = along > 8 ? along - 8 : 0, all = recipe->n[0] - 8;
     const int value = values[q];
     values[2 * q] = (uint8_t)((value * (all - way) + all / 2) / all);
@@ -229,7 +230,7 @@ static void split_plume(const recipe* recipe, uint8_t* values)
   }
 }
 
-/* ---------------------------------------------------------------- the public side */
+/* ---------------------------------------------------------------- public functions */
 
 int stratus_scene_count(void)
 {

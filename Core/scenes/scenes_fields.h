@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The fields of the scenes of record, a row of x at a time, and how they are shaded above their threshold. Only scenes.c includes this. */
+ * The fields of the scenes of record, one row of x at a time, and their shading above the threshold. Only scenes.c includes this file. */
 #ifndef STRATUS_SCENES_FIELDS_H
 #define STRATUS_SCENES_FIELDS_H
 
@@ -10,16 +10,16 @@
 #define BLOBS 28
 #define ROW_MAX 512
 
-/* What the rows of a field share. */
+/* Tables that all rows of a field share. */
 typedef struct field_tables {
   struct {
     float y, z, r;
     float dx2[256];
   } blobs[BLOBS];                             /* cloud */
-  float cy[ROW_MAX], cz[ROW_MAX], r[ROW_MAX]; /* plume: its axis and radius at each x */
+  float cy[ROW_MAX], cz[ROW_MAX], r[ROW_MAX]; /* plume: axis and radius at each x */
 } field_tables;
 
-/* ---------------------------------------------------------------- cloud: flat-based blobs, eroded by noise, 3 % occupied */
+/* ---------------------------------------------------------------- cloud: blobs with flat bases, eroded by noise, 3 % occupied */
 
 static void cloud_tables(field_tables* tables)
 {

@@ -7,11 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-#define LATTICE 55 /* boxes along an axis, six cells each */
+#define LATTICE 55 /* boxes along an axis, six tetrahedra each */
 
 #define HOLES_X 6
 #define HOLES_Y 4
-#define SIDE 8 /* pieces of a square's edge, one hole a square */
+#define SIDE 8 /* pieces of each edge of a square; a square has one hole */
 #define AROUND (4 * SIDE)
 #define THICKNESS 0.4
 #define RADIUS 0.3
@@ -20,7 +20,7 @@
 #define MAXIMUM_VOLUME 2.05e-5 /* about 800 thousand tetrahedra */
 
 typedef struct mesh_storage {
-  stratus_mesh_scene scene; /* first: the caller's pointer is ours */
+  stratus_mesh_scene scene; /* first member, so that stratus_mesh_scene_destroy() can cast the caller's pointer */
   void* points;
   void* vertices;
   void* values;
@@ -29,7 +29,7 @@ typedef struct mesh_storage {
 
 /* ---------------------------------------------------------------- fields */
 
-/* A hump with waves of three lengths over it. */
+/* A hump with waves of three lengths. */
 static double wavelet_value(const double point[3])
 {
   double p[3], square = 0.0;
@@ -40,7 +40,7 @@ static double wavelet_value(const double point[3])
   return 150.0 * exp(-2.0 * square) + 20.0 * sin(12.0 * p[0]) + 36.0 * sin(6.0 * p[1]) + 10.0 * cos(16.0 * p[2]);
 }
 
-/* Speed of a plane flow along x around cylinders that do not know of each other, a wave along z over it. */
+/* Speed of a plane flow along x around cylinders, each as if it stood alone, times a wave along z. */
 static double holes_value(const double point[3])
 {
   double along = 1.0, across = 0.0;
@@ -90,7 +90,7 @@ static stratus_status make_wavelet(stratus_context* context, mesh_storage* stora
 
 /* ---------------------------------------------------------------- the plate */
 
-/* Corner s, counted around a square from its lower left: pieces of the edge from it. */
+/* Place of point s on a square's border, counted counterclockwise in pieces of its edge from the lower left corner. */
 static void around_square(int s, int at[2])
 {
   const int edge = s / SIDE, t = s % SIDE;
@@ -101,9 +101,9 @@ static void around_square(int s, int at[2])
 typedef struct plate {
   double* points;
   int32_t* quads;
-  int32_t layer; /* points of one face; the upper face's come behind the lower's */
+  int32_t layer; /* points of one face; those of the upper face follow them */
   int64_t quad_count;
-  int32_t corner[ACROSS_Y][ACROSS_X]; /* points on the squares' edges; -1: none there */
+  int32_t corner[ACROSS_Y][ACROSS_X]; /* points on the squares' edges; -1 inside squares */
 } plate;
 
 static int32_t add_point(plate* p, double x, double y)
@@ -121,8 +121,8 @@ static void add_quad(plate* p, int32_t a, int32_t b, int32_t c, int32_t d)
   memcpy(p->quads + 4 * p->quad_count++, quad, sizeof quad);
 }
 
-/* Both faces around a hole, its wall, and where the square is at the plate's border the wall there; all seen from outside counterclockwise.
- */
+/* Adds both faces around a hole, the hole's wall, and the plate's wall where the square lies at its border. All quads are counterclockwise
+ * seen from outside. */
 static void add_square(plate* p, int column, int row, const int32_t* circle, int32_t top)
 {
   for (int s = 0; s < AROUND; ++s) {
@@ -163,7 +163,7 @@ static stratus_status make_holes(stratus_context* context, mesh_storage* storage
   for (int h = 0; h < HOLES_X * HOLES_Y; ++h) {
     int32_t circle[AROUND];
     for (int s = 0; s < AROUND; ++s) {
-      const double angle = 2.0 * pi * (s - 1.5 * SIDE) / AROUND; /* corner 0 lies lower left */
+      const double angle = 2.0 * pi * (s - 1.5 * SIDE) / AROUND; /* point 0 lies lower left, as on the square */
       circle[s] = add_point(&p, h % HOLES_X + 0.5 + RADIUS * cos(angle), h / HOLES_X + 0.5 + RADIUS * sin(angle));
     }
     add_square(&p, h % HOLES_X, h / HOLES_X, circle, LAYER_POINTS);
@@ -179,7 +179,7 @@ static stratus_status make_holes(stratus_context* context, mesh_storage* storage
   return STRATUS_OK;
 }
 
-/* ---------------------------------------------------------------- the public side */
+/* ---------------------------------------------------------------- public functions */
 
 static const struct {
   const char* name;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Value noise on an integer hash, as the scenes of record define it to the last bit: single precision, in this order of operations. */
+ * Value noise on an integer hash. It defines the scenes of record to the last bit: single precision, in this order of operations. */
 #ifndef STRATUS_SCENES_NOISE_H
 #define STRATUS_SCENES_NOISE_H
 
@@ -17,13 +17,13 @@ static inline uint32_t noise_hash(uint32_t x, uint32_t y, uint32_t z, uint32_t s
   return k ^ (k >> 15);
 }
 
-/* 0..1 at a lattice point. */
+/* Random number in 0..1 at a lattice point. */
 static inline float noise_corner(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
 {
   return (float)(noise_hash(x, y, z, seed) >> 8) * (1.0f / 16777216.0f);
 }
 
-/* The i-th random number of a seed, 0..1. */
+/* The i-th random number of a seed, in 0..1. */
 static inline float noise_unit(uint32_t i, uint32_t seed)
 {
   return noise_corner(i, 17, 91, seed);
@@ -39,14 +39,14 @@ static inline float noise_fade(float t)
   return t * t * (3.0f - 2.0f * t);
 }
 
-/* One octave along a row of x: the lattice cell last used is kept, since neighbouring voxels mostly share it. */
+/* One octave along a row of x. It keeps the last lattice cell, which neighbouring voxels mostly share. */
 typedef struct noise_octave {
   uint32_t seed, cell, j, k;
   float v, w;            /* fade along y, z */
   float near[4], far[4]; /* corners (j,k) (j+1,k) (j,k+1) (j+1,k+1) at `cell` and `cell`+1 */
 } noise_octave;
 
-/* Fractal noise along the row (y, z); coordinates are >= 0. */
+/* Fractal noise along the row (y, z). Coordinates are >= 0. */
 typedef struct noise_row {
   int octaves;
   noise_octave octave[NOISE_OCTAVES_MAX];
@@ -58,7 +58,7 @@ static inline void noise_row_start(noise_row* row, float y, float z, int octaves
   for (int o = 0; o < octaves; ++o) {
     noise_octave* octave = row->octave + o;
     octave->seed = seed + (uint32_t)o;
-    octave->cell = UINT32_MAX - 1; /* no row gets there, nor to the cell behind it */
+    octave->cell = UINT32_MAX - 1; /* no row reaches this cell or the next one */
     octave->j = (uint32_t)y;
     octave->k = (uint32_t)z;
     octave->v = noise_fade(y - (float)octave->j);

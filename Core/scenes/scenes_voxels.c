@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in noise
- * whose density deviates by a given amount. A set is never changed. */
+ * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in noise
+ * whose density has a given deviation. A set never changes. */
 #include "voxels.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #define RAYS_ACROSS 512
-#define LEAST_DIRECTION 1e-6f /* a ray's component is never nearer to 0 */
+#define LEAST_DIRECTION 1e-6f /* magnitude below which no component of a ray's direction lies */
 #define BLOBS_MAX 64
 #define TWO_PI 6.283185307179586
 #define DEVIATION_BLOCK 8
@@ -18,9 +18,9 @@ typedef struct recipe {
   const char* name;
   int n[3];
   int64_t voxels;
-  int blobs; /* 0: cubes in noise */
+  int blobs; /* number of blobs; 0: cubes in noise */
   double in_blobs, in_shells;
-  double deviation; /* of cubes: density's in occupied blocks of 8^3, over .5 */
+  double deviation; /* cubes in noise: standard deviation of the density of occupied blocks of 8^3, over .5 */
   uint64_t seed;
 } recipe;
 
@@ -42,7 +42,7 @@ static const recipe recipes[] = {
 
 /* ---------------------------------------------------------------- random numbers */
 
-/* A counter of Weyl's, its bits mixed (Steele, Lea & Flood 2014). */
+/* A Weyl counter with mixed bits (Steele, Lea & Flood 2014). */
 static uint64_t random_bits(uint64_t* state)
 {
   *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -80,7 +80,7 @@ static size_t words_of(const int n[3])
   return ((size_t)n[0] * (size_t)n[1] * (size_t)n[2] + 63) / 64;
 }
 
-/* 1 if the voxel is in the box and was not set. */
+/* Sets a voxel. Returns 1 if it lies in the box and was not set. */
 static int set_voxel(bit_set* set, int x, int y, int z)
 {
   if (x < 0 || y < 0 || z < 0 || x >= set->n[0] || y >= set->n[1] || z >= set->n[2]) {
@@ -93,7 +93,7 @@ static int set_voxel(bit_set* set, int x, int y, int z)
   return fresh;
 }
 
-/* Draws z before y before x. */
+/* Sets random voxels; their z is drawn before y before x. */
 static void fill_noise(bit_set* set, int64_t missing, uint64_t* state)
 {
   while (missing > 0) {
@@ -106,7 +106,7 @@ typedef struct ball {
   double at[3], weight;
 } ball;
 
-/* Blobs fall off as a normal distribution, each with a share of the voxels that goes by its weight's cube. */
+/* Fills blobs, which fall off as a normal distribution. A blob's share of the voxels goes with the cube of its weight. */
 static void fill_blobs(bit_set* set, const ball* blobs, int count, int64_t voxels, uint64_t* state)
 {
   double total = 0.0;
@@ -131,7 +131,7 @@ static void fill_blobs(bit_set* set, const ball* blobs, int count, int64_t voxel
   }
 }
 
-/* Shells one voxel thin; after 50 tries a voxel their radii spread, for they may be full. */
+/* Fills shells one voxel thick. They may become full, so after 50 tries for each voxel their radii spread. */
 static void fill_shells(bit_set* set, const ball* shells, int count, int64_t voxels, uint64_t* state)
 {
   const int *n = set->n, shorter = n[1] < n[2] ? n[1] : n[2], least = n[0] < shorter ? n[0] : shorter;
@@ -177,7 +177,7 @@ static stratus_status fill_mixture(stratus_context* context, const recipe* recip
   return STRATUS_OK;
 }
 
-/* Cubes of 16^3 at multiples of 8, the last one cut short, and noise. */
+/* Fills cubes of 16^3 at multiples of 8, the last one cut short, and adds noise. */
 static void fill_cubes(bit_set* set, double in_cubes, uint64_t seed)
 {
   const int64_t wanted = (int64_t)((double)DEVIATION_VOXELS * in_cubes);
@@ -197,7 +197,7 @@ static void fill_cubes(bit_set* set, double in_cubes, uint64_t seed)
   fill_noise(set, DEVIATION_VOXELS - done, &state);
 }
 
-/* Standard deviation of the density of blocks of 8^3 that hold any voxel. A row of 8 voxels is a byte. */
+/* Standard deviation of the density of those blocks of 8^3 that hold any voxel. A row of 8 voxels is a byte. */
 static double deviation_of(const bit_set* set)
 {
   const int *n = set->n, rows = DEVIATION_BLOCK;
@@ -237,7 +237,7 @@ static stratus_status fill_to_deviation(stratus_context* context, const recipe* 
   return STRATUS_OK;
 }
 
-/* ---------------------------------------------------------------- the public side */
+/* ---------------------------------------------------------------- public functions */
 
 int stratus_voxel_scene_count(void)
 {
@@ -263,7 +263,7 @@ static stratus_status find_recipe(stratus_context* context, const char* name, co
   return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unknown voxel scene \"%.100s\"; there are: %s", name ? name : "(null)", names);
 }
 
-/* Voxels in the order of their numbers. */
+/* Lists the voxels in the order of their bits. */
 static void list_voxels(const bit_set* set, int32_t* positions)
 {
   const size_t nx = (size_t)set->n[0], ny = (size_t)set->n[1], words = words_of(set->n);
@@ -315,7 +315,7 @@ void stratus_voxel_scene_release(stratus_context* context, int32_t* positions)
 
 /* ---------------------------------------------------------------- rays */
 
-/* Kept as floats are, and never all but parallel to a face. */
+/* Sets a direction in a float's precision that is never nearly parallel to a face. */
 static void set_direction(stratus_ray* ray, const double d[3], double length)
 {
   for (int a = 0; a < 3; ++a) {
@@ -324,14 +324,14 @@ static void set_direction(stratus_ray* ray, const double d[3], double length)
   }
 }
 
-/* To a float's digits. volatile: gcc 12 folds the conversion there and back of neighbouring numbers into none. */
+/* Rounds to float precision. volatile, because gcc 12 drops the conversion to float and back for neighbouring numbers. */
 static double round_to_float(double x)
 {
   const volatile float rounded = (float)x;
   return (double)rounded;
 }
 
-/* From an eye outside, one ray somewhere in each pixel. */
+/* Rays from an eye outside, one through a random place of each pixel. */
 static void primary_rays(const int64_t n[3], stratus_ray* rays)
 {
   const double nx = (double)n[0], ny = (double)n[1], nz = (double)n[2], diagonal = sqrt(nx * nx + ny * ny + nz * nz);
@@ -354,7 +354,7 @@ static void primary_rays(const int64_t n[3], stratus_ray* rays)
   }
 }
 
-/* From anywhere in an empty voxel, any way. */
+/* Rays from random places in empty voxels, in random directions. */
 static void random_rays(const stratus_voxels* voxels, stratus_ray* rays)
 {
   const int64_t* n = voxels->dimensions;
@@ -365,7 +365,7 @@ static void random_rays(const stratus_voxels* voxels, stratus_ray* rays)
     do {
       for (int a = 0; a < 3; ++a) {
         rays[p].origin[a] = round_to_float(random_unit(&state) * (double)n[a]);
-        at[a] = (int64_t)rays[p].origin[a]; /* rounding may put it on the far border */
+        at[a] = (int64_t)rays[p].origin[a]; /* rounding may put the origin on the far border */
       }
     } while (at[0] >= n[0] || at[1] >= n[1] || at[2] >= n[2] || stratus_voxels_get(voxels, at[0], at[1], at[2]));
     const double d[3] = { random_normal(&state), random_normal(&state), random_normal(&state) };
