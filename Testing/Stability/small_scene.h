@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A volume of a few hundred values, and everything the core does with one, for tests that repeat it once for each call that can fail. */
+ * A volume of a few hundred values, and every function of the core that takes one, for tests that repeat all of it for each call that can
+ * fail. */
 #ifndef STRATUS_SMALL_SCENE_H
 #define STRATUS_SMALL_SCENE_H
 
@@ -18,7 +19,7 @@
 #define SMALL_SETTINGS 13
 
 typedef struct small_scene {
-  double values[SMALL_VALUES]; /* a wide type: converted on the way */
+  double values[SMALL_VALUES]; /* a wide type, which is converted when it is fetched */
   uint8_t cell_ghosts[(SMALL_X - 1) * (SMALL_Y - 1) * (SMALL_Z - 1)];
   stratus_volume volume;
   stratus_transfer transfer, edited;
@@ -35,7 +36,7 @@ static const double small_opacity[] = { 1e6, 0.0, 1e6 + 0.2, 0.0, 1e6 + 1.0, 0.6
 static const double small_edited[] = { 1e6, 0.0, 1e6 + 0.4, 0.0, 1e6 + 0.6, 0.8, 1e6 + 0.8, 0.0 };
 static const double small_color[] = { 1e6, 0.1, 0.2, 0.9, 1e6 + 1.0, 1.0, 0.8, 0.3 };
 
-/* A ball in one corner of an empty box, on an offset that single precision would swallow; one value is no number, one cell hidden. */
+/* A ball in one corner of an empty box. Single precision would lose the offset of its values. One value is NaN and one cell is hidden. */
 static inline void small_scene_fill(small_scene* scene)
 {
   memset(scene, 0, sizeof *scene);
@@ -64,7 +65,7 @@ static inline void small_scene_fill(small_scene* scene)
   scene->edited.opacity_count = 4;
 }
 
-/* The seen side of the ball. Needs no memory, so it is called once and before anything fails. */
+/* A camera that sees the ball. It needs no memory, so that it can be made before any call fails. */
 static inline stratus_status small_scene_camera(stratus_context* context, small_scene* scene)
 {
   double bounds[6];
@@ -72,7 +73,7 @@ static inline stratus_status small_scene_camera(stratus_context* context, small_
   return status == STRATUS_OK ? stratus_scene_camera(context, bounds, 1, 2, 0, (double)SMALL_WIDTH / SMALL_HEIGHT, &scene->camera) : status;
 }
 
-/* The far half taken out. */
+/* A mask that removes the far half. */
 static inline const uint8_t* small_mask(void)
 {
   static uint8_t mask[SMALL_VALUES];
@@ -82,7 +83,8 @@ static inline const uint8_t* small_mask(void)
   return mask;
 }
 
-/* Setting 0..SMALL_SETTINGS-1: all structures, both samplings, both interpolations, an audit; then modes, masks and crop regions. */
+/* Setting 0..SMALL_SETTINGS-1: first all structures, both samplings, both interpolations and an audit, then modes, masks and crop
+ * regions. */
 static inline stratus_ray_cast_options small_setting(int index)
 {
   static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE,
@@ -99,7 +101,7 @@ static inline stratus_ray_cast_options small_setting(int index)
     options.contours[0] = 1e6 + 0.5;
     options.mask = index % 2 ? small_mask() : NULL;
     options.crop = index == 12;
-    options.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE; /* all but a cell in the middle */
+    options.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE; /* all regions but the middle one */
     for (int side = 0; index == 12 && side < 6; ++side) {
       options.crop_bounds[side] = side % 2 ? 3.0 : 2.0;
     }
@@ -124,7 +126,7 @@ static inline uint64_t small_mix(uint64_t sum, uint64_t value)
   return (sum ^ value) * 0x100000001b3u;
 }
 
-/* Builds every structure by itself, and sums up what they say. Releases all, also where something fails. */
+/* Builds every structure alone; *sum depends on all their contents. Everything is released, even after a failure. */
 static inline stratus_status small_structures(stratus_context* context, const small_scene* scene, uint64_t* sum)
 {
   stratus_value_range* ranges = NULL;

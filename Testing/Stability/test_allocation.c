@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Memory refused at the n-th request, for every n until all is granted: each time an error that says so, no leak, and the same objects
- * give the right result at the next attempt. */
+ * Memory refused at the n-th request, for every n until all are granted. Each refusal gives an error that names it and no leak, and the
+ * same objects give the right result at the next attempt. */
 #include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
@@ -11,15 +11,15 @@
 
 #include <cmocka.h>
 
-#define REQUESTS_MAX 500 /* of one call: far beyond what any needs, so that a loop which never succeeds ends */
+#define REQUESTS_MAX 500 /* for one call: far more than any needs, so that a loop which never succeeds ends */
 
-/* Device "gpu": PoCL taken for one, so that the structures are built on the device, too. */
+/* Device "gpu": PoCL that claims to be a GPU, so that the device builds the structures, too. */
 static stratus_context* open_context(faulty_allocator* allocator, const char* device)
 {
   const bool as_gpu = strcmp(device, "gpu") == 0;
   stratus_context* context = NULL;
   stratus_context_options options = faulty_options(allocator, as_gpu ? "pthread" : device);
-  options.threads = 1; /* hundreds of tiny calls: threads would spend them waiting for each other */
+  options.threads = 1; /* in hundreds of tiny calls threads would only wait for each other */
   if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
     return NULL;
   }
@@ -35,7 +35,7 @@ static void assert_out_of_memory(const stratus_context* context, stratus_status 
   assert_non_null(strstr(stratus_context_message(context), "bytes"));
 }
 
-/* The n-th request from now on is refused. */
+/* Refuses the n-th request from now on. */
 static void refuse(faulty_allocator* allocator, int64_t n)
 {
   allocator->fail_at = n ? allocator->calls + n : 0;
@@ -87,13 +87,13 @@ static void structures_are_made_whole_or_not_at_all(void** state)
     assert_int_equal(small_structures(context, &scene, &sum), STRATUS_OK);
     assert_true(sum == right);
   }
-  assert_in_range(n, 1 + 2 * 5, REQUESTS_MAX - 1); /* a request for each object at least */
+  assert_in_range(n, 1 + 2 * 5, REQUESTS_MAX - 1); /* at least one request for each object */
   assert_true(sum == right);
   stratus_context_destroy(context);
   assert_int_equal(allocator.live, 0);
 }
 
-/* A new ray caster whose first picture fails draws it right at the next attempt. */
+/* A new ray caster whose first picture fails draws it correctly at the next attempt. */
 static void a_first_picture_fails_cleanly_and_comes_at_the_next_attempt(void** state)
 {
   static small_scene scene;
@@ -143,7 +143,7 @@ static void a_first_picture_fails_cleanly_and_comes_at_the_next_attempt(void** s
   assert_int_equal(allocator.live, 0);
 }
 
-/* A ray caster that has drawn one transfer function and fails at the next still draws the first, and then the next. */
+/* A ray caster that has drawn one transfer function and fails at the next can still draw the first, and then the next. */
 static void an_edit_that_fails_leaves_the_earlier_result_intact(void** state)
 {
   static small_scene scene;

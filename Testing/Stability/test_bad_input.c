@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Inputs that nobody should give: each is refused with its value in the message, and the ray caster draws as before. */
+ * Invalid inputs: each is refused with its value in the message, and the ray caster then draws as before. */
 #include "small_scene.h"
 
 #include <setjmp.h>
@@ -35,7 +35,7 @@ static void open_fixture(fixture* f, const char* device)
 {
   stratus_context_options options = stratus_context_options_default();
   options.device = device;
-  options.threads = 1; /* hundreds of tiny calls: threads would spend them waiting for each other */
+  options.threads = 1; /* in hundreds of tiny calls threads would only wait for each other */
   memset(f, 0, sizeof *f);
   assert_int_equal(stratus_context_create(&options, &f->context, NULL, 0), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(f->context, &f->caster), STRATUS_OK);
@@ -75,7 +75,7 @@ static void assert_refused_as(fixture* f, const inputs* in, stratus_status expec
   assert_memory_equal(&f->picture, &f->right, sizeof f->right);
 }
 
-/* Does `spoil` to a copy `in` of inputs that work, and expects the status and a part of the message. */
+/* Applies `spoil` to a copy `in` of valid inputs, and expects the status and a part of the message. */
 #define REFUSED_AS(f, expected, part, spoil)                                                                                               \
   do {                                                                                                                                     \
     inputs in = (f)->good;                                                                                                                 \
@@ -115,8 +115,7 @@ static void sizes_whose_product_overflows_are_refused(void** state)
   REFUSED_AS(f, STRATUS_OVERFLOW, "9223372036854775807", in.volume.value_stride = INT64_MAX);
   REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.opacity_count = SIZE_MAX);
   REFUSED_AS(f, STRATUS_OVERFLOW, "18446744073709551615", in.transfer.color_count = SIZE_MAX);
-  REFUSED_AS(
-    f, STRATUS_OVERFLOW, "576460752303423488", in.transfer.opacity_count = SIZE_MAX / 32 + 1); /* its bytes overflow a pointer's steps */
+  REFUSED_AS(f, STRATUS_OVERFLOW, "576460752303423488", in.transfer.opacity_count = SIZE_MAX / 32 + 1); /* the size in bytes overflows */
   REFUSED_AS(
     f, STRATUS_OVERFLOW, "18446744073709551615", (in.transfer.gradient = in.transfer.opacity, in.transfer.gradient_count = SIZE_MAX));
 }
@@ -315,7 +314,7 @@ static void spoilt_camera_parameters_are_refused(void** state)
   CAMERA_REFUSED("NULL", stratus_camera_perspective(c, eye, focal, up, 30, 1, NULL));
 }
 
-/* Nothing to see is no error: an empty picture. */
+/* An empty volume is no error: its picture is empty. */
 static void a_volume_without_a_finite_value_gives_an_empty_picture(void** state)
 {
   fixture* f = *state;

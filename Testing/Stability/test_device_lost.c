@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * An OpenCL device that disappears at the n-th call, for every n: each time an error with the call's name, no leak, and where the device
- * comes back the same ray caster draws the right picture. */
+ * An OpenCL device that is lost at the n-th call, for every n. Each loss gives an error with the call's name and no leak, and when the
+ * device is back the same ray caster draws the right picture. */
 #include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
@@ -18,7 +18,7 @@ typedef struct fixture {
   small_scene scene;
 } fixture;
 
-/* As a GPU: the structures are built on the device too, and a work item draws one ray. */
+/* as_gpu: the device builds the structures, too, and a work item draws one ray. */
 static stratus_status open_fixture(fixture* f, const int* as_gpu, char* message, size_t capacity)
 {
   f->allocator = (faulty_allocator){ 0 };
@@ -45,7 +45,8 @@ static void lose_after(stratus_context* context, int64_t calls)
   stratus_device_fail_after(context->device, calls, CL_DEVICE_NOT_AVAILABLE);
 }
 
-/* Draws with a new ray caster, the device lost after n calls; if that fails, again with the device back. Returns whether it failed. */
+/* Draws with a new ray caster, whose device is lost after n calls. If that fails, draws again with the device back. Returns 1 if the first
+ * attempt failed. */
 static int draw_twice(fixture* f, int setting, int64_t n, small_picture* picture)
 {
   stratus_ray_caster* caster = NULL;
@@ -81,13 +82,13 @@ static void a_picture_survives_the_loss_at_any_call(void** state)
       assert_memory_equal(&picture, &right, sizeof right);
       assert_int_equal(f.allocator.live, live);
     }
-    assert_true(n > 4); /* a buffer, an argument, a launch and a read at least */
+    assert_true(n > 4); /* at least a buffer, an argument, a launch and a read */
   }
   stratus_context_destroy(f.context);
   assert_int_equal(f.allocator.live, 0);
 }
 
-/* With nothing built yet: the loss falls on the building of programs, too. */
+/* Nothing is built yet, so that the loss can also meet the build of programs. */
 static void programs_are_built_at_the_next_attempt(void** state)
 {
   static fixture f;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What floodings get wrong, written down: never too short, sometimes too long, unfilled where steps fall too fast. And memory refused at
- * the n-th request, for every method. */
+ * Errors of floodings, written down: distances are never too short, sometimes too long, and unfilled where steps fall too fast. Also memory
+ * refused at the n-th request, for every method. */
 #include "faulty_allocator.h"
 #include "fields.h"
 
@@ -17,7 +17,7 @@ typedef struct outcome {
   int64_t longer, unfilled;
 } outcome;
 
-/* A flooding against the exact field: what is shorter would be a fault. */
+/* Compares a flooding with the exact field. A shorter distance is a fault. */
 static outcome compare(stratus_context* context, const test_set* s, stratus_field_method method, int is_signed)
 {
   stratus_field *exact = make_field(context, s, STRATUS_FIELD_EXACT, is_signed, NULL),
@@ -60,7 +60,7 @@ static test_set make_shell(stratus_context* context)
   return s;
 }
 
-/* Voxels that are too far in the order of the methods from JFA on. */
+/* longer: numbers of voxels with too long a distance, by method from JFA on. */
 static void check_outcomes(stratus_context* context, test_set* s, int is_signed, const int64_t longer[7])
 {
   for (int method = STRATUS_FIELD_JFA; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sets that break the paper's rules (Guo et al. 2025), and what becomes of them: the paper's method does what it says, however poor, and
- * ends; the default makes one distance field, or as few as there are bodies. Then memory refused at every request, and cancelling. */
+ * Sets that break the rules of the paper (Guo et al. 2025), and the trees of them. The paper's method does what it says, however poor the
+ * result, and ends. The default makes one distance field, or as many as there are bodies. Also memory refused at every request, and
+ * cancelling. */
 #include "faulty_allocator.h"
 #include "hybrid_shape.h"
 
-#define REQUESTS_MAX 400 /* of one tree: far beyond what any needs */
+#define REQUESTS_MAX 400 /* for one tree: far more than any needs */
 
 static stratus_context* context;
 static voxel_set set;
@@ -15,7 +16,7 @@ static hybrid_shape shape_by(stratus_tree_method method, const stratus_voxels* v
   return make_shape(context, voxels, &options);
 }
 
-/* The default on the set: `fields` fields and no leaf of bricks, without any density if one is enough. */
+/* Expects the default to make `fields` fields and no leaf of bricks, and to need no density if one field is enough. */
 static void expect_fields(const stratus_voxels* voxels, uint32_t fields)
 {
   hybrid_shape s = shape_by(STRATUS_TREE_HYBRID, voxels);
@@ -25,7 +26,7 @@ static void expect_fields(const stratus_voxels* voxels, uint32_t fields)
   free_shape(context, &s);
 }
 
-/* Eq. 3 divides by none of n = 0, 1, sigma = 0, D = 0: a leaf of what there is, at most two bricks. */
+/* Eq. 3 divides by n, sigma or D, which may be 0. The result is one leaf of the at most two bricks. */
 static void no_voxel_one_and_two_are_one_leaf(void** state)
 {
   (void)state;
@@ -43,7 +44,7 @@ static void no_voxel_one_and_two_are_one_leaf(void** state)
       free_shape(context, &s);
     }
     stratus_tree_options options = hybrid_options(STRATUS_TREE_HYBRID_PAPER);
-    options.leaf_bricks = 1; /* now two bricks must part, or be a field */
+    options.leaf_bricks = 1; /* now two bricks must be split or become a field */
     options.paper_threshold = 0.0;
     hybrid_shape s = make_shape(context, voxels, &options);
     assert_int_equal(s.leaves, count < 2 ? 1 : 2);
@@ -52,9 +53,9 @@ static void no_voxel_one_and_two_are_one_leaf(void** state)
   }
 }
 
-/* Distances to the mean are all alike: eq. 3 as printed gives .04 voxel, with the floor thousands of voxels tie for the peak, at the
- * shell's lowest pole, and deviations about that differ by more than 8 voxels. The paper's way shreds the shell; the default takes it
- * whole. */
+/* All distances to the mean are nearly equal. Eq. 3 as printed then gives .04 voxel, and with the floor thousands of voxels tie for the
+ * peak. The first of these is the shell's lowest pole, and deviations about it differ by more than 8 voxels. The paper's method shreds the
+ * shell; the default takes it whole. */
 static void a_shell_is_one_field_but_not_by_the_paper(void** state)
 {
   (void)state;
@@ -69,7 +70,7 @@ static void a_shell_is_one_field_but_not_by_the_paper(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* All its inside ties; the first of that is the peak, from where all axes look the same: one field both ways. */
+/* All its inner voxels tie. The first of them is the peak, from which all axes look the same: both methods make one field. */
 static void a_solid_block_is_one_field(void** state)
 {
   (void)state;
@@ -84,8 +85,8 @@ static void a_solid_block_is_one_field(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Deviations about a peak in one of them are the same on all axes: the paper's test passes, and one field covers 2048 bricks for each
- * occupied one. The default finds that too empty and cuts between them. */
+/* Deviations about a peak in one cube are the same on all axes. The paper's test passes, and one field covers 2048 bricks for each occupied
+ * one. The default finds that too empty and cuts between the cubes. */
 static void two_diagonal_cubes_are_two_fields_but_one_empty_one_by_the_paper(void** state)
 {
   (void)state;
@@ -105,8 +106,8 @@ static void two_diagonal_cubes_are_two_fields_but_one_empty_one_by_the_paper(voi
   stratus_voxels_destroy(voxels);
 }
 
-/* As even as can be, yet its deviations are as different as its edges: by the paper it fails the test and, having no border inside either,
- * is cut by surface area; the default takes it whole. Were it too large for a field, eq. 8 over the extents finds it even. */
+/* The slab is as even as can be, yet its deviations differ as its edges do. By the paper it fails the test and, without a border inside, is
+ * cut by surface area. The default takes it whole; were it too large for one field, eq. 8 over the extents would find it even. */
 static void a_uniform_slab_is_one_field_but_not_by_the_paper(void** state)
 {
   (void)state;
@@ -127,7 +128,7 @@ static void a_uniform_slab_is_one_field_but_not_by_the_paper(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Nothing lies across a plane: deviations along that axis are 0, and boxes one voxel thick must still divide. */
+/* Deviations across the plane are 0, and boxes one voxel thick must still divide. */
 static void one_plane_is_one_field_but_not_by_the_paper(void** state)
 {
   (void)state;
@@ -144,8 +145,8 @@ static void one_plane_is_one_field_but_not_by_the_paper(void** state)
   }
 }
 
-/* On an even spread, clusters on an axis are chance: one with half the mean as the least, none or dozens above. Whatever that finds, both
- * methods end; the default with one field. */
+/* On an even spread clusters on an axis are chance: one if half the mean is the threshold, none or dozens above it. Whatever they are, both
+ * methods end, the default with one field. */
 static void uniform_noise_is_one_field_but_not_by_the_paper(void** state)
 {
   uint32_t random = 9;
@@ -183,7 +184,7 @@ static void dbscan_of_uniform_noise_finds_one_many_or_none(void** state)
   assert_true(lo == peak && hi == peak);
 }
 
-/* Voxels strewn over the longest axes that there are: a bandwidth of thousands of voxels. */
+/* Voxels strewn over the longest possible axes give a bandwidth of thousands of voxels. */
 static void a_huge_sparse_box_ends_in_leaves_of_bricks(void** state)
 {
   uint32_t random = 11;
@@ -243,7 +244,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
       assert_true(!s.shape.nodes && !s.shape.order);
       assert_int_equal(allocator.live, live);
     }
-    assert_in_range(n, 8, REQUESTS_MAX - 1); /* a request for each array at least */
+    assert_in_range(n, 8, REQUESTS_MAX - 1); /* at least one request for each array */
     assert_int_equal(allocator.live, live);
     allocator.fail_at = 0;
     stratus_voxels_destroy(voxels);

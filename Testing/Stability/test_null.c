@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * NULL for every argument of every public function: a call that returns a status refuses it, tells so where there is an object to leave a
- * message in, and touches nothing; one without a status takes it for something empty. The list is held against the header, so that no
- * function is left out. */
+ * NULL for every argument of every public function. A call that returns a status refuses it, says so where an object can hold the message,
+ * and changes nothing. A call without a status takes NULL for something empty. The list is compared with the header, so that no function is
+ * left out. */
 #include "small_scene.h"
 
 #include "volume.h"
@@ -18,7 +18,7 @@
 static char called[CALLS_MOST][64];
 static int calls;
 static stratus_context* context;
-static void* untouched; /* what calls that are refused would have made */
+static void* untouched; /* result of refused calls, which must stay NULL */
 
 static void remember(const char* call)
 {
@@ -40,10 +40,10 @@ static void check_refused(const char* call, stratus_status status, bool told, in
   }
 }
 
-/* An object is there for the message; there is none. */
+/* REFUSES: refused, and the context's message says why. IS_SILENT: refused, with no object for a message. */
 #define REFUSES(call) (context->message[0] = '\0', check_refused(#call, (call), true, __LINE__))
 #define IS_SILENT(call) check_refused(#call, (call), false, __LINE__)
-/* A call without a status, or with a NULL that is allowed. */
+/* Calls without a status, and calls that allow a NULL. */
 #define TAKES(call) (remember(#call), (void)(call))
 #define GIVES(expected, call) (remember(#call), assert_true((call) == (expected)))
 #define ACCEPTS(call) (remember(#call), assert_int_equal((call), STRATUS_OK))
@@ -281,7 +281,7 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render(c, v, t, NULL, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, NULL, NULL));
   REFUSES(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &blank, NULL));
-  IS_SILENT(stratus_ray_caster_render(c, v, t, &scene->camera, &options, &image, NULL)); /* labels, and no mask */
+  IS_SILENT(stratus_ray_caster_render(c, v, t, &scene->camera, &options, &image, NULL)); /* labels without a mask */
   ACCEPTS(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &image, NULL));
   IS_SILENT(stratus_ray_caster_offer_tree(NULL, rgba, sizeof rgba));
   ACCEPTS(stratus_ray_caster_offer_tree(c, NULL, 8));
@@ -329,7 +329,7 @@ static void octrees(const stratus_frustum* frustum)
   REFUSES(stratus_octree_view_create(tree, NULL));
   ACCEPTS(stratus_octree_view_create(tree, &view));
   TAKES(stratus_octree_view_destroy(NULL));
-  octree_queries(tree); /* of nothing, too */
+  octree_queries(tree); /* of an empty tree, too */
   ACCEPTS(stratus_octree_cull(view, frustum, NULL, &visible));
   IS_SILENT(stratus_octree_insert(NULL, six, 1, &id));
   REFUSES(stratus_octree_insert(tree, NULL, 1, &id));
@@ -435,7 +435,7 @@ static void meshes(const small_scene* scene)
   ACCEPTS(stratus_tetra_caster_create(context, &c));
   TAKES(stratus_tetra_caster_destroy(NULL));
   TAKES(stratus_tetra_caster_release(NULL));
-  REFUSES(stratus_tetra_caster_render(c, &mesh, t, camera, NULL, &image, NULL)); /* no values */
+  REFUSES(stratus_tetra_caster_render(c, &mesh, t, camera, NULL, &image, NULL)); /* a mesh without values */
   mesh.values = values;
   IS_SILENT(stratus_tetra_caster_render(NULL, &mesh, t, camera, NULL, &image, NULL));
   REFUSES(stratus_tetra_caster_render(c, NULL, t, camera, NULL, &image, NULL));

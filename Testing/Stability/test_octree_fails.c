@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where an octree of objects may fail: no objects, one, all at one place, boxes of no size, infinite or NaN, eyes within boxes, tiny and
- * huge scenes, flat frusta, 21 levels, cells' borders, refused memory, arguments that are none. Each case has its outcome. */
+ * Hard cases for an octree of objects: no object, one, all at one place, boxes of no size, infinite or NaN bounds, eyes within boxes, tiny
+ * and huge scenes, flat frusta, 21 levels, borders of cells, refused memory, invalid arguments. Each case has its expected result. */
 #include "faulty_allocator.h"
 #include "octree_case.h"
 
@@ -99,7 +99,7 @@ static void no_object_and_one(void** state)
   }
 }
 
-/* Points, and boxes as large as each other: nothing parts them, so no tree grows without end. */
+/* Points, and boxes of one size: no split separates them, and the tree must not grow without end. */
 static void all_at_one_place(void** state)
 {
   (void)state;
@@ -363,7 +363,7 @@ static void arguments_that_are_none_are_refused_with_the_value(void** state)
   stratus_octree_view_destroy(NULL);
 }
 
-/* One scene's life: made, seen, moved, grown, asked. *sum: what was seen. */
+/* One life of a scene: insertions, culls, moves, growth and queries. *sum depends on all that was seen. */
 static stratus_status live(stratus_context* context, int variant, const double* boxes, size_t count, uint64_t* sum)
 {
   const stratus_octree_options options = small_leaves(variant);
@@ -394,7 +394,7 @@ cleanup:
     const int64_t fail_at = ((faulty_allocator*)context->options.allocator_user)->fail_at;
     ((faulty_allocator*)context->options.allocator_user)->fail_at = 0;
     assert_true(stratus_octree_count(tree) == count);
-    /* A refused request left every object at one place. */
+    /* After a refused request every object is still at exactly one place. */
     if (stratus_octree_check(tree) != STRATUS_OK) {
       fail_msg("after request %lld: %s", (long long)fail_at, stratus_context_message(context));
     }

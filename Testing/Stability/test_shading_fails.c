@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A picture of components, gradient opacity and labels whose n-th allocation fails: a clean error, nothing leaked, and the same caster
- * draws it right at the next attempt. */
+ * A picture of components, gradient opacity and labels whose n-th allocation fails: a clean error, no leak, and the right picture from the
+ * same caster at the next attempt. */
 #include "../faulty_allocator.h"
 
 #include <setjmp.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where pictures of tetrahedra may fail: views along faces, edges and points; gaps, several parts, folds, flat and inverted cells, slivers,
- * coincident points, seams; nothing to draw; refused memory; arguments that are none. Each case has its outcome. */
+ * Hard cases for pictures of tetrahedra: views along faces, edges and points; gaps, several parts, folds, flat and inverted cells, slivers,
+ * coincident points, seams; nothing to draw; refused memory; invalid arguments. Each case has its expected result. */
 #include "faulty_allocator.h"
 #include "tetra_case.h"
 
 static tetra_picture picture;
 static double reference[4 * TETRA_PIXELS];
 
-/* A function that is the same everywhere: alpha tells the thickness. */
+/* A transfer function that is constant, so that alpha tells the thickness. */
 static void make_plain(tetra_case* c, double opacity)
 {
   for (int i = 0; i < 4; ++i) {
@@ -70,7 +70,7 @@ static void add_copy(tetra_case* c, int64_t points, int64_t cells, double dx, do
   c->mesh.cell_count += cells;
 }
 
-/* Room for more beside what tetra_create() made. */
+/* Reallocates the arrays of tetra_create() to `times` their size. */
 static void widen(tetra_case* c, size_t times)
 {
   c->points = realloc(c->points, times * (size_t)c->mesh.point_count * 3 * sizeof(double));
@@ -137,7 +137,7 @@ static void flat_cells_at_the_border(void** state)
   tetra_destroy(&c);
 }
 
-/* A point pulled through the face opposite makes cells inverted: what lies over what else is drawn, nothing is lost or endless. */
+/* A point pulled through the opposite face inverts cells. What lies over others is still drawn, and nothing is lost or endless. */
 static void inverted_cells(void** state)
 {
   for (uint32_t seed = 0; seed < 20; ++seed) {
@@ -262,7 +262,7 @@ static void arguments_that_are_none(void** state)
   tetra_destroy(&c);
 }
 
-/* Every allocation is refused once: an error with a message, nothing leaked, and the next call draws. */
+/* Every allocation is refused once: an error with a message, no leak, and the next call draws. */
 static void refused_memory(void** state)
 {
   static tetra_picture whole;

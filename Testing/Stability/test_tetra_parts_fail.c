@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's
- * hollows, cells that share no point, points that nothing uses, few inverted cells among many, a seam of other faces. Each way of drawing
- * gives the reference's picture. */
+ * hollows, cells that share no point, unused points, a few inverted cells among many, a seam of faces that differ. Each method gives the
+ * reference's picture. */
 #include "tetra_case.h"
 
-#define CLOSE 0.025 /* RMSE of 255: half of the bar of record for functions with peaks */
+#define CLOSE 0.025 /* greatest RMSE of 255: half of the bar of record for functions with peaks */
 
 static tetra_picture picture;
 static double reference[4 * TETRA_PIXELS];
@@ -22,7 +22,7 @@ static void agrees(stratus_context* context, const tetra_case* c, const char* wh
   assert_int_equal(picture.report.stuck, 0);
 }
 
-/* Room for as many points and cells, none of them there. */
+/* Allocates room for so many points and cells, and leaves none. */
 static void clear(tetra_case* c, size_t points, size_t cells)
 {
   c->points = realloc(c->points, points * 3 * sizeof(double));
@@ -51,7 +51,7 @@ static void add_cell(tetra_case* c, int32_t p, int32_t q, int32_t r, int32_t s)
   memcpy(c->vertices + 4 * c->mesh.cell_count++, cell, sizeof cell);
 }
 
-/* A box of n^3 times six cells with points of its own. */
+/* Adds a box of n^3 times six cells with points of its own. */
 static void add_box(tetra_case* c, int n, const double low[3], const double size[3])
 {
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
@@ -69,7 +69,7 @@ static void add_box(tetra_case* c, int n, const double low[3], const double size
   }
 }
 
-/* Bars about an axis, each over the next and under the one before: whatever comes first, another hides it. */
+/* Bars about an axis, each over the next and under the one before: whichever comes first, another hides it. */
 static void three_cells_in_a_ring(void** state)
 {
   static const double corners[4][3] = { { 0.35, -2, -0.5 }, { 0.85, -2, -0.5 }, { 0.6, 2, 0.3 }, { 0.6, 2, 0.8 } };
@@ -131,7 +131,7 @@ static void a_part_in_the_hollow_of_another(void** state)
   }
 }
 
-/* No cell shares a point with another, so that all faces are border; points far away and in the midst belong to none. */
+/* No cell shares a point with another, so that all faces are border faces. Points far away and in the middle belong to no cell. */
 static void points_that_are_there_twice_or_for_nothing(void** state)
 {
   tetra_case c, apart;
@@ -154,7 +154,7 @@ static void points_that_are_there_twice_or_for_nothing(void** state)
     agrees(*state, &apart, "points apart");
     assert_int_equal(picture.report.border_faces, 4 * apart.mesh.cell_count);
   }
-  apart.points[0] = NAN; /* of a point that nothing uses: still no place */
+  apart.points[0] = NAN; /* an unused point's, which is still no place */
   stratus_tetra_caster* caster = NULL;
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
@@ -166,8 +166,8 @@ static void points_that_are_there_twice_or_for_nothing(void** state)
   tetra_destroy(&apart);
 }
 
-/* One point of 729 pulled through what is behind it: a few of 3072 cells turn inside out. In one colour order does not count, only that
- * all are drawn. */
+/* One of 729 points pulled through others behind it: a few of 3072 cells turn inside out. The colour is uniform, so that order does not
+ * matter, only that all cells are drawn. */
 static void few_inverted_cells_among_many(void** state)
 {
   const double low[3] = { 0, 0, 0 }, size[3] = { 4, 4, 4 };

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where meshes, partitions and orders may fail: memory refused at every request, a caller that cancels, parts that share nothing, numbers
- * at the ends of their range. Each ends in the right order or in an error that says why. */
+ * Hard cases for meshes, partitions and orders: memory refused at every request, a caller that cancels, parts that share nothing, numbers
+ * at the ends of their range. Each case ends in the right order or in an error that says why. */
 #include "faulty_allocator.h"
 #include "mesh_case.h"
 
-#define REQUESTS_MAX 2000 /* beyond what any call below needs */
+#define REQUESTS_MAX 2000 /* more than any call below needs */
 
-/* Cut, sorted, both freed. A seam and flat cells have their own memory. */
+/* Cuts the mesh, sorts its cells, and frees everything. *wrong, if wanted: pairs in the wrong order. */
 static stratus_status cut_and_sort(stratus_context* context, const mesh_case* mesh, int64_t* wrong)
 {
   stratus_partition_options options = stratus_partition_options_default();
@@ -37,7 +37,7 @@ static stratus_status cut_and_sort(stratus_context* context, const mesh_case* me
   return status;
 }
 
-/* Two boxes side by side that share no point, one with cells without volume. */
+/* Two boxes side by side that share no point. One has cells without volume. */
 static mesh_case seamed_mesh(void)
 {
   static const int n[3] = { 3, 3, 3 };

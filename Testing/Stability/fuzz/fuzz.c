@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * stratus-fuzz: random values over the public structs of the core, with every buffer at a guard page. A child process works
- * through cases; this one sees what it dies of, tells the case, and goes on behind it. */
+ * stratus-fuzz: random values for the public structs of the core, with every buffer at a guard page. A child process works through cases.
+ * This process sees how the child dies, reports the case, and continues after it. */
 #define _XOPEN_SOURCE 700
 #define _DEFAULT_SOURCE
 #include "fuzz.h"
@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define FINDINGS_MOST 40 /* of a kind; more say nothing new */
+#define FINDINGS_MOST 40 /* findings of one kind after which the run stops, since more tell nothing new */
 
 typedef struct run {
   const char *program, *device;
@@ -30,7 +30,7 @@ static double now(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Cases from `first` until the time is over or there were enough. */
+/* Runs cases from `first` on until the time is over or `end` is reached. */
 static void work(const run* r, const char* kind, fuzz_tally* tally, uint64_t first, uint64_t end, double until)
 {
   fuzz f = { .kind = kind, .program = r->program, .device = r->device, .seed = r->seed, .tally = tally, .here = r->here };
@@ -67,7 +67,7 @@ static void supervise(const run* r, const char* kind, fuzz_tally* tally, double 
     const pid_t child = fork();
     if (child == 0) {
       work(r, kind, tally, first, end, until);
-      exit(EXIT_SUCCESS); /* by the way on which leaks are looked for */
+      exit(EXIT_SUCCESS); /* exit() also runs the leak check */
     }
     int status = 0;
     if (child < 0 || waitpid(child, &status, 0) != child) {
@@ -145,8 +145,8 @@ static bool read_word(run* r, const char* word)
 
 int main(int argc, char** argv)
 {
-  if (!getenv(
-        "OMP_WAIT_POLICY")) { /* read before main() is: threads that wait are to sleep, for there are thousands of small parallel regions */
+  /* OpenMP reads the variable before main(). Waiting threads must sleep, as there are thousands of small parallel regions. */
+  if (!getenv("OMP_WAIT_POLICY")) {
     setenv("OMP_WAIT_POLICY", "passive", 1);
     execv("/proc/self/exe", argv);
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One case: what it begins with, its calls, its end. */
+ * One case: its set-up, its calls, its end. */
 #define _XOPEN_SOURCE 700
 #include "fuzz.h"
 
@@ -9,7 +9,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-/* A call may take this much of the processors' time, and so much of everybody's where the machine is shared. */
+/* Limits of a call: seconds of processor time, and of wall time, which a shared machine makes longer. */
 #define CALL_SECONDS_OF_PROCESSOR 20
 #define CALL_SECONDS 300
 #define GARBAGE 0x5a
@@ -31,7 +31,7 @@ void fuzz_call_begins(fuzz* f, const char* call)
   const struct itimerval processor = { .it_value.tv_sec = CALL_SECONDS_OF_PROCESSOR }, clock = { .it_value.tv_sec = CALL_SECONDS };
   f->tally->call = call;
   ++f->tally->calls;
-  /* Nobody catches either: the supervisor sees which signal it was. */
+  /* No handler catches the signals, so that the supervisor sees which one it was. */
   setitimer(ITIMER_PROF, &processor, NULL);
   setitimer(ITIMER_REAL, &clock, NULL);
 }
@@ -146,7 +146,7 @@ void fuzz_run_case(fuzz* f, uint64_t number)
   f->oddness = 0;
   f->progress = (fuzz_progress){ 0 };
   switch (fuzz_below(f, 5)) {
-    case 0: /* one field only: what else would refuse first is right */
+    case 0: /* one field only, so that no other refusal comes first */
       f->odd_at = (int)fuzz_below(f, 160);
       break;
     case 1:

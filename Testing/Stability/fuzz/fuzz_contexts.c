@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Contexts with any options, and all calls that need no object: names, devices, cameras, frusta, checks, records that are none. */
+ * Contexts with any options, and all calls that need no object: names, devices, cameras, frusta, checks, unknown scenes of record. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static void ask_devices(fuzz* f)
   EXPECT(status == wanted, "device %d: %s", index, stratus_status_name(status));
 }
 
-/* Calls without a status take an object that is NULL for an empty one; those with one refuse it. */
+/* Calls without a status take a NULL object for an empty one; calls with a status refuse it. */
 static void ask_nothing(fuzz* f)
 {
   const stratus_status bad = STRATUS_INVALID_ARGUMENT;
@@ -175,7 +175,7 @@ static void check_camera(fuzz* f)
   EXPECT(seen == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
 }
 
-/* Names of scenes that are none; a NULL in every place that takes one. */
+/* Asks for scenes by unknown names or NULL. */
 static void ask_records(fuzz* f)
 {
   static const char* const names[] = { "", "clouds", "cloud ", "%n", "u", "0" };
@@ -199,7 +199,7 @@ static void ask_records(fuzz* f)
   CALL(stratus_voxel_scene_release(f->context, NULL));
 }
 
-/* Once in a while those that are: they take seconds. */
+/* Creates scenes of record, but seldom, since they take seconds. */
 static void make_records(fuzz* f)
 {
   stratus_voxels* voxels = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Buffers at guard pages, and the memory that contexts live on. */
+ * Buffers at guard pages, and the allocator of contexts. */
 #define _DEFAULT_SOURCE
 #include "fuzz.h"
 
@@ -9,7 +9,7 @@
 
 #define PAGE ((size_t)4096)
 #define CANARY 0xc5
-#define GARBAGE 0x7b /* a float of it is 1.3e36 */
+#define GARBAGE 0x7b /* as a float 1.3e36 */
 #define MOST_GUARDED 20000
 
 static size_t to_pages(size_t bytes)
@@ -17,7 +17,7 @@ static size_t to_pages(size_t bytes)
   return (bytes + PAGE - 1) / PAGE * PAGE;
 }
 
-/* A page that faults, `pages` bytes, and a page that faults. NULL: the system has none left. */
+/* Maps a page that faults, `pages` bytes, and another page that faults. NULL: the system has no memory left. */
 static unsigned char* map_guarded(size_t pages)
 {
   unsigned char* base = mmap(NULL, pages + 2 * PAGE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -43,7 +43,7 @@ static fuzz_block* new_block(fuzz* f, size_t bytes)
     fprintf(stderr, "stratus-fuzz: the system has no memory left for buffers\n");
     exit(EXIT_FAILURE);
   }
-  /* Most over-reads go upwards; a quarter of the buffers looks for those that go down. */
+  /* Most over-reads go upwards. A quarter of the buffers catches those that go down. */
   unsigned char* data = fuzz_below(f, 4) > 0 ? base + PAGE + pages - bytes : base + PAGE;
   memset(base + PAGE, CANARY, pages);
   fuzz_block* block = f->blocks + f->block_count++;
@@ -97,7 +97,7 @@ void fuzz_free_blocks(fuzz* f)
   f->block_count = 0;
 }
 
-/* ---- the memory of contexts */
+/* ---- allocator of contexts */
 
 typedef struct guarded_header {
   unsigned char* base;
@@ -139,7 +139,7 @@ static void* allocate(void* user, size_t bytes)
   if (bytes > (size_t)1 << 32) {
     return NULL;
   }
-  /* posix_memalign: the address sanitizer then knows the length to the byte. */
+  /* With posix_memalign() the address sanitizer knows the length to the byte. */
   if (memory->guarded) {
     data = allocate_guarded(bytes);
   } else if (posix_memalign(&data, 64, bytes) != 0) {

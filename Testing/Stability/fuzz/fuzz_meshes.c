@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes of tetrahedra: lattices, with holes, bent and shuffled; and soups of cells that overlap, are flat, or name a point twice. */
+ * Meshes of tetrahedra: lattices, with holes, bent and shuffled, and random cells that overlap, are flat, or name a point twice. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -79,7 +79,7 @@ static void shuffle(fuzz* f, draft* d)
   }
 }
 
-/* A point that is no point, a number that is no point's. */
+/* Makes a point's coordinate or a cell's point number invalid. */
 static void spoil(fuzz* f, draft* d)
 {
   for (int64_t i = 0; i < 3 * d->point_count && i < 60; ++i) {
@@ -92,7 +92,7 @@ static void spoil(fuzz* f, draft* d)
   }
 }
 
-/* Values of points or cells, made as a volume's are. */
+/* Adds values of points or cells, made as a volume's are. */
 static void add_values(fuzz* f, fuzz_tetrahedra* t)
 {
   stratus_mesh* m = &t->view;
@@ -126,7 +126,7 @@ static void add_hidden(fuzz* f, stratus_mesh* m)
   free(hidden);
 }
 
-/* Where it lies in the world; 0..1 along each axis where that cannot be told. */
+/* Measures the mesh's bounds in the world; 0..1 along each axis if they are unknown. */
 static void look_at(fuzz_tetrahedra* t)
 {
   const stratus_mesh* m = &t->view;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Octrees of objects: a history of inserts, moves, removals, culls and queries, beside a linear list that lives through the same. */
+ * Octrees of objects: a history of insertions, moves, removals, culls and queries, compared with a linear list of the same history. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -24,7 +24,8 @@ static stratus_octree_options choose_options(fuzz* f)
   o.placement = (stratus_octree_placement)(fuzz_chance(f, 0.7) ? 0 : fuzz_choice(f, 2));
   o.stop = (stratus_octree_stop)fuzz_choice(f, STRATUS_OCTREE_STOP_STATIC + 1);
   o.levels = fuzz_chance(f, 0.1) ? 0 : fuzz_integer(f, 1, fuzz_chance(f, 0.5) ? STRATUS_OCTREE_LEVELS_MAX : 5);
-  o.levels = o.stop == STRATUS_OCTREE_STOP_STATIC && o.levels > 4 ? 4 : /* 8^levels nodes, whoever looks */ o.levels;
+  /* A static tree has 8^levels nodes, whatever is seen. */
+  o.levels = o.stop == STRATUS_OCTREE_STOP_STATIC && o.levels > 4 ? 4 : o.levels;
   o.leaf_objects = fuzz_chance(f, 0.5) ? fuzz_integer(f, 1, 8) : fuzz_integer(f, 1, 256);
   o.pixels = fuzz_chance(f, 0.5) ? fuzz_real(f, 1.0, 64.0) : o.pixels;
   o.c = fuzz_chance(f, 0.5) ? fuzz_real(f, 1.0, 100.0) : o.c;
@@ -95,7 +96,7 @@ static void insert(fuzz* f, pair* p)
   }
 }
 
-/* Some of the objects, each once: places in `which`. */
+/* Chooses some of the objects, each at most once; which[] holds their places. */
 static size_t choose_objects(fuzz* f, const pair* p, size_t which[AT_ONCE])
 {
   size_t count = 0;
@@ -169,7 +170,7 @@ static void take_away(fuzz* f, pair* p)
 
 /* ---- answers */
 
-/* Which objects a list of ids names, a byte each; each at most once. */
+/* Sets a byte for each object that a list of ids names. Each may be named once. */
 static void mark(fuzz* f, const uint32_t* of, size_t objects, const uint32_t* ids, size_t count, uint8_t marks[OBJECTS_MOST])
 {
   memset(marks, 0, OBJECTS_MOST);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partitions of meshes, and visibility orders: every cell exactly once. */
+ * Partitions of meshes, and visibility orders, which name every cell exactly once. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static stratus_partition_options choose_options(fuzz* f)
   stratus_partition_options o = CALL(stratus_partition_options_default());
   o.rule = (stratus_partition_rule)fuzz_choice(f, 2);
   o.depth = fuzz_integer(f, 0, fuzz_chance(f, 0.9) ? 4 : 7);
-  o.depth = o.depth > 7 && o.depth <= 16 ? 17 : o.depth; /* ten cells that overlap make millions of pieces at 16 */
+  o.depth = o.depth > 7 && o.depth <= 16 ? 17 : o.depth; /* at 16 levels ten overlapping cells give millions of pieces */
   o.planes = fuzz_integer(f, 1, fuzz_chance(f, 0.8) ? 80 : 4096);
   o.growth = fuzz_chance(f, 0.5) ? o.growth : fuzz_real(f, 0.01, 2.0);
   o.imbalance = fuzz_real(f, 0.01, 3.0);
@@ -123,7 +123,7 @@ static void sort(fuzz* f, stratus_visibility_order* order, const stratus_mesh* m
   }
 }
 
-/* Leaves that no partition made: numbers at random. */
+/* Leaves of random numbers, which no partition made. */
 static stratus_leaves choose_leaves(fuzz* f, const stratus_mesh* mesh)
 {
   stratus_partition_node nodes[3] = { { .axis = 0, .below = 1, .above = 2, .value = 1.0 }, { .axis = -1 }, { .axis = -1, .below = 1 } };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ray casts of volumes: every mode, structure, sampling and interpolation, drawn in sequences on one caster whose every picture
- * must be that of a caster that has drawn nothing before. */
+ * Ray casts of volumes: every mode, structure, sampling and interpolation. One caster draws them in sequence, and each picture must equal
+ * that of a new caster. */
 #include "fuzz.h"
 
 #include "volume.h"
@@ -57,7 +57,7 @@ static void choose_cuts(fuzz* f, stratus_ray_cast_options* o, const fuzz_field* 
   }
 }
 
-/* A byte a value, at times of labels. */
+/* A mask of one byte for each value, at times of labels. */
 static void choose_mask(fuzz* f, stratus_ray_cast_options* o, const picture_case* c)
 {
   uint8_t* mask = malloc(c->field.values + 1);
@@ -152,7 +152,8 @@ static void check_report(fuzz* f, const picture_case* c, const stratus_image* im
   }
 }
 
-/* A caster on a context of its own, of other threads, memory and instructions: the same bits, and with another structure, too. */
+/* Compares with a caster on a context of its own, with other threads, memory and instruction set, and at times another structure: the bits
+ * must be the same. */
 static void compare(fuzz* f, const picture_case* c, const stratus_image* image, const stratus_ray_cast_report* report)
 {
   fuzz_memory memory;
@@ -174,7 +175,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   const stratus_image picture = fuzz_image_like(f, image);
   const stratus_status status = draw(f, context, caster, c, &options, &picture, &other);
   EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s: %s", stratus_status_name(status), stratus_context_message(context));
-  /* Packets may ask a structure for all of their rays at once: how many samples that spares goes by their width. */
+  /* A packet may query a structure for all of its rays at once, so that its width decides how many samples are skipped. */
   const bool counted = !structures && !report->offered_tree && context->isa == f->context->isa;
   fuzz_check_same(f, image, &picture, counted, structures ? "with another structure" : "on a new caster");
   CALL(stratus_ray_caster_destroy(caster));
@@ -248,7 +249,7 @@ static void change_mask(fuzz* f, picture_case* c)
   }
 }
 
-/* Another thing that a caller may change between two pictures. */
+/* Changes one of the things that a caller may change between two pictures. */
 static void change(fuzz* f, stratus_ray_caster* caster, picture_case* c)
 {
   switch (fuzz_below(f, 7)) {
@@ -279,7 +280,7 @@ static void change(fuzz* f, stratus_ray_caster* caster, picture_case* c)
   c->transfers = choose_transfers(f, c);
 }
 
-/* A tree that comes with the data: of this volume, of another, or none. */
+/* Offers a tree that comes with the data: of this volume, of another, or invalid. */
 static void offer(fuzz* f, stratus_ray_caster* caster, const picture_case* c)
 {
   stratus_voxels* voxels = NULL;

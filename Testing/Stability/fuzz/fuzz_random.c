@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Numbers from a seed, and fields of structs that are mostly right. */
+ * Random numbers from a seed, and values for fields of structs that are mostly valid. */
 #include "fuzz.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Value ranges, occupancy and distance maps of volumes, against what a loop over all blocks says. */
+ * Value ranges, occupancy and distance maps of volumes, compared with loops over all blocks. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static int64_t blocks_of(const grid* g)
   return g->n[0] * g->n[1] * g->n[2];
 }
 
-/* What a double and an offset taken off and put back may round a float of it to. */
+/* Bound on the error of a float that stands for a double, from which an offset is subtracted and to which it is added again. */
 static double slack(double low, double high)
 {
   return 1e-6 * fmax(fabs(low), fabs(high)) + 1e-37;
@@ -73,7 +73,7 @@ static stratus_value_range* make_ranges(fuzz* f, const fuzz_field* field, grid* 
   return ranges;
 }
 
-/* What a block is that is none: outside, empty, nothing. */
+/* Queries a block outside the grid: its range must be empty, and it must not be occupied. */
 static void ask_beyond(fuzz* f, const stratus_value_range* ranges, const stratus_occupancy* occupancy, const grid* g)
 {
   int64_t at[3];
@@ -90,7 +90,7 @@ static void ask_beyond(fuzz* f, const stratus_value_range* ranges, const stratus
     (long long)g->n[axis]);
 }
 
-/* Occupied blocks, a byte each, that the caller frees. */
+/* Occupied blocks, one byte each. The caller frees them. */
 static uint8_t* check_occupancy(fuzz* f, const stratus_occupancy* occupancy, const grid* g)
 {
   int64_t n[3], lo[3], hi[3], tight_lo[3] = { INT64_MAX, INT64_MAX, INT64_MAX }, tight_hi[3] = { 0, 0, 0 }, count = 0;
@@ -162,7 +162,7 @@ static void check_map(fuzz* f, const stratus_occupancy* occupancy, const uint8_t
   CALL(stratus_distance_map_destroy(map));
 }
 
-/* By values: of types that are taken as they are, exactly the blocks whose values span some of lower..upper. */
+/* Occupancy by values. For types that are fetched exactly, it must hold just the blocks whose values meet lower..upper. */
 static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const stratus_value_range* ranges, const grid* g)
 {
   stratus_occupancy* occupancy = NULL;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra by march and by projection, beside each other and beside a caster that has drawn nothing before. */
+ * Pictures of tetrahedra by march and by projection, compared with each other and with those of a new caster. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 
-/* Root mean square over a picture's numbers, by the contract, where no cells overlap: a hundredth of a step of 8 bits. */
+/* Largest root mean square difference of the methods by the contract, where no cells overlap: a hundredth of a step of 8 bits. */
 #define METHODS_DIFFER_MOST (0.01 / 255.0)
 #define STEEPEST 20.0
 
 typedef struct tetra_case {
   fuzz_tetrahedra mesh;
   stratus_tetra_options options;
-  bool no_options; /* NULL instead */
+  bool no_options; /* the call gets NULL instead */
   stratus_camera camera;
   const stratus_transfer* transfer;
   stratus_partition* partition;
@@ -62,7 +62,7 @@ static fuzz_limits limits_of(const tetra_case* c)
   return (fuzz_limits){ .surfaces = true, .behind = c->camera.parallel };
 }
 
-/* Whether points of `components` numbers rise or fall by no more than STEEPEST over the values' range. */
+/* True if points of `components` numbers rise and fall by no more than STEEPEST over the values' range. */
 static bool is_even(const double* points, size_t count, size_t components, double range)
 {
   bool even = true;
@@ -75,7 +75,7 @@ static bool is_even(const double* points, size_t count, size_t components, doubl
   return even;
 }
 
-/* Whether a float's rounding of a value shows as little: nothing is steep, no value is out of all proportion to what they span. */
+/* True if the rounding of a value to a float hardly shows: no function is steep, and no value is out of proportion to their range. */
 static bool is_gentle(const tetra_case* c)
 {
   const stratus_mesh* m = &c->mesh.view;
@@ -90,7 +90,7 @@ static bool is_gentle(const tetra_case* c)
   return gentle && is_even(t->opacity, t->opacity_count, 1, range) && is_even(t->color, t->color_count, 3, range);
 }
 
-/* The other method: near, where no cells overlap. */
+/* Compares with the other method, which must be close where no cells overlap. */
 static void compare_methods(
   fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees for first hits: hits against the plain walk's, trees as bytes, and bytes that are none. */
+ * Trees for first hits: their hits against those of the plain walk, trees as bytes, and invalid bytes. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -10,13 +10,13 @@
 typedef struct tree_case {
   stratus_voxels* voxels;
   int64_t n[3];
-  fuzz_field field; /* where `of_volume` */
+  fuzz_field field; /* valid if `of_volume` */
   stratus_criterion criterion;
   bool of_volume, cells;
   double bounds[6];
 } tree_case;
 
-/* ---- what they are made of */
+/* ---- inputs */
 
 static stratus_status make_list(fuzz* f, tree_case* c)
 {
@@ -138,7 +138,7 @@ static void check_hits(fuzz* f, const tree_case* c, const stratus_tree* tree, bo
 
 /* ---- bytes */
 
-/* The format's own, of what follows the first 24 bytes: with it right, changes get as far as the checks behind it. */
+/* The format's own checksum, over the bytes from 24 on. With it, changed bytes reach the checks behind it. */
 static uint64_t checksum(const unsigned char* p, size_t size)
 {
   uint64_t h = 0x9e3779b97f4a7c15ull ^ size;
@@ -200,7 +200,7 @@ static void load_changed(fuzz* f, const tree_case* c, const unsigned char* saved
   ++f->tally->byte_strings;
   stratus_tree* tree = NULL;
   if (CREATE(&tree, stratus_tree_load(f->context, given, cut, &tree)) == STRATUS_OK) {
-    /* What is let in must be safe to use, whatever it says. */
+    /* A tree that is accepted must be safe to use, whatever it says. */
     stratus_tree_statistics s;
     CALL(stratus_tree_get_statistics(tree, &s));
     EXPECT(s.nodes >= 0 && s.nodes < 1000000 && memchr(s.why, '\0', sizeof s.why), "%lld nodes are let in", (long long)s.nodes);
@@ -217,7 +217,7 @@ static void load_changed(fuzz* f, const tree_case* c, const unsigned char* saved
   CALL(stratus_tree_destroy(tree));
 }
 
-/* Saved, loaded, saved: the same bytes, and the same hits. */
+/* Saves, loads and saves again: bytes and hits must be the same. */
 static void check_bytes(fuzz* f, const tree_case* c, const stratus_tree* tree)
 {
   const size_t size = CALL(stratus_tree_bytes(tree));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cameras, pictures to draw into, and what a picture must be whatever was drawn. */
+ * Cameras, pictures to draw into, and checks that any picture must pass. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 
-/* What sums of rounded colours and of rounded alphas may be apart: a fortieth of a step of 8 bits. */
+/* Difference that the rounding of colours and of alphas may cause: a fortieth of a step of 8 bits. */
 #define PREMULTIPLIED_SLACK 1e-4f
 
 /* ---- cameras */
@@ -20,7 +20,7 @@ static void spoil_camera(fuzz* f, stratus_camera* camera)
   camera->parallel = fuzz_odd(f) ? (int)(uint32_t)(uint64_t)fuzz_odd_integer(f) : camera->parallel;
 }
 
-/* Neither orthogonal nor of one length: as off-axis projections and windows' parts have them, and beyond. */
+/* Axes that are neither orthogonal nor of one length, as in off-axis projections and parts of windows, and beyond. */
 static void skew(fuzz* f, stratus_camera* camera)
 {
   for (int axis = 0; axis < 3; ++axis) {

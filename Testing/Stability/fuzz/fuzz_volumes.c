@@ -71,7 +71,7 @@ double fuzz_value_of(const stratus_volume* volume, size_t index)
   return NAN;
 }
 
-/* Values for `field`, in new memory that the caller frees. */
+/* Values for `field` in new memory, which the caller frees. */
 static void* make_values(fuzz* f, fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
@@ -119,7 +119,7 @@ static void choose_range(fuzz* f, fuzz_field* field)
   field->high = fuzz_chance(f, 0.05) ? field->low : field->high;
 }
 
-/* ---- where it lies */
+/* ---- placement */
 
 static void rotation(fuzz* f, double m[9])
 {
@@ -212,7 +212,7 @@ static void add_ghosts(fuzz* f, stratus_volume* v)
   }
 }
 
-/* Where the world has it, or a cube where it is refused; and the edges of a voxel. */
+/* Finds the volume's bounds in the world, or a cube if it is refused, and the edges of a voxel. */
 static void look_at(fuzz* f, fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
@@ -234,7 +234,7 @@ static void look_at(fuzz* f, fuzz_field* field)
   }
 }
 
-/* Lies that no reader could live with are left out: a size is wrong only where the product of all is beyond any memory, or below 1. */
+/* Makes sizes wrong, but only so that a check can notice: their product exceeds any memory, or one is below 1. */
 static void spoil_sizes(fuzz* f, fuzz_field* field)
 {
   static const int64_t bad[] = { 0, -1, -7, INT64_MIN, INT32_MIN };
@@ -341,7 +341,7 @@ static const double* points(fuzz* f, size_t count, size_t components, double low
   return fuzz_input(f, numbers, (components + 1) * count * sizeof *numbers);
 }
 
-/* A count that is wrong is 0 or one that no memory holds. */
+/* A wrong count: 0, or one that no memory holds. */
 static size_t count_of(fuzz* f, size_t count)
 {
   static const size_t wrong[] = { 0, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 8, (size_t)1 << 62 };
@@ -373,7 +373,7 @@ const stratus_transfer* fuzz_transfers(fuzz* f, int count, bool labels, double l
   stratus_transfer* transfers = calloc((size_t)count, sizeof *transfers);
   for (int i = 0; transfers && i < count; ++i) {
     transfers[i] = fuzz_transfer(f, low, high, edge);
-    if (i > 0 && labels) { /* the first one's gradient counts for all */
+    if (i > 0 && labels) { /* the first component's gradient opacity counts for all */
       transfers[i].gradient = NULL;
       transfers[i].gradient_count = 0;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels of lists and volumes, their density, and distance fields of all methods, against loops over all voxels. */
+ * Effective voxels of lists and volumes, their density, and distance fields by all methods, compared with loops over all voxels. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 typedef struct voxel_set {
   stratus_voxels* voxels;
   int64_t n[3], count;
-  uint8_t* is; /* a byte a voxel */
+  uint8_t* is; /* one byte for each voxel */
 } voxel_set;
 
 static int64_t size_of(const voxel_set* s)
@@ -68,7 +68,7 @@ static stratus_status make_list(fuzz* f, voxel_set* s, int largest)
   return CREATE(&s->voxels, stratus_voxels_create_list(f->context, dimensions, list, count, &s->voxels));
 }
 
-/* Values that a criterion without transfer function takes, of types that floats hold. */
+/* Compares the set with the values that a criterion without transfer function takes, for types that floats hold. */
 static void check_against_values(fuzz* f, const voxel_set* s, const stratus_volume* v, const stratus_criterion* criterion)
 {
   if (v->point_ghosts || v->cell_ghosts || criterion->transfer) {
@@ -112,7 +112,7 @@ static stratus_status make_of_volume(fuzz* f, voxel_set* s, int largest)
   return status;
 }
 
-/* ---- what is asked of them */
+/* ---- queries */
 
 static void ask_density(fuzz* f, const voxel_set* s)
 {
@@ -134,7 +134,7 @@ static void ask_density(fuzz* f, const voxel_set* s)
   }
 }
 
-/* Squared, to the nearest voxel that is `wanted`; -1: there is none. */
+/* Squared distance to the nearest voxel that is `wanted`, or -1 if there is none. */
 static int64_t nearest(const voxel_set* s, int64_t q, int wanted)
 {
   const int64_t at[3] = { q % s->n[0], q / s->n[0] % s->n[1], q / (s->n[0] * s->n[1]) };
