@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What holds of every bounding volume hierarchy, whatever its shape: it is sound, within its bounds, the same at any number of threads, and
- * made whole or not at all. Shapes themselves are test_bvh_shapes.c's. */
+ * Properties of every bounding volume hierarchy, whatever its shape: it is sound, within its bounds, the same at any number of threads, and
+ * complete or not made at all. test_bvh_shapes.c tests the shapes. */
 #include "boxes.h"
 #include "faulty_allocator.h"
 
@@ -20,7 +20,7 @@ static int log2_up(uint32_t n)
   return log;
 }
 
-/* Leaves hold what they may; at the depth's bound whatever fits a leaf is one; beyond it halves. */
+/* Leaves hold at most leaf_boxes. From the depth's bound on a subtree that fits a leaf is one, and others are halves. */
 static void check_bounds(const stratus_bvh* bvh, uint32_t count, int leaf_boxes, int max_depth)
 {
   int* depth = calloc(bvh->node_count, sizeof *depth);
@@ -102,7 +102,7 @@ static void every_count_up_to_300_is_sound(void** state)
   stratus_context_destroy(context);
 }
 
-/* Enough boxes that every loop is shared: bins and k-means go by chunks from 64 thousand on. */
+/* Enough boxes that every loop is shared: bins and k-means use chunks from 64 thousand on. */
 static void threads_do_not_change_the_tree(void** state)
 {
   static const struct {
@@ -135,7 +135,7 @@ static void threads_do_not_change_the_tree(void** state)
   }
 }
 
-/* Each damage to a sound tree is told. */
+/* The check notices each damage to a sound tree. */
 static void the_check_sees_damage(void** state)
 {
   stratus_context* context = make_context("host", 1);
@@ -219,7 +219,7 @@ static void bad_input_is_refused(void** state)
   stratus_context_destroy(context);
 }
 
-/* As far apart as boxes may be, and as large. */
+/* Boxes as far apart and as large as they may be. */
 static void the_greatest_coordinates_are_borne(void** state)
 {
   const int32_t most = STRATUS_BVH_COORDINATE_MAX;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Clusters: density peaks against all pairs, clouds that every clustering must keep apart, and what trees cost on the sets of record. */
+ * Clusters: density peaks compared with all pairs, clouds that every clustering must keep apart, and the cost of trees on the sets of
+ * record. */
 #include "boxes.h"
 
 #include <stdio.h>
@@ -13,7 +14,7 @@ static stratus_context* context;
 
 typedef struct slow_peaks {
   uint32_t count;
-  uint32_t first[PLACES_MAX]; /* a place's first box, by rank */
+  uint32_t first[PLACES_MAX]; /* rank of a place's first box */
   uint64_t density[PLACES_MAX];
   double gamma[PLACES_MAX];
   uint32_t denser[PLACES_MAX], cluster[PLACES_MAX];
@@ -35,7 +36,7 @@ static int compare_numbers(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* The hundredth part of all distances between two places; for so few places none is left out. */
+/* Distance within which one hundredth of all pairs of places lies. For so few places no pair is left out of the sample. */
 static uint64_t slow_cutoff(const stratus_bvh_build* build, const slow_peaks* p)
 {
   static uint64_t all[PLACES_MAX * PLACES_MAX];
@@ -85,7 +86,7 @@ static uint32_t centre_of(const slow_peaks* p, uint32_t place, double least_gamm
   return centre ? place : centre_of(p, p->denser[place], least_gamma, last);
 }
 
-/* Of `wanted` centres; of equal gammas the later place is one first. */
+/* Finds the clusters of `wanted` centres. Of equal gammas the later place becomes a centre first. */
 static void find_slow_clusters(slow_peaks* p, uint32_t wanted)
 {
   bool chosen[PLACES_MAX] = { false };
@@ -191,7 +192,7 @@ static void clouds_are_kept_apart(void** state)
 
 /* ---- cost on the sets of record */
 
-/* The measured ratio to the sweep's cost and some room; of AC and PLOC 1.15 is the bar that they were built to. */
+/* Bounds on the cost over the sweep's: the measured ratio and some room. For AC and PLOC 1.15 is the goal that they were built to. */
 static double most_of(int method)
 {
   switch (method) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The shape of each bounding volume hierarchy, against the slow and obvious way to it on few boxes; and what trees cost on the sets of
- * record. A shape is the set of its inner nodes, each as a mask of the boxes under it. */
+ * Shapes of the bounding volume hierarchies, compared with slow and obvious methods on few boxes, and the cost of leaves. A shape is the
+ * set of a tree's inner nodes, each as a mask of the boxes under it. */
 #include "boxes.h"
 
 #include <stdio.h>
@@ -85,7 +85,7 @@ static double measured(const stratus_box* a, const stratus_box* b, stratus_bvh_m
     : (double)(both.hi[0] - both.lo[0]) + (double)(both.hi[1] - both.lo[1]) + (double)(both.hi[2] - both.lo[2]);
 }
 
-/* The two nearest of all merge, until one is left. Ties as bvh_agglomerative.c says; *ties: how often one was met. */
+/* Merges the two nearest clusters until one is left. Ties as bvh_agglomerative.c says; *ties counts them. */
 static shape greedy_shape(const stratus_box* boxes, uint32_t count, stratus_bvh_measure measure, int* ties)
 {
   stratus_box box[BOXES_MAX];
@@ -196,7 +196,7 @@ static uint64_t slow_code(const stratus_box* boxes, uint32_t count, uint32_t i)
   return code;
 }
 
-/* Parts ranks [begin, end) where the highest bit changes in which their codes differ, of equal codes their ranks. */
+/* Splits ranks [begin, end) at the highest bit in which their codes differ; ranks split equal codes. */
 static uint64_t part_slowly(const stratus_bvh_build* build, uint32_t begin, uint32_t end, shape* s)
 {
   if (end - begin == 1) {
@@ -257,7 +257,7 @@ static double cost_of(const stratus_box* boxes, uint32_t count, uint64_t mask)
   return stratus_box_area(&all) * n;
 }
 
-/* Of all ways to part the boxes under `mask` by a plane between middles; INFINITY if all agree. */
+/* Least cost of all splits of the boxes under `mask` by a plane between middles; INFINITY if all middles agree. */
 static double least_cost(const stratus_box* boxes, uint32_t count, uint64_t mask)
 {
   double least = INFINITY;
@@ -276,7 +276,7 @@ static double least_cost(const stratus_box* boxes, uint32_t count, uint64_t mask
   return least;
 }
 
-/* All nodes' splits are the best. Between boxes whose middles agree the sweep splits too, so there it may only be better. */
+/* Checks that every node's split is the best. The sweep also splits between boxes whose middles agree, so that it may be better. */
 static void check_splits(stratus_tree_method method, const stratus_box* boxes, uint32_t count, bool exact)
 {
   stratus_bvh bvh = make_bvh(context, method, boxes, count, 1, 64);

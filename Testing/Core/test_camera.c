@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cameras: the rays that the public header promises, and what is refused. */
+ * Cameras: the rays that the public header promises, and the cameras that are refused. */
 #include "structures.h"
 
 static double dot(const double a[3], const double b[3])
@@ -7,7 +7,7 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Ten roundings of numbers of order one. */
+/* The tolerance covers ten roundings of numbers of order one. */
 static void assert_near(double value, double expected)
 {
   if (!(fabs(value - expected) <= 1e-14 * fmax(1.0, fabs(expected)))) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The context: what it takes, what it refuses, and that log, progress, cancellation and the allocator's hook reach the caller. */
+ * The context: options that it takes and refuses, and that log, progress, cancellation and the allocator's hook reach the caller. */
 #include "faulty_allocator.h"
 #include "base.h"
 
@@ -151,7 +151,7 @@ static void auto_takes_a_gpu_or_says_that_the_host_draws(void** state)
 
 typedef struct stopper {
   int calls;
-  int stop_at; /* call that asks to stop, from 1; 0: none */
+  int stop_at; /* call that asks to stop, from 1; 0: none does */
   double last;
 } stopper;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * DBSCAN of counts against the textbook's on the list of points, every pair compared. */
+ * DBSCAN of counts, compared with the textbook's method on the list of points, which tests every pair. */
 #include "structures.h"
 #include "tree.h"
 
@@ -109,7 +109,7 @@ static void a_reach_beyond_the_line_makes_one_cluster_or_none(void** state)
   check_counts(counts, 5, INT32_MAX, 1);
 }
 
-/* Noise between two clusters, in reach of both. */
+/* Noise within reach of two clusters. */
 static void a_point_between_belongs_to_the_lower_cluster(void** state)
 {
   const int64_t counts[7] = { 5, 0, 0, 1, 0, 0, 5 };

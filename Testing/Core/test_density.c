@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Bandwidth, and density and its derivatives at points, against plain sums over all voxels. */
+ * Bandwidth, and density and its derivatives at points, compared with plain sums over all voxels. */
 #include "density_plain.h"
 
 #include <pthread.h>
@@ -34,8 +34,8 @@ static double plain_bandwidth(const stratus_voxels* voxels)
   return 0.9 * fmin(sqrt(variance), sqrt(1.0 / log(2.0)) * median) * pow(n, -0.2);
 }
 
-/* 1e-9 of the box's length: distances are rounded at 1e-16 of it, their deviation's square root at 1e-8 of small deviations, and the median
- * is bracketed to 2^-36 of the largest squared distance. */
+/* The tolerance is 1e-9 of the box's length: distances round at 1e-16 of it, the square root of small deviations at 1e-8 of these, and the
+ * median is bracketed to 2^-36 of the largest squared distance. */
 static void check_bandwidth(const stratus_voxels* voxels, double length)
 {
   double bandwidth = -1, raw = -1, again = -1;
@@ -57,7 +57,7 @@ static void bandwidth_is_that_of_equations_3_and_4(void** state)
   }
 }
 
-/* Most voxels near the middle, a few far out: then the median is the lesser of the two spreads. */
+/* Most voxels lie near the middle and a few far out, so that the median gives the smaller spread. */
 static void bandwidth_takes_the_median_where_it_is_less(void** state)
 {
   (void)state;
@@ -130,7 +130,7 @@ static void density_and_derivatives_at_points_are_plain_sums(void** state)
   }
 }
 
-/* Central differences of the density, and of its first derivative, away from the kernel's end. */
+/* The derivatives equal central differences of the density and of its first derivative, away from the kernel's end. */
 static void derivatives_are_those_of_the_density(void** state)
 {
   uint32_t random = 3;
@@ -164,7 +164,7 @@ static void derivatives_are_those_of_the_density(void** state)
   assert_true(compared > 300);
 }
 
-/* The constant is right only if all of space holds 1. */
+/* The constant is right only if the density integrates to 1 over all space. */
 static void density_integrates_to_one(void** state)
 {
   (void)state;
@@ -251,7 +251,7 @@ static void* work(void* result)
 }
 #endif
 
-/* With one thread, OpenMP's own has the caller's stack. */
+/* OpenMP's only thread has the caller's stack. */
 static void a_thread_with_a_small_stack_gets_its_answer(void** state)
 {
   (void)state;

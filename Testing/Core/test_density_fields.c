@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Densities of whole sets, their peaks and borders, against plain sums over all voxels. */
+ * Densities of whole sets, their peaks and their borders, compared with plain sums over all voxels. */
 #include "density_plain.h"
 
 #define FEW 400
@@ -36,7 +36,7 @@ static void exact_field_is_the_density_at_each_voxel(void** state)
   }
 }
 
-/* The bounds of density.c and density_cells.c, and full bricks exactly. */
+/* The bounds are those of density.c and density_cells.c; full bricks are exact. */
 static void binned_field_errs_no_more_than_it_says(void** state)
 {
   uint32_t random = 5;
@@ -158,7 +158,7 @@ static void peak_is_the_densest_voxel_and_of_equals_the_first(void** state)
   }
 }
 
-/* A solid block ties in its whole inside: the first voxel of that in (z, y, x). */
+/* All inner voxels of a solid block tie. The peak is the first of them in (z, y, x). */
 static void peak_of_a_solid_block_is_its_first_inner_voxel(void** state)
 {
   (void)state;
@@ -182,7 +182,7 @@ typedef struct plane_sums {
   int near;
 } plane_sums;
 
-/* At the plane before voxel `plane` of `axis`, from voxels (or, `whole`, from bricks as weights in their middles). */
+/* Sums at the plane before voxel `plane` of `axis`, over voxels or, if `whole`, over bricks as weights at their middles. */
 static plane_sums at_plane(const stratus_voxels* voxels, double h, const int32_t peak[3], int axis, int plane, int whole)
 {
   plane_sums sums = { 0.0, 0.0, 0 };
@@ -226,7 +226,7 @@ static void check_side(
   assert_near(borders->fall[axis][side], fall, 1e-12 / (h * h * h * h));
 }
 
-/* Bandwidths four times whose square is no whole number: no voxel is at the kernel's very end, where rounding would choose the side. */
+/* Four times the bandwidth has no integer square, so that no voxel lies at the kernel's very end, where rounding would decide. */
 static void borders_are_where_the_plain_second_derivative_turns(void** state)
 {
   static const double some[] = { 1.037, 1.71, 2.613, 4.137, 9.071, 17.31 };
@@ -257,7 +257,7 @@ static void borders_are_where_the_plain_second_derivative_turns(void** state)
   assert_true(found > 100);
 }
 
-/* Two solid slabs with a gap: seen from the first, density falls most steeply at its end, give or take a voxel. */
+/* Two solid slabs with a gap: seen from the first, density falls most steeply at its end, to within a voxel. */
 static void a_slab_ends_where_its_density_falls(void** state)
 {
   (void)state;

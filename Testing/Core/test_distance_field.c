@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields against looking at every voxel. */
+ * Distance fields compared with a search of every voxel. */
 #include "fields.h"
 
 #include <stdio.h>
 
 static const stratus_field_method exact_methods[] = { STRATUS_FIELD_EXACT, STRATUS_FIELD_ZIGZAG, STRATUS_FIELD_ENVELOPE };
 
-/* Every distance, by every way of reading it. */
+/* Checks every distance, by every function that reads it. */
 static void check_exact(const test_set* s, const stratus_field* field)
 {
   const int64_t total = set_voxels(s), nx = s->n[0], ny = s->n[1];
@@ -52,7 +52,7 @@ static void exact_equals_brute_force_on_small_grids_with_every_instruction_set(v
 {
   uint32_t random = 1;
   (void)state;
-  stratus_context* context = make_context("host", 1); /* thousands of tiny fields: threads would spend them waiting for each other */
+  stratus_context* context = make_context("host", 1); /* in thousands of tiny fields threads would only wait for each other */
   const int best = context->isa;
   for (int grid = 0; grid < 120; ++grid) {
     context->isa = grid % 3 < best ? grid % 3 : best;
@@ -83,7 +83,7 @@ static void rows_and_columns_longer_than_a_register_keep_their_ends(void** state
   stratus_context_destroy(context);
 }
 
-/* The one voxel of `kind` among others: distances are known from its place alone, so large grids can be asked. */
+/* Fields of a single voxel of `kind`: its place alone gives all distances, so that large grids can be tested. */
 static void check_single(stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t seed, int kind)
 {
   test_set s = make_set(nx, ny, nz);
@@ -116,7 +116,7 @@ static void distances_that_16_bits_do_not_hold_come_out_right(void** state)
   const int best = context->isa;
   for (int isa = 0; isa <= best; ++isa) {
     context->isa = isa;
-    for (int kind = 0; kind < 2; ++kind) { /* a lone hole: only the try with 16 bits finds that they do not do */
+    for (int kind = 0; kind < 2; ++kind) { /* a lone hole: only the attempt with 16 bits finds that they do not suffice */
       check_single(context, 177, 3, 2, 0, kind);
       check_single(context, 176, 2, 3, 0, kind);
       check_single(context, 2, 178, 3, 5, kind);
@@ -148,7 +148,7 @@ static void wide_thin_grids_are_measured(void** state)
   stratus_context_destroy(context);
 }
 
-/* Where EXACT changes from the zigzag to the envelope, nothing else changes. */
+/* EXACT changes from the zigzag to the envelope without any change of the distances. */
 static void zigzag_and_envelope_agree_on_larger_grids(void** state)
 {
   static const int64_t grids[][3] = { { 260, 21, 230 }, { 520, 7, 600 }, { 97, 83, 65 } };

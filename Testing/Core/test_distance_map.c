@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance maps against looking at every block. */
+ * Distance maps compared with a search of every block. */
 #include "structures.h"
 
 static int64_t larger(int64_t a, int64_t b)
@@ -7,7 +7,8 @@ static int64_t larger(int64_t a, int64_t b)
   return a > b ? a : b;
 }
 
-/* Chebyshev distance from block (i,j,k) to the nearest of occupancy `target` that lies, per axis, on the side `sides` (0: both). */
+/* Chebyshev distance from block (i,j,k) to the nearest block of occupancy `target` that lies on the side sides[a] along each axis a (0:
+ * both). */
 static int nearest(const stratus_occupancy* o, int target, const int sides[3], int64_t i, int64_t j, int64_t k)
 {
   int64_t best = 127;
@@ -126,7 +127,7 @@ static void a_deep_block_of_occupied_ones_knows_its_depth(void** state)
   uint32_t random = 4;
   stratus_context* context = make_context("host", 2);
   stratus_occupancy* o = make_occupancy(context, 11, 11, 11, 1, &random);
-  o->occupied[0] = 0; /* the only empty block: its distance is everyone's depth */
+  o->occupied[0] = 0; /* the only empty block gives every other one its depth */
   --o->count;
   stratus_distance_map* map = NULL;
   assert_int_equal(stratus_distance_map_create(context, o, STRATUS_DISTANCE_FULL, &map), STRATUS_OK);
@@ -137,7 +138,7 @@ static void a_deep_block_of_occupied_ones_knows_its_depth(void** state)
   stratus_context_destroy(context);
 }
 
-/* A solid box, at every place that leaves 0..2 empty layers on either side: its depth is counted from all six. */
+/* A solid box, at every place that leaves 0..2 empty layers on each side: its depth counts from all six sides. */
 static void a_solid_box_knows_its_depth_from_every_side(void** state)
 {
   uint32_t random = 8;

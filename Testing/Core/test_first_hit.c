@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits through every tree against a walk from voxel to voxel in double precision. */
+ * First hits through every tree, compared with a walk from voxel to voxel in double precision. */
 #include "first_hits.h"
 
 #define RAYS 600
@@ -125,7 +125,7 @@ static void bits_do_not_depend_on_threads(void** state)
   }
 }
 
-/* One voxel, in a volume whose place, spacing, direction and mirror are given: where rays that are known to hit it do. */
+/* One voxel in a volume of given position, spacing, direction and mirror: rays that are known to hit it must hit it. */
 static void one_voxel_is_hit_where_it_is(double offset, double spacing, double far)
 {
   stratus_context* context = open_context(2, 1);

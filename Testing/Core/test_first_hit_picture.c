@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First-hit pictures against brute force over all voxels. */
+ * First-hit pictures compared with brute force over all voxels. */
 #include "../picture_case.h"
 
 #include "volume.h"
@@ -7,7 +7,7 @@
 static picture first;
 static picture second;
 
-/* ---- the oracle: every effective voxel's slabs, one pixel after the other */
+/* ---- the oracle: the slabs of every effective voxel, one pixel after the other */
 
 typedef struct oracle {
   const picture_case* c;
@@ -15,7 +15,7 @@ typedef struct oracle {
   uint8_t* effective;
 } oracle;
 
-/* The transfer function as it is written, first point of value > x decides. */
+/* Opacity of the transfer function by its definition: the last interval that begins at or below x decides. */
 static double opacity_of(const stratus_transfer* transfer, double x)
 {
   const double* p = transfer->opacity;
@@ -48,7 +48,7 @@ static void oracle_begin(const picture_case* c, oracle* o)
   }
 }
 
-/* The ray of a pixel in world coordinates, and the k between which it may hit. */
+/* Ray of a pixel in world coordinates, and the interval of k in which it may hit. */
 static void oracle_ray(const oracle* o, int x, int y, double from[3], double along[3], double* begin, double* end)
 {
   const stratus_camera* camera = &o->c->camera;
@@ -69,7 +69,7 @@ static void oracle_ray(const oracle* o, int x, int y, double from[3], double alo
   }
 }
 
-/* Cuts begin..end to the box; false if nothing is left. */
+/* Cuts begin..end to the box; returns false if nothing is left. */
 static bool slabs(const double from[3], const double along[3], const double lo[3], const double hi[3], double* begin, double* end)
 {
   for (int a = 0; a < 3; ++a) {
@@ -80,7 +80,8 @@ static bool slabs(const double from[3], const double along[3], const double lo[3
   return *begin <= *end;
 }
 
-/* k of the first hit, INFINITY for none; *voxel its number. *doubtful: another voxel is entered at nearly the same place, or hardly met. */
+/* k of the first hit, or INFINITY if there is none; *voxel: its number. *doubtful: the ray enters another voxel at nearly the same place,
+ * or hardly meets one. */
 static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* doubtful)
 {
   const int64_t* n = o->c->volume.dimensions;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First-hit pictures: every structure and thread count gives the same bits; what is built anew when; trees that come with the data are used
- * where they serve and nowhere else; refusals; memory that runs out. */
+ * First-hit pictures: every structure and number of threads gives the same bits; structures are rebuilt only after changes; trees that come
+ * with the data are used only where they serve; refusals; memory that runs out. */
 #include "../faulty_allocator.h"
 #include "../picture_case.h"
 
@@ -77,7 +77,7 @@ static void bytes_and_window_tell_the_same_picture(void** state)
   stratus_context_destroy(context);
 }
 
-/* Voxels and trees built since the caster was made. */
+/* Expects the numbers of voxel sets and trees built since the caster was made. */
 static void expect_builds(const picture* p, uint64_t voxels, uint64_t trees)
 {
   assert_int_equal(p->report.occupancy_builds, voxels);
@@ -104,7 +104,7 @@ static void only_what_changed_is_built_anew(void** state)
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 1);
   assert_true(case_lit(&first) > 100);
-  case_render(context, &c, &second); /* the kept tree draws what a fresh one does, a million off the origin */
+  case_render(context, &c, &second); /* a kept tree draws what a new one does, a million off the origin */
   assert_same(&first, &second);
 
   memcpy(color, c.color, sizeof color);
@@ -171,7 +171,7 @@ static void offer_begin(offer* o)
   o->context = case_context("host", 2);
   assert_int_equal(stratus_ray_caster_create(o->context, &o->caster), STRATUS_OK);
   case_create(o->context, &o->c, STRATUS_FLOAT32, 14, 13, 12, 3);
-  o->c.volume.origin[1] = 33.0; /* the tree remembers where it was made; that must not count */
+  o->c.volume.origin[1] = 33.0; /* the tree records where it was made, which must not matter */
   o->c.options.mode = STRATUS_MODE_FIRST_HIT;
   o->criterion = stratus_criterion_default();
   o->criterion.transfer = &o->c.transfer;
@@ -185,7 +185,7 @@ static void offer_end(offer* o)
   stratus_context_destroy(o->context);
 }
 
-/* Draws with the offer and without; both must look the same, the offer be used or not. */
+/* Draws with the offered tree and without. Both pictures must be the same, whether the tree is used or not. */
 static void expect_offered(offer* o, int used)
 {
   case_render_with(o->context, o->caster, &o->c, &first);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The light of first-hit pictures against what geometry says of it: normals of faces, cuts and fields, and Phong's sum. */
+ * Light in first-hit pictures, compared with geometry: normals of faces, cuts and fields, and Phong's sum. */
 #include "../picture_case.h"
 
 #include <stdbool.h>
 
 static picture first;
 
-/* White, lit by a red light from +x, a green one from +y, a blue one from +z: the colour is the normal, where it is positive. */
+/* White surfaces, lit by a red light from +x, a green one from +y, a blue one from +z: the colour is the normal where that is positive. */
 static void light_normals(picture_case* c)
 {
   stratus_shading* shading = &c->options.shading;
@@ -20,7 +20,7 @@ static void light_normals(picture_case* c)
   }
 }
 
-/* The voxel in the middle of 3^3, seen from (1,1,1); all other values are below what shows. */
+/* The middle voxel of 3^3, seen from (1,1,1). All other values are too low to show. */
 static void create_single(stratus_context* context, picture_case* c)
 {
   static const double opacity[4] = { 0.5, 0.0, 1.0, 1.0 };
@@ -133,7 +133,7 @@ static void cuts_have_the_normal_of_what_cuts(void** state)
   stratus_context_destroy(context);
 }
 
-/* A field that is linear in the world: its central differences are exact, whatever the spacing. */
+/* A field that is linear in the world, so that central differences are exact at any spacing. */
 static void gradients_are_the_fields(void** state)
 {
   (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta: the half-spaces of a camera, and boxes against them and against every separating axis. */
+ * Frusta: the half-spaces of a camera, and boxes compared with them and with every separating axis. */
 #include "octree_case.h"
 
 static bool point_is_inside(const stratus_frustum* frustum, const double point[3])
@@ -8,7 +8,7 @@ static bool point_is_inside(const stratus_frustum* frustum, const double point[3
   return stratus_frustum_side(frustum, bounds, 0) != STRATUS_SIDE_OUTSIDE;
 }
 
-/* A point at u, v, k of the camera's rays is inside where all three are within, by more than rounding. */
+/* A point at u, v, k of the camera's rays is inside if all three are within the window by more than rounding. */
 static void planes_hold_what_the_camera_s_rays_reach(void** state)
 {
   uint32_t random = 1;
@@ -65,7 +65,7 @@ static void a_box_that_is_seen_is_never_told_as_outside(void** state)
       assert_true(plain != STRATUS_SIDE_OUTSIDE || reach_of(&frustum, bounds) < 0.0L);
       assert_true(plain == STRATUS_SIDE_OUTSIDE || reach_of(&frustum, bounds) > -1e-14L);
       const bool meets = box_meets_frustum(&frustum, bounds, inside, 0.0);
-      /* Corners of the frustum are as exact as three planes meet: a millionth of the scene is far beyond. */
+      /* Three planes meet in the frustum's corners far more exactly than a millionth of the scene. */
       const bool nearly = box_meets_frustum(&frustum, bounds, inside, 1e-6 * scale);
       assert_true(!meets || (plain != STRATUS_SIDE_OUTSIDE && exact != STRATUS_SIDE_OUTSIDE));
       assert_true(nearly || exact == STRATUS_SIDE_OUTSIDE);

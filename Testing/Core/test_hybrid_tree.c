@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shapes of hybrid trees: whatever the set and the options, every brick is in one leaf, boxes are tight, leaves as small as asked for. */
+ * Shapes of hybrid trees. Whatever the set and the options, every brick is in one leaf, boxes are tight, and leaves are as small as the
+ * options say. */
 #include "hybrid_shape.h"
 
 static stratus_context* context;
@@ -86,7 +87,7 @@ static void the_shape_is_the_same_at_any_thread_count(void** state)
   }
 }
 
-/* Dense or sparse, as long as a field is neither too large nor too empty there is one, and nobody asks for density. */
+/* Dense or sparse, a set that is neither too large nor too empty for one field gets one, without any density. */
 static void one_field_is_enough_where_it_is_affordable(void** state)
 {
   uint32_t random = 3;
@@ -132,8 +133,8 @@ static void a_cluster_in_thin_noise_gets_a_field_of_its_own(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* The paper's way on the same: a cut at the cluster's border, a field on the peak's side, and on the other leaves of bricks. Its test, in
- * voxels, then passes at once, whatever noise the field still holds. */
+/* The paper's method on the same set: a cut at the cluster's border, a field on the peak's side, leaves of bricks on the other. Its test,
+ * in voxels, then passes at once, whatever noise the field still holds. */
 static void the_papers_field_is_on_the_peaks_side(void** state)
 {
   uint32_t random = 4;
@@ -154,7 +155,7 @@ static void the_papers_field_is_on_the_peaks_side(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Full of voxels, but more than a field may cover: any cut serves, and density is not asked. */
+/* A full box that is larger than a field may be: any cut serves, and no density is computed. */
 static void what_is_only_too_large_is_cut_without_density(void** state)
 {
   uint32_t random = 6;
@@ -173,7 +174,7 @@ static void what_is_only_too_large_is_cut_without_density(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Options of density reach it: bandwidth, voxel by voxel, node by node. */
+/* The options of density have an effect: bandwidth, voxel by voxel, node by node. */
 static void a_given_bandwidth_is_the_one_used(void** state)
 {
   uint32_t random = 5;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes of tetrahedra: exact orientation against integers, neighbours against a loop over all pairs of faces. */
+ * Meshes of tetrahedra: exact orientation compared with integers, neighbours compared with a loop over all pairs of faces. */
 #include "mesh.h"
 #include "mesh_case.h"
 
@@ -114,7 +114,7 @@ static bool is_collapsed(const int32_t* v)
   return v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3];
 }
 
-/* Loops over all pairs of faces. */
+/* Compares with loops over all pairs of faces. */
 static void assert_neighbours(const mesh_case* mesh, const stratus_adjacency* adjacency)
 {
   int64_t border = 0, broken = 0, folded = 0;
@@ -146,7 +146,7 @@ static void assert_neighbours(const mesh_case* mesh, const stratus_adjacency* ad
   assert_int_equal(adjacency->folded_faces, folded);
 }
 
-/* Cells of few points at random: every kind of sharing comes up, twice the same cell, flat and collapsed ones. */
+/* Random cells of few points: faces are shared in every way, cells come twice, some are flat or collapsed. */
 static void neighbours_of_random_cells_are_those_of_all_pairs(void** state)
 {
   uint32_t random = 3;
@@ -177,7 +177,7 @@ static void neighbours_of_random_cells_are_those_of_all_pairs(void** state)
   assert_true(broken > 100 && folded > 100 && flat > 100 && inner > 100);
 }
 
-/* Large enough for many buckets and chunks: the border of a grid is known, and threads change nothing. */
+/* A grid large enough for many buckets and chunks, whose border is known. Threads change nothing. */
 static void a_grid_has_the_border_of_its_box(void** state)
 {
   static const int n[3] = { 17, 23, 12 };

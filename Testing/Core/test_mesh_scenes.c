@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The meshes of record: the lattice fills its cube and meets face to face, the plate's surface is closed and encloses what it should, and
- * both are what figures were measured on. */
+ * The meshes of record: the lattice fills its cube and its cells meet face to face, the plate's surface is closed and encloses the right
+ * volume, and both are the meshes that figures were measured on. */
 #include "faulty_allocator.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ static double volume(const double* a, const double* b, const double* c, const do
   return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6.0;
 }
 
-/* Above 0 where the corners b and c turn the same way. */
+/* Above 0 if the path a, b, c, d turns the same way at b and c. */
 static double turn(const double* a, const double* b, const double* c, const double* d)
 {
   double first[3], second[3];
@@ -71,7 +71,7 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
     high = fmax(high, value);
   }
   assert_true(fabs(low - WAVELET_LOW) < 1e-3 && fabs(high - WAVELET_HIGH) < 1e-3);
-  /* Every face has a cell on its other side, but those of the cube. */
+  /* Only the faces of the cube have no cell on their other side. */
   stratus_tetra_caster* caster = NULL;
   stratus_tetra_report report;
   static float rgba[4 * 16 * 16];
@@ -93,8 +93,8 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
   stratus_context_destroy(context);
 }
 
-/* Each edge runs once each way, the quads are planar, and what they enclose is the plate less its holes, which are polygons of 32 corners.
- */
+/* Each edge occurs once in each direction, the quads are planar, and they enclose the plate without its holes, which are polygons of 32
+ * corners. */
 static void test_holes_are_a_closed_surface(void** state)
 {
   (void)state;

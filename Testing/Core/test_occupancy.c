@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Occupancy: never an empty block that shows something, and no block occupied without a reason. */
+ * Occupancy: no empty block shows anything, and no block is occupied without a reason. */
 #include "structures.h"
 
 static const double white[4] = { 0, 1, 1, 1 };
@@ -14,7 +14,7 @@ static stratus_transfer transfer_of(const double* opacity, size_t count)
   return t;
 }
 
-/* Ranges as a volume's would be, over 0..1, some without any value. */
+/* Random ranges like a volume's, in 0..1, some without any value. */
 static void random_ranges(stratus_context* context, const int64_t n[3], stratus_value_range* r, uint32_t* random)
 {
   const int64_t count = n[0] * n[1] * n[2];
@@ -41,7 +41,7 @@ static void free_ranges(stratus_value_range* r)
   free(r->gaps);
 }
 
-/* Lets half of the blocks end within some ULP of the first value that the table shows, where the hull's slack decides. */
+/* Ends half of the ranges within a few ULP of the first value that the table shows, where the slack decides. */
 static void approach_threshold(const stratus_table* table, stratus_value_range* r, uint32_t* random)
 {
   const float threshold = ((float)table->next_shown[0] - table->offset) / table->scale;
@@ -111,7 +111,7 @@ static void blocks_are_occupied_exactly_where_the_table_shows(void** state)
   }
 }
 
-/* Values of 0 and 1 alone: no voxel is within the peak, every cell between a 0 and a 1 is. */
+/* All values are 0 or 1: no voxel lies within the peak, but every cell between a 0 and a 1 does. */
 static void a_peak_between_two_voxel_values_is_occupied(void** state)
 {
   static const double peak[] = { 0.0, 0.0, 0.40, 0.0, 0.41, 0.9, 0.42, 0.0, 1.0, 0.0 };
@@ -218,7 +218,7 @@ static long double exact_value(const stratus_volume* v, int64_t at)
   return 0;
 }
 
-/* Least and greatest of the values in block `at` whose fetched values are finite, as they are; false if there is none. */
+/* Finds the exact least and greatest of those values in block `at` whose fetched values are finite; returns false if there is none. */
 static bool exact_range(const stratus_volume* v, int size, double bias, const int64_t at[3], long double range[2])
 {
   const int64_t* n = v->dimensions;
@@ -239,13 +239,13 @@ static bool exact_range(const stratus_volume* v, int size, double bias, const in
   return range[0] <= range[1];
 }
 
-/* 1 if the value and an end are the same float, so that neither side of the end can be told. */
+/* True if the value and an end are fetched as the same float, so that the value may lie on either side. */
 static bool is_fetched_as(const stratus_volume* v, double bias, long double value, double end)
 {
   return stratus_type_is_wide(v->type) && (float)((double)value - bias) == (float)(end - bias);
 }
 
-/* Blocks that wide types' rounding alone made occupied. */
+/* Checks occupancy between two values; returns the number of blocks that only the rounding of wide types made occupied. */
 static int64_t check_between(stratus_context* context, const stratus_volume* v, const stratus_value_range* r, double lower, double upper)
 {
   stratus_occupancy* o = NULL;

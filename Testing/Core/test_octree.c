@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The octree shows what a loop over all boxes shows, whatever its placement, stop rule, depth, history, views and threads. */
+ * The octree sees what a loop over all boxes sees, whatever its placement, stop rule, depth, history, views and threads. */
 #include "octree_case.h"
 #include "octree.h"
 
@@ -28,7 +28,7 @@ static stratus_octree_view* make_view(stratus_octree* tree)
   return view;
 }
 
-/* Every placement, stop rule and some depths; small leaves, so that small scenes make deep trees. */
+/* Options of a variant: every placement, stop rule and some depths. Leaves are small, so that small scenes make deep trees. */
 static stratus_octree_options options_of(int variant)
 {
   stratus_octree_options o = stratus_octree_options_default();
@@ -105,7 +105,8 @@ static void every_tree_shows_what_the_linear_list_shows(void** state)
   stratus_context_destroy(context);
 }
 
-/* Boxes that are turned: the same for tree and list, never without one that a box's point lies in, and less than their bounds. */
+/* Turned boxes: tree and list see the same ones. These include every box of which a point is in sight, and are fewer than by their
+ * bounds. */
 static void turned_boxes_are_tested_as_they_are(void** state)
 {
   enum { COUNT = 3000 };
@@ -279,7 +280,7 @@ static void threads_change_no_bit_of_the_list(void** state)
   free(coverage);
 }
 
-/* Two cameras in turn on one tree: neither disturbs what the other sees, and both keep their lists until their next call. */
+/* Two cameras alternate on one tree. Neither disturbs what the other sees, and both keep their lists until their next call. */
 static void views_share_a_tree(void** state)
 {
   (void)state;
@@ -316,7 +317,7 @@ static void views_share_a_tree(void** state)
   stratus_context_destroy(context);
 }
 
-/* Nodes appear where a border is, and go when none has been there for long; the static tree has more than the adaptive one. */
+/* Nodes appear where a border is, and go when none has been there for long. The static tree has more nodes than the adaptive one. */
 static void nodes_come_with_the_border_and_go_without_it(void** state)
 {
   (void)state;
@@ -355,7 +356,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   size_t held = 0;
   for (size_t i = 0; i < adaptive.nodes; ++i) {
     held += nodes[i].objects;
-    /* Only what the border crossed was split. */
+    /* Only nodes that the border crossed are split. */
     assert_true(!nodes[i].split || nodes[i].side == STRATUS_SIDE_CROSSING);
   }
   assert_int_equal(held, OBJECTS);
@@ -381,7 +382,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_context_destroy(context);
 }
 
-/* A tree for a scene that is wholly in sight would be built for nothing; one box over the border needs it. */
+/* A scene that is wholly in sight needs no tree. One box across the border needs it. */
 static void what_is_wholly_in_sight_needs_no_tree(void** state)
 {
   (void)state;
@@ -423,7 +424,7 @@ static void what_is_wholly_in_sight_needs_no_tree(void** state)
 }
 
 /* A cube in the middle of a window of twice its sphere's width, and one that hangs half over its border. */
-/* In its first frame, before there is room for what is seen. */
+/* An empty first frame, before the view has room for results. */
 static void a_view_of_nothing_sees_nothing(void** state)
 {
   (void)state;
@@ -478,7 +479,7 @@ static void coverage_is_the_window_s_share(void** state)
   assert_int_equal(visible.count, 3);
   static const float coverage[] = { 0.25f, 0.125f, 1.0f }, depth[] = { 4.0f, 5.0f, 0.0f };
   for (size_t i = 0; i < 3; ++i) {
-    /* Floats of numbers of order one. */
+    /* The tolerances are those of floats of order one. */
     assert_true(fabsf(visible.coverage[i] - coverage[visible.ids[i]]) < 1e-6f);
     assert_true(fabsf(visible.depth[i] - depth[visible.ids[i]]) < 1e-5f);
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A million random insertions, moves and removals: after each thousand the octree shows and finds what a plain list of the same boxes does.
- * And the queries, against loops. */
+ * A million random insertions, moves and removals. After each thousand the octree sees and finds what a plain list of the same boxes does.
+ * Also its queries, compared with loops. */
 #include "octree_case.h"
 
 #include "octree.h"
@@ -149,7 +149,7 @@ static double distance_of(const double bounds[6], const double point[3])
   return sqrt(sum);
 }
 
-/* Liang and Barsky's way, interval by interval. */
+/* Liang and Barsky's method, interval by interval. */
 static bool ray_meets(const double bounds[6], const double origin[3], const double direction[3], double t_max)
 {
   long double from = 0.0L, to = t_max;

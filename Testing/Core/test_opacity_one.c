@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Opacity 1 lets nothing through however short the way, by both sampling rules, in volumes and in meshes, on host and device; and what is
- * below 1, however little, stays translucent by as much as it should. */
+ * Opacity 1 stops all light, however short the way, by both sampling rules, in volumes and in meshes, on host and device. Opacities below
+ * 1, however little, stay translucent by the right amount. */
 #include "../tetra_case.h"
 
 #define SIDE 24
@@ -9,7 +9,8 @@
 #define CENTRE (WIDTH * (WIDTH / 2) + WIDTH / 2)
 
 static const double spacings[] = { 1.0, 0.03, 1e-3, 1e-6 };
-/* What is left of the light is a float below 1, rounded with each of a ray's samples: at most 48, .6 of a voxel apart or more. */
+/* The light that is left is a float below 1, which rounds with each sample of a ray. A ray has at most 48 samples, .6 of a voxel apart or
+ * more. */
 #define ROUNDING (48 * 0x1p-24)
 
 static float values[SIDE * SIDE * SIDE];
@@ -25,7 +26,7 @@ static stratus_context* open_context(const char* device)
   return context;
 }
 
-/* Along z through the middle, from `far` spacings away. */
+/* A camera that looks along z through the middle, from `far` spacings away. */
 static stratus_camera look_along_z(stratus_context* context, double spacing)
 {
   const double middle = 0.5 * (SIDE - 1) * spacing, eye[3] = { middle, middle, 4.0 * SIDE * spacing }, focal[3] = { middle, middle, 0.0 };
@@ -131,7 +132,7 @@ static void a_narrow_band_of_opacity_1_is_met_on_the_way(void** state)
   }
 }
 
-/* Alpha of a way through a medium of one opacity, as doubles have it. */
+/* Exact alpha of a way through a medium of uniform opacity. */
 static double absorbed(double opacity, double length)
 {
   return -expm1(length * log1p(-opacity));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partitions: pieces fill what they were cut from, meet in the same faces, and lie in their leaves. */
+ * Partitions: pieces fill the cells that they were cut from, meet in the same faces, and lie in their leaves. */
 #include "partition_case.h"
 
-/* The border is that of the box, nothing is shared by three or folded, and no two points are the same. */
+/* Checks that the border is the box's, that no face is shared by three cells or folded, and that no two points are equal. */
 static void assert_box_conforms(stratus_context* context, const stratus_partition_result* cut, const int n[3], double offset)
 {
   mesh_case mesh = mesh_of(cut);
@@ -67,8 +67,8 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
   stratus_context_destroy(context);
 }
 
-/* Quadratic hexahedra as they are divided: cubes of 20 points and one in the middle, corners of faces cut off. What is not a corner is
- * moved by up to 4 roundings, as by whoever computed it. `offset` moves all. */
+/* Quadratic hexahedra as they are subdivided: cubes of 20 points and one in the middle, corners of faces cut off. All points but corners
+ * are moved by up to 4 roundings, as if computed. `offset` moves all points. */
 static mesh_case quadratic_cubes(const int n[3], double offset, uint32_t seed)
 {
   const int step[3] = { 1, 2 * n[0] + 1, (2 * n[0] + 1) * (2 * n[1] + 1) };
@@ -101,7 +101,7 @@ static mesh_case quadratic_cubes(const int n[3], double offset, uint32_t seed)
   return mesh;
 }
 
-/* Planes through points that are there but for rounding cut nothing off that is as thin. */
+/* A plane that misses points only by rounding cuts off no piece as thin as that. */
 static void what_is_within_rounding_of_a_plane_lies_on_it(void** state)
 {
   static const int n[3] = { 4, 4, 4 };
@@ -165,7 +165,7 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   stratus_context_destroy(context);
 }
 
-/* Cells that overlap, cut however unevenly: some leaves get no cell at all, and lie beside others that are cut. */
+/* Overlapping cells, cut unevenly: some leaves get no cell at all, and lie beside leaves that are cut. */
 static void leaves_without_cells_take_part(void** state)
 {
   stratus_partition_options options = stratus_partition_options_default();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * In which order a partition's cells come: those of a view, leaf by leaf, are right; those of the list lie near one another. */
+ * The order of a partition's cells: orders of a view, leaf by leaf, are right, and lists keep near cells near one another. */
 #include "partition_case.h"
 
-/* Leaves in order, and each in itself: also where cells come leaf by leaf no more. */
+/* An order with leaves is right from everywhere, within leaves and across them, although its cells need not come leaf by leaf. */
 static void orders_by_leaves_are_right_from_everywhere(void** state)
 {
   static const int n[3] = { 5, 5, 5 };
@@ -49,7 +49,7 @@ static void orders_by_leaves_are_right_from_everywhere(void** state)
   mesh_case_free(&mesh);
 }
 
-/* How far it is from one cell's first point to the next one's, in the mean. */
+/* Mean distance from one cell's first point to the next cell's. */
 static double mean_step(const double* points, const int32_t* vertices, int64_t cells)
 {
   double sum = 0.0;
@@ -60,7 +60,7 @@ static double mean_step(const double* points, const int32_t* vertices, int64_t c
   return sum / (double)cells;
 }
 
-/* Scattered cells come near one another, each once; others stay as they come. */
+/* Scattered cells are listed near one another, each once. Other cells keep their order. */
 static void scattered_cells_are_listed_where_they_are(void** state)
 {
   static const int n[3] = { 20, 20, 20 };

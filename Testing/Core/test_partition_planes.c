@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where a partition cuts: between cells where it can, by the plane that a loop over all candidates finds, across axes that suit the mesh.
- */
+ * The planes of a partition: between cells where possible, the best of all candidates as a loop finds it, and across axes that suit the
+ * mesh. */
 #include "partition_case.h"
 
 /* Grid planes that are there to be found. */
@@ -28,7 +28,7 @@ static void a_grid_is_cut_between_its_cells(void** state)
   stratus_context_destroy(context);
 }
 
-/* All planes of the paper's rule, each cut by counting pieces cell by cell. */
+/* Tries all planes of the paper's rule, and counts the pieces of each cell by cell. */
 static void the_paper_s_plane_is_the_best_of_all_that_are_admissible(void** state)
 {
   static const int n[3] = { 5, 4, 6 };

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The picture in bytes is the float picture rounded, on host and device and in every pixel; and nothing shows outside the reported window.
- */
+ * The picture in bytes is the float picture rounded, on host and device and in every pixel. Nothing shows outside the reported window. */
 #include "../picture_case.h"
 
 static picture shown;
@@ -12,7 +11,7 @@ static void render_bytes(stratus_context* context, const picture_case* c)
   const stratus_image image = {
     .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = shown.rgba, .opaque_depth = c->opaque_depth, .rgba8 = bytes
   };
-  memset(shown.rgba, 0xff, sizeof shown.rgba); /* no number: a pixel left out is seen */
+  memset(shown.rgba, 0xff, sizeof shown.rgba); /* NaN, so that a pixel left out is noticed */
   memset(bytes, 0xa5, sizeof bytes);
   memset(&shown.report, 0xff, sizeof shown.report);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
@@ -20,7 +19,7 @@ static void render_bytes(stratus_context* context, const picture_case* c)
   stratus_ray_caster_destroy(caster);
 }
 
-/* Pixels outside the window. */
+/* Compares bytes with floats; returns the number of pixels outside the window. */
 static int expect_rounded(uint32_t seed)
 {
   const int* w = shown.report.window;

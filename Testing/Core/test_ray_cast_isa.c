@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One source, many widths: AVX-512, AVX2 and the baseline must give the same bits and the same counts, whatever packets they work in. */
+ * One source, many widths: AVX-512, AVX2 and the baseline give the same bits and the same counts, whatever the width of their packets. */
 #include "../picture_case.h"
 
 #include "volume.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Same input, same picture: no structure, block size or thread count changes a bit of it. Compared here directly, and by the caster's own
- * audit, which must agree. */
+ * Same input, same picture: no structure, block size or number of threads changes a bit. The test compares pictures itself and by the
+ * caster's own audit, which must agree. */
 #include "../picture_case.h"
 
 static picture first;
@@ -51,7 +51,7 @@ static void structures_change_no_bit(void** state)
   stratus_context_destroy(context);
 }
 
-/* A tree of the cells that the transfer function shows, in many leaves, boxes of hierarchies that overlap among them. */
+/* Offers a tree of the cells that the transfer function shows, with many leaves. Boxes of hierarchies overlap. */
 static void offer_tree(
   stratus_context* context, stratus_ray_caster* caster, const picture_case* c, stratus_tree_method method, int emptiness)
 {
@@ -126,7 +126,8 @@ static void threads_change_no_bit(void** state)
   }
 }
 
-/* A pixel's picture depends on its ray alone, so a window of the same rays shows the same, whatever packets and tiles they fall into. */
+/* A pixel's picture depends on its ray alone. A window of the same rays therefore shows the same, whatever packets and tiles they fall
+ * into. */
 static void tiles_change_no_bit(void** state)
 {
   (void)state;
@@ -135,7 +136,7 @@ static void tiles_change_no_bit(void** state)
     picture_case c;
     case_create_random(context, seed, &c);
     case_render(context, &c, &first);
-    /* The last 8 columns of the window as a window of their own: centre and half width of a part of the plane of rays. */
+    /* The last 8 columns as a window of their own: its camera has their centre and half width in the plane of rays. */
     enum { COLUMNS = 8 };
     static float rgba[4 * COLUMNS * CASE_HEIGHT];
     const double share = (double)COLUMNS / CASE_WIDTH;
@@ -152,7 +153,7 @@ static void tiles_change_no_bit(void** state)
     stratus_ray_caster_destroy(caster);
     for (int y = 0; y < CASE_HEIGHT; ++y) {
       for (int x = 0; x < 4 * COLUMNS; ++x) {
-        /* Not bits: the camera itself was rounded anew. */
+        /* Not to the bit, because the camera itself was rounded again. */
         const float a = rgba[4 * COLUMNS * y + x], b = first.rgba[4 * (CASE_WIDTH * y + CASE_WIDTH - COLUMNS) + x];
         assert_true(fabsf(a - b) <= 2e-3f);
       }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Gradient opacity and volumes of several components, independent and dependent, against the double reference; every structure to the bit;
- * each function and weight by its effect; what is refused. */
+ * Gradient opacity and volumes of several components, independent and dependent, compared with the double reference. Also every structure
+ * to the bit, each function and weight by its effect, and refusals. */
 #include "../picture_case.h"
 
 #include "volume.h"
 
-/* dB against the reference at a quarter of a voxel, as for one component: what is left is the sampling's own error. */
+/* dB against the reference at a quarter of a voxel, as for one component: only the sampling's own error is left. */
 #define MIDPOINT_DB 64.0
 #define COMPONENTS 4
 
@@ -18,7 +18,7 @@ typedef struct many {
 static picture drawn;
 static picture other;
 
-/* `count` fields of one type at one place, component i from seed + i, each with a transfer function in its own colour. */
+/* `count` fields of one type at one place. Component i comes from seed + i and has a transfer function in a colour of its own. */
 static void many_create(stratus_context* context, many* m, stratus_type type, int count, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
 {
   static const double colors[COMPONENTS][4] = { { 0, 1, 0.2, 0.1 }, { 0, 0.1, 0.9, 0.3 }, { 0, 0.2, 0.3, 1 }, { 0, 0.9, 0.9, 0.1 } };
@@ -143,7 +143,8 @@ static void independent_components_mix_as_the_reference_mixes_them(void** state)
   stratus_context_destroy(context);
 }
 
-/* The second component in other units, its functions too: the same picture, be its range so much less or more than the first one's. */
+/* The second component and its functions in other units give the same picture, however much smaller or larger its range is than the
+ * first's. */
 static void each_component_has_its_own_units(void** state)
 {
   (void)state;
@@ -197,7 +198,7 @@ static void dependent_components_are_colour_and_opacity(void** state)
   stratus_context_destroy(context);
 }
 
-/* Four labels in blobs, one of them without functions of its own. */
+/* Sets four labels in blobs, one of them without functions of its own. */
 static void set_labels(many* m, uint8_t* labels)
 {
   static const double colors[3][4] = { { 0, 1, 0.2, 0.1 }, { 0, 0.1, 0.9, 0.3 }, { 0, 0.2, 0.3, 1 } };
@@ -355,7 +356,7 @@ static void what_it_cannot_show_is_refused(void** state)
   stratus_context_destroy(context);
 }
 
-/* Gradient opacity, labels and components share their arguments with the light, which nothing checks where nothing is lit. */
+/* Gradient opacity, labels and components share their arguments with the light, which is not checked where nothing is lit. */
 static void a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit(void** state)
 {
   (void)state;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Crop regions, masks and jitter of the ray cast, in every mode: against a double reference, and against themselves without structure.
+ * Crop regions, masks and jitter of the ray cast in every mode, compared with a double reference, and with the same picture without
+ * structure.
  *
- * Planes cut a ray exactly, in both; what is left are the samples' errors, first order for an extreme that lies on a plane. A mask's border
- * is met to half a step, .05 voxel, and a ray that passes it for less than that is wholly right or wholly wrong: MASK_DB. */
+ * Planes cut a ray exactly in both. Only the samples' errors are left, which are of first order for an extreme that lies on a plane. A
+ * mask's border is met to half a step, .05 voxel, and a ray that passes it by less than that is wholly right or wholly wrong: MASK_DB. */
 #include "../picture_case.h"
 #include "../reference_modes.h"
 
@@ -57,7 +58,7 @@ static void crop_between(picture_case* c, uint32_t regions)
   }
 }
 
-/* Each of the 27 alone, and the sets that VTK has names for. */
+/* Each of the 27 regions alone, and the sets that VTK has names for. */
 static void each_region_is_where_it_should_be(void** state)
 {
   static const uint32_t named[] = { 0x2000u, 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfeba,
@@ -99,8 +100,8 @@ static void regions_in_every_mode(void** state)
   }
 }
 
-/* A ray that passes from one region that is shown to another is not cut there: two regions that make up a box draw what the box does, up to
- * the rounding of the planes' places. */
+/* A ray is not cut where it passes between two shown regions: two regions that make up a box draw what the box does, up to the rounding of
+ * the planes' positions. */
 static void regions_side_by_side_are_one(void** state)
 {
   picture_case c;
@@ -223,7 +224,7 @@ static void structures_and_threads_change_no_bit(void** state)
   stratus_context_destroy(one);
 }
 
-/* Long steps through a thin shell: wood grain that jitter must turn into noise, and only on average the same light. */
+/* Long steps through a thin shell give wood grain. Jitter must turn it into noise, and keep the light only on average. */
 static void jitter_moves_samples_and_nothing_else(void** state)
 {
   picture_case c;

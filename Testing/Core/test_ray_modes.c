@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maxima, minima, means, sums and isosurfaces against a double reference, and against themselves: no structure, thread count or instruction
- * set may change a bit.
+ * Maxima, minima, means, sums and isosurfaces, compared with a double reference, and with themselves: no structure, number of threads or
+ * instruction set changes a bit.
  *
  * Samples lie a tenth of a voxel apart here, so that what is left against the reference is a second-order error: of the extremes some
  * curvature times .05^2/2 voxel, of sums as much; and the table's: half an entry of 4096 times the steepest change of colour or opacity (of
@@ -132,7 +132,7 @@ static void a_sum_is_grey_and_covers_the_volume(void** state)
   case_destroy(&c);
 }
 
-/* Pixels that see something else than the reference does, and the largest error of depth among the others. */
+/* Number of pixels that differ from the reference; *error: largest error of depth among the others. */
 static int compare_surfaces(const picture* p, double* error)
 {
   int differing = 0;
@@ -188,7 +188,7 @@ static void isosurfaces_are_where_the_field_is_the_contour(void** state)
   assert_true(worst <= DEPTH_ERROR);
 }
 
-/* A contour that is the value of whole layers of voxels, as labels and clamped data have them: no surface is lost between two cells. */
+/* A contour whose value whole layers of voxels have, as in labels and clamped data: no surface is lost between two cells. */
 static void no_ray_slips_between_cells(void** state)
 {
   picture_case c;
@@ -218,8 +218,8 @@ static void no_ray_slips_between_cells(void** state)
   case_destroy(&c);
 }
 
-/* A ball, lit from the eye: what is seen is told by depth and geometry alone. Its normals come from central differences over two voxels of
- * a field that bends with a radius of 8: 1 - cos of an angle below .02, and what the field's cubic is off the ball. */
+/* A ball, lit from the eye, so that depth and geometry determine the picture. Its normals come from central differences over two voxels of
+ * a field that bends with a radius of 8: 1 - cos of an angle below .02, and the deviation of the field's cubic from the ball. */
 static void surfaces_are_lit_by_the_gradient(void** state)
 {
   picture_case c;
@@ -313,7 +313,7 @@ static void structures_change_no_bit(void** state)
   }
 }
 
-/* Everything shows, so no block is empty; but behind what a ray has found already most hold nothing better. */
+/* Everything shows, so that no block is empty. But most blocks hold nothing better than the ray has already found. */
 static void extremes_pass_blocks_that_hold_nothing_better(void** state)
 {
   for (int mode = 0; mode < 2; ++mode) {
@@ -359,7 +359,7 @@ static void threads_and_instructions_change_no_bit(void** state)
   stratus_context_destroy(one);
 }
 
-/* One caster that goes through all modes, back and forth: nothing of one is left in the other. */
+/* One caster changes between all modes, back and forth, and no mode affects another. */
 static void a_caster_changes_its_mode(void** state)
 {
   stratus_ray_caster* caster = NULL;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lit samples against the double reference, which shades in doubles; every instruction set and structure to the bit; and each number of the
- * shading by its effect. */
+ * Lit samples, compared with the double reference, which shades in doubles. Also every instruction set and structure to the bit, and each
+ * number of the shading by its effect. */
 #include "../picture_case.h"
 
 #include "volume.h"
 
-/* dB against the reference at a quarter of a voxel. What is left is the sampling's own error, as without light: light multiplies colours
- * that are sampled at the same places, so the bound is that of the unlit pictures. */
+/* dB against the reference at a quarter of a voxel. Light multiplies colours that are sampled at the same places, so that the sampling's
+ * own error and the bound are those of the unlit pictures. */
 #define MIDPOINT_DB 58.0
 
 static picture drawn;
@@ -67,7 +67,7 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   stratus_context_destroy(context);
 }
 
-/* Borders, cell data, nearest values, generic fetches. */
+/* Borders, cell data, nearest values and generic fetches are lit. */
 static void border_voxels_and_every_type_are_lit(void** state)
 {
   (void)state;
@@ -200,8 +200,7 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   stratus_context_destroy(context);
 }
 
-/* A fill value takes no part in the picture, and neither does the range that it makes: what lies away from it is lit and thinned as before.
- */
+/* A fill value takes no part in the picture, nor does the range that it makes: everything else is lit and thinned as before. */
 static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** state)
 {
   (void)state;
@@ -234,7 +233,7 @@ static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** 
   stratus_context_destroy(context);
 }
 
-/* Places beyond what floats and doubles multiply without overflow light as the direction to them does. */
+/* A light so far away that products of its coordinates overflow lights as its direction does. */
 static void lights_however_far_light(void** state)
 {
   (void)state;

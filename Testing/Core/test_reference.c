@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The reference renderer against pictures that can be written down. */
+ * The reference renderer, compared with pictures that can be written down. */
 #include "../reference.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static stratus_transfer flat_transfer(void)
   };
 }
 
-/* Looks along +z over the square from (0,0) to (4,4), one unit of world a pixel. */
+/* A camera that looks along +z at the square from (0,0) to (4,4), with one unit of the world for each pixel. */
 static stratus_camera along_z(void)
 {
   return (stratus_camera){

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The scenes of record are what they were when the figures were measured. */
+ * The scenes of record are those that figures were measured on. */
 #include "stratus.h"
 
 #include <math.h>
@@ -44,7 +44,7 @@ static uint64_t hash(const stratus_scene* scene)
   return h;
 }
 
-/* The figures of record: size, type, occupied voxels, and the mean to as many digits as are printed there. */
+/* Checks the figures of record: size, type, occupied voxels, and the mean to as many digits as are published. */
 static void assert_figures(
   const char* name, int64_t nx, int64_t ny, int64_t nz, stratus_type type, int64_t occupied, double mean, double unit)
 {
@@ -103,8 +103,8 @@ static void voxel_is_one_voxel_at_its_place(void** state)
   stratus_context_destroy(context);
 }
 
-/* fog needs no function of the C library, so its bits are the same on every machine: one hash stands for every voxel. The field is the
- * same for haze and peak, and at any thread count. */
+/* The fog needs no function of the C library, so that its bits are the same on every machine and one hash checks every voxel. Haze and peak
+ * have the same field, at any number of threads. */
 static void fog_haze_and_peak_are_one_field_to_the_last_bit(void** state)
 {
   (void)state;

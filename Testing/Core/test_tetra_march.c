@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra against the double-precision reference, from outside and inside, through hollows, cut by planes and opaque things.
- */
+ * Pictures of tetrahedra compared with the double-precision reference: from outside and inside, through hollows, cut by planes and opaque
+ * objects. */
 #include "tetra_case.h"
 
 #include <float.h>
 
-/* Colours are averaged over pieces of a cell. Half of the bar of record for functions with peaks, for these are smoother. */
+/* Colours are averaged over pieces of a cell. The bound is half of the bar of record for functions with peaks, since these functions are
+ * smoother. */
 #define RMSE_MOST 0.025
 #define LARGEST_MOST 0.5
 
@@ -189,8 +190,8 @@ static void assert_all_in_range(void)
   }
 }
 
-/* Beside others that are drawn: cells that name a point twice, thrice, four times, of points in one place or one plane under numbers of
- * their own, of values that are no floats. */
+/* Cells without volume beside others that are drawn: they name a point twice, three or four times, have points in one place or one plane
+ * under different numbers, or values that are not finite. */
 static void cells_without_volume_show_nothing_and_are_told(void** state)
 {
   for (uint32_t seed = 0; seed < 24; ++seed) {
@@ -233,8 +234,8 @@ static void cells_without_volume_show_nothing_and_are_told(void** state)
   }
 }
 
-/* Optical depths in the thousands of millions are opaque; what has the unit distance's size looks as it does at size 1. Lengths beyond what
- * floats hold are refused, and the caster goes on. */
+/* Optical depths in the thousands of millions are opaque, and lengths of the unit distance's size look as at size 1. Lengths beyond floats
+ * are refused, and the caster can continue. */
 static void lengths_of_any_size_are_drawn_or_refused(void** state)
 {
   static const double scales[] = { 1e-310, 1e-200, 1e-30, 1e-25, 1e-10, 1e10, 1e20, 1e25, 1e30, 1e31, 1e100, 1e200, 1e290 };
@@ -274,7 +275,7 @@ static void lengths_of_any_size_are_drawn_or_refused(void** state)
   }
 }
 
-/* A parallel camera's window so narrow that products of what lies beside it are no floats. */
+/* A parallel camera with a window so narrow that products beside it overflow floats. */
 static void windows_narrower_than_floats_are_refused(void** state)
 {
   tetra_case c;
@@ -300,7 +301,7 @@ static void windows_narrower_than_floats_are_refused(void** state)
   tetra_destroy(&c);
 }
 
-/* Finite points whose distances in forwards of .1 are not. */
+/* Finite points at depths, in units of a forward of length .1, that are not finite. */
 static void depths_beyond_doubles_are_refused(void** state)
 {
   static const double points[] = { 0, 0, -5e307, 1, 0, 5e307, 0, 1, 5e307, 1, 1, -5e307 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra that must not differ by a bit: at any number of threads, instruction set, order of cells; from a caster that drew
- * something else before. */
+ * Pictures of tetrahedra that must be the same to the bit: at any number of threads, instruction set and order of cells, and from a caster
+ * that drew something else before. */
 #include "tetra_case.h"
 
 #include "volume.h"
@@ -77,7 +77,7 @@ static void whatever_the_order_of_cells(void** state)
   stratus_context_destroy(context);
 }
 
-/* Only what changed is built anew, and pictures are those of a new caster. */
+/* Only changed inputs cause a rebuild, and pictures equal those of a new caster. */
 static void from_a_caster_that_drew_before(void** state)
 {
   stratus_context* context = open_context(2);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra beside the march and the double-precision reference: where no order of cells is right, with leaves, behind what
- * is opaque; and which of the two methods a view is drawn by. What both must do alike is in test_tetra_march*.c, which run once with each.
- */
+ * Projection of tetrahedra, compared with the march and the double-precision reference: where no order of cells is right, with leaves,
+ * behind opaque objects. Also the choice between the two methods. test_tetra_march*.c, which run once with each method, test what both must
+ * do alike. */
 #include "tetra_case.h"
 
-/* Half of the bar of record for functions with peaks, for these are smoother. */
+/* Half of the bar of record for functions with peaks, since these functions are smoother. */
 #define RMSE_MOST 0.025
-/* What the contract says the methods may differ by. */
+/* Difference of the methods that the contract allows. */
 #define DIFFERENCE_MOST 0.01
 
 static tetra_picture marched, projected;
@@ -42,7 +42,7 @@ static void agrees(const tetra_case* c, const char* what)
   assert_true(error <= RMSE_MOST && apart <= DIFFERENCE_MOST);
 }
 
-/* The march passes cells where the projection composites pieces: as many, where everything shows and rays end nowhere. */
+/* The march passes cells where the projection composites pieces. Their numbers agree where everything shows and no ray ends early. */
 static void pieces_are_the_march_s_segments(void** state)
 {
   for (uint32_t seed = 0; seed < 4; ++seed) {
@@ -60,7 +60,7 @@ static void pieces_are_the_march_s_segments(void** state)
   }
 }
 
-/* A direction at random, and two at right angles to it. */
+/* A random direction, and two at right angles to it. */
 static void random_axes(uint32_t* s, double axes[3][3])
 {
   double length = 0.0;
@@ -89,9 +89,9 @@ static void random_axes(uint32_t* s, double axes[3][3])
   }
 }
 
-/* From inside or near or far away, right and up at any angle with each other and with forward, which has any length: parallel, window
- * planes that lean over thousands of the mesh's widths; perspective, up to 60 degrees off, for what leans more has less depth than floats
- * can tell. Every other one cuts the mesh by a near plane, a far one, or by both and by what is opaque between them. */
+/* Random camera, from inside, near or far away, with right and up at any angle with each other and with forward, which has any length.
+ * Parallel window planes lean by thousands of the mesh's widths, perspective ones by up to 60 degrees: beyond that, depths are too close
+ * for floats. Some cameras cut the mesh by a near plane, a far plane, or both and opaque objects between them. */
 static void look_at_random(tetra_case* c, int n, int parallel, uint32_t seed)
 {
   static float opaque[TETRA_PIXELS];
@@ -128,7 +128,7 @@ static void look_at_random(tetra_case* c, int n, int parallel, uint32_t seed)
   }
 }
 
-/* Whichever camera: both ways show what the reference does, at full length and with what lies behind alpha .9999 left out. */
+/* With any camera both methods show what the reference does, at full length and with everything behind alpha .9999 left out. */
 static void any_camera_sees_the_same_by_both_ways(void** state)
 {
   enum { N = 4, CAMERAS = 60 };
@@ -160,7 +160,7 @@ static void any_camera_sees_the_same_by_both_ways(void** state)
   }
 }
 
-/* Copies of a mesh that overlap it, moved a little each: no order of whole cells is right, and a ray has more pieces than are sorted at
+/* Copies of a mesh that overlap it, each moved a little: no order of whole cells is right, and a ray has more pieces than are sorted at
  * once. */
 static void cells_that_overlap_are_drawn_again(void** state)
 {
@@ -204,7 +204,7 @@ static void cells_that_overlap_are_drawn_again(void** state)
   tetra_destroy(&c);
 }
 
-/* Rays that end early end at the same cells, and what comes out of order behind what is opaque is found, too. */
+/* Rays that end early end at the same cells, and wrongly ordered pieces behind an opaque object are found, too. */
 static void opaque_things(void** state)
 {
   for (uint32_t seed = 0; seed < 6; ++seed) {
@@ -258,8 +258,8 @@ static void leaves_change_nothing_but_roundings(void** state)
   tetra_destroy(&c);
 }
 
-/* Many cells, small on the screen, that all show: rays pass them for less. One value in a thousand shows: only those cells need be drawn. A
- * camera that stands still sees one method. */
+/* Many small cells that all show: the march costs less. One value in a thousand shows: only those cells need be drawn. A camera that stands
+ * still keeps one method. */
 static void auto_chooses_by_what_shows(void** state)
 {
   tetra_case c;

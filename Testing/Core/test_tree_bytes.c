@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees as bytes: what comes back is the same tree, and no damaged, foreign or forged bytes come back as one. */
+ * Trees as bytes: the same tree comes back, and damaged, foreign or forged bytes give none. */
 #include "first_hits.h"
 
 #include "tree.h"
@@ -63,7 +63,7 @@ static void what_is_saved_comes_back(void** state)
   stratus_context_destroy(context);
 }
 
-/* As a criterion that nothing meets leaves it. */
+/* A tree as a criterion that no value meets makes it. */
 static void a_tree_of_no_voxel_comes_back_and_nothing_hits_it(void** state)
 {
   (void)state;
@@ -142,7 +142,7 @@ static void damaged_bytes_are_refused(void** state)
   stratus_context_destroy(context);
 }
 
-/* Trees that someone changed on purpose, checksum and all: refused, or at least walked without harm. */
+/* Trees forged with a right checksum are refused, or can at least be walked without harm. */
 static void forged_trees_do_no_harm(void** state)
 {
   (void)state;
@@ -237,7 +237,7 @@ static stratus_volume small_volume(float values[6 * 6 * 6])
   return volume;
 }
 
-/* A tree stands in for what its criterion covers in the very volume that it was made of, and for nothing else. */
+/* A tree stands in for what its criterion covers, in the volume that it was made of and in no other. */
 static void a_tree_covers_only_what_it_was_made_of(void** state)
 {
   (void)state;

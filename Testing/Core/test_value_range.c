@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Value ranges against reading every value of every block. */
+ * Value ranges, compared with a search of all values of every block. */
 #include "structures.h"
 
-/* Whether value (i,j,k), or for a cell the flag, of the block's box hides something. */
+/* 1 if a value (cell_centered) or else a cell of the box is hidden. */
 static int hidden_in(const stratus_volume* v, const uint8_t* hidden, const int64_t lo[3], const int64_t hi[3])
 {
   int64_t n[3], last[3];

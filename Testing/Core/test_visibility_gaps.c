@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Visibility orders across gaps, against rays: cells that share no face hide one another, too, where nearest first alone is wrong. */
+ * Visibility orders across gaps, compared with rays: cells that share no face also hide one another, even where nearest first alone is
+ * wrong. */
 #include "mesh_case.h"
 #include "visibility_order.h"
 
 #define RAYS 400
 
-/* View 0..23: six directions, each parallel, perspective, near and from inside. */
+/* Camera of view 0..23: six directions, each parallel, perspective, near and from inside. */
 static stratus_camera camera_of(const mesh_case* mesh, int view)
 {
   static const double directions[6][3] = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { .6, .5, .3 }, { -.3, .8, -.4 }, { .1, -.2, -1 } };
@@ -23,7 +24,7 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
   return camera;
 }
 
-/* What finds a cell's gates names the first in each block of cells, whichever leaf that is in; and once all cells have come, no way out is
+/* Checks the index of gates, which names the first gate in each block of cells, whatever its leaf. Once all cells have come, no way out is
  * left. */
 static void assert_gates_are_found_and_passed(const stratus_visibility_order* order)
 {
@@ -54,7 +55,7 @@ static void assert_gates_are_found_and_passed(const stratus_visibility_order* or
   }
 }
 
-/* Wrong pairs of all 24 views, in one leaf or in several; no cycle, as there is none. */
+/* Number of wrong pairs in all 24 views, with one leaf or several. There must be no cycle. */
 static int64_t wrong_pairs(const mesh_case* mesh, int threads, int depth, stratus_peeling peeling)
 {
   stratus_context* context = mesh_context(threads);
@@ -99,7 +100,7 @@ static mesh_case block(int x, int y, int z, const double low[3], const double hi
   return mesh;
 }
 
-/* Beside one another with the same points, each named twice, but diagonals the other way: no face coincides. */
+/* Two boxes beside each other with the same points, each named twice, but other diagonals: no faces coincide. */
 static void a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order(void** state)
 {
   (void)state;
@@ -113,7 +114,7 @@ static void a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order(void** s
   mesh_case_free(&mesh);
 }
 
-/* Of a plate of few long cells the middles tell nothing of where they are next to a fine one. */
+/* The middles of a plate's few long cells do not tell where these lie relative to a fine plate. */
 static void long_cells_hide_short_ones_behind_a_gap(void** state)
 {
   (void)state;
@@ -154,7 +155,7 @@ static void parts_within_hollows_of_others_are_in_order(void** state)
   mesh_case_free(&mesh);
 }
 
-/* Three cells, each over the next one and under the one before: no order is right, one is given, the same by any number of threads. */
+/* Three cells, each over the next one and under the one before: no order is right, and any number of threads gives the same one. */
 static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
 {
   static const double corners[4][3] = { { -3.0, 0.8, -1.2 }, { -3.0, 1.4, -1.2 }, { 3.0, 1.1, 1.0 }, { 3.0, 1.1, 1.4 } };
@@ -191,8 +192,8 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
   mesh_case_free(&mesh);
 }
 
-/* Cells at random in a box, all over one another; a third of them flat: with two points in one place, or all in a plane, or a point named
- * twice. */
+/* Random cells in a box, which overlap. With `flat` a third of them have no volume: two points in one place, all points in a plane, or a
+ * point named twice. */
 static mesh_case soup(int64_t cells, bool flat)
 {
   uint32_t seed = (uint32_t)cells;
@@ -213,8 +214,8 @@ static mesh_case soup(int64_t cells, bool flat)
   return mesh;
 }
 
-/* No order is right. One is given, the same by any number of threads, for some tests a cell (thousands, and more the more cells there are,
- * if rings are followed as long as there are any), and it is told that cells overlap. */
+/* No order is right. The result is some order, the same at any number of threads, and reports that cells overlap. It takes a limited number
+ * of tests for each cell; following every ring would take thousands, and more with more cells. */
 static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
 {
   (void)state;
@@ -254,7 +255,7 @@ static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
   }
 }
 
-/* Points in another order, cells that name them along. */
+/* Shuffles the points, and the cells' numbers of them. */
 static void shuffle_points(mesh_case* mesh, uint32_t seed)
 {
   int32_t* at = malloc((size_t)mesh->point_count * sizeof *at);
@@ -276,7 +277,8 @@ static void shuffle_points(mesh_case* mesh, uint32_t seed)
   mesh->points = points;
 }
 
-/* Large enough that the order brings cells and points near one another itself, in one leaf and in leaves that are listed as they come. */
+/* A mesh so large that the order itself brings cells and points near one another, in one leaf and in leaves that are listed as they
+ * come. */
 static void scattered_cells_and_points_come_in_order(void** state)
 {
   (void)state;
@@ -314,7 +316,7 @@ static void scattered_cells_and_points_come_in_order(void** state)
   stratus_context_destroy(context);
 }
 
-/* A convex mesh has no gap, whatever its border's planes; a block beside it makes gaps of the faces that look at it. */
+/* A convex mesh has no gap, whatever the planes of its border. A block beside it makes gaps of the faces that look at it. */
 static void only_faces_that_look_at_others_are_gaps(void** state)
 {
   (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Visibility orders against rays: no cell comes before one that hides it, whatever the view; rings of cells that hide one another lose one
- * relation each; what does not share points still shares faces. */
+ * Visibility orders, compared with rays: no cell comes before one that hides it, in any view; rings of cells that hide one another lose one
+ * relation each; cells that share no points still share faces. */
 #include "mesh_case.h"
 #include "visibility_order.h"
 
@@ -14,7 +14,7 @@ static stratus_visibility_order* make_order(stratus_context* context, const mesh
   return order;
 }
 
-/* View 0..23: six directions, each parallel, perspective, near and from inside. The first three directions are along the axes. */
+/* Camera of view 0..23: six directions, each parallel, perspective, near and from inside. The first three directions are along the axes. */
 static stratus_camera camera_of(const mesh_case* mesh, int view)
 {
   static const double directions[6][3] = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { .6, .5, .3 }, { -.3, .8, -.4 }, { .1, -.2, -1 } };
@@ -32,7 +32,7 @@ static stratus_camera camera_of(const mesh_case* mesh, int view)
   return camera;
 }
 
-/* All views: no wrong pair. Returns what the last view told. */
+/* Checks all views for wrong pairs; returns the last view's result. */
 static stratus_visibility_result assert_order_is_right(stratus_context* context, const mesh_case* mesh, stratus_peeling peeling)
 {
   stratus_visibility_order* order = make_order(context, mesh);
@@ -69,7 +69,8 @@ static void a_convex_mesh_is_in_order_from_everywhere(void** state)
   }
 }
 
-/* On a face, an edge or a vertex, or in a plane of faces, many signs are 0: cells on both sides of such a plane don't hide one another. */
+/* For an eye on a face, an edge or a vertex, or in a plane of faces, many signs are 0. Cells on both sides of such a plane do not hide one
+ * another. */
 static void an_eye_on_points_and_planes_of_the_mesh_sees_the_right_order(void** state)
 {
   static const int n[3] = { 4, 4, 4 };
@@ -96,8 +97,8 @@ static void an_eye_on_points_and_planes_of_the_mesh_sees_the_right_order(void** 
   stratus_context_destroy(context);
 }
 
-/* Two layers of cubes without thickness: only through their cells do those before and behind them know of one another. Layers would show it
- * if they didn't: all of the border comes first. */
+/* Two layers of cubes without thickness. Cells before and behind them are related only through the flat cells. Layers would show a lost
+ * relation, since all of the border comes first. */
 static void flat_cells_pass_on_who_hides_whom(void** state)
 {
   static const int n[3] = { 8, 3, 3 };
@@ -131,7 +132,7 @@ static void faces_that_coincide_are_shared_whatever_points_they_name(void** stat
   stratus_context_destroy(context);
 }
 
-/* Each relation through a face, found anew from the points: pairs that come in the wrong order. */
+/* Number of pairs in the wrong order, over all relations through faces, which are found anew from the points. */
 static int64_t broken_relations(const mesh_case* mesh, const stratus_camera* camera, const uint32_t* cells)
 {
   int64_t* rank = malloc((size_t)mesh->cell_count * sizeof *rank);
@@ -158,7 +159,7 @@ static int64_t broken_relations(const mesh_case* mesh, const stratus_camera* cam
   return broken;
 }
 
-/* Blades of an iris: `count` blocks around an axis, each reaching over the next and under the one before, three cells a block. */
+/* Blades of an iris: `count` blocks of three cells around an axis, each over the next block and under the one before. */
 static mesh_case iris(int count)
 {
   mesh_case mesh = mesh_case_allocate(3 * count, 3 * count);
@@ -216,7 +217,7 @@ static mesh_case iris_stack(int count)
   return mesh;
 }
 
-/* Many rings at once, and chains behind them: all are broken, at any number of threads alike. */
+/* Many rings at once, and chains behind them: all rings are broken, in the same way at any number of threads. */
 static void many_rings_lose_one_relation_each(void** state)
 {
   (void)state;
@@ -251,8 +252,8 @@ static void assert_each_cell_comes_once(const stratus_visibility_result* result)
   free(seen);
 }
 
-/* With no patience for any ring the order is still one, and tells what it broke: nearest first cuts rings where it meets them, layers let
- * the rest come by distance. It is made anew for every view then. */
+/* Without patience for any ring the result is still an order, and reports what it broke: nearest first cuts rings where it meets them,
+ * layers sort the remaining cells by distance. The order is then computed anew for every view. */
 static void rings_that_take_too_long_are_cut_anywhere(void** state)
 {
   (void)state;

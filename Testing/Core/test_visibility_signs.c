@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Signs of faces: the same at any instruction set, and an order that stands as long as they do. */
+ * Signs of faces: every instruction set finds the same ones, and an order remains valid as long as they do not change. */
 #include "mesh_case.h"
 #include "visibility_order.h"
 
@@ -13,7 +13,7 @@ static stratus_visibility_order* make_order(stratus_context* context, const mesh
   return order;
 }
 
-/* A count that fills no lanes evenly, scattered cells, flat ones, an eye in a face's plane. */
+/* A number of faces that is no multiple of the lanes, scattered cells, flat cells, an eye in a face's plane. */
 static void every_instruction_set_finds_the_same_signs(void** state)
 {
   static const int n[3] = { 5, 4, 3 };
@@ -63,7 +63,8 @@ static int64_t wrong_pairs(const mesh_case* mesh, const stratus_camera* camera, 
   return wrong;
 }
 
-/* A regular grid has few normals: most turns of parallel rays change no sign. Across a gap none need change for the order to be another. */
+/* A regular grid has few normals, so that most turns of parallel rays change no sign. Across a gap the order may change without a change of
+ * sign. */
 static void an_order_stands_as_long_as_its_signs(void** state)
 {
   static const int n[3] = { 4, 4, 4 };
@@ -99,7 +100,7 @@ static void an_order_stands_as_long_as_its_signs(void** state)
   stratus_context_destroy(context);
 }
 
-/* A partition's planes lie along faces here, which are borders of leaves then: an eye that passes one of them changes no sign. */
+/* A partition's planes lie along faces, which are then borders of leaves: an eye that passes one of them changes no sign. */
 static void leaves_in_another_order_are_another_order(void** state)
 {
   static const int n[3] = { 4, 4, 4 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The view of a volume: where its voxels are, what its ghosts mean, and what is no volume. */
+ * The view of a volume: the position of its voxels, the meaning of its ghosts, and invalid volumes. */
 #define _DEFAULT_SOURCE
 #include "structures.h"
 
@@ -14,7 +14,7 @@ static stratus_volume cube_of(const void* values, int64_t n)
   return v;
 }
 
-/* A turn about z, one about x, uneven spacing, and a matrix that mirrors, shears and moves. */
+/* A volume with a turn about z, one about x, uneven spacing, and a matrix that mirrors, shears and moves. */
 static stratus_volume skewed(const void* values)
 {
   stratus_volume v = cube_of(values, 3);
@@ -330,7 +330,7 @@ static void what_is_no_volume_is_refused_with_the_value(void** state)
   stratus_context_destroy(context);
 }
 
-/* Memory of so many bytes before a page that nobody may read. */
+/* Allocates `bytes` bytes that end at a page which cannot be read. */
 static void* guarded(size_t bytes, void** whole, size_t* size)
 {
   const size_t page = (size_t)sysconf(_SC_PAGESIZE);
@@ -372,7 +372,7 @@ static void read_everything(stratus_context* context, stratus_ray_caster* caster
   stratus_voxels_destroy(voxels);
 }
 
-/* As many values and flags as the header says, to the byte: flat images have the cells that VTK gives them. */
+/* Arrays have just as many values and flags as the header says. Flat images have the cells that VTK gives them. */
 static void nothing_behind_values_and_flags_is_read(void** state)
 {
   (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The voxel sets of record and their rays: what figures were measured on, to the last voxel. The checksums are those of the definitions
- * that the sets were first made by. */
+ * The voxel sets of record and their rays are those that figures were measured on, to the last voxel. The checksums come from the
+ * definitions that first made the sets. */
 #include "structures.h"
 
 #define RAYS (512 * 512)
@@ -16,7 +16,7 @@ static uint64_t checksum(const void* memory, size_t bytes, uint64_t sum)
 
 #define CHECKSUM_START UINT64_C(0xcbf29ce484222325)
 
-/* Origin and direction as floats, which is what a ray of record is made of. */
+/* Checksum of origins and directions as floats, which define a ray of record. */
 static uint64_t rays_checksum(stratus_context* context, const stratus_voxels* voxels, int kind)
 {
   stratus_ray* rays = malloc(RAYS * sizeof *rays);
@@ -65,7 +65,7 @@ static const struct {
   int64_t n[3];
   size_t count;
   uint64_t positions, primary, random;
-  double deviation; /* 0: nothing is asked of it */
+  double deviation; /* 0: not checked */
 } record[] = {
   { "17K", { 256, 128, 256 }, 17000, 0x7d95887fdedc93dd, 0x9dbcc1d4b849e02a, 0x8260171a994eb9bf, 0 },
   { "24K", { 256, 128, 256 }, 24000, 0x2cfaa0171c603faf, 0x9dbcc1d4b849e02a, 0xb4d0ebc794ed201e, 0 },

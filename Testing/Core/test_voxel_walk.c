@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The plain walk that every first hit is measured by: against all voxels' slabs, one by one, with every tie settled as the rule says. */
+ * The plain walk, the reference of all first hits, compared with the slabs of each voxel and every tie decided by the rule. */
 #include "structures.h"
 #include "voxels.h"
 
-/* Positions of a random set, and the set. */
+/* A random set of voxels and its positions. */
 typedef struct test_set {
   int64_t n[3];
   int32_t positions[3 * 512];
@@ -28,7 +28,7 @@ static void make_set(stratus_context* context, int64_t nx, int64_t ny, int64_t n
   assert_int_equal(stratus_voxels_create_list(context, s->n, s->positions, s->count, &s->voxels), STRATUS_OK);
 }
 
-/* A crossing and its axis; 3: the ray's beginning. They come in the order of t, then of the axis. */
+/* A crossing and its axis; axis 3: the ray's beginning. Events are ordered by t, then by axis. */
 typedef struct event {
   double t;
   int axis;
@@ -39,7 +39,7 @@ static bool before(event a, event b)
   return a.t < b.t || (a.t == b.t && a.axis < b.axis);
 }
 
-/* Whether the ray ever is in the voxel by the rule of ties, and by which crossing it comes in. */
+/* True if the ray is ever in the voxel by the rule of ties; *entry: the crossing by which it enters. */
 static bool enters(const double o[3], const double d[3], double t_min, double t_max, const int32_t voxel[3], event* entry)
 {
   event in = { t_min, 3 }, out = { INFINITY, 4 };
@@ -75,7 +75,8 @@ static stratus_hit brute_force(const test_set* s, const double o[3], const doubl
   return hit;
 }
 
-/* Whole and half coordinates and few directions: most rays run along faces, through edges and corners, or begin on them. */
+/* A ray with whole or half coordinates and one of few directions, so that most rays run along faces, pass edges and corners, or begin on
+ * them. */
 static stratus_ray make_ray(const test_set* s, int exact, uint32_t* random)
 {
   stratus_ray r = { .t_max = INFINITY };
@@ -174,7 +175,7 @@ static void ties_are_settled_as_written_down(void** state)
   stratus_context_destroy(context);
 }
 
-/* Matrices of powers of two and whole numbers, whose inverses are exact: what is hit doesn't depend on where the world is. */
+/* Matrices of powers of two and integers have exact inverses: hits do not depend on the position of the world. */
 static void mirrors_shears_and_scales_change_the_world_only(void** state)
 {
   static const double matrices[][16] = {

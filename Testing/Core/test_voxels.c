@@ -19,7 +19,7 @@ static stratus_transfer transfer_of(const double* opacity, size_t count, int cla
   return t;
 }
 
-/* Above 0 between two points if it is at either; at a point, what the last one there says. */
+/* Opacity between two points is above 0 if it is at either. At a point the last one there counts. */
 static bool transfer_shows(const stratus_transfer* t, double x)
 {
   const double* p = t->opacity;
@@ -50,7 +50,7 @@ static bool is_effective(const stratus_volume* v, const stratus_criterion* c, in
   return isfinite(x) && !(flags & out) && criterion_shows(c, x);
 }
 
-/* What the set says of itself is what its bricks say, and they lie in order. */
+/* Checks that counts and bounds of the set agree with its bricks, and that these are in order. */
 static void check_consistent(const stratus_voxels* s)
 {
   int64_t count = 0, lo[3] = { 0 }, hi[3] = { 0 }, low[3], high[3];
@@ -216,7 +216,7 @@ static void ends_of_intervals_are_in_and_feet_of_ramps_are_out(void** state)
   stratus_context_destroy(context);
 }
 
-/* Dense and so sparse that bricks are sorted, with doubles: the set of the positions, no more. */
+/* Dense lists, and lists so sparse that bricks are sorted, with duplicates: the set holds exactly the positions. */
 static void a_list_makes_the_set_of_its_positions(void** state)
 {
   static const int64_t sizes[][3] = { { 1, 1, 1 }, { 9, 5, 7 }, { 64, 64, 64 }, { 1 << 18, 1 << 18, 1 << 18 }, { 1 << 18, 3, 1 << 10 },
@@ -266,7 +266,7 @@ static int block_in(const stratus_voxels* s, int64_t i, int64_t j, int64_t k)
   return mask != 0;
 }
 
-/* Fields as data are: smooth, with empty space of one value. */
+/* Smooth fields with empty space of one value, like real data. */
 static void smooth_values(test_volume* v, uint32_t* random)
 {
   const int64_t* n = v->view.dimensions;
@@ -371,7 +371,7 @@ static void an_interval_of_cells_keeps_each_block_whose_range_meets_it(void** st
   stratus_context_destroy(context);
 }
 
-/* ---------------------------------------------------------------- what may stand in for what */
+/* ---------------------------------------------------------------- coverage */
 
 static void a_set_that_covers_another_holds_all_of_it(void** state)
 {
