@@ -146,8 +146,8 @@ static void merge(agglomeration* g, uint32_t low, uint32_t high)
   update_reach(g, high, false);
 }
 
-/* Runs one round. A cluster's nearest remains so until one of the two merges, since no merged cluster is nearer than its parts were. All
- * others are searched again. */
+/* Runs one round. A cluster's nearest remains so until one of the two merges, since no merged cluster is nearer than its parts were. Only
+ * clusters where either merged in the last round are searched again. */
 static void run_round(agglomeration* g)
 {
   uint32_t live = 0;
