@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is least merge, until one is left. With the union's surface
- * area as its size, as in the paper, single voxels far apart along one axis count as near and merge into slivers, which overlap all later
- * clusters: on the sets of record such trees cost 1.19 to 1.24 times as much as the sweep's. With the sum of the union's edges they cost
- * 1.10 to 1.14 times as much, so the builder uses that sum.
+ * Agglomerative clustering (Walter et al. 2008): the two clusters whose union is smallest merge, until one is left. With the union's
+ * surface area as its size, as in the paper, single voxels far apart along one axis count as near and merge into slivers, which overlap all
+ * later clusters: on the sets of record such trees cost 1.19 to 1.24 times as much as the sweep's. With the sum of the union's edges they
+ * cost 1.10 to 1.14 times as much, so the builder uses that sum.
  *
  * By either measure, merging never shrinks the distance of two clusters. Two clusters that are each other's nearest may therefore merge at
  * once, in any order, and the tree is the one of the greedy method. The search for nearest clusters runs in rounds, and in parallel.

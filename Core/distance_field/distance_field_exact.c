@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Exact Euclidean distances on the host, axis by axis (Saito & Toriwaki 1994) or by envelopes (Felzenszwalb & Huttenlocher 2012): planes,
- * then columns, in the narrowest lanes that hold the squares.
+ * Exact Euclidean distances on the host, axis by axis (Saito & Toriwaki 1994), by a zigzag search or by envelopes (Felzenszwalb &
+ * Huttenlocher 2012): planes, then columns, in the narrowest lanes that hold the squares.
  *
  * 16 bits hold distances below 176. Larger grids try them, too, because few sets leave such gaps: a distance that does not fit is noticed,
  * and the field is computed anew in 32 bits. 32 bits hold diagonals below 46339. Larger grids take 64.
  *
- * EXACT chooses between the two methods. In 16 bits it always takes the zigzag, which needs at most 176 steps for a vector and was always
- * cheaper. In wider lanes each line (or tile of columns) searches 8 samples. Where these take more than FIELD_STEPS_A_LANE steps for each
- * lane on average, envelopes are cheaper. */
+ * STRATUS_FIELD_EXACT chooses between zigzag and envelopes. In 16 bits it always takes the zigzag, which needs at most 176 steps for a
+ * vector and was always cheaper. In wider lanes each line (or tile of columns) searches 8 samples. Where these take more than
+ * FIELD_STEPS_A_LANE steps for each lane on average, envelopes are cheaper. */
 #include "clones.h"
 #include "distance_field.h"
 
