@@ -8,6 +8,7 @@
 #include <vtkSmartPointer.h>
 
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -104,16 +105,34 @@ void save_picture(const std::string& path, const std::vector<float>& rgba); // w
 // ---- judge.cxx: fills the errors of all results of one scene
 void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results);
 
-// ---- report.cxx, chart.cxx
+// ---- report.cxx, chart.cxx, origin.cxx
 
 struct row {
   std::string scene, method, metric, unit;
   double value;
 };
+// What measured the rows of some scenes. In a CSV these are rows of their own before the header, `# name,value`.
+struct origin {
+  std::string processor = "unknown", cores = "unknown", compiler = "unknown", commit = "unknown", date = "unknown";
+  std::vector<std::string> scenes;
+};
+struct table {
+  std::vector<origin> origins; // each scene is in one of them
+  std::vector<row> rows;
+};
+origin origin_of_this_run(); // without scenes
+void write_origin(std::FILE* file, const origin& o);
+void read_origin(const std::string& line, std::vector<origin>& origins); // a row before the header
+// Rows of this run behind those of scenes that it did not measure.
+void replace_scenes(table& t, const std::vector<row>& rows);
 void add_rows(const result& r, std::vector<row>& rows);
 void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
-// "-": the standard output; benchmark: the first column
+// "-": the standard output; benchmark: the first column. The rows' origin stands before the header.
 void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark = "volume");
+// The same where rows of earlier runs come first.
+void write_csv(const std::string& path, const table& t, const char* benchmark);
+// Without rows where there is no such file.
+table read_csv(const std::string& path);
 void print_table(const std::vector<row>& rows);
 // Frame time against error, both logarithmic, one mark a method, one chart a scene.
 void write_chart(const std::string& path, const std::vector<row>& rows);

@@ -3,8 +3,11 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 namespace bench {
 
@@ -39,18 +42,50 @@ void add_rows(const std::string& scene, const floor_result& f, std::vector<row>&
 
 void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark)
 {
+  table t;
+  replace_scenes(t, rows);
+  write_csv(path, t, benchmark);
+}
+
+void write_csv(const std::string& path, const table& t, const char* benchmark)
+{
   std::FILE* file = path == "-" ? stdout : std::fopen(path.c_str(), "w");
   if (!file) {
     throw failure("cannot write " + path + ": " + std::strerror(errno));
   }
+  for (const origin& o : t.origins) {
+    write_origin(file, o);
+  }
   std::fprintf(file, "benchmark,scene,method,metric,value,unit\n");
-  for (const row& r : rows) {
+  for (const row& r : t.rows) {
     std::fprintf(file, "%s,%s,%s,%s,%.9g,%s\n", benchmark, r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
   }
   const bool bad = std::ferror(file) != 0;
   if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad) {
     throw failure("cannot write " + path + ": " + std::strerror(errno));
   }
+}
+
+table read_csv(const std::string& path)
+{
+  table t;
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line) && line.compare(0, 1, "#") == 0) {
+    read_origin(line, t.origins);
+  }
+  while (std::getline(file, line)) { // behind the header
+    std::vector<std::string> p;
+    std::istringstream stream(line);
+    std::string part;
+    while (std::getline(stream, part, ',')) {
+      p.push_back(part);
+    }
+    if (p.size() == 6) {
+      t.rows.push_back({ p[1], p[2], p[3], p[5], std::atof(p[4].c_str()) });
+    }
+  }
+  return t;
 }
 
 void print_table(const std::vector<row>& rows)

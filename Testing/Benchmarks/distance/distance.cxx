@@ -24,6 +24,7 @@ const char* const help = R"(stratus-bench distance [options]
                       OpenCL device; where that is a CPU, the host builds) behind it; itk (signed). Default: all on the host, exact signed too
   --threads N         of the host and of ITK (default 2)
   --csv FILE          tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+                      the rows before them tell where they come from, as in stratus-bench volume
   --chart FILE.png    build time against the share of wrong voxels, of the largest size
 
 build_ms: from the set of voxels to the field, median of 5 (floodings and ITK: 3, and 1 beyond 64 voxels). array_ms: the same, and all distances

@@ -30,6 +30,7 @@ const char* const help = R"(stratus-bench octree [options]
   --frames N           of each path (default 120)
   --threads N          of the host (default 1)
   --csv FILE           tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); a scene is NAME/PATH
+                       the rows before them tell where they come from, as in stratus-bench volume
   --chart FILE.png     cull_ms against the tree's bytes
 
 cull_ms: median over a path's frames, from a tree that has not been looked at; cull_worst_ms: the slowest. With one thread both are its

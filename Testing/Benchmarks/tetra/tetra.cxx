@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 
@@ -31,6 +30,7 @@ const char* const help = R"(stratus-bench tetra [options]
   --repeats N               frames a view and method (default 3); rounds of sorters
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+                            the rows before them tell where they come from, as in stratus-bench volume
   --append                  rows of other scenes that the file has stay, so that meshes can be run one by one
   --chart FILE.png          frame time against error, of all rows
   --cache FOLDER            keep the mesh that TetGen makes
@@ -266,23 +266,6 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
 
 // ---- what comes out
 
-// Rows of a file, but those of scenes that were measured anew.
-std::vector<row> kept_rows(const std::string& path, const std::vector<row>& rows)
-{
-  std::vector<row> kept;
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    const std::vector<std::string> p = parts_of(line);
-    const bool again = p.size() < 2 || std::any_of(rows.begin(), rows.end(), [&](const row& r) { return r.scene == p[1]; });
-    if (p.size() == 6 && !again) {
-      kept.push_back({ p[1], p[2], p[3], p[5], std::atof(p[4].c_str()) });
-    }
-  }
-  return kept;
-}
-
 void print(const std::vector<row>& rows)
 {
   static const char* const metrics[] = { "frame_ms", "rmse255", "rmse255_8bit", "sort_ms", "sort_1thread_ms", "build_ms",
@@ -343,13 +326,11 @@ void run(stratus_context* context, const options& o)
     throw failure("no mesh to measure");
   }
   print(rows);
-  if (o.append) {
-    const std::vector<row> kept = kept_rows(o.csv, rows);
-    rows.insert(rows.begin(), kept.begin(), kept.end());
-  }
-  write_csv(o.csv, rows, "tetra");
+  table t = o.append ? read_csv(o.csv) : table();
+  replace_scenes(t, rows);
+  write_csv(o.csv, t, "tetra");
   if (!o.chart.empty()) {
-    write_chart(o.chart, marks_of(rows), "whole frame, ms", "root mean square error of the window's pixels, of 255");
+    write_chart(o.chart, marks_of(t.rows), "whole frame, ms", "root mean square error of the window's pixels, of 255");
   }
 }
 } // namespace

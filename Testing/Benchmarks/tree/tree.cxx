@@ -23,6 +23,7 @@ const char* const help = R"(stratus-bench tree [options]
                      than n log n and take sets of up to 35,000 voxels)
   --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
   --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+                     the rows before them tell where they come from, as in stratus-bench volume
   --chart FILE.png   tracing against building
 
 build_ms: from the list of voxels to what can be traced, by the wall clock, 2 threads, median. primary_ns, random_ns: a ray, one thread, its

@@ -27,7 +27,8 @@ const char* const help = R"(stratus-bench volume [options]
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
                             vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
-  --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
+  --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `# name,value`:
+                            processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
   --chart FILE.png          frame time against error
   --reference-cache FOLDER  keep the reference's pictures, which take most of the time
   --no-error                times and differing pixels only
@@ -125,8 +126,8 @@ void run_scene(stratus_context* context, const std::string& source, const option
     }
     if (method == "floor") {
       const bench::floor_result f = bench::run_floor(context, scene, o.size);
-      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate,
-        bench_sample_loop(), f.ms);
+      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples,
+        1e-6 * f.rate, bench_sample_loop(), f.ms);
       bench::add_rows(scene.name, f, rows);
       continue;
     }
