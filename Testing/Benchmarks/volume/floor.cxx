@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least that any ray caster of this kind has to do: the samples with alpha > 0 on the 1-voxel lattice until a ray is opaque, at the
-// rate of the tightest loop.
+// Method `floor` estimates what a ray caster of this kind has to do: it counts the samples with alpha > 0 on the 1-voxel lattice until a
+// ray is opaque, and divides by the rate of a tight loop. It is no bound. A caster that lays its samples elsewhere can take fewer of them
+// (fog does).
 #include "bench.h"
 #include "rate.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How fast this machine can sample at all: the yardstick of method `floor`. */
+ * How fast this machine samples in a tight loop: the rate by which method `floor` estimates. */
 #define _POSIX_C_SOURCE 200809L
 #include "rate.h"
 

@@ -38,6 +38,9 @@ update_ms: from a change of the transfer function to the next picture, median ov
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
+floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel until a ray is opaque, at the rate of a tight loop that sets up,
+skips and tests nothing. A method can take fewer samples than floor counts.
+
 stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling,
 stratus-bench tetra --help of tetrahedra.
 )";
@@ -126,7 +129,7 @@ void run_scene(stratus_context* context, const std::string& source, const option
     }
     if (method == "floor") {
       const bench::floor_result f = bench::run_floor(context, scene, o.size);
-      std::fprintf(stderr, "  floor: %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples,
+      std::fprintf(stderr, "  floor (estimate): %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples,
         1e-6 * f.rate, bench_sample_loop(), f.ms);
       bench::add_rows(scene.name, f, rows);
       continue;
