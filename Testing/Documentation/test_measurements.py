@@ -1,0 +1,325 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every figure in the tables of docs/measurements.md and README.md is the one that a committed CSV holds.
+
+Usage: test_measurements.py [ROOT-OF-THE-REPOSITORY]
+
+A comment before each table tells where its cells come from:
+
+    <!-- figures: Testing/Benchmarks/results/MACHINE/volume.csv
+    scene = text
+    Stratus, ms = {frame_ms('stratus:auto')}
+    times faster = {frame_ms('vtk:fixedpoint') / frame_ms('stratus:auto')} (goal {text})
+    over all views = {min(psnr_db.all('stratus:*', '*'))}..{max(psnr_db.all('stratus:*', '*'))}
+    row cloud, lit = cloud+shade
+    -->
+
+- COLUMN = TEMPLATE: what stands outside the braces stands so in the cell. An expression is Python's. METRIC(METHOD, SCENE) is a value of
+  the CSV; METRIC.all(METHODS, SCENES) lists those that match (* and ?); METRIC.over(METHOD, OTHER, SCENES) lists the first method's over
+  the other's, scene by scene. Without SCENE it is the row's. The cell's number must be the value, rounded to the digits that it shows. It
+  is `-` where the CSV lacks a value that the expression asks for, and only there.
+- {text}, or a template `text` alone: not checked.
+- row LABEL = NAME: what `scene` is in the row whose first cell is LABEL; else it is the first cell itself.
+- `figures: none, REASON` for a table whose digits come from no CSV; all of its cells are text.
+
+A table without a comment fails; in README.md only if digits stand in it (those in code and in links do not count). In measurements.md each
+section also has to name processor, commit and date of every run whose rows its tables show, and its links must lead to files.
+"""
+import fnmatch
+import os
+import re
+import sys
+from decimal import ROUND_HALF_UP, Decimal
+
+NUMBER = r"(-|[+]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d+)?)"
+
+
+class Missing(Exception):
+    """A CSV has no such value."""
+
+
+class Table:
+    """A CSV of stratus-bench: values by (scene, method, metric), and the origins of its scenes."""
+
+    def __init__(self, path):
+        self.values = {}
+        self.origins = []
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        for line in lines:
+            if line.startswith("# "):
+                name, value = line[2:].split(",", 1)
+                if name == "processor":
+                    self.origins.append({})
+                self.origins[-1][name] = value
+        rows = [line.split(",") for line in lines if not line.startswith("#")]
+        if rows[0] != "benchmark,scene,method,metric,value,unit".split(","):
+            raise ValueError(path + ": not a table of stratus-bench")
+        for _, scene, method, metric, value, _ in rows[1:]:
+            if (scene, method, metric) in self.values:
+                raise ValueError(f"{path}: {scene}, {method}, {metric} stands there twice")
+            self.values[scene, method, metric] = float(value)
+        for origin in self.origins:
+            for name in ("processor", "cores", "compiler", "commit", "date", "scenes"):
+                if not origin.get(name):
+                    raise ValueError(f"{path}: no {name} of a run")
+        covered = {scene for origin in self.origins for scene in origin["scenes"].split(",")}
+        uncovered = {scene for scene, _, _ in self.values} - covered
+        if uncovered:
+            raise ValueError(f"{path}: nothing tells where {', '.join(sorted(uncovered))} come from")
+
+
+class Metric:
+    """A metric within a row: called it is a value, all() are several."""
+
+    def __init__(self, table, name, scene, used):
+        self.table, self.name, self.scene, self.used = table, name, scene, used
+
+    def __call__(self, method, scene=None):
+        scene = scene or self.scene
+        if (scene, method, self.name) not in self.table.values:
+            raise Missing(f"{self.name} of {method} in {scene}")
+        self.used.add(scene)
+        return self.table.values[scene, method, self.name]
+
+    def all(self, methods, scenes=None):
+        found = []
+        for (scene, method, metric), value in self.table.values.items():
+            if metric == self.name and fnmatch.fnmatchcase(method, methods) and fnmatch.fnmatchcase(scene, scenes or self.scene):
+                self.used.add(scene)
+                found.append(value)
+        if not found:
+            raise Missing(f"{self.name} of {methods} in {scenes or self.scene}")
+        return found
+
+    def over(self, method, other, scenes=None):
+        found = []
+        for (scene, name, metric), value in self.table.values.items():
+            if (name, metric) == (method, self.name) and fnmatch.fnmatchcase(scene, scenes or self.scene):
+                if (scene, other, metric) in self.table.values:
+                    self.used.add(scene)
+                    found.append(value / self.table.values[scene, other, metric])
+        if not found:
+            raise Missing(f"{self.name} of {method} and {other} in {scenes or self.scene}")
+        return found
+
+
+def evaluate(expression, table, scene, used):
+    """The value, or None where the CSV lacks what it is made of."""
+    names = {"scene": scene, "min": min, "max": max, "sum": sum, "len": len}
+    for metric in {key[2] for key in table.values}:
+        names[metric] = Metric(table, metric, scene, used)
+    try:
+        return float(eval(expression, {"__builtins__": {}, **names}))  # from a file of this repository
+    except Missing:
+        return None
+
+
+def shown(value, digits):
+    return Decimal(repr(value)).quantize(Decimal(1).scaleb(-digits), rounding=ROUND_HALF_UP)
+
+
+def judge(text, value):
+    """What is wrong with a number as it is written, or None."""
+    if value is None or text == "-":
+        return None if value is None and text == "-" else f"is {'no value' if value is None else format(value, '.6g')} in the CSV"
+    plain = text.lstrip("+").replace(",", "")
+    digits = len(plain.partition(".")[2])
+    if shown(value, digits) != Decimal(plain):
+        return f"is {shown(value, digits)} in the CSV ({value:.9g})"
+    if value != 0 and Decimal(plain) == 0:
+        return f"is not 0 in the CSV but {value:.3g}"
+    return None
+
+
+def template_parts(template):
+    """Expressions of a template, and the pattern of a cell."""
+    if template == "text":
+        return [], re.compile(r".*")
+    pieces = re.split(r"\{([^{}]*)\}", template)
+    expressions, pattern = [], ""
+    for i, piece in enumerate(pieces):
+        if i % 2 == 0:
+            pattern += re.escape(piece)
+        elif piece == "text":
+            pattern += r".*?"
+        else:
+            expressions.append(piece)
+            pattern += NUMBER
+    return expressions, re.compile(pattern)
+
+
+def cells_of(line):
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+def tables_of(lines):
+    """(number of the header's line, comment before it or None, header's cells, rows as (number, cells)) of each table."""
+    i, fenced, comment = 0, False, None
+    while i < len(lines):
+        line = lines[i]
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+        if fenced:
+            i += 1
+            continue
+        if line.startswith("<!-- figures:"):
+            start = i
+            while "-->" not in lines[i]:
+                i += 1
+            comment = "\n".join(lines[start : i + 1])[len("<!-- figures:") :].split("-->")[0].strip()
+        elif line.startswith("|") and i + 1 < len(lines) and re.fullmatch(r"\|[\s:|-]+\|?", lines[i + 1].strip()):
+            header, rows, at = cells_of(line), [], i
+            i += 2
+            while i < len(lines) and lines[i].startswith("|"):
+                rows.append((i + 1, cells_of(lines[i])))
+                i += 1
+            yield at + 1, comment, header, rows
+            comment = None
+            continue
+        elif line.strip():
+            comment = None  # it belongs to the table that follows at once
+        i += 1
+
+
+class Document:
+    def __init__(self, root, name, strict):
+        self.root, self.name, self.strict = root, name, strict
+        with open(os.path.join(root, name), encoding="utf-8") as file:
+            self.lines = file.read().splitlines()
+        self.errors, self.checked, self.tables, self.numbers = [], 0, 0, []
+        self.csv = {}
+
+    def fail(self, line, what):
+        self.errors.append(f"{self.name}:{line}: {what}")
+
+    def section(self, line):
+        """Text of the section (##) that a line is in."""
+        heads = [i for i, text in enumerate(self.lines) if text.startswith("## ")]
+        start = max([i for i in heads if i < line], default=0)
+        end = min([i for i in heads if i >= line], default=len(self.lines))
+        return " ".join(self.lines[start:end])
+
+    def check(self):
+        for line, comment, header, rows in tables_of(self.lines):
+            self.tables += 1
+            if comment is None:
+                visible = re.sub(r"`[^`]*`|\]\([^)]*\)", "", " ".join(" ".join(cells) for _, cells in [(line, header)] + rows))
+                if self.strict or re.search(r"\d", visible):
+                    self.fail(line, "no comment tells where this table's figures come from")
+            elif comment.startswith("none"):
+                if not re.match(r"none, \S", comment):
+                    self.fail(line, "a table without figures of ours needs a reason: none, REASON")
+            else:
+                self.check_table(line, comment.splitlines(), header, rows)
+        if self.strict:
+            for number, text in enumerate(self.lines, 1):
+                for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+                    if not os.path.exists(os.path.join(self.root, os.path.dirname(self.name), target)):
+                        self.fail(number, f"{target} is not there")
+
+    def check_table(self, line, comment, header, rows):
+        path, columns, scenes = comment[0].strip(), {}, {}
+        try:
+            table = self.csv.setdefault(path, None) or Table(os.path.join(self.root, path))
+        except (OSError, ValueError) as error:
+            self.fail(line, str(error))
+            return
+        self.csv[path] = table
+        for text in comment[1:]:
+            name, _, template = text.strip().partition(" = ")
+            if name.startswith("row "):
+                scenes[name[4:].strip()] = template.strip()
+            elif name:
+                columns[name] = template.strip()
+        for name in header:
+            if name not in columns:
+                self.fail(line, f"nothing tells what column '{name}' is")
+        for name in columns.keys() - set(header):
+            self.fail(line, f"there is no column '{name}'")
+        for label in scenes.keys() - {cells[0] for _, cells in rows}:
+            self.fail(line, f"there is no row '{label}'")
+        used = set()
+        for number, cells in rows:
+            if len(cells) != len(header):
+                self.fail(number, f"{len(cells)} cells under {len(header)} columns")
+                continue
+            scene = scenes.get(cells[0], cells[0].replace("`", ""))
+            before = self.checked
+            for name, cell in zip(header, cells):
+                if columns.get(name):
+                    self.check_cell(number, name, cell, columns[name], table, scene, used)
+            if self.checked == before:
+                self.fail(number, f"no figure of this row is checked ('{scene}' may be no scene)")
+        if self.strict:
+            self.check_origins(line, path, table, used)
+
+    def check_cell(self, number, name, cell, template, table, scene, used):
+        expressions, pattern = template_parts(template)
+        if cell == "-" and expressions:  # all of the cell's figures are missing
+            texts = ["-"] * len(expressions)
+        else:
+            match = pattern.fullmatch(cell.replace("`", ""))
+            if not match or "" in match.groups():
+                self.fail(number, f"{name}: '{cell}' is not of the form '{template}'")
+                return
+            texts = match.groups()
+        for expression, text in zip(expressions, texts):
+            try:
+                value = evaluate(expression, table, scene, used)
+            except Exception as error:  # whatever an expression may be wrong in
+                self.fail(number, f"{name}: {expression}: {error}")
+                continue
+            wrong = judge(text, value)
+            if wrong:
+                self.fail(number, f"{name}: {text} {wrong}: {expression}")
+            if value is not None:
+                self.checked += 1
+                self.numbers += [] if wrong else [(text, value)]
+
+    def check_origins(self, line, path, table, used):
+        section = self.section(line)
+        if os.path.relpath(path, os.path.dirname(self.name)) not in section:
+            self.fail(line, f"its section has no link to {path}")
+        for origin in table.origins:
+            if used & set(origin["scenes"].split(",")):
+                for name in ("processor", "commit", "date"):
+                    if origin[name] not in section:
+                        self.fail(line, f"its section does not name the {name} of {path}: {origin[name]}")
+
+
+def check_judge():
+    """The judge itself sees what it must."""
+    alike = (("5.2", 5.1849), ("5.25", 5.2501), (".56", 0.557), ("-", None), ("5,527,203", 5527203.0), ("0", 0.0), ("3", 2.5), ("+5.8", 5.757))
+    apart = (("5.2", 5.2501), ("-", 1.0), ("1", None), ("0", 0.2), ("2", 2.5), ("66", 66.64), ("5,527,203", 5527204.0))
+    for text, value, right in [(*pair, True) for pair in alike] + [(*pair, False) for pair in apart]:
+        if (judge(text, value) is None) != right:
+            return f"'{text}' beside {value} was judged wrongly"
+    return None
+
+
+def change_digit(text):
+    """The same number with another last digit."""
+    return text[:-1] + str((int(text[-1]) + 1) % 10)
+
+
+def main():
+    root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    errors = [error for error in (check_judge(),) if error]
+    for name, strict in (("docs/measurements.md", True), ("README.md", False)):
+        document = Document(root, name, strict)
+        document.check()
+        errors += document.errors
+        # Any other last digit would have been seen.
+        for text, value in document.numbers:
+            if judge(change_digit(text), value) is None:
+                errors.append(f"{name}: {change_digit(text)} for {text} would pass")
+        if strict and document.checked == 0:
+            errors.append(f"{name}: nothing was checked")
+        print(f"{name}: {document.checked} figures in {document.tables} tables")
+    print("\n".join(errors) if errors else "all as in the tables of the benchmarks")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
