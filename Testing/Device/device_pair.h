@@ -4,6 +4,7 @@
 #define STRATUS_TESTING_DEVICE_PAIR_H
 
 #include "device_state.h"
+#include "testing.h"
 
 #include <stdio.h>
 
@@ -35,15 +36,11 @@ static inline int close_device(void** state)
   return 0;
 }
 
-/* What main() returns where there is no device; 0 where there is one. */
-static inline int no_device(int argc, char** argv)
+/* Where there is no device, the test says so and skips itself. */
+static inline bool no_device(void)
 {
-  tiny = argc > 1 && strcmp(argv[1], "tiny") == 0;
-  if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
-    return 77;
-  }
-  return 0;
+  tiny = test_option("--tiny");
+  return stratus_device_count() == 0 && test_skip("no OpenCL device on this machine");
 }
 
 #endif

@@ -85,10 +85,10 @@ static void a_gpu_is_asked_and_its_field_is_the_hosts(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-int main(int argc, char** argv)
+int test_density_device(void)
 {
-  if (no_device(argc, argv)) {
-    return 77;
+  if (no_device()) {
+    return TEST_SKIPPED;
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(sums_of_weights_equal_the_hosts),

@@ -2,6 +2,7 @@
  * The OpenCL layer on PoCL: choice by name, build log, program cache, buffers, launches, and every call failing. */
 #include "device.h"
 #include "faulty_allocator.h"
+#include "testing.h"
 
 #include <setjmp.h>
 #include <stdio.h>
@@ -279,15 +280,14 @@ static void error_names_are_those_of_the_standard(void** state)
   assert_string_equal(stratus_device_error_name(-123456), "unknown OpenCL error");
 }
 
-int main(void)
+int test_device(void)
 {
   stratus_context_options options = stratus_context_options_default();
   stratus_context* context = NULL;
   char message[1024];
   options.device = "pthread";
   if (stratus_context_create(&options, &context, message, sizeof message) == STRATUS_NO_DEVICE) {
-    printf("SKIPPED: no PoCL device: %s\n", message);
-    return 77;
+    return test_skip(message);
   }
   stratus_context_destroy(context);
   const struct CMUnitTest tests[] = {

@@ -2,6 +2,7 @@
  * Every kernel on volumes of a few values, on the first OpenCL device: structures as the host builds them, and every structure's picture
  * equal to the plain march's. Small enough for a simulator that checks each access; so no test library, an exit status only. */
 #include "device_state.h"
+#include "testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -182,7 +183,7 @@ static int same_pictures(stratus_context* context, const stratus_volume* volume,
   return bad;
 }
 
-int main(void)
+int test_device_tiny(void)
 {
   char message[1024];
   stratus_context* host = NULL;
@@ -194,8 +195,7 @@ int main(void)
   transfer.color = color;
   transfer.color_count = 2;
   if (stratus_device_count() == 0) {
-    printf("SKIPPED: no OpenCL device\n");
-    return 77;
+    return test_skip("no OpenCL device on this machine");
   }
   options.device = "0";
   if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {

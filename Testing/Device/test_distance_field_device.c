@@ -110,10 +110,10 @@ static void a_device_that_is_lost_is_reported_and_nothing_leaks(void** state)
   free_set(&s);
 }
 
-int main(int argc, char** argv)
+int test_distance_field_device(void)
 {
-  if (no_device(argc, argv)) {
-    return 77;
+  if (no_device()) {
+    return TEST_SKIPPED;
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_method_equals_the_hosts),

@@ -2,7 +2,8 @@
  * The first contexts of a process, made by several threads at once. What a platform does in its first use happens once a process, so each
  * try is a process of its own: this program, run by itself. */
 #define _POSIX_C_SOURCE 200809L
-#include "../Stability/small_scene.h"
+#include "small_scene.h"
+#include "testing.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -18,7 +19,6 @@
 #define THREADS 8
 #define TRIES 12
 
-static const char* program;
 static pthread_barrier_t begin;
 
 typedef struct work {
@@ -84,7 +84,7 @@ static void threads_that_make_the_first_contexts_at_once_all_draw(void** state)
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-      execl(program, program, "first", (char*)NULL);
+      execl(test_program(), test_program(), "test_first_contexts", "--first", (char*)NULL);
       _exit(127);
     }
     assert_int_equal(waitpid(child, &status, 0), child);
@@ -95,16 +95,14 @@ static void threads_that_make_the_first_contexts_at_once_all_draw(void** state)
   }
 }
 
-int main(int argc, char** argv)
+int test_first_contexts(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(threads_that_make_the_first_contexts_at_once_all_draw) };
-  if (argc > 1 && strcmp(argv[1], "first") == 0) {
+  if (test_option("--first")) {
     return draw_at_once();
   }
   if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
-    return 77;
+    return test_skip("no OpenCL device on this machine");
   }
-  program = argv[0];
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

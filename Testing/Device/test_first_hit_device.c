@@ -4,6 +4,7 @@
 #include "first_hits.h"
 
 #include "device_state.h"
+#include "testing.h"
 
 #include <stdio.h>
 
@@ -35,9 +36,7 @@ static void device_and_host_hit_the_same(void** state)
   stratus_context* host = open_context("host", false);
   for (int as_gpu = 0; as_gpu < 2; ++as_gpu) {
     stratus_context* device = open_context("0", as_gpu);
-    if (!device) {
-      skip(); /* no OpenCL platform */
-    }
+    assert_non_null(device);
     print_message("on %s\n", stratus_context_device(device));
     for (int m = 0; m < 4; ++m) {
       uint32_t random = 8;
@@ -71,10 +70,13 @@ static void device_and_host_hit_the_same(void** state)
   stratus_context_destroy(host);
 }
 
-/* tiny: a few rays, for a simulator that checks each access. */
-int main(int argc, char** argv)
+/* --tiny: a few rays, for a simulator that checks each access. */
+int test_first_hit_device(void)
 {
-  int count = argc > 1 && strcmp(argv[1], "tiny") == 0 ? FEW : COUNT;
+  int count = test_option("--tiny") ? FEW : COUNT;
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
   const struct CMUnitTest tests[] = { cmocka_unit_test_prestate(device_and_host_hit_the_same, &count) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * A machine without any OpenCL platform: the core works on the host, says so, and refuses devices by name. */
 #define _POSIX_C_SOURCE 200809L
 #include "stratus.h"
+#include "testing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,15 +48,14 @@ static void a_named_device_is_refused_with_the_reason(void** state)
   assert_non_null(strstr(message, "CL_PLATFORM_NOT_FOUND_KHR"));
 }
 
-int main(void)
+int test_no_platform(void)
 {
   /* The loader reads this once, at the first call of OpenCL in the process. */
   if (setenv("OCL_ICD_VENDORS", "/a folder that is not there", 1) != 0) {
     return 1;
   }
   if (stratus_device_count() != 0) {
-    printf("SKIPPED: this machine's OpenCL loader cannot be pointed away from its platforms\n");
-    return 77;
+    return test_skip("this machine's OpenCL loader cannot be pointed away from its platforms");
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(auto_works_on_the_host_and_says_so),

@@ -2,7 +2,8 @@
  * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly, and pixels to a few units in
  * the last place: the set-up of rays divides and takes roots in double, which a device may round otherwise, and then rounds to float. PoCL:
  * 0. */
-#include "../picture_case.h"
+#include "picture_case.h"
+#include "testing.h"
 
 #define ULPS_MOST 4
 
@@ -25,10 +26,6 @@ static void device_and_host_draw_the_same(void** state)
 {
   (void)state;
   char index[16];
-  if (stratus_device_count() == 0) {
-    print_message("SKIPPED: no OpenCL device\n");
-    skip();
-  }
   snprintf(index, sizeof index, "%d", 0);
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context(index, 2);
@@ -69,8 +66,11 @@ static void device_and_host_draw_the_same(void** state)
   stratus_context_destroy(device);
 }
 
-int main(void)
+int test_ray_cast_device(void)
 {
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(device_and_host_draw_the_same),
   };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A device without double: the set-up of rays in pairs of floats. The device that is here is told to have no double, and its pictures are
  * held against the host's, from near and from a million voxels away, where plain floats would shake by a sixteenth of a voxel. */
-#include "../picture_case.h"
+#include "picture_case.h"
+#include "testing.h"
 
 #include "device_state.h"
 #include "volume.h"
@@ -30,10 +31,6 @@ static void check(stratus_context* host, stratus_context* device, const picture_
 static void pairs_of_floats_stand_in_for_doubles(void** state)
 {
   (void)state;
-  if (stratus_device_count() == 0) {
-    print_message("SKIPPED: no OpenCL device\n");
-    skip();
-  }
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
   device->device->has_double = false;
@@ -59,8 +56,11 @@ static void pairs_of_floats_stand_in_for_doubles(void** state)
   stratus_context_destroy(device);
 }
 
-int main(void)
+int test_ray_cast_pairs(void)
 {
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pairs_of_floats_stand_in_for_doubles),
   };

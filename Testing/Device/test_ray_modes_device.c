@@ -2,7 +2,8 @@
  * The device's maxima, minima, means, sums and isosurfaces against the host's, cropped, masked and jittered too: the traversal is one
  * source, so the counters agree exactly, and pixels to the few units in the last place that the set-up of rays may be rounded otherwise.
  * PoCL: 0. */
-#include "../picture_case.h"
+#include "picture_case.h"
+#include "testing.h"
 
 #define ULPS_MOST 4
 
@@ -42,10 +43,6 @@ static void ask_for(picture_case* c, int mode, uint32_t seed, const uint8_t* mas
 static void modes_are_those_of_the_host(void** state)
 {
   (void)state;
-  if (stratus_device_count() == 0) {
-    print_message("SKIPPED: no OpenCL device\n");
-    skip();
-  }
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
@@ -89,8 +86,11 @@ static void modes_are_those_of_the_host(void** state)
   stratus_context_destroy(device);
 }
 
-int main(void)
+int test_ray_modes_device(void)
 {
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
   const struct CMUnitTest tests[] = { cmocka_unit_test(modes_are_those_of_the_host) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

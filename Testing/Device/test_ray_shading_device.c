@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Lit samples, gradient opacity and components on the OpenCL device against the host's: one source, so counters agree exactly and pixels to
  * a few units in the last place of the whole picture's colours. */
-#include "../picture_case.h"
+#include "picture_case.h"
+#include "testing.h"
 
 #include "volume.h"
 
@@ -47,10 +48,6 @@ static void device_and_host_show_the_same(void** state)
 {
   (void)state;
   static const double steep[] = { 0.0, 0.1, 20.0, 1.0 };
-  if (stratus_device_count() == 0) {
-    print_message("SKIPPED: no OpenCL device\n");
-    skip();
-  }
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
@@ -94,8 +91,11 @@ static void device_and_host_show_the_same(void** state)
   stratus_context_destroy(device);
 }
 
-int main(void)
+int test_ray_shading_device(void)
 {
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(device_and_host_show_the_same),
   };

@@ -169,10 +169,10 @@ static void only_a_gpu_is_asked_to_build(void** state)
   assert_int_equal(stratus_device_builds(device), !stratus_device_is_cpu(device->device));
 }
 
-int main(int argc, char** argv)
+int test_structures_device(void)
 {
-  if (no_device(argc, argv)) {
-    return 77;
+  if (no_device()) {
+    return TEST_SKIPPED;
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(value_ranges_of_every_type_equal_the_hosts),

@@ -5,6 +5,7 @@
 
 #include "device_state.h"
 #include "faulty_allocator.h"
+#include "testing.h"
 
 #define CALLS_MAX 500
 
@@ -188,8 +189,8 @@ static void refused_memory(void** state)
   assert_int_equal(allocator.live, 0);
 }
 
-/* tiny: two small meshes, for a simulator that checks each access. */
-int main(int argc, char** argv)
+/* --tiny: two small meshes, for a simulator that checks each access. */
+int test_tetra_march_device(void)
 {
   int as_cpu = 0, as_gpu = 1;
   const struct CMUnitTest few[] = {
@@ -206,10 +207,9 @@ int main(int argc, char** argv)
     cmocka_unit_test_prestate(refused_memory, &as_gpu),
   };
   if (stratus_device_count() == 0) {
-    fprintf(stderr, "SKIPPED: no OpenCL device on this machine\n");
-    return 77;
+    return test_skip("no OpenCL device on this machine");
   }
-  if (argc > 1 && strcmp(argv[1], "tiny") == 0) {
+  if (test_option("--tiny")) {
     seeds = 2;
     edge = 1;
     return cmocka_run_group_tests(few, NULL, NULL);

@@ -209,10 +209,10 @@ static void a_gpu_is_asked_and_its_order_is_the_hosts(void** state)
   assert_int_equal(allocator.live, 0);
 }
 
-int main(int argc, char** argv)
+int test_visibility_signs_device(void)
 {
-  if (no_device(argc, argv)) {
-    return 77;
+  if (no_device()) {
+    return TEST_SKIPPED;
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(signs_are_the_hosts_to_the_bit),

@@ -4,6 +4,7 @@
 #include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
+#include "testing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -206,17 +207,23 @@ static void a_scene_is_made_whole_or_not_at_all(void** state)
 
 #define ON(device, test) cmocka_unit_test_prestate(test, device)
 
-int main(void)
+static char host[] = "host", pocl[] = "pthread", gpu[] = "gpu";
+
+int test_allocation(void)
 {
-  static char host[] = "host", pocl[] = "pthread", gpu[] = "gpu";
-  const struct CMUnitTest on_host[] = {
+  const struct CMUnitTest tests[] = {
     ON(host, a_context_is_made_whole_or_not_at_all),
     ON(host, structures_are_made_whole_or_not_at_all),
     ON(host, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
     ON(host, an_edit_that_fails_leaves_the_earlier_result_intact),
     ON(host, a_scene_is_made_whole_or_not_at_all),
   };
-  const struct CMUnitTest on_device[] = {
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int test_allocation_device(void)
+{
+  const struct CMUnitTest tests[] = {
     ON(pocl, a_context_is_made_whole_or_not_at_all),
     ON(pocl, structures_are_made_whole_or_not_at_all),
     ON(pocl, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
@@ -225,14 +232,11 @@ int main(void)
     ON(gpu, a_first_picture_fails_cleanly_and_comes_at_the_next_attempt),
     ON(gpu, an_edit_that_fails_leaves_the_earlier_result_intact),
   };
-  int failures = cmocka_run_group_tests(on_host, NULL, NULL);
   faulty_allocator allocator = { 0 };
   stratus_context* context = open_context(&allocator, pocl);
-  if (context) {
-    stratus_context_destroy(context);
-    failures += cmocka_run_group_tests(on_device, NULL, NULL);
-  } else {
-    printf("SKIPPED: no PoCL device, only the host was tested\n");
+  if (!context) {
+    return test_skip("no PoCL device on this machine");
   }
-  return failures;
+  stratus_context_destroy(context);
+  return cmocka_run_group_tests(tests, NULL, NULL);
 }

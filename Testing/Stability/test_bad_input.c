@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Invalid inputs: each is refused with its value in the message, and the ray caster then draws as before. */
 #include "small_scene.h"
+#include "testing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -438,15 +439,15 @@ static int close_device(void** state)
   return 0;
 }
 
-int main(void)
+int test_bad_input(void)
 {
-  const struct CMUnitTest on_host[] = { ALL(&host) };
-  const struct CMUnitTest on_device[] = { ALL(&device) };
-  int failures = cmocka_run_group_tests(on_host, open_host, close_host);
-  if (stratus_device_count() > 0) {
-    failures += cmocka_run_group_tests(on_device, open_device, close_device);
-  } else {
-    printf("SKIPPED: no OpenCL device, only the host was tested\n");
-  }
-  return failures;
+  const struct CMUnitTest tests[] = { ALL(&host) };
+  return cmocka_run_group_tests(tests, open_host, close_host);
+}
+
+int test_bad_input_device(void)
+{
+  const struct CMUnitTest tests[] = { ALL(&device) };
+  return stratus_device_count() == 0 ? test_skip("no OpenCL device on this machine")
+                                     : cmocka_run_group_tests(tests, open_device, close_device);
 }

@@ -4,6 +4,7 @@
 #include "device_state.h"
 #include "faulty_allocator.h"
 #include "small_scene.h"
+#include "testing.h"
 
 #include <setjmp.h>
 #include <stdio.h>
@@ -157,14 +158,13 @@ static void structures_by_themselves_survive_the_loss_at_any_call(void** state)
   assert_int_equal(f.allocator.live, 0);
 }
 
-int main(void)
+int test_device_lost(void)
 {
   static fixture f;
   static int no = 0, yes = 1;
   char message[1024];
   if (open_fixture(&f, &no, message, sizeof message) == STRATUS_NO_DEVICE) {
-    printf("SKIPPED: no PoCL device: %s\n", message);
-    return 77;
+    return test_skip(message);
   }
   stratus_context_destroy(f.context);
   const struct CMUnitTest tests[] = {

@@ -388,7 +388,7 @@ static void fields_of_a_device_are_made_whole_or_not_at_all(void** state)
   refuse_on("0", 1);
 }
 
-int main(void)
+int test_flooding_fails(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(plates_and_shells_come_out_as_wrong_as_ever),

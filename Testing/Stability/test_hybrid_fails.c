@@ -296,7 +296,7 @@ static int close_context(void** state)
   return 0;
 }
 
-int main(void)
+int test_hybrid_fails(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(no_voxel_one_and_two_are_one_leaf),

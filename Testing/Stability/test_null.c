@@ -550,7 +550,7 @@ static void no_public_function_falls_over_null(void** state)
   stratus_context_destroy(context);
 }
 
-int main(void)
+int test_null(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(no_public_function_falls_over_null) };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -441,7 +441,7 @@ static void memory_refused_at_any_request(void** state)
   }
 }
 
-int main(void)
+int test_octree_fails(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(no_object_and_one),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A picture of components, gradient opacity and labels whose n-th allocation fails: a clean error, no leak, and the right picture from the
  * same caster at the next attempt. */
-#include "../faulty_allocator.h"
+#include "faulty_allocator.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -120,7 +120,7 @@ static void labels(void** state)
   each_allocation_may_fail(1);
 }
 
-int main(void)
+int test_shading_fails(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(components_and_gradient_opacity),

@@ -333,7 +333,7 @@ static void cancelled(void** state)
   tetra_destroy(&c);
 }
 
-int main(void)
+int test_tetra_march_fails(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(views_along_faces_edges_and_points),

@@ -205,7 +205,7 @@ static void a_seam_of_other_faces(void** state)
   }
 }
 
-int main(void)
+int test_tetra_parts_fail(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(three_cells_in_a_ring),

@@ -225,7 +225,7 @@ static void numbers_at_the_ends_of_their_range_end_in_an_order_or_an_error(void*
   stratus_context_destroy(context);
 }
 
-int main(void)
+int test_tetrahedra_fail(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(orders_and_partitions_are_made_whole_or_not_at_all),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is
 // refused and leaves the file that was there. Argument: a folder to write to.
-#include "Testing/exr_reading.h"
+#include "Testing/support/exr_reading.h"
 #include "mapper_testing.h"
 
 #include "vtkStratusEXRWriter.h"

@@ -3,7 +3,7 @@
 // VTK's own mapper of the GPU. Every setter is seen in the picture.
 #include "mapper_testing.h"
 
-#include "Testing/reference_modes.h"
+#include "Testing/support/reference_modes.h"
 
 #include "vtkContourValues.h"
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"

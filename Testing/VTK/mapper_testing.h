@@ -3,7 +3,7 @@
 #ifndef mapper_testing_h
 #define mapper_testing_h
 
-#include "Testing/reference.h"
+#include "Testing/support/reference.h"
 #include "stratus.h"
 #include "vtkStratusVolumeMapper.h"
 

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits through every tree, compared with a walk from voxel to voxel in double precision. */
+#include "first_hits.h"
+
+#define RAYS 600
+
+static stratus_context* open_context(int isa, int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = "host";
+  options.threads = threads;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  context->isa = isa < context->isa ? isa : context->isa;
+  return context;
+}
+
+static void check_tree(stratus_context* context, const stratus_voxels* voxels, stratus_tree_method method, uint32_t* random)
+{
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_tree* tree = NULL;
+  stratus_ray rays[RAYS];
+  int64_t dimensions[3];
+  options.method = method;
+  options.leaf_bricks = 1 + (int)(next_random(random) % 4);
+  options.leaf_voxels = 1 + (int)(next_random(random) % 3);
+  options.field_emptiness = 1.0 + (double)(next_random(random) % 5); /* so that small sets are split, too */
+  stratus_voxels_dimensions(voxels, dimensions);
+  for (int i = 0; i < RAYS; ++i) {
+    rays[i] = random_ray(dimensions, random);
+  }
+  if (stratus_tree_create(context, voxels, &options, &tree) != STRATUS_OK) {
+    fail_msg("%s: %s", stratus_tree_method_name(method), stratus_context_message(context));
+  }
+  if (stratus_tree_check(context, tree, voxels) != STRATUS_OK) {
+    fail_msg("%s: %s", stratus_tree_method_name(method), stratus_context_message(context));
+  }
+  compare_hits(context, voxels, tree, rays, RAYS);
+  stratus_tree_destroy(tree);
+}
+
+static void every_tree_hits_what_the_walk_hits(void** state)
+{
+  (void)state;
+  uint32_t random = 1;
+  for (int isa = 0; isa <= 2; ++isa) {
+    stratus_context* context = open_context(isa, 1 + isa % 2);
+    for (int round = 0; round < 30; ++round) {
+      int64_t dimensions[3];
+      for (int a = 0; a < 3; ++a) {
+        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 3 == 0 ? 9 : 70));
+      }
+      const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.003 : unit_random(&random);
+      stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 4 == 3 ? 6 : 0, &random);
+      for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
+        const bool slow = method >= STRATUS_TREE_AC && stratus_voxels_count(voxels) > 5000;
+        if (!slow) {
+          check_tree(context, voxels, (stratus_tree_method)method, &random);
+        }
+      }
+      stratus_voxels_destroy(voxels);
+    }
+    stratus_context_destroy(context);
+  }
+}
+
+static void long_rows_and_both_entry_sizes_hit_right(void** state)
+{
+  (void)state;
+  uint32_t random = 5;
+  stratus_context* context = open_context(2, 2);
+  static const int64_t sizes[3][3] = { { 70000, 3, 2 }, { 3, 5000, 3 }, { 2, 2, 9000 } };
+  for (int s = 0; s < 3; ++s) {
+    for (int dense = 0; dense < 2; ++dense) { /* few voxels: entries of two bytes, many: of three */
+      stratus_voxels* voxels = random_voxels(context, sizes[s], dense ? 0.02 : 0.0005, 0, &random);
+      check_tree(context, voxels, STRATUS_TREE_OCTANT, &random);
+      if (s > 0) {
+        check_tree(context, voxels, STRATUS_TREE_DISTANCE, &random);
+      }
+      check_tree(context, voxels, STRATUS_TREE_HYBRID, &random);
+      stratus_voxels_destroy(voxels);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
+static void bits_do_not_depend_on_threads(void** state)
+{
+  (void)state;
+  enum { COUNT = 5000 };
+  static stratus_ray rays[COUNT];
+  static stratus_hit hits[2][COUNT];
+  const int64_t dimensions[3] = { 60, 50, 70 };
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
+    size_t size[2];
+    void* bytes[2];
+    for (int threads = 1; threads <= 2; ++threads) {
+      uint32_t random = 9;
+      stratus_context* context = open_context(2, threads);
+      stratus_voxels* voxels = random_voxels(context, dimensions, 0.01, 0, &random);
+      stratus_tree_options options = stratus_tree_options_default();
+      stratus_tree* tree = NULL;
+      options.method = (stratus_tree_method)method;
+      options.field_emptiness = 2.0;
+      for (int i = 0; i < COUNT; ++i) {
+        rays[i] = random_ray(dimensions, &random);
+      }
+      assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+      assert_int_equal(stratus_tree_first_hit(context, tree, rays, COUNT, hits[threads - 1]), STRATUS_OK);
+      size[threads - 1] = stratus_tree_bytes(tree);
+      bytes[threads - 1] = malloc(size[threads - 1]);
+      stratus_tree_save(tree, bytes[threads - 1]);
+      stratus_tree_destroy(tree);
+      stratus_voxels_destroy(voxels);
+      stratus_context_destroy(context);
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    for (int i = 0; i < COUNT; ++i) {
+      assert_true(hits[0][i].t == hits[1][i].t && hits[0][i].face == hits[1][i].face && hits[0][i].visited == hits[1][i].visited);
+      assert_memory_equal(hits[0][i].voxel, hits[1][i].voxel, sizeof hits[0][i].voxel);
+    }
+    free(bytes[0]);
+    free(bytes[1]);
+  }
+}
+
+/* One voxel in a volume of given position, spacing, direction and mirror: rays that are known to hit it must hit it. */
+static void one_voxel_is_hit_where_it_is(double offset, double spacing, double far)
+{
+  stratus_context* context = open_context(2, 1);
+  uint8_t values[5 * 6 * 7] = { 0 };
+  stratus_volume volume = stratus_volume_default();
+  stratus_criterion criterion = stratus_criterion_default();
+  stratus_voxels* voxels = NULL;
+  stratus_tree* tree = NULL;
+  values[(3 * 6 + 2) * 5 + 4] = 9;
+  volume.values = values;
+  volume.type = STRATUS_UINT8;
+  volume.dimensions[0] = 5;
+  volume.dimensions[1] = 6;
+  volume.dimensions[2] = 7;
+  for (int a = 0; a < 3; ++a) {
+    volume.origin[a] = offset * (a + 1);
+    volume.spacing[a] = spacing * (a + 1);
+  }
+  volume.matrix[0] = -1.0; /* mirrored along x */
+  criterion.lower = 5;
+  assert_int_equal(stratus_voxels_create(context, &volume, &criterion, &voxels), STRATUS_OK);
+  assert_int_equal(stratus_voxels_count(voxels), 1);
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
+    stratus_tree_options options = stratus_tree_options_default();
+    options.method = (stratus_tree_method)method;
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) {
+        const int index[3] = { 4, 2, 3 };
+        stratus_ray ray = { .t_max = INFINITY };
+        stratus_hit hit;
+        double center[3], half = spacing * (axis + 1) * 0.5;
+        for (int a = 0; a < 3; ++a) {
+          center[a] = (volume.origin[a] + volume.spacing[a] * index[a]) * (a == 0 ? -1.0 : 1.0);
+          ray.origin[a] = center[a] + spacing * (a + 1) * 0.21;
+        }
+        ray.origin[axis] = center[axis] + (side ? 1.0 : -1.0) * (half + far * spacing);
+        ray.direction[axis] = side ? -2.0 : 2.0;
+        assert_int_equal(stratus_tree_first_hit(context, tree, &ray, 1, &hit), STRATUS_OK);
+        assert_true(fabs(hit.t * 2.0 - far * spacing) <= 1e-9 * spacing + 4e-15 * (fabs(center[axis]) + far * spacing));
+        assert_int_equal(hit.voxel[0], 4);
+        assert_int_equal(hit.voxel[1], 2);
+        assert_int_equal(hit.voxel[2], 3);
+        assert_true(hit.normal[axis] == (side ? 1.0f : -1.0f));
+        ray.t_max = hit.t * 0.99;
+        assert_int_equal(stratus_tree_first_hit(context, tree, &ray, 1, &hit), STRATUS_OK);
+        assert_true(hit.t == INFINITY && hit.voxel[0] == -1 && hit.face == -1);
+        ray.t_max = INFINITY;
+        ray.origin[axis] = center[axis]; /* from inside */
+        assert_int_equal(stratus_tree_first_hit(context, tree, &ray, 1, &hit), STRATUS_OK);
+        assert_true(hit.t == 0.0 && hit.face == -1 && hit.normal[axis] == (side ? 1.0f : -1.0f));
+      }
+    }
+    stratus_tree_destroy(tree);
+  }
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
+static void far_rays_large_coordinates_and_small_voxels_hit(void** state)
+{
+  (void)state;
+  one_voxel_is_hit_where_it_is(0.0, 1.0, 3.0);
+  one_voxel_is_hit_where_it_is(0.0, 1.0, 1e6);
+  one_voxel_is_hit_where_it_is(6e6, 1.0, 3.0);
+  one_voxel_is_hit_where_it_is(6e6, 10.0, 1e5);
+  one_voxel_is_hit_where_it_is(0.0, 1e-6, 3.0);
+  one_voxel_is_hit_where_it_is(0.0, 1.0, 1.0);
+}
+
+static void no_voxel_no_hit(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(2, 2);
+  const int64_t dimensions[3] = { 8, 8, 8 };
+  stratus_voxels* voxels = NULL;
+  assert_int_equal(stratus_voxels_create_list(context, dimensions, NULL, 0, &voxels), STRATUS_OK);
+  for (int method = 0; method < STRATUS_TREE_METHODS; ++method) {
+    stratus_tree_options options = stratus_tree_options_default();
+    stratus_tree_statistics statistics;
+    stratus_tree* tree = NULL;
+    options.method = (stratus_tree_method)method;
+    const stratus_ray ray = { { 4, 4, -3 }, { 0, 0, 1 }, 0, INFINITY };
+    stratus_hit hit;
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    stratus_tree_get_statistics(tree, &statistics);
+    assert_int_equal(statistics.nodes, 0);
+    assert_int_equal(stratus_tree_first_hit(context, tree, &ray, 1, &hit), STRATUS_OK);
+    assert_true(hit.t == INFINITY && hit.voxel[0] == -1 && hit.voxel[1] == -1 && hit.voxel[2] == -1);
+    assert_int_equal(stratus_tree_check(context, tree, voxels), STRATUS_OK);
+    stratus_tree_destroy(tree);
+  }
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
+static void rays_that_are_none_are_refused(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(2, 2);
+  uint32_t random = 3;
+  const int64_t dimensions[3] = { 12, 12, 12 };
+  stratus_voxels* voxels = random_voxels(context, dimensions, 0.1, 0, &random);
+  static const int methods[2] = { STRATUS_TREE_OCTANT, STRATUS_TREE_SAH };
+  for (int m = 0; m < 2; ++m) {
+    stratus_tree_options options = stratus_tree_options_default();
+    stratus_tree* tree = NULL;
+    options.method = (stratus_tree_method)methods[m];
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    for (int wrong = 0; wrong < 7; ++wrong) {
+      stratus_ray rays[40];
+      stratus_hit hits[40];
+      for (int i = 0; i < 40; ++i) {
+        rays[i] = random_ray(dimensions, &random);
+      }
+      stratus_ray* ray = &rays[17];
+      if (wrong == 0) {
+        ray->direction[0] = ray->direction[1] = ray->direction[2] = 0.0;
+      } else if (wrong == 1) {
+        ray->origin[1] = NAN;
+      } else if (wrong == 2) {
+        ray->direction[2] = INFINITY;
+      } else if (wrong == 3) {
+        ray->t_min = -INFINITY;
+      } else if (wrong == 4) {
+        ray->t_max = NAN;
+      } else if (wrong == 5) {
+        ray->direction[0] = ray->direction[1] = ray->direction[2] = 1e-300;
+      } else {
+        ray->origin[0] = ray->origin[1] = ray->origin[2] = 1e308;
+      }
+      assert_int_equal(stratus_tree_first_hit(context, tree, rays, 40, hits), STRATUS_INVALID_ARGUMENT);
+      assert_non_null(strstr(stratus_context_message(context), "ray 17"));
+      assert_int_equal(stratus_voxels_first_hit(context, voxels, rays, 40, hits), STRATUS_INVALID_ARGUMENT);
+      assert_non_null(strstr(stratus_context_message(context), "ray 17"));
+    }
+    assert_int_equal(stratus_tree_first_hit(context, tree, NULL, 1, NULL), STRATUS_INVALID_ARGUMENT);
+    assert_int_equal(stratus_tree_first_hit(context, tree, NULL, 0, NULL), STRATUS_OK);
+    stratus_tree_destroy(tree);
+  }
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
+int test_first_hit(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(every_tree_hits_what_the_walk_hits),
+    cmocka_unit_test(long_rows_and_both_entry_sizes_hit_right), cmocka_unit_test(bits_do_not_depend_on_threads),
+    cmocka_unit_test(far_rays_large_coordinates_and_small_voxels_hit), cmocka_unit_test(no_voxel_no_hit),
+    cmocka_unit_test(rays_that_are_none_are_refused) };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First-hit pictures compared with brute force over all voxels. */
+#include "picture_case.h"
+
+#include "volume.h"
+
+static picture first;
+static picture second;
+
+/* ---- the oracle: the slabs of every effective voxel, one pixel after the other */
+
+typedef struct oracle {
+  const picture_case* c;
+  double world_to_index[16];
+  uint8_t* effective;
+} oracle;
+
+/* Opacity of the transfer function by its definition: the last interval that begins at or below x decides. */
+static double opacity_of(const stratus_transfer* transfer, double x)
+{
+  const double* p = transfer->opacity;
+  const size_t n = transfer->opacity_count;
+  if (x < p[0] || x > p[2 * n - 2]) {
+    return transfer->clamp ? (x < p[0] ? p[1] : p[2 * n - 1]) : 0.0;
+  }
+  for (size_t i = n - 1; i > 0; --i) {
+    if (p[2 * i - 2] <= x && p[2 * i - 2] < p[2 * i]) {
+      return p[2 * i - 1] + (x - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]) * (p[2 * i + 1] - p[2 * i - 1]);
+    }
+  }
+  return p[1];
+}
+
+static void oracle_begin(const picture_case* c, oracle* o)
+{
+  double index_to_world[16];
+  const int64_t* n = c->volume.dimensions;
+  stratus_volume_index_to_world(&c->volume, index_to_world);
+  assert_true(stratus_matrix_invert_affine(index_to_world, o->world_to_index));
+  o->c = c;
+  o->effective = calloc((size_t)(n[0] * n[1] * n[2]), 1);
+  for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
+    const double value = reference_value_at(&c->volume, (int64_t)at);
+    o->effective[at] = isfinite(value) && opacity_of(&c->transfer, value) > 0.0;
+    if (c->cell_ghosts && c->volume.cell_centered) {
+      o->effective[at] &= !(c->cell_ghosts[at] & (STRATUS_GHOST_HIDDEN_CELL | STRATUS_GHOST_DUPLICATE));
+    }
+  }
+}
+
+/* Ray of a pixel in world coordinates, and the interval of k in which it may hit. */
+static void oracle_ray(const oracle* o, int x, int y, double from[3], double along[3], double* begin, double* end)
+{
+  const stratus_camera* camera = &o->c->camera;
+  const double u = (2.0 * x + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * y + 1.0) / CASE_HEIGHT - 1.0;
+  *begin = camera->near_k;
+  *end = camera->far_k;
+  for (int a = 0; a < 3; ++a) {
+    const double sideways = u * camera->right[a] + v * camera->up[a];
+    from[a] = camera->eye[a] + (camera->parallel ? sideways : 0.0);
+    along[a] = camera->forward[a] + (camera->parallel ? 0.0 : sideways);
+  }
+  for (int p = 0; p < o->c->options.clip_plane_count; ++p) {
+    const double* plane = o->c->options.clip_planes[p];
+    const double height = plane[0] * from[0] + plane[1] * from[1] + plane[2] * from[2] + plane[3];
+    const double slope = plane[0] * along[0] + plane[1] * along[1] + plane[2] * along[2];
+    *begin = slope > 0.0 ? fmax(*begin, -height / slope) : *begin;
+    *end = slope < 0.0 ? fmin(*end, -height / slope) : *end;
+  }
+}
+
+/* Cuts begin..end to the box; returns false if nothing is left. */
+static bool slabs(const double from[3], const double along[3], const double lo[3], const double hi[3], double* begin, double* end)
+{
+  for (int a = 0; a < 3; ++a) {
+    const double t0 = (lo[a] - from[a]) / along[a], t1 = (hi[a] - from[a]) / along[a];
+    *begin = fmax(*begin, fmin(t0, t1));
+    *end = fmin(*end, fmax(t0, t1));
+  }
+  return *begin <= *end;
+}
+
+/* k of the first hit, or INFINITY if there is none; *voxel: its number. *doubtful: the ray enters another voxel at nearly the same place,
+ * or hardly meets one. */
+static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* doubtful)
+{
+  const int64_t* n = o->c->volume.dimensions;
+  const double half = o->c->volume.cell_centered ? 0.5 : 0.0, near = 1e-7;
+  double world[3], toward[3], from[3], along[3], begin, end, best = INFINITY, next = INFINITY;
+  oracle_ray(o, x, y, world, toward, &begin, &end);
+  stratus_matrix_point(o->world_to_index, world, from);
+  stratus_matrix_vector(o->world_to_index, toward, along);
+  *doubtful = false;
+  if (o->c->options.crop) {
+    double lo[3], hi[3];
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = (o->c->options.crop_bounds[2 * a] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
+      hi[a] = (o->c->options.crop_bounds[2 * a + 1] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
+    }
+    if (!slabs(from, along, lo, hi, &begin, &end)) {
+      return INFINITY;
+    }
+  }
+  for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
+    if (o->effective[at]) {
+      const double center[3] = { (double)((int64_t)at % n[0]), (double)((int64_t)at / n[0] % n[1]), (double)((int64_t)at / n[0] / n[1]) };
+      const double lo[3] = { center[0] - 0.5, center[1] - 0.5, center[2] - 0.5 };
+      const double hi[3] = { center[0] + 0.5, center[1] + 0.5, center[2] + 0.5 };
+      double t0 = begin, t1 = end;
+      const bool met = slabs(from, along, lo, hi, &t0, &t1);
+      *doubtful |= fabs(t1 - t0) < near * (1.0 + fabs(t0)) && t0 < best;
+      if (met && t0 < best) {
+        next = best;
+        best = t0;
+        *voxel = at;
+      } else if (met) {
+        next = fmin(next, t0);
+      }
+    }
+  }
+  *doubtful |= next - best < near * (1.0 + fabs(best));
+  return best;
+}
+
+static double length_of(const oracle* o, int x, int y)
+{
+  double from[3], along[3], begin, end;
+  oracle_ray(o, x, y, from, along, &begin, &end);
+  return sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+}
+
+static void color_of(const picture_case* c, double x, double rgb[3])
+{
+  const double* p = c->transfer.color;
+  const size_t n = c->transfer.color_count;
+  size_t i = 0;
+  while (i + 1 < n && p[4 * (i + 1)] <= x) {
+    ++i;
+  }
+  const double t = i + 1 < n && x > p[4 * i] ? (x - p[4 * i]) / (p[4 * i + 4] - p[4 * i]) : 0.0;
+  for (int channel = 1; channel < 4; ++channel) {
+    rgb[channel - 1] = p[4 * i + (size_t)channel] + (t > 0.0 ? t * (p[4 * i + 4 + (size_t)channel] - p[4 * i + (size_t)channel]) : 0.0);
+  }
+}
+
+/* A random case of few voxels, turned and sheared. */
+static void create_case(stratus_context* context, uint32_t seed, picture_case* c)
+{
+  uint32_t s = seed;
+  case_create_random(context, seed, c);
+  for (int a = 0; a < 3; ++a) {
+    c->volume.dimensions[a] = c->volume.dimensions[a] > 9 ? 3 + c->volume.dimensions[a] % 7 : c->volume.dimensions[a];
+    c->volume.spacing[a] = case_uniform(&s, 0.5, 2.0);
+    c->volume.origin[a] = case_uniform(&s, -5.0, 5.0);
+    for (int b = 0; b < 3; ++b) {
+      c->volume.matrix[4 * a + b] += case_uniform(&s, -0.3, 0.3) - (a == b && seed % 3 == 0 ? 1.9 : 0.0);
+    }
+  }
+  case_camera(context, c, (int)(seed % 8), (int)(seed % 2));
+  c->camera.near_k = seed % 5 == 0 ? 12.0 : c->camera.near_k;
+  for (int a = 0; a < 6; ++a) {
+    const int axis = a / 2;
+    const double wide = c->volume.spacing[axis] * (double)c->volume.dimensions[axis];
+    c->options.crop_bounds[a] = c->volume.origin[axis] + wide * (a % 2 ? case_uniform(&s, 0.5, 1.1) : case_uniform(&s, -0.1, 0.4));
+  }
+  if (c->options.clip_plane_count) { /* through the middle */
+    double bounds[6];
+    assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
+    c->options.clip_planes[0][3] = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      c->options.clip_planes[0][3] -= c->options.clip_planes[0][a] * 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
+    }
+  }
+  c->options.mode = STRATUS_MODE_FIRST_HIT;
+  c->options.shading.on = 0;
+}
+
+static void compare(const picture_case* c, const picture* p, uint32_t seed, int* hits, int* doubts)
+{
+  oracle o;
+  oracle_begin(c, &o);
+  for (int at = 0; at < CASE_PIXELS; ++at) {
+    bool doubtful = false;
+    size_t voxel = 0;
+    double rgb[3];
+    const double k = oracle_hit(&o, at % CASE_WIDTH, at / CASE_WIDTH, &voxel, &doubtful);
+    if (doubtful) {
+      ++*doubts;
+      continue;
+    }
+    const double expected = k * length_of(&o, at % CASE_WIDTH, at / CASE_WIDTH);
+    const float* rgba = p->rgba + 4 * at;
+    if (!isfinite(k)) {
+      assert_true(isinf(p->depth[at]) && rgba[0] == 0.0f && rgba[1] == 0.0f && rgba[2] == 0.0f && rgba[3] == 0.0f);
+      continue;
+    }
+    ++*hits;
+    if (!(fabs(p->depth[at] - expected) <= 1e-6 * fabs(expected))) { /* a float's digits */
+      print_error("seed %u, pixel %d: depth %g instead of %g\n", seed, at, (double)p->depth[at], expected);
+      fail();
+    }
+    color_of(c, reference_value_at(&c->volume, (int64_t)voxel), rgb);
+    assert_true(rgba[3] == 1.0f && p->samples[at] == 1);
+    for (int channel = 0; channel < 3; ++channel) {
+      assert_true(fabs((double)rgba[channel] - rgb[channel]) < 1e-5);
+    }
+  }
+  free(o.effective);
+}
+
+static void pixels_show_the_first_voxel_of_brute_force(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  int hits = 0, doubts = 0;
+  for (uint32_t seed = 1; seed <= 80; ++seed) {
+    picture_case c;
+    create_case(context, seed, &c);
+    c.options.structure = seed % 2 ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_HYBRID;
+    case_render(context, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    case_destroy(&c);
+  }
+  print_message("             %d hits, %d doubtful\n", hits, doubts);
+  assert_true(hits > 20000 && doubts < hits / 50);
+  stratus_context_destroy(context);
+}
+
+static void opaque_depth_ends_rays(void** state)
+{
+  (void)state;
+  static float depth[CASE_PIXELS];
+  stratus_context* context = case_context("host", 2);
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    picture_case c;
+    int before = 0, behind = 0;
+    case_create(context, &c, STRATUS_FLOAT32, 9, 8, 7, 3);
+    case_camera(context, &c, 2, parallel);
+    c.options.mode = STRATUS_MODE_FIRST_HIT;
+    c.camera.near_k = 5.0;
+    c.camera.far_k = 80.0;
+    case_render(context, &c, &first);
+    for (int at = 0; at < CASE_PIXELS; ++at) { /* one half of the hits just behind, the other just before the opaque thing */
+      const double u = (2.0 * (at % CASE_WIDTH) + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * (at / CASE_WIDTH) + 1.0) / CASE_HEIGHT - 1.0;
+      double square = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        const double d = c.camera.forward[a] + (parallel ? 0.0 : u * c.camera.right[a] + v * c.camera.up[a]);
+        square += d * d;
+      }
+      const double k = (double)first.depth[at] / sqrt(square) + (at % 2 ? 0.01 : -0.01);
+      depth[at] = isfinite(k) ? (float)(parallel ? (k - 5.0) / 75.0 : (80.0 - 80.0 * 5.0 / k) / 75.0) : 1.0f;
+    }
+    c.opaque_depth = depth;
+    case_render(context, &c, &second);
+    for (int at = 0; at < CASE_PIXELS; ++at) {
+      const bool hit = isfinite(first.depth[at]);
+      before += hit && at % 2;
+      behind += hit && at % 2 == 0;
+      assert_true(at % 2 || !hit ? memcmp(first.rgba + 4 * at, second.rgba + 4 * at, 16) == 0 : second.rgba[4 * at + 3] == 0.0f);
+    }
+    assert_true(before > 100 && behind > 100);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
+int test_first_hit_picture(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(pixels_show_the_first_voxel_of_brute_force),
+    cmocka_unit_test(opaque_depth_ends_rays),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Gradient opacity and volumes of several components, independent and dependent, compared with the double reference. Also every structure
+ * to the bit, each function and weight by its effect, and refusals. */
+#include "picture_case.h"
+
+#include "volume.h"
+
+/* dB against the reference at a quarter of a voxel, as for one component: only the sampling's own error is left. */
+#define MIDPOINT_DB 64.0
+#define COMPONENTS 4
+
+typedef struct many {
+  picture_case c; /* geometry, camera and options; its values are of component 0 */
+  stratus_transfer transfers[COMPONENTS];
+  void* values; /* interleaved */
+} many;
+
+static picture drawn;
+static picture other;
+
+/* `count` fields of one type at one place. Component i comes from seed + i and has a transfer function in a colour of its own. */
+static void many_create(stratus_context* context, many* m, stratus_type type, int count, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
+{
+  static const double colors[COMPONENTS][4] = { { 0, 1, 0.2, 0.1 }, { 0, 0.1, 0.9, 0.3 }, { 0, 0.2, 0.3, 1 }, { 0, 0.9, 0.9, 0.1 } };
+  const size_t size = stratus_type_size(type), voxels = (size_t)(nx * ny * nz);
+  case_create(context, &m->c, type, nx, ny, nz, seed);
+  m->values = malloc(voxels * size * (size_t)count);
+  assert_non_null(m->values);
+  for (int i = 0; i < count; ++i) {
+    case_fill(&m->c, seed + 31u * (uint32_t)i);
+    for (size_t v = 0; v < voxels; ++v) {
+      memcpy((char*)m->values + (v * (size_t)count + (size_t)i) * size, (const char*)m->c.values + v * size, size);
+    }
+    m->transfers[i] = m->c.transfer;
+    m->transfers[i].color = i == 0 ? m->c.transfer.color : colors[i];
+    m->transfers[i].color_count = i == 0 ? m->c.transfer.color_count : 1;
+    m->transfers[i].unit_distance = 1.0 + 0.5 * i;
+  }
+  m->c.volume.values = m->values;
+  m->c.volume.components = count;
+  m->c.volume.value_stride = count;
+}
+
+static void many_destroy(many* m)
+{
+  case_destroy(&m->c);
+  free(m->values);
+}
+
+static stratus_status draw_status(stratus_context* context, const many* m, picture* p)
+{
+  stratus_ray_caster* caster = NULL;
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples };
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  memset(&p->report, 0, sizeof p->report);
+  stratus_status status = stratus_ray_caster_render(caster, &m->c.volume, m->transfers, &m->c.camera, &m->c.options, &image, &p->report);
+  for (int again = 0; status == STRATUS_OK && again < 2;
+       ++again) { /* once rays have read enough, values are kept as floats: the same bits */
+    static picture kept;
+    const stratus_image next = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = kept.rgba, .depth = kept.depth };
+    status = stratus_ray_caster_render(caster, &m->c.volume, m->transfers, &m->c.camera, &m->c.options, &next, NULL);
+    assert_memory_equal(kept.rgba, p->rgba, sizeof kept.rgba);
+    assert_memory_equal(kept.depth, p->depth, sizeof kept.depth);
+  }
+  stratus_ray_caster_destroy(caster);
+  return status;
+}
+
+static void draw(stratus_context* context, const many* m, picture* p)
+{
+  const stratus_status status = draw_status(context, m, p);
+  if (status != STRATUS_OK) {
+    print_error("%s\n", stratus_context_message(context));
+  }
+  assert_int_equal(status, STRATUS_OK);
+}
+
+static void check(const char* what, stratus_context* context, const many* m, double wanted)
+{
+  static float reference[4 * CASE_PIXELS];
+  reference_scene scene = case_scene(&m->c);
+  double reference_db = 0.0;
+  scene.transfer = m->transfers;
+  scene.dependent = m->c.options.dependent;
+  scene.shading = m->c.options.shade ? &m->c.options.shading : NULL;
+  draw(context, m, &drawn);
+  assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
+  const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
+  print_message("             %s: %.1f dB, reference %.0f dB, %d pixels\n", what, db, reference_db, case_lit(&drawn));
+  assert_true(case_lit(&drawn) > 50);
+  assert_true(db >= wanted);
+}
+
+static void gradient_opacity_thins_as_the_reference_says(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.0, 0.2, 0.4, 0.45, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 1, 26, 24, 28, 71);
+  draw(context, &m, &other);
+  m.transfers[0].gradient = steep;
+  m.transfers[0].gradient_count = 3;
+  check("midpoint", context, &m, MIDPOINT_DB);
+  double before = 0.0, after = 0.0;
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    before += (double)other.rgba[4 * i + 3];
+    after += (double)drawn.rgba[4 * i + 3];
+    assert_true(drawn.rgba[4 * i + 3] <= other.rgba[4 * i + 3] + 1e-5f);
+  }
+  assert_true(after < 0.9 * before && after > 0.02 * before);
+  m.c.options.shade = 1;
+  m.c.volume.spacing[1] = 1.5; /* magnitudes are per mean spacing */
+  case_camera(context, &m.c, 2, 0);
+  check("lit, uneven", context, &m, MIDPOINT_DB);
+  m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  check("pre-integrated", context, &m, MIDPOINT_DB);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+static void independent_components_mix_as_the_reference_mixes_them(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.0, 0.2, 10.0, 1.0 };
+  static const stratus_type types[] = { STRATUS_UINT8, STRATUS_FLOAT32, STRATUS_INT32, STRATUS_FLOAT64 };
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= COMPONENTS; ++count) {
+    for (int t = 0; t < 4; ++t) {
+      many m;
+      char what[64];
+      many_create(context, &m, types[t], count, 20, 17, 19, 5u + (uint32_t)(10 * count + t));
+      m.transfers[1].weight = 0.4;
+      m.transfers[count - 1].gradient = types[t] == STRATUS_UINT8 ? steep : NULL;
+      m.transfers[count - 1].gradient_count = types[t] == STRATUS_UINT8 ? 2 : 0;
+      m.c.options.shade = t % 2;
+      case_camera(context, &m.c, count + t, t == 1);
+      snprintf(what, sizeof what, "%d of %s%s", count, case_type_names[types[t]], m.c.options.shade ? ", lit" : "");
+      check(what, context, &m, MIDPOINT_DB);
+      many_destroy(&m);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
+/* The second component and its functions in other units give the same picture, however much smaller or larger its range is than the
+ * first's. */
+static void each_component_has_its_own_units(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int power = -50; power <= 63; power += 113) { /* 1e-15 and 1e19, of which products are exact */
+    many m;
+    double opacity[8], gradient[4] = { 0.0, 0.1, 0.3, 1.0 };
+    many_create(context, &m, STRATUS_FLOAT32, 2, 26, 24, 28, 71);
+    memcpy(opacity, m.c.opacity, sizeof opacity);
+    m.c.options.shade = 1;
+    m.transfers[1].opacity = opacity;
+    m.transfers[1].gradient = gradient;
+    m.transfers[1].gradient_count = 2;
+    draw(context, &m, &drawn);
+    float* values = m.values;
+    for (size_t v = 0; v < 26 * 24 * 28; ++v) {
+      values[2 * v + 1] = ldexpf(values[2 * v + 1], power);
+    }
+    for (int i = 0; i < 4; ++i) {
+      opacity[2 * i] = ldexp(opacity[2 * i], power);
+    }
+    gradient[2] = ldexp(gradient[2], power);
+    draw(context, &m, &other);
+    const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+    print_message("             2^%d: %.1f dB, %d pixels\n", power, db, case_lit(&other));
+    assert_true(case_lit(&drawn) > 200);
+    assert_true(db > 100.0);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+static void dependent_components_are_colour_and_opacity(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 2, 22, 20, 18, 17);
+  m.c.options.dependent = 1;
+  check("2 of float32", context, &m, MIDPOINT_DB);
+  m.c.options.shade = 1;
+  check("2 of float32, lit", context, &m, MIDPOINT_DB);
+  many_destroy(&m);
+  many_create(context, &m, STRATUS_UINT8, 4, 22, 20, 18, 18);
+  m.c.options.dependent = 1;
+  check("4 of uint8", context, &m, MIDPOINT_DB);
+  m.c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  m.c.options.sample_distance = 0.02;
+  check("4 of uint8, nearest", context, &m, MIDPOINT_DB);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+/* Sets four labels in blobs, one of them without functions of its own. */
+static void set_labels(many* m, uint8_t* labels)
+{
+  static const double colors[3][4] = { { 0, 1, 0.2, 0.1 }, { 0, 0.1, 0.9, 0.3 }, { 0, 0.2, 0.3, 1 } };
+  const int64_t* n = m->c.volume.dimensions;
+  for (int64_t v = 0; v < n[0] * n[1] * n[2]; ++v) {
+    const int64_t x = v % n[0], y = v / n[0] % n[1], z = v / n[0] / n[1];
+    labels[v] = (uint8_t)((x / 7 + y / 5 + z / 6) % 4);
+  }
+  m->transfers[1] = m->transfers[2] = m->transfers[0];
+  m->transfers[1].color = colors[0];
+  m->transfers[2].color = colors[1];
+  m->transfers[1].color_count = m->transfers[2].color_count = 1;
+  m->transfers[2].unit_distance = 0.4;
+  m->c.options.mask = labels;
+  m->c.options.label_count = 2;
+}
+
+static void labels_have_colours_and_opacities_of_their_own(void** state)
+{
+  (void)state;
+  static uint8_t labels[24 * 22 * 26];
+  stratus_context* context = case_context("host", 2);
+  for (int type = STRATUS_UINT8; type <= STRATUS_FLOAT64; type += 4) { /* uint8, uint32, float64 */
+    many m;
+    float reference[4 * CASE_PIXELS];
+    many_create(context, &m, (stratus_type)type, 1, 24, 22, 26, 60u + (uint32_t)type);
+    draw(context, &m, &other);
+    set_labels(&m, labels);
+    m.c.volume.cell_centered = type == STRATUS_UINT32;
+    m.c.options.shade = type == STRATUS_FLOAT64;
+    m.c.options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
+    reference_scene scene = case_scene(&m.c);
+    scene.transfer = m.transfers;
+    scene.labels = labels;
+    scene.label_count = 2;
+    scene.shading = m.c.options.shade ? &m.c.options.shading : NULL;
+    draw(context, &m, &drawn);
+    assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
+    const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
+    print_message("             labels over %s: %.1f dB, %d pixels\n", case_type_names[type], db, case_lit(&drawn));
+    assert_true(case_lit(&drawn) > 200);
+    assert_true(db >= 60.0);
+    for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+      m.c.options.structure = (stratus_structure)s;
+      draw(context, &m, &other);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    }
+    m.c.options.label_count = 0; /* the same bytes as a mask, then none */
+    draw(context, &m, &other);
+    assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+static void no_structure_changes_a_bit(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.0, 0.0, 0.1, 1.0 };
+  stratus_context* contexts[2] = { case_context("host", 1), case_context("host", 3) };
+  int lit = 0;
+  uint64_t skipped = 0;
+  contexts[1]->isa = 1;
+  for (uint32_t seed = 1; seed <= 16; ++seed) {
+    many m;
+    const int count = 1 + (int)(seed % 4);
+    many_create(contexts[0], &m, seed % 2 ? STRATUS_FLOAT32 : STRATUS_UINT8, count, 8 + seed, 30 - seed, 21, seed);
+    const double base = case_type_values[m.c.volume.type].base, scale = case_type_values[m.c.volume.type].scale;
+    const double narrow[8] = { base + 0.2 * scale, 0, base + 0.3 * scale, 0.8, base + 0.35 * scale, 0, base + scale, 0 };
+    memcpy(m.c.opacity, narrow, sizeof narrow); /* of all components: mostly empty */
+    m.transfers[0].gradient = steep;
+    m.transfers[0].gradient_count = 2;
+    m.c.options.dependent = seed > 8 && (count == 2 || (count == 4 && m.c.volume.type == STRATUS_UINT8));
+    m.c.options.shade = seed % 3 == 0;
+    m.c.options.sample_distance = 0.7;
+    m.c.options.structure = STRATUS_STRUCTURE_NONE;
+    draw(contexts[0], &m, &drawn);
+    lit += case_lit(&drawn) > 0;
+    for (int s = STRATUS_STRUCTURE_BLOCK; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+      m.c.options.structure = (stratus_structure)s;
+      draw(contexts[s % 2], &m, &other);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+      assert_memory_equal(drawn.depth, other.depth, sizeof drawn.depth);
+      skipped += other.report.skipped;
+    }
+    many_destroy(&m);
+  }
+  assert_true(lit > 12 && skipped > 100000);
+  stratus_context_destroy(contexts[0]);
+  stratus_context_destroy(contexts[1]);
+}
+
+static void a_function_or_weight_edited_is_seen(void** state)
+{
+  (void)state;
+  static const double green[4] = { 0, 0, 1, 0 };
+  static const double flat[4] = { 0, 0, 1e9, 0 };
+  stratus_context* context = case_context("host", 2);
+  stratus_ray_caster* caster = NULL;
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 2, 16, 16, 16, 3);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  const stratus_image after = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
+  for (int edit = 0; edit < 5; ++edit) {
+    assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, m.transfers, &m.c.camera, &m.c.options, &image, NULL), STRATUS_OK);
+    m.transfers[1].color = edit == 0 ? green : m.transfers[1].color;
+    m.transfers[1].weight = edit == 1 ? 0.5 : m.transfers[1].weight;
+    m.transfers[1].unit_distance = edit == 2 ? 5.0 : m.transfers[1].unit_distance;
+    m.transfers[1].gradient = edit == 3 ? flat : m.transfers[1].gradient;
+    m.transfers[1].gradient_count = edit >= 3 ? 2 : 0;
+    m.c.options.dependent = edit == 4;
+    assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, m.transfers, &m.c.camera, &m.c.options, &after, NULL), STRATUS_OK);
+    assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    picture fresh;
+    draw(context, &m, &fresh);
+    assert_memory_equal(fresh.rgba, other.rgba, sizeof fresh.rgba);
+  }
+  stratus_ray_caster_destroy(caster);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+static void what_it_cannot_show_is_refused(void** state)
+{
+  (void)state;
+  static const double backwards[4] = { 1, 1, 0, 1 };
+  stratus_context* context = case_context("host", 1);
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 4, 6, 6, 6, 3);
+  m.c.options.dependent = 1;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED); /* 4 of floats */
+  m.c.options.dependent = 0;
+  m.transfers[2].weight = 1.5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "1.5"));
+  m.transfers[2].weight = 1.0;
+  m.transfers[3].gradient = backwards;
+  m.transfers[3].gradient_count = 2;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "gradient"));
+  m.transfers[3].gradient_count = 0;
+  m.c.options.mode = STRATUS_MODE_MAXIMUM;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
+  m.c.options.mode = STRATUS_MODE_COMPOSITE;
+  m.c.options.label_count = 2;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT); /* without a mask */
+  m.c.options.label_count = 0;
+  m.c.volume.components = 5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  m.c.volume.components = 4;
+  m.c.volume.value_stride = 3;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+/* Gradient opacity, labels and components share their arguments with the light, which is not checked where nothing is lit. */
+static void a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.0, 0.2, 0.4, 0.45, 1.0 };
+  static const int counts[] = { 9, 1024, INT32_MAX, -2, INT32_MIN };
+  static uint8_t labels[24 * 22 * 26];
+  stratus_context* context = case_context("host", 2);
+  for (int kind = 0; kind < 4; ++kind) {
+    many m;
+    many_create(context, &m, STRATUS_UINT8, kind == 1 ? 2 : 1, 24, 22, 26, 91);
+    m.transfers[0].gradient = steep;
+    m.transfers[0].gradient_count = kind == 0 ? 3 : 0;
+    if (kind == 2) {
+      set_labels(&m, labels);
+    }
+    if (kind == 3) {
+      m.c.options.mode = STRATUS_MODE_FIRST_HIT;
+      m.c.options.shading.on = 0;
+    }
+    draw(context, &m, &other);
+    assert_true(case_lit(&other) > 50);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+      m.c.options.shading.light_count = counts[i];
+      draw(context, &m, &drawn);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    }
+    m.c.options.shading.on = m.c.options.shade = 1;
+    m.c.options.shading.light_count = 9;
+    assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(context), "9 lights"));
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+int test_ray_components(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(gradient_opacity_thins_as_the_reference_says),
+    cmocka_unit_test(independent_components_mix_as_the_reference_mixes_them),
+    cmocka_unit_test(each_component_has_its_own_units),
+    cmocka_unit_test(dependent_components_are_colour_and_opacity),
+    cmocka_unit_test(labels_have_colours_and_opacities_of_their_own),
+    cmocka_unit_test(a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit),
+    cmocka_unit_test(no_structure_changes_a_bit),
+    cmocka_unit_test(a_function_or_weight_edited_is_seen),
+    cmocka_unit_test(what_it_cannot_show_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

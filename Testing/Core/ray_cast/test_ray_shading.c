@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Lit samples, compared with the double reference, which shades in doubles. Also every instruction set and structure to the bit, and each
+ * number of the shading by its effect. */
+#include "picture_case.h"
+
+#include "volume.h"
+
+/* dB against the reference at a quarter of a voxel. Light multiplies colours that are sampled at the same places, so that the sampling's
+ * own error and the bound are those of the unlit pictures. */
+#define MIDPOINT_DB 58.0
+
+static picture drawn;
+static picture other;
+
+static double lit_psnr(const char* what, stratus_context* context, const picture_case* c, double wanted)
+{
+  static float reference[4 * CASE_PIXELS];
+  reference_scene scene = case_scene(c);
+  double reference_db = 0.0;
+  scene.shading = &c->options.shading;
+  case_render(context, c, &drawn);
+  assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
+  const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
+  print_message("             %s: %.1f dB, reference %.0f dB, %d pixels\n", what, db, reference_db, case_lit(&drawn));
+  assert_true(case_lit(&drawn) > 20);
+  assert_true(db >= wanted);
+  return db;
+}
+
+static void shine(picture_case* c)
+{
+  c->options.shade = 1;
+  c->options.shading.ambient = 0.15;
+  c->options.shading.diffuse = 0.7;
+  c->options.shading.specular = 0.35;
+  c->options.shading.specular_power = 12.5;
+}
+
+static void pictures_are_lit_as_the_reference_lights_them(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
+  shine(&c);
+  lit_psnr("light at the eye", context, &c, MIDPOINT_DB);
+
+  c.options.shading.light_count = 2;
+  c.options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.4, 0.2 } };
+  c.options.shading.lights[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 0.2, 0.5, 1.5 }, .positional = 1 };
+  lit_psnr("two lights, two-sided", context, &c, MIDPOINT_DB);
+  c.options.shading.one_sided = 1;
+  lit_psnr("two lights, one-sided", context, &c, MIDPOINT_DB);
+  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  lit_psnr("pre-integrated", context, &c, MIDPOINT_DB);
+  case_destroy(&c);
+
+  case_create(context, &c, STRATUS_UINT8, 31, 27, 22, 6);
+  shine(&c);
+  c.volume.spacing[0] = 0.7;
+  c.volume.spacing[1] = 1.6;
+  const double turned[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
+  memcpy(c.volume.matrix, turned, sizeof turned);
+  case_camera(context, &c, 3, 1);
+  lit_psnr("uneven, turned, mirrored and sheared; parallel", context, &c, MIDPOINT_DB);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Borders, cell data, nearest values and generic fetches are lit. */
+static void border_voxels_and_every_type_are_lit(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
+    picture_case c;
+    case_create(context, &c, (stratus_type)type, 9 + type, 5, 12, 11 + (uint32_t)type);
+    shine(&c);
+    c.volume.cell_centered = type % 2;
+    case_camera(context, &c, type % 8, 0);
+    lit_psnr(case_type_names[type], context, &c, MIDPOINT_DB);
+    case_destroy(&c);
+  }
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 14, 1, 16, 3);
+  shine(&c);
+  c.volume.cell_centered = 1;
+  case_camera(context, &c, 1, 0);
+  lit_psnr("one layer of cells", context, &c, MIDPOINT_DB);
+  case_destroy(&c);
+  case_create(context, &c, STRATUS_UINT16, 20, 20, 20, 4);
+  shine(&c);
+  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sample_distance = 0.02;
+  lit_psnr("nearest", context, &c, MIDPOINT_DB);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void same(const picture* a, const picture* b, const char* what)
+{
+  if (memcmp(a->rgba, b->rgba, sizeof a->rgba) != 0 || memcmp(a->depth, b->depth, sizeof a->depth) != 0 ||
+    memcmp(a->samples, b->samples, sizeof a->samples) != 0) {
+    print_error("%s: another picture\n", what);
+    fail();
+  }
+}
+
+static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
+{
+  (void)state;
+  stratus_context* contexts[3] = { case_context("host", 1), case_context("host", 3), case_context("host", 2) };
+  contexts[2]->isa = 1;
+  int lit = 0;
+  for (uint32_t seed = 900; seed < 940; ++seed) {
+    picture_case c;
+    char what[64];
+    case_create_random(contexts[0], seed, &c);
+    shine(&c);
+    c.options.structure = STRATUS_STRUCTURE_NONE;
+    case_render(contexts[0], &c, &drawn);
+    lit += case_lit(&drawn) > 0;
+    for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+      assert_true(isfinite(drawn.rgba[i]));
+    }
+    for (int s = STRATUS_STRUCTURE_BLOCK; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+      c.options.structure = (stratus_structure)s;
+      case_render(contexts[s % 3], &c, &other);
+      snprintf(what, sizeof what, "seed %u, %s", seed, stratus_structure_name(c.options.structure));
+      if (memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0 || memcmp(drawn.depth, other.depth, sizeof drawn.depth) != 0) {
+        print_error("%s: another picture\n", what);
+        fail();
+      }
+    }
+    c.options.structure = STRATUS_STRUCTURE_NONE;
+    contexts[2]->isa = 0;
+    case_render(contexts[2], &c, &other);
+    contexts[2]->isa = 1;
+    same(&drawn, &other, "baseline");
+    case_destroy(&c);
+  }
+  print_message("             %d pictures\n", lit);
+  assert_true(lit > 20);
+  for (int i = 0; i < 3; ++i) {
+    stratus_context_destroy(contexts[i]);
+  }
+}
+
+static double light_of(stratus_context* context, const picture_case* c)
+{
+  double sum = 0.0;
+  case_render(context, c, &other);
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    sum += (double)(other.rgba[4 * i] + other.rgba[4 * i + 1] + other.rgba[4 * i + 2]);
+  }
+  return sum;
+}
+
+static void each_number_of_the_shading_has_its_effect(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 24, 24, 24, 8);
+  const double plain = light_of(context, &c);
+  memcpy(&drawn, &other, sizeof drawn);
+  c.options.shade = 1;
+  c.options.shading.ambient = 1.0;
+  c.options.shading.diffuse = 0.0;
+  assert_true(fabs(light_of(context, &c) - plain) < 1e-5 * plain); /* ambient light alone shows the colours as they are */
+  for (int i = 0; i < CASE_PIXELS; ++i) {                          /* light changes no opacity, no depth and no count */
+    assert_true(drawn.rgba[4 * i + 3] == other.rgba[4 * i + 3]);
+    assert_true(drawn.depth[i] == other.depth[i] && drawn.samples[i] == other.samples[i]);
+  }
+  c.options.shading.ambient = 0.25;
+  assert_true(fabs(light_of(context, &c) - 0.25 * plain) < 1e-5 * plain);
+  c.options.shading.ambient = 0.0;
+  assert_true(light_of(context, &c) == 0.0);
+  c.options.shading.diffuse = 0.5;
+  const double diffuse = light_of(context, &c);
+  assert_true(diffuse > 0.05 * plain && diffuse < 0.5 * plain);
+  c.options.shading.one_sided = 1;
+  assert_true(light_of(context, &c) < 0.9 * diffuse);
+  c.options.shading.one_sided = 0;
+  c.options.shading.specular = 0.5;
+  const double broad = light_of(context, &c);
+  assert_true(broad > 1.05 * diffuse);
+  c.options.shading.specular_power = 80.0;
+  const double narrow = light_of(context, &c);
+  assert_true(narrow > diffuse && narrow < 0.8 * broad);
+  c.options.shading.light_count = 0;
+  assert_true(light_of(context, &c) == 0.0);
+  c.options.shading.light_count = 1;
+  c.options.shading.lights[0] = (stratus_light){ .vector = { 1, 1, 1 }, .color = { 0, 1, 0 } };
+  assert_true(light_of(context, &c) > 0.0);
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    assert_true(other.rgba[4 * i] == 0.0f && other.rgba[4 * i + 2] == 0.0f);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* A fill value takes no part in the picture, nor does the range that it makes: everything else is lit and thinned as before. */
+static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.0, 0.2, 0.4, 0.45, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 26, 24, 28, 71);
+  shine(&c);
+  c.options.crop = 1;
+  for (int a = 0; a < 3; ++a) {
+    c.options.crop_bounds[2 * a] = 3.0;
+    c.options.crop_bounds[2 * a + 1] = 40.0;
+  }
+  for (int thinned = 0; thinned < 2; ++thinned) {
+    c.transfer.gradient = steep;
+    c.transfer.gradient_count = thinned ? 3 : 0;
+    case_store(c.values, STRATUS_FLOAT32, 0, 0.0);
+    case_render(context, &c, &drawn);
+    for (int e = 0; e < 3; ++e) {
+      const double outlier[] = { 1e20, 1e35, 3e38 };
+      case_store(c.values, STRATUS_FLOAT32, 0, outlier[e]);
+      case_render(context, &c, &other);
+      const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+      print_message("             %g%s: %.1f dB, %d pixels\n", outlier[e], thinned ? ", thinned" : "", db, case_lit(&other));
+      assert_true(case_lit(&drawn) > 200);
+      assert_true(db > 100.0);
+    }
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* A light so far away that products of its coordinates overflow lights as its direction does. */
+static void lights_however_far_light(void** state)
+{
+  (void)state;
+  static const double distances[] = { 1e12, 1e18, 1e25, 1e40, 1e100, 1e300 };
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  case_create(context, &c, STRATUS_UINT8, 16, 16, 16, 1);
+  c.options.shade = 1;
+  c.options.shading.light_count = 1;
+  c.options.shading.lights[0] = (stratus_light){ .vector = { 0.3, -0.5, 0.7 }, .color = { 1.0, 1.0, 1.0 } };
+  const double by_direction = light_of(context, &c);
+  c.options.shading.lights[0].positional = 1;
+  for (size_t d = 0; d < sizeof distances / sizeof *distances; ++d) {
+    const double vector[3] = { 0.3 * distances[d], -0.5 * distances[d], 0.7 * distances[d] };
+    memcpy(c.options.shading.lights[0].vector, vector, sizeof vector);
+    assert_true(fabs(light_of(context, &c) - by_direction) < 1e-5 * by_direction);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void bad_shading_is_refused_where_it_would_be_used(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  stratus_ray_caster* caster = NULL;
+  picture_case c;
+  case_create(context, &c, STRATUS_UINT8, 8, 8, 8, 1);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  c.options.shading.diffuse = (double)NAN;
+  assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
+  c.options.shade = 1;
+  assert_int_equal(
+    stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "diffuse"));
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+int test_ray_shading(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(pictures_are_lit_as_the_reference_lights_them),
+    cmocka_unit_test(border_voxels_and_every_type_are_lit),
+    cmocka_unit_test(no_structure_thread_or_instruction_set_changes_a_bit),
+    cmocka_unit_test(each_number_of_the_shading_has_its_effect),
+    cmocka_unit_test(one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity),
+    cmocka_unit_test(lights_however_far_light),
+    cmocka_unit_test(bad_shading_is_refused_where_it_would_be_used),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

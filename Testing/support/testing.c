@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * main() of every program of tests: PROGRAM TEST [--WORD...] [CASE...] runs one test, or those of its cases that match a pattern.
+ *
+ * The linker sends calls of cmocka's group runner and of its skip() through here, so that test files stay plain cmocka. cmocka returns 0
+ * where cases skipped themselves and where a group's teardown failed; here the first is ctest's skip and the second a failure. */
+#include "testing.h"
+
+#include <fnmatch.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+int __real__cmocka_run_group_tests(
+  const char* name, const struct CMUnitTest* tests, size_t count, CMFixtureFunction set_up, CMFixtureFunction tear_down);
+int __wrap__cmocka_run_group_tests(
+  const char* name, const struct CMUnitTest* tests, size_t count, CMFixtureFunction set_up, CMFixtureFunction tear_down);
+void __real__skip(const char* file, int line);
+void __wrap__skip(const char* file, int line);
+
+static char** words;
+static size_t cases, skipped, failed_teardowns;
+static CMFixtureFunction group_teardown;
+
+int test_skip(const char* why)
+{
+  printf("SKIPPED: %s\n", why);
+  return TEST_SKIPPED;
+}
+
+bool test_option(const char* word)
+{
+  for (char** w = words + 2; *w; ++w) {
+    if (strcmp(*w, word) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+const char* test_program(void)
+{
+  return words[0];
+}
+
+/* Whether a pattern of the command line matches this case. NULL: whether there is a pattern at all. */
+static bool pattern_for(const char* name)
+{
+  for (char** w = words + 2; *w; ++w) {
+    if (strncmp(*w, "--", 2) != 0 && (!name || fnmatch(*w, name, 0) == 0)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static int tear_down_group(void** state)
+{
+  const int status = group_teardown(state);
+  failed_teardowns += status != 0;
+  return status;
+}
+
+int __wrap__cmocka_run_group_tests(
+  const char* name, const struct CMUnitTest* tests, size_t count, CMFixtureFunction set_up, CMFixtureFunction tear_down)
+{
+  struct CMUnitTest* chosen = calloc(count, sizeof *chosen);
+  size_t number = 0;
+  if (!chosen) {
+    return 1;
+  }
+  for (size_t i = 0; i < count; ++i) {
+    if (!pattern_for(NULL) || pattern_for(tests[i].name)) {
+      chosen[number++] = tests[i];
+    }
+  }
+  cases += number;
+  group_teardown = tear_down;
+  const int failed = number ? __real__cmocka_run_group_tests(name, chosen, number, set_up, tear_down ? tear_down_group : NULL) : 0;
+  free(chosen);
+  return failed;
+}
+
+void __wrap__skip(const char* file, int line)
+{
+  ++skipped;
+  __real__skip(file, line);
+}
+
+int main(int argc, char** argv)
+{
+  const test_entry* entry = test_entries;
+  while (entry->name && (argc < 2 || strcmp(entry->name, argv[1]) != 0)) {
+    ++entry;
+  }
+  if (!entry->name) {
+    fprintf(stderr, "usage: %s TEST [CASE...], with patterns of cases' names; TEST is one of\n", argv[0]);
+    for (entry = test_entries; entry->name; ++entry) {
+      fprintf(stderr, "  %s\n", entry->name);
+    }
+    return 2;
+  }
+  words = argv;
+  const int status = entry->run();
+  if (status == TEST_SKIPPED) {
+    return TEST_SKIPPED;
+  }
+  if (status != 0 || failed_teardowns != 0) {
+    return 1;
+  }
+  if (cases == 0 && pattern_for(NULL)) {
+    fprintf(stderr, "%s has no such case\n", entry->name);
+    return 2;
+  }
+  if (skipped != 0) {
+    printf("SKIPPED: %zu of %zu cases\n", skipped, cases);
+    return TEST_SKIPPED;
+  }
+  return 0;
+}
