@@ -25,7 +25,7 @@ static stratus_value_range blank_ranges(const stratus_value_range* host)
   return r;
 }
 
-static void compare_ranges(const test_volume* v, int size)
+static void compare_ranges(const sample_volume* v, int size)
 {
   stratus_value_range* host = NULL;
   assert_int_equal(stratus_value_range_create(host_context, &v->view, size, &host), STRATUS_OK);
@@ -54,14 +54,14 @@ static void value_ranges_of_every_type_equal_the_hosts(void** state)
   (void)state;
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     for (int repeat = 0; repeat < (tiny ? 1 : 6); ++repeat) {
-      test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+      sample_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
         1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
       compare_ranges(&v, 2 << random_below(&random, 3));
       spoil(&v, 5, &random);
       compare_ranges(&v, 2);
       free_volume(&v);
     }
-    test_volume v = make_volume((stratus_type)type, tiny ? 5 : 131, tiny ? 3 : 17, tiny ? 6 : 9, 1, &random);
+    sample_volume v = make_volume((stratus_type)type, tiny ? 5 : 131, tiny ? 3 : 17, tiny ? 6 : 9, 1, &random);
     spoil(&v, 200, &random);
     compare_ranges(&v, 4);
     compare_ranges(&v, 32);
@@ -98,7 +98,7 @@ static void occupancy_equals_the_hosts(void** state)
   uint32_t random = 2;
   (void)state;
   for (int repeat = 0; repeat < 12; ++repeat) {
-    test_volume v = make_volume(
+    sample_volume v = make_volume(
       STRATUS_FLOAT32, 1 + random_below(&random, 200), 1 + random_below(&random, 12), 1 + random_below(&random, 12), 1, &random);
     float* values = v.values;
     for (int64_t i = 0; i < v.view.dimensions[0] * v.view.dimensions[1] * v.view.dimensions[2]; ++i) {

@@ -28,11 +28,11 @@ static inline int64_t random_below(uint32_t* state, int64_t n)
 /* ---- volumes */
 
 /* A volume with its own values, exactly as many as it may read: reading on is caught by the address sanitizer. */
-typedef struct test_volume {
+typedef struct sample_volume {
   stratus_volume view;
   void* values;
   uint8_t *point_ghosts, *cell_ghosts;
-} test_volume;
+} sample_volume;
 
 static inline void set_value(void* values, stratus_type type, int64_t at, uint32_t* random)
 {
@@ -64,7 +64,7 @@ static inline void set_value(void* values, stratus_type type, int64_t at, uint32
 }
 
 /* Puts NaN, infinities, both zeros and what overflows a float into one value of `one_in`. */
-static inline void spoil(test_volume* v, int64_t one_in, uint32_t* random)
+static inline void spoil(sample_volume* v, int64_t one_in, uint32_t* random)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 0.0, -0.0, 1e300, -1e300 };
   const stratus_volume* view = &v->view;
@@ -81,9 +81,9 @@ static inline void spoil(test_volume* v, int64_t one_in, uint32_t* random)
   }
 }
 
-static inline test_volume make_volume(stratus_type type, int64_t nx, int64_t ny, int64_t nz, int64_t stride, uint32_t* random)
+static inline sample_volume make_volume(stratus_type type, int64_t nx, int64_t ny, int64_t nz, int64_t stride, uint32_t* random)
 {
-  test_volume v = { .view = stratus_volume_default() };
+  sample_volume v = { .view = stratus_volume_default() };
   const int64_t last = (nx * ny * nz - 1) * stride;
   v.values = malloc((size_t)(last + 1) * stratus_type_size(type));
   assert_non_null(v.values);
@@ -100,7 +100,7 @@ static inline test_volume make_volume(stratus_type type, int64_t nx, int64_t ny,
 }
 
 /* Random flags on one point and one cell of `one_in`. */
-static inline void add_ghosts(test_volume* v, int cell_centered, int64_t one_in, uint32_t* random)
+static inline void add_ghosts(sample_volume* v, int cell_centered, int64_t one_in, uint32_t* random)
 {
   const int64_t* n = v->view.dimensions;
   const int64_t count = n[0] * n[1] * n[2];
@@ -117,7 +117,7 @@ static inline void add_ghosts(test_volume* v, int cell_centered, int64_t one_in,
   v->view.cell_centered = cell_centered;
 }
 
-static inline void free_volume(test_volume* v)
+static inline void free_volume(sample_volume* v)
 {
   free(v->values);
   free(v->point_ghosts);

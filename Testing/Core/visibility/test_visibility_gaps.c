@@ -336,7 +336,6 @@ static void only_faces_that_look_at_others_are_gaps(void** state)
   stratus_context_destroy(context);
 }
 
-<<<<<<< HEAD:Testing/Core/test_visibility_gaps.c
 /* Gaps and orders of a mesh are those of the same mesh in other units: no product of its lengths overflows, and none vanishes. */
 static void a_mesh_of_any_size_has_the_same_gaps_and_orders(void** state)
 {
@@ -378,10 +377,7 @@ static void a_mesh_of_any_size_has_the_same_gaps_and_orders(void** state)
   stratus_context_destroy(context);
 }
 
-int main(void)
-=======
 int test_visibility_gaps(void)
->>>>>>> 9a5bf74 (Tests in rooms: one program a folder, and skips that say so):Testing/Core/visibility/test_visibility_gaps.c
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order),

@@ -279,7 +279,7 @@ static void no_label_of_any_type_is_missed_or_taken_for_another(void** state)
   stratus_context* context = make_context("host", 3);
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     for (int size = 2; size <= 8; size *= 2) {
-      test_volume v = make_volume((stratus_type)type, 17, 9, 12, 1 + type % 2, &random);
+      sample_volume v = make_volume((stratus_type)type, 17, 9, 12, 1 + type % 2, &random);
       const int64_t count = 17 * 9 * 12;
       const size_t bytes = stratus_type_size((stratus_type)type);
       for (int64_t i = 0; i < count; ++i) { /* one label a block's width, so that blocks of one label are many */
@@ -323,7 +323,7 @@ static void blocks_are_between_the_ends_exactly_where_their_values_are(void** st
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 200; ++repeat) {
     const stratus_type type = (stratus_type)(repeat % 10);
-    test_volume v = make_volume(type, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+    sample_volume v = make_volume(type, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       1 + random_below(&random, 2), &random);
     const int64_t* n = v.view.dimensions;
     spoil(&v, 1 + random_below(&random, 60), &random);

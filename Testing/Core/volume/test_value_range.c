@@ -101,12 +101,12 @@ static void every_type_and_block_size_equals_brute_force(void** state)
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     for (int size = 2; size <= 32; size *= 2) {
       for (int repeat = 0; repeat < 12; ++repeat) {
-        test_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
+        sample_volume v = make_volume((stratus_type)type, 1 + random_below(&random, 9), 1 + random_below(&random, 9),
           1 + random_below(&random, 9), 1 + random_below(&random, 3), &random);
         check_volume(context, &v.view, size);
         free_volume(&v);
       }
-      test_volume v = make_volume((stratus_type)type, 70, 37, 35, 1, &random);
+      sample_volume v = make_volume((stratus_type)type, 70, 37, 35, 1, &random);
       check_volume(context, &v.view, size);
       free_volume(&v);
     }
@@ -120,8 +120,8 @@ static void values_that_are_not_finite_are_skipped_and_flagged(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 200; ++repeat) {
-    test_volume v = make_volume(repeat & 1 ? STRATUS_FLOAT32 : STRATUS_FLOAT64, 1 + random_below(&random, 20), 1 + random_below(&random, 9),
-      1 + random_below(&random, 9), 1 + random_below(&random, 2), &random);
+    sample_volume v = make_volume(repeat & 1 ? STRATUS_FLOAT32 : STRATUS_FLOAT64, 1 + random_below(&random, 20),
+      1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 2), &random);
     spoil(&v, 1 + random_below(&random, 40), &random);
     check_volume(context, &v.view, 2 << random_below(&random, 3));
     free_volume(&v);
@@ -150,7 +150,7 @@ static void hidden_points_and_cells_are_flagged(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 200; ++repeat) {
-    test_volume v =
+    sample_volume v =
       make_volume(STRATUS_UINT8, 1 + random_below(&random, 12), 1 + random_below(&random, 9), 1 + random_below(&random, 9), 1, &random);
     add_ghosts(&v, repeat & 1, 1 + random_below(&random, 60), &random);
     check_volume(context, &v.view, 2 << random_below(&random, 3));

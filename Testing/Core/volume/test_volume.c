@@ -162,7 +162,7 @@ static void hidden_points_hide_every_cell_they_touch(void** state)
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int repeat = 0; repeat < 60; ++repeat) {
-    test_volume t =
+    sample_volume t =
       make_volume(STRATUS_UINT8, 1 + random_below(&random, 6), 1 + random_below(&random, 6), 1 + random_below(&random, 6), 1, &random);
     add_ghosts(&t, repeat & 1, 1 + random_below(&random, 20), &random);
     const int64_t* p = t.view.dimensions;

@@ -143,7 +143,7 @@ static void every_type_is_compared_exactly(void** state)
   stratus_context* contexts[3] = { make_context("host", 1), make_context("host", 2), make_context("host", 3) };
   for (int pass = 0; pass < 10 * 5 * 8; ++pass) {
     const int64_t* n = sizes[pass / 10 % 5];
-    test_volume v = make_volume((stratus_type)(pass % 10), n[0], n[1], n[2], 1 + random_below(&random, 2), &random);
+    sample_volume v = make_volume((stratus_type)(pass % 10), n[0], n[1], n[2], 1 + random_below(&random, 2), &random);
     if (random_below(&random, 2)) {
       spoil(&v, 5, &random);
     }
@@ -267,7 +267,7 @@ static int block_in(const stratus_voxels* s, int64_t i, int64_t j, int64_t k)
 }
 
 /* Smooth fields with empty space of one value, like real data. */
-static void smooth_values(test_volume* v, uint32_t* random)
+static void smooth_values(sample_volume* v, uint32_t* random)
 {
   const int64_t* n = v->view.dimensions;
   const double x0 = (double)random_below(random, 100) / 10.0, y0 = (double)random_below(random, 100) / 10.0;
@@ -284,7 +284,7 @@ static void blocks_that_either_sampling_shows_are_there_and_few_others(void** st
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int pass = 0; pass < 40; ++pass) {
-    test_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
+    sample_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
     double points[8][2] = { { 0.0, 0.0 } };
     smooth_values(&v, &random);
     if (pass % 4 == 3) {
@@ -341,7 +341,7 @@ static void an_interval_of_cells_keeps_each_block_whose_range_meets_it(void** st
   (void)state;
   stratus_context* context = make_context("host", 2);
   for (int type = 0; type < 10; ++type) {
-    test_volume v = make_volume((stratus_type)type, 13, 9, 6, 2, &random);
+    sample_volume v = make_volume((stratus_type)type, 13, 9, 6, 2, &random);
     spoil(&v, 50, &random);
     stratus_value_range* ranges = NULL;
     stratus_voxels* s = NULL;
@@ -379,7 +379,7 @@ static void a_set_that_covers_another_holds_all_of_it(void** state)
   int64_t covered = 0, refused = 0;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  test_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
+  sample_volume v = make_volume(STRATUS_FLOAT32, 33, 18, 26, 1, &random);
   smooth_values(&v, &random);
   for (int pass = 0; pass < 300; ++pass) {
     double points[2][6][2];
@@ -475,8 +475,8 @@ static void any_change_of_the_content_changes_the_hash(void** state)
   (void)state;
   stratus_context *one = make_context("host", 1), *three = make_context("host", 3);
   for (int type = 0; type < 10; ++type) {
-    test_volume v = make_volume((stratus_type)type, 7, 5, 3, 1, &random);
-    test_volume strided = make_volume((stratus_type)type, 7, 5, 3, 3, &random);
+    sample_volume v = make_volume((stratus_type)type, 7, 5, 3, 1, &random);
+    sample_volume strided = make_volume((stratus_type)type, 7, 5, 3, 3, &random);
     const size_t size = stratus_type_size((stratus_type)type);
     const uint64_t hash = hash_of(one, &v.view);
     uint8_t* bytes = v.values;
@@ -606,7 +606,7 @@ static void memory_refused_at_any_request_is_told_and_leaves_nothing(void** stat
   static const double points[] = { -1.0, 0.0, 0.5, 1.0 };
   uint32_t random = 6;
   (void)state;
-  test_volume v = make_volume(STRATUS_FLOAT32, 9, 6, 5, 2, &random);
+  sample_volume v = make_volume(STRATUS_FLOAT32, 9, 6, 5, 2, &random);
   const stratus_transfer transfer = transfer_of(points, 2, 1);
   const stratus_criterion c = { .transfer = &transfer };
   for (int which = 0; which < 5; ++which) {
