@@ -10,7 +10,8 @@ function (stratus_add_core_build name)
     --build-options -DSTRATUS_BUILD_VTK=OFF -DSTRATUS_BUILD_TESTING=ON -DSTRATUS_WERROR=ON
       "-DCMAKE_INSTALL_PREFIX=${CMAKE_BINARY_DIR}/${name}/prefix" ${ARGN}
     --test-command "${CMAKE_CTEST_COMMAND}" --output-on-failure --parallel 2)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 2700)
+  stratus_test_needs(${name} NOTHING)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 2700 PROCESSORS 2)
 endfunction ()
 stratus_add_core_build(core_under_sanitizers
   "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_C_FLAGS_DEBUG=-O1 -g")
@@ -19,6 +20,9 @@ stratus_add_core_build(core_by_clang -DCMAKE_C_COMPILER=${CLANG} -DCMAKE_BUILD_T
 # ---- consumers of what was installed: the core that clang built without VTK, and everything
 function (stratus_add_installation name folder)
   stratus_add_test(${name} consumers "${CMAKE_COMMAND}" --install "${folder}" --prefix "${CMAKE_BINARY_DIR}/${name}")
+  if (NOT folder STREQUAL CMAKE_BINARY_DIR)
+    stratus_test_needs(${name} NOTHING)
+  endif ()
   set_tests_properties(${name} PROPERTIES FIXTURES_SETUP ${name})
 endfunction ()
 function (stratus_add_consumer name source prefix)
@@ -26,6 +30,7 @@ function (stratus_add_consumer name source prefix)
     --build-generator "${CMAKE_GENERATOR}" --build-noclean --build-project ${name}
     --build-options "-DCMAKE_PREFIX_PATH=${CMAKE_BINARY_DIR}/${prefix}" -DCMAKE_BUILD_TYPE=Release
     --test-command ${ARGN})
+  stratus_test_needs(${name} NOTHING)
   set_tests_properties(${name} PROPERTIES FIXTURES_REQUIRED ${prefix})
 endfunction ()
 stratus_add_installation(install_core "${CMAKE_BINARY_DIR}/core_by_clang")
@@ -43,31 +48,36 @@ if (stratus_vtk)
     stratus_add_test(python_of_installation consumers "${CMAKE_COMMAND}" -E env
       "PYTHONPATH=${CMAKE_BINARY_DIR}/install_all/lib/python3/dist-packages" "${Python3_EXECUTABLE}" -c
       "import vtk, stratus; assert 'install_all' in stratus.__file__; assert issubclass(stratus.vtkStratusVolumeMapper, vtk.vtkVolumeMapper)")
+    stratus_test_needs(python_of_installation NOTHING)
     set_tests_properties(python_of_installation PROPERTIES FIXTURES_REQUIRED install_all)
   endif ()
 endif ()
 
 # ---- every kernel through clang's own OpenCL front end, warnings as errors
+function (stratus_add_kernel_test name)
+  stratus_add_test(${name} kernels ${ARGN})
+  stratus_test_needs(${name} NOTHING)
+endfunction ()
 file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/kernels/*/*.cl")
 foreach (kernel IN LISTS kernels)
   get_filename_component(name "${kernel}" NAME_WE)
   set(compile "${PROJECT_SOURCE_DIR}/Testing/compile-kernel" "${CLANG}" "${kernel}")
-  stratus_add_test(kernel_${name} kernels ${compile} -DSTRATUS_WIDTH=1)
+  stratus_add_kernel_test(kernel_${name} ${compile} -DSTRATUS_WIDTH=1)
   if (name STREQUAL "ray_cast")
-    stratus_add_test(kernel_${name}_pairs kernels ${compile} -DSTRATUS_WIDTH=1 -DSTRATUS_REAL_PAIR=1)
+    stratus_add_kernel_test(kernel_${name}_pairs ${compile} -DSTRATUS_WIDTH=1 -DSTRATUS_REAL_PAIR=1)
   endif ()
   if (name STREQUAL "ray_cast" OR name STREQUAL "first_hit" OR name STREQUAL "tetra_march")
-    stratus_add_test(kernel_${name}_packets kernels ${compile} -DSTRATUS_WIDTH=16)
-    stratus_add_test(kernel_${name}_packets_avx512 kernels ${compile} -DSTRATUS_WIDTH=16 -mavx512f)
+    stratus_add_kernel_test(kernel_${name}_packets ${compile} -DSTRATUS_WIDTH=16)
+    stratus_add_kernel_test(kernel_${name}_packets_avx512 ${compile} -DSTRATUS_WIDTH=16 -mavx512f)
   endif ()
 endforeach ()
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
-  "${stratus_test_folder}/test_device_tiny")
+  $<TARGET_FILE:test_device> test_device_tiny)
 foreach (kind IN ITEMS density distance_field first_hit tetra_march visibility_signs)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
-    "${stratus_test_folder}/test_${kind}_device" tiny)
+    $<TARGET_FILE:test_device> test_${kind}_device --tiny)
 endforeach ()
 
 # ---- the plugin in ParaView
@@ -78,4 +88,5 @@ endif ()
 # ---- the documentation: no warning
 if (TARGET doc)
   stratus_add_test(documentation documentation "${CMAKE_COMMAND}" --build "${CMAKE_BINARY_DIR}" --target doc)
+  stratus_test_needs(documentation NOTHING)
 endif ()

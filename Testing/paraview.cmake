@@ -12,13 +12,15 @@ list(GET paraview_cmake_names 0 paraview_cmake)
 get_filename_component(paraview_cmake "${paraview_cmake}/../paraview-5.11" ABSOLUTE)
 
 stratus_add_test(paraview_unpacked paraview "${PROJECT_SOURCE_DIR}/cmake/unpack-paraview" "${paraview}")
+stratus_test_needs(paraview_unpacked NOTHING)
 set_tests_properties(paraview_unpacked PROPERTIES FIXTURES_SETUP paraview)
 
 stratus_add_test(paraview_plugin paraview "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}/ParaView" "${plugin_build}"
   --build-generator "${CMAKE_GENERATOR}" --build-noclean --build-project StratusParaView
   --build-options -DCMAKE_BUILD_TYPE=Release -DSTRATUS_WERROR=ON "-DStratus_DIR=${CMAKE_BINARY_DIR}/lib/cmake/Stratus"
     "-DParaView_DIR=${paraview}${paraview_cmake}")
-set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700)
+stratus_test_needs(paraview_plugin stratus-core)
+set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700 PROCESSORS 2)
 
 stratus_add_test(paraview_pictures paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_plugin.py"
   "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
