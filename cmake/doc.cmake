@@ -8,7 +8,7 @@ endif ()
 file(GLOB stratus_doc_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Filters/*/vtkStratus*.h" "${PROJECT_SOURCE_DIR}/Rendering/*/vtkStratus*.h"
   "${PROJECT_SOURCE_DIR}/ParaView/*/vtkStratus*.h")
 # Public headers begin with the class's name; what is private to a module has no such comment.
-set(stratus_doc_input "\"${PROJECT_SOURCE_DIR}/Core/stratus.h\"")
+set(stratus_doc_input "\"${PROJECT_SOURCE_DIR}/Core/stratus.h\" \"${PROJECT_SOURCE_DIR}/Core/stratus\"")
 foreach (header IN LISTS stratus_doc_headers)
   file(STRINGS "${header}" class REGEX "@class")
   if (class)
@@ -18,7 +18,7 @@ endforeach ()
 set(stratus_doc_filter "${PROJECT_SOURCE_DIR}/cmake/comments-for-doxygen")
 set(stratus_doc_predefined "")
 foreach (macro IN ITEMS
-    "vtkTypeMacro(a, b)=" "STRATUS_API=" "vtkBooleanMacro(name, type)=virtual void name##On()\; virtual void name##Off()\;"
+    "vtkTypeMacro(a, b)=" "STRATUS_API=" "STRATUS_EXPERIMENTAL=" "vtkBooleanMacro(name, type)=virtual void name##On()\; virtual void name##Off()\;"
     "vtkGetMacro(name, type)=virtual type Get##name()\;" "vtkSetMacro(name, type)=virtual void Set##name(type value)\;"
     "vtkSetClampMacro(name, type, low, high)=virtual void Set##name(type value)\;"
     "vtkSetFilePathMacro(name)=virtual void Set##name(const char* path)\;" "vtkGetFilePathMacro(name)=virtual const char* Get##name()\;"

@@ -4,7 +4,7 @@
 #ifndef STRATUS_BASE_H
 #define STRATUS_BASE_H
 
-#include "stratus.h"
+#include "stratus/camera.h"
 
 #include <math.h>
 #include <stdarg.h>

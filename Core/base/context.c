@@ -11,6 +11,37 @@
 
 #define THREADS_MAX 1024
 
+#define TEXT_OF(number) #number
+#define TEXT(number) TEXT_OF(number)
+
+const char* stratus_version(void)
+{
+  return TEXT(STRATUS_VERSION_MAJOR) "." TEXT(STRATUS_VERSION_MINOR) "." TEXT(STRATUS_VERSION_PATCH);
+}
+
+const char* stratus_status_name(stratus_status status)
+{
+  switch (status) {
+    case STRATUS_OK:
+      return "ok";
+    case STRATUS_INVALID_ARGUMENT:
+      return "invalid argument";
+    case STRATUS_OVERFLOW:
+      return "overflow";
+    case STRATUS_OUT_OF_MEMORY:
+      return "out of memory";
+    case STRATUS_CANCELLED:
+      return "cancelled";
+    case STRATUS_NO_DEVICE:
+      return "no such device";
+    case STRATUS_DEVICE_ERROR:
+      return "device error";
+    case STRATUS_UNSUPPORTED:
+      return "unsupported";
+  }
+  return "unknown status";
+}
+
 static void* default_allocate(void* user, size_t bytes)
 {
   (void)user;

@@ -7,29 +7,6 @@
 #include <string.h>
 #include <time.h>
 
-const char* stratus_status_name(stratus_status status)
-{
-  switch (status) {
-    case STRATUS_OK:
-      return "ok";
-    case STRATUS_INVALID_ARGUMENT:
-      return "invalid argument";
-    case STRATUS_OVERFLOW:
-      return "overflow";
-    case STRATUS_OUT_OF_MEMORY:
-      return "out of memory";
-    case STRATUS_CANCELLED:
-      return "cancelled";
-    case STRATUS_NO_DEVICE:
-      return "no such device";
-    case STRATUS_DEVICE_ERROR:
-      return "device error";
-    case STRATUS_UNSUPPORTED:
-      return "unsupported";
-  }
-  return "unknown status";
-}
-
 stratus_status stratus_fail(stratus_context* context, stratus_status status, const char* format, ...)
 {
   /* Formatted apart first: an argument may point into the message itself. */

@@ -3,6 +3,7 @@
 #ifndef STRATUS_BVH_H
 #define STRATUS_BVH_H
 
+#include "stratus/tree.h"
 #include "base.h"
 
 /* [lo, hi) in voxels. Children of an inner node are `first` and `first + 1`; a leaf of bricks has bricks first .. first + count - 1 of the

@@ -3,6 +3,7 @@
 #ifndef STRATUS_DISTANCE_FIELD_H
 #define STRATUS_DISTANCE_FIELD_H
 
+#include "stratus/distance_field.h"
 #include "voxels.h"
 
 /* One bit for each voxel: bit i % 64 of bits[(k*n[1] + j)*words + i/64] is voxel (i,j,k). Bits beyond a row's end are 0. */

@@ -3,6 +3,7 @@
 #ifndef STRATUS_MESH_H
 #define STRATUS_MESH_H
 
+#include "stratus/mesh.h"
 #include "volume.h"
 
 /* Times the largest coordinate: points nearer than this to a partition's plane lie on it. It exceeds the rounding errors of a point

@@ -3,6 +3,7 @@
 #ifndef STRATUS_FRUSTUM_H
 #define STRATUS_FRUSTUM_H
 
+#include "stratus/octree.h"
 #include "base.h"
 #include "vector.h"
 

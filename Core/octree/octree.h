@@ -240,4 +240,9 @@ stratus_status stratus_octree_walk_nodes(stratus_octree_view* view, stratus_octr
 stratus_status stratus_octree_split_all(stratus_octree_view* view, uint64_t* splits, uint64_t* handed_down);
 stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view);
 
+/* ---- octree_nodes.c */
+/* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message.
+ */
+stratus_status stratus_octree_check(const stratus_octree* octree);
+
 #endif

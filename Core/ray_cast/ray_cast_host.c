@@ -2,6 +2,8 @@
  * The host's way through the traversal: which instruction set, which tiles, which threads. */
 #include "ray_cast_host.h"
 
+#include "stratus/ray_cast.h"
+
 #include "instruction_set.h"
 #include "tiles.h"
 

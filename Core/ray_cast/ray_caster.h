@@ -3,6 +3,8 @@
 #ifndef STRATUS_RAY_CASTER_H
 #define STRATUS_RAY_CASTER_H
 
+#include "stratus/tree.h"
+#include "stratus/ray_cast.h"
 #include "ray_modes_render.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"

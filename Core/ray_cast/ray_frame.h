@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_FRAME_H
 #define STRATUS_RAY_FRAME_H
 
+#include "stratus/ray_cast.h"
 #include "ray_cast_arguments.h"
 #include "volume.h"
 

@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_MASK_H
 #define STRATUS_RAY_MASK_H
 
+#include "stratus/ray_cast.h"
 #include "volume.h"
 
 /* The bytes of cells that ghosts hide, NULL: none. */

@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_MODES_RENDER_H
 #define STRATUS_RAY_MODES_RENDER_H
 
+#include "stratus/ray_cast.h"
 #include "ray_cast_host.h"
 #include "ray_sampling.h"
 #include "volume.h"

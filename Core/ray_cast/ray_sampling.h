@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_SAMPLING_H
 #define STRATUS_RAY_SAMPLING_H
 
+#include "stratus/ray_cast.h"
 #include "volume.h"
 
 /* What the scene asks for, decided from counts alone, so that the same input always gets the same answer. */

@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_SHADING_TABLE_H
 #define STRATUS_RAY_SHADING_TABLE_H
 
+#include "stratus/ray_cast.h"
 #include "volume.h"
 
 /* Steps of a gradient opacity function, between which it is taken as linear. */

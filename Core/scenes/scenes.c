@@ -2,9 +2,9 @@
  * The scenes of record: volumes defined to the last voxel, so that figures measured on them can be compared over years.
  * A noise field is cut at an exact quantile, which fixes the occupied fraction, and what is above is shaded. Everything is single
  * precision without fused operations; a scene is never changed. */
+#include "stratus/scenes.h"
 #include "volume.h"
 #include "scenes_fields.h"
-#include "camera.h"
 
 #include <omp.h>
 #include <stdio.h>

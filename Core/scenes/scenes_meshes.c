@@ -2,6 +2,7 @@
  * The meshes of record that are made, not read: a lattice of tetrahedra, where every plane and edge lies in line with others, and a plate
  * full of holes, whose surface a mesher fills: gaps all over, which an order has to see across. Tests and benchmarks share them; a scene is
  * never changed. */
+#include "stratus/scenes.h"
 #include "volume.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in noise
  * whose density has a given deviation. A set never changes. */
+#include "stratus/scenes.h"
 #include "voxels.h"
 
 #include <stdio.h>

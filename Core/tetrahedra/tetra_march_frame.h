@@ -3,6 +3,7 @@
 #ifndef STRATUS_TETRA_MARCH_HOST_H
 #define STRATUS_TETRA_MARCH_HOST_H
 
+#include "stratus/tetrahedra.h"
 #include "instruction_set.h"
 #include "tetra_arguments.h"
 

@@ -3,6 +3,7 @@
 #ifndef STRATUS_TREE_H
 #define STRATUS_TREE_H
 
+#include "stratus/tree.h"
 #include "bvh.h"
 #include "density.h"
 #include "voxels.h"
@@ -69,5 +70,10 @@ size_t stratus_tree_memory(const stratus_tree* tree);
 stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus_tree* tree);
 /* tree_bytes.c: returns whether the tree's dimensions are those of a tree of this volume. */
 bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
+
+/* ---- tree_check.c */
+/* Every voxel in exactly one leaf, boxes tight, distances never too long: checked against the voxels. STRATUS_INVALID_ARGUMENT, and what is
+ * wrong in the message. */
+stratus_status stratus_tree_check(stratus_context* context, const stratus_tree* tree, const stratus_voxels* voxels);
 
 #endif

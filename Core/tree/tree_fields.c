@@ -2,6 +2,8 @@
  * Leaves of distance fields: their layout, and fields of Chebyshev distances. tree_octants.c fills fields with a leap for each octant. */
 #include "tree_fields.h"
 
+#include "stratus/distance_field.h"
+
 #include <string.h>
 
 /* Most bytes of entries per voxel with which an octant's code has three bits instead of two. Three bits leap farther. */

@@ -9,6 +9,7 @@
 #ifndef STRATUS_VISIBILITY_ORDER_H
 #define STRATUS_VISIBILITY_ORDER_H
 
+#include "stratus/visibility.h"
 #include "mesh.h"
 
 #define STRATUS_NO_CELL UINT32_MAX

@@ -3,6 +3,7 @@
 #ifndef STRATUS_VOLUME_H
 #define STRATUS_VOLUME_H
 
+#include "stratus/skipping.h"
 #include "base.h"
 #include "matrix.h"
 

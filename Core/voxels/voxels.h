@@ -4,6 +4,7 @@
 #ifndef STRATUS_VOXELS_H
 #define STRATUS_VOXELS_H
 
+#include "stratus/voxels.h"
 #include "criterion.h"
 #include "volume.h"
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Every kernel on volumes of a few values, on the first OpenCL device: structures as the host builds them, and every structure's picture
  * equal to the plain march's. Small enough for a simulator that checks each access; so no test library, an exit status only. */
+#include "stratus.h"
+#include "volume.h"
+
 #include "device_state.h"
 #include "testing.h"
 

@@ -2,6 +2,10 @@
  * NULL for every argument of every public function. A call that returns a status refuses it, says so where an object can hold the message,
  * and changes nothing. A call without a status takes NULL for something empty. The list is compared with the header, so that no function is
  * left out. */
+#include "stratus.h"
+#include "tree.h"
+#include "octree.h"
+
 #include "small_scene.h"
 
 #include "volume.h"

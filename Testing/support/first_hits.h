@@ -3,6 +3,8 @@
 #ifndef STRATUS_TESTING_FIRST_HITS_H
 #define STRATUS_TESTING_FIRST_HITS_H
 
+#include "stratus.h"
+
 #include "volume.h"
 
 #include <setjmp.h>

@@ -3,6 +3,8 @@
 #ifndef STRATUS_MESH_CASE_H
 #define STRATUS_MESH_CASE_H
 
+#include "stratus.h"
+
 #include "volume.h"
 
 #include <setjmp.h>

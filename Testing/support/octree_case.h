@@ -4,6 +4,8 @@
 #ifndef STRATUS_TESTING_OCTREE_CASE_H
 #define STRATUS_TESTING_OCTREE_CASE_H
 
+#include "stratus.h"
+
 #include "structures.h"
 
 static inline double random_unit(uint32_t* random)

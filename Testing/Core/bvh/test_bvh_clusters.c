@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Clusters: density peaks compared with all pairs, clouds that every clustering must keep apart, and the cost of trees on the sets of
  * record. */
+#include "stratus.h"
+
 #include "boxes.h"
 
 #include <stdio.h>

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Bandwidth, and density and its derivatives at points, compared with plain sums over all voxels. */
+#include "stratus.h"
+
 #include "density_plain.h"
 #include "testing.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits through every tree, compared with a walk from voxel to voxel in double precision. */
 #include "first_hits.h"
+#include "tree.h"
 
 #define RAYS 600
 

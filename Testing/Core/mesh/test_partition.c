@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Partitions: pieces fill the cells that they were cut from, meet in the same faces, and lie in their leaves. */
+#include "stratus.h"
+
 #include "partition_case.h"
 
 /* Checks that the border is the box's, that no face is shared by three cells or folded, and that no two points are equal. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The order of a partition's cells: orders of a view, leaf by leaf, are right, and lists keep near cells near one another. */
+#include "stratus.h"
+
 #include "partition_case.h"
 
 /* An order with leaves is right from everywhere, within leaves and across them, although its cells need not come leaf by leaf. */

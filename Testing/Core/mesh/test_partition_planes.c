@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The planes of a partition: between cells where possible, the best of all candidates as a loop finds it, and across axes that suit the
  * mesh. */
+#include "stratus.h"
+
 #include "partition_case.h"
 
 /* Grid planes that are there to be found. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One source, many widths: AVX-512, AVX2 and the baseline give the same bits and the same counts, whatever the width of their packets. */
+#include "stratus.h"
+
 #include "picture_case.h"
 
 #include "volume.h"
@@ -41,7 +43,7 @@ static void every_instruction_set_gives_the_same_bits(void** state)
 
 int test_ray_cast_isa(void)
 {
-  if (stratus_ray_cast_best_isa() == 0) {
+  if (stratus_isa_best() == 0) {
     return test_skip("the baseline is the only instruction set here");
   }
   const struct CMUnitTest tests[] = {

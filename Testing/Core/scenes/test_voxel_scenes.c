@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The voxel sets of record and their rays are those that figures were measured on, to the last voxel. The checksums come from the
  * definitions that first made the sets. */
+#include "stratus.h"
+
 #include "structures.h"
 
 #define RAYS (512 * 512)

@@ -145,7 +145,7 @@ int test_visibility_signs(void)
 
 int test_visibility_signs_isa(void)
 {
-  if (stratus_ray_cast_best_isa() == 0) {
+  if (stratus_isa_best() == 0) {
     return test_skip("the baseline is the only instruction set here");
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(every_instruction_set_finds_the_same_signs) };

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The view of a volume: the position of its voxels, the meaning of its ghosts, and invalid volumes. */
 #define _DEFAULT_SOURCE
+#include "stratus.h"
+
 #include "structures.h"
 
 #include <sys/mman.h>

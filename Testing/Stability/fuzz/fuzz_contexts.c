@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Contexts with any options, and all calls that need no object: names, devices, cameras, frusta, checks, unknown scenes of record. */
+#include "stratus.h"
+#include "tree.h"
+#include "octree.h"
+
 #include "fuzz.h"
 
 #include <stdlib.h>

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Octrees of objects: a history of insertions, moves, removals, culls and queries, compared with a linear list of the same history. */
+#include "stratus.h"
+#include "octree.h"
+
 #include "fuzz.h"
 
 #include <stdlib.h>

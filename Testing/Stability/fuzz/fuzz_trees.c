@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Trees for first hits: their hits against those of the plain walk, trees as bytes, and invalid bytes. */
+#include "stratus.h"
+#include "tree.h"
+
 #include "fuzz.h"
 
 #include <stdlib.h>
