@@ -142,6 +142,9 @@ struct chart_mark {
 };
 void write_chart(const std::string& path, const std::vector<chart_mark>& marks, const char* x_title, const char* y_title);
 
+// ---- volume.cxx
+int volume_main(int argc, char* argv[]);
+
 // ---- main.cxx: starts the program again under xvfb-run where there is no display
 void ensure_display(char* argv[]);
 } // namespace bench

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // stratus-bench volume: this project's pictures and times beside those of what users have today, in one process.
 #include "bench.h"
-#include "distance.h"
-#include "octree_bench.h"
 #include "rate.h"
-#include "tetra_bench.h"
-#include "tree_methods.h"
-
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 namespace {
 
@@ -170,57 +162,16 @@ void run(const options& o)
 }
 } // namespace
 
-// VTK's windows of X end the process without a display; so start again with one. Those of EGL and OSMesa need none.
-void bench::ensure_display(char* argv[])
+int bench::volume_main(int argc, char* argv[])
 {
-  if (std::getenv("DISPLAY") || !vtkNew<vtkRenderWindow>()->IsA("vtkXOpenGLRenderWindow")) {
-    return;
+  const bool asked = argc > 2 && std::strcmp(argv[2], "--help") == 0;
+  if (argc < 2 || std::strcmp(argv[1], "volume") != 0 || asked) {
+    const bool told = asked || (argc > 1 && std::strcmp(argv[1], "--help") == 0);
+    std::fputs(help, told ? stdout : stderr);
+    return told ? 0 : 2;
   }
-  std::vector<std::string> words = { "xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset" };
-  for (char** word = argv; *word; ++word) {
-    words.push_back(*word);
-  }
-  std::vector<char*> pointers;
-  for (std::string& word : words) {
-    pointers.push_back(&word[0]);
-  }
-  pointers.push_back(nullptr);
-  execvp(pointers[0], pointers.data());
-  throw bench::failure("no display, and xvfb-run cannot be started (Debian: xvfb)");
-}
-
-int main(int argc, char* argv[])
-{
-  try {
-    if (argc > 1 && std::strcmp(argv[1], "distance") == 0) {
-      return bench::distance_main(argc, argv);
-    }
-    if (argc > 1 && std::strcmp(argv[1], "octree") == 0) {
-      return bench::octree_main(argc, argv);
-    }
-    if (argc > 1 && std::strcmp(argv[1], "tree") == 0) {
-      return bench::tree_main(argc, argv);
-    }
-    if (argc > 1 && std::strcmp(argv[1], "tetra") == 0) {
-      return bench::tetra_main(argc, argv);
-    }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "stratus-bench: %s\n", error.what());
-    return 1;
-  }
-  if (argc < 2 || std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "volume") != 0 ||
-    (argc > 2 && std::strcmp(argv[2], "--help") == 0)) {
-    const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || (argc > 2 && std::strcmp(argv[2], "--help") == 0));
-    std::fputs(help, asked ? stdout : stderr);
-    return asked ? 0 : 2;
-  }
-  try {
-    const options o = parse(argc, argv);
-    bench::ensure_display(argv);
-    run(o);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "stratus-bench: %s\n", error.what());
-  }
-  return 1;
+  const options o = parse(argc, argv);
+  ensure_display(argv);
+  run(o);
+  return 0;
 }
