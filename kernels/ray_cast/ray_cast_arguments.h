@@ -96,11 +96,10 @@ typedef struct stratus_ray_mode {
 
 typedef struct stratus_ray_lights {
   int on, two_sided, count;
-  float normal[9];   /* 3x3, by rows: takes a value's index gradient to a normal, of any length */
-  float place[9];    /* 3x3, by rows: takes index displacements to world ones, in units of the shortest voxel edge */
-  float material[4]; /* ambient, diffuse, specular, specular power */
-  float vector[8][3],
-    color[8][3]; /* the light's colour, and the direction to it, of length 1; positional: its position, as `place` maps it */
+  float normal[9];                 /* 3x3, by rows: takes a value's index gradient to a normal, of any length */
+  float place[9];                  /* 3x3, by rows: takes index displacements to world ones, in units of the shortest voxel edge */
+  float material[4];               /* ambient, diffuse, specular, specular power */
+  float vector[8][3], color[8][3]; /* vector: the direction to the light, of length 1; where positional, its position, as `place` maps it */
   int positional[8];
 } stratus_ray_lights;
 
