@@ -101,7 +101,25 @@ static inline void cut_polygon(polygon* face, const double plane[4], long double
  * normals. */
 static inline bool box_meets_frustum(const stratus_frustum* frustum, const double bounds[6], const double inside[3], double room)
 {
+  /* Most boxes lie outside one half-space as a whole, or have their middle in all six. */
   bool holds = true;
+  for (int p = 0; p < 6; ++p) {
+    const double* n = frustum->planes[p];
+    long double most = n[3] + room, middle = n[3];
+    for (int a = 0; a < 3; ++a) {
+      const long double lo = (long double)n[a] * bounds[2 * a], hi = (long double)n[a] * bounds[2 * a + 1];
+      most += lo > hi ? lo : hi;
+      middle += 0.5L * (lo + hi);
+    }
+    if (most < 0.0L) {
+      return false;
+    }
+    holds = holds && middle >= 0.0L;
+  }
+  if (holds) {
+    return true;
+  }
+  holds = true;
   for (int a = 0; a < 3; ++a) {
     holds = holds && inside[a] >= bounds[2 * a] - room && inside[a] <= bounds[2 * a + 1] + room;
   }

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -263,6 +264,9 @@ static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, 
   for (int i = 0; i < STEPS; ++i) {
     const double t = (i + 0.5) / STEPS, x = s->first + t * (s->last - s->first);
     const double a = tetra_function(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
+    if (a == 0.0) {
+      continue;
+    }
     const double alpha = -expm1(log1p(-a) * (s->to - s->from) * length / STEPS / c->transfer.unit_distance);
     if (alpha > 0.0 && isinf(*depth)) {
       *depth = (s->from + t * (s->to - s->from)) * length;
@@ -274,11 +278,52 @@ static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, 
   }
 }
 
+/* Of each cell the middle of its corners in the world and the square of their largest distance from it, both in `balls`: 4 numbers a cell.
+ */
+static inline void tetra_balls(const tetra_case* c, double* balls)
+{
+  const double* m = c->mesh.matrix;
+  for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
+    double p[4][3], *ball = balls + 4 * cell;
+    memset(ball, 0, 4 * sizeof *ball);
+    for (int i = 0; i < 4; ++i) {
+      const double* q = c->mesh.points + 3 * (int64_t)c->mesh.vertices[4 * cell + i];
+      for (int a = 0; a < 3; ++a) {
+        p[i][a] = m[4 * a] * q[0] + m[4 * a + 1] * q[1] + m[4 * a + 2] * q[2] + m[4 * a + 3];
+        ball[a] += 0.25 * p[i][a];
+      }
+    }
+    for (int i = 0; i < 4; ++i) {
+      double square = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        square += (p[i][a] - ball[a]) * (p[i][a] - ball[a]);
+      }
+      ball[3] = fmax(ball[3], square);
+    }
+  }
+}
+
+/* Whether the line passes the ball by, with room for rounding; a ball that is not finite is never passed. */
+static inline bool tetra_passes(const double ball[4], const double origin[3], const double along[3])
+{
+  double square = 0.0, far = 0.0, forward = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = ball[a] - origin[a];
+    square += along[a] * along[a];
+    far += d * d;
+    forward += d * along[a];
+  }
+  return far - forward * forward / square > 1.01 * ball[3] + 1e-9 * far;
+}
+
 /* rgba: TETRA_PIXELS times 4; depth, may be NULL. */
 static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
 {
   tetra_stretch* met = calloc((size_t)c->mesh.cell_count + 1, sizeof *met);
+  double* balls = malloc(((size_t)c->mesh.cell_count + 1) * 4 * sizeof *balls);
   assert_non_null(met);
+  assert_non_null(balls);
+  tetra_balls(c, balls);
   for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
     const double u = (2.0 * (pixel % TETRA_WIDTH) + 1.0) / TETRA_WIDTH - 1.0, v = (2.0 * (pixel / TETRA_WIDTH) + 1.0) / TETRA_HEIGHT - 1.0;
     const stratus_camera* k = &c->camera;
@@ -294,7 +339,9 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
       to = k->parallel ? k->near_k + d * (k->far_k - k->near_k) : k->near_k * k->far_k / (k->far_k - d * (k->far_k - k->near_k));
     }
     for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
-      count += (size_t)tetra_meet(c, cell, origin, along, k->near_k, to, met + count);
+      if (!tetra_passes(balls + 4 * cell, origin, along)) {
+        count += (size_t)tetra_meet(c, cell, origin, along, k->near_k, to, met + count);
+      }
     }
     qsort(met, count, sizeof *met, tetra_nearer);
     memset(out, 0, 4 * sizeof *out);
@@ -317,6 +364,7 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
     }
   }
   free(met);
+  free(balls);
 }
 
 /* Root mean square of RGBA in 0..255 over the pixels that either shows. */
