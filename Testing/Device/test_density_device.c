@@ -7,6 +7,7 @@
 #include "voxel_sets.h"
 
 #include "density.h"
+#include "density_plan.h"
 #include "device.h"
 #include "device_pair.h"
 #include "tree.h"

@@ -6,6 +6,7 @@
 
 #include "device_state.h"
 #include "testing.h"
+#include "volume.h"
 
 #include <stdio.h>
 #include <stdlib.h>
