@@ -91,10 +91,11 @@ static int64_t past_block(const reference_field* f, const ray* r, const double p
   return next > i ? next : i + 1;
 }
 
-/* Opacity of a step, and its colour, where a sample is more than one value's colour and opacity. */
-static double look(const reference_scene* scene, const reference_field* f, const ray* r, double s, const double p[3], reference_cell* c,
+/* Opacity of a step, and its colour, where a sample is more than one value's colour and opacity; a field and a cell a component. */
+static double look(const reference_scene* scene, const reference_field* parts, const ray* r, double s, const double p[3], reference_cell* c,
   double step, double rgb[3])
 {
+  const reference_field* f = parts;
   reference_place place;
   double values[REFERENCE_COMPONENTS_MAX], tau = 0.0, glow[3];
   memcpy(place.to_index, f->to_index, sizeof place.to_index);
@@ -104,10 +105,7 @@ static double look(const reference_scene* scene, const reference_field* f, const
     place.world[a] = r->origin[a] + s * r->direction[a];
   }
   for (int i = 0; i < reference_components(scene->volume); ++i) {
-    const stratus_volume view = reference_component(scene->volume, i);
-    reference_field part = *f;
-    part.volume = &view;
-    values[i] = reference_field_sample(&part, p, &c[i]);
+    values[i] = reference_field_sample(parts + i, p, &c[i]);
   }
   reference_shade(scene, &place, values, &tau, glow);
   for (int a = 0; a < 3; ++a) {
@@ -124,8 +122,13 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
   const double share = step / scene->transfer->unit_distance;
   const bool shading = reference_has_shading(scene);
   reference_cell c[REFERENCE_COMPONENTS_MAX];
-  for (int i = 0; i < REFERENCE_COMPONENTS_MAX; ++i) {
+  reference_field parts[REFERENCE_COMPONENTS_MAX];
+  stratus_volume views[REFERENCE_COMPONENTS_MAX];
+  for (int i = 0; i < reference_components(scene->volume); ++i) {
     c[i] = (reference_cell){ .at = { -1, -1, -1 } };
+    parts[i] = *f;
+    views[i] = reference_component(scene->volume, i);
+    parts[i].volume = shading ? views + i : f->volume;
   }
   double left = 1.0;
   double sum[3] = { 0.0, 0.0, 0.0 };
@@ -144,7 +147,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
     ++i;
     double kept = 0.0, rgb[3] = { 0.0, 0.0, 0.0 };
     if (shading) {
-      kept = look(scene, f, r, s, p, c, step, rgb);
+      kept = look(scene, parts, r, s, p, c, step, rgb);
     } else {
       const double value = reference_field_sample(f, p, c), opacity = isnan(value) ? 0.0 : reference_opacity(scene->transfer, value);
       kept = opacity < 1.0 ? -expm1(share * log1p(-opacity)) : 1.0;

@@ -171,12 +171,12 @@ static double depth_of(double opacity)
 static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
   double opacity, double weight, double rgb[3], double* tau, double glow[3])
 {
-  const stratus_volume view = reference_component(scene->volume, shown);
   double g[3] = { 0.0, 0.0, 0.0 };
   if (opacity <= 0.0) {
     return;
   }
   if (scene->shading || transfer->gradient_count > 0) {
+    const stratus_volume view = reference_component(scene->volume, shown);
     gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, g);
   }
   const double depth = weight * depth_of(opacity) * gradient_factor(scene->volume, transfer, g) / transfer->unit_distance;
