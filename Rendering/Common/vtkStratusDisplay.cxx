@@ -139,7 +139,8 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   this->Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   this->Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
-  const bool writesDepth = !this->WindowDepth.empty() && this->Stage != vtkStratusPeels::FIRST; // depths are not interpolated, so colours must not be, either
+  // Depths are not interpolated, so colours must not be, either.
+  const bool writesDepth = !this->WindowDepth.empty() && this->Stage != vtkStratusPeels::FIRST;
   const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);

@@ -20,17 +20,18 @@ const char* const help = R"(stratus-bench distance [options]
 
   --case NAME,...     sparse, clustered, dense, single, none, all, plate, shell (default: all of them)
   --size N,...        voxels along each axis (default 64,128,256)
-  --method M,...      stratus:exact|zigzag|envelope|jfa|jfa+1|jfa+2|1+jfa|jfa2|ajfa|ajfa-fig5, with -signed and then @host or @device (the first
-                      OpenCL device; where that is a CPU, the host builds) behind it; itk (signed). Default: all on the host, exact signed too
+  --method M,...      stratus:exact|zigzag|envelope|jfa|jfa+1|jfa+2|1+jfa|jfa2|ajfa|ajfa-fig5, with -signed and then @host or @device (the
+                      first OpenCL device; where that is a CPU, the host builds) behind it; itk (signed). Default: all on the host, exact
+                      signed too
   --threads N         of the host and of ITK (default 2)
   --csv FILE          tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                       the rows before them tell where they come from, as in stratus-bench volume
   --chart FILE.png    build time against the share of wrong voxels, of the largest size
 
-build_ms: from the set of voxels to the field, median of 5 (floodings and ITK: 3, and 1 beyond 64 voxels). array_ms: the same, and all distances
-as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines that are busy.
-wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are wrong, but in no other error.
-ITK is judged by what it measures from: the contour.
+build_ms: from the set of voxels to the field, median of 5 (floodings and ITK: 3, and 1 beyond 64 voxels). array_ms: the same, and all
+distances as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines
+that are busy. wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are wrong,
+but in no other error. ITK is judged by what it measures from: the contour.
 )";
 
 struct options {

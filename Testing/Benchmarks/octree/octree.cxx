@@ -22,10 +22,9 @@ const char* const help = R"(stratus-bench octree [options]
   --scene NAME,...     boxes-N; actors-N: the same boxes as actors of VTK; paper: tables 1 to 3 of Li & Huang 2024 (default:
                        boxes-1000,boxes-9454,boxes-100000,boxes-1000000,actors-1000,actors-9454,actors-100000,paper)
   --path NAME,...      far, near, inside, turn (default: all of them)
-  --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static with
-                       :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256). With actors
-                       stratus:culler|culler-static, vtk:coverage.
-                       (default: all)
+  --method M,...       stratus:octree-paper|octree-euclid|octree-pixel|static|linear; the first two with :C behind, for another C, static
+                       with :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256). With actors
+                       stratus:culler|culler-static, vtk:coverage. (default: all)
   --sweep C,...        stratus:octree-paper at these C too
   --frames N           of each path (default 120)
   --threads N          of the host (default 1)
@@ -34,12 +33,12 @@ const char* const help = R"(stratus-bench octree [options]
   --chart FILE.png     cull_ms against the tree's bytes
 
 cull_ms: median over a path's frames, from a tree that has not been looked at; cull_worst_ms: the slowest. With one thread both are its
-processor time, else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own size.
-nodes, bytes, depth: at the path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to the depth
-that the pixel one reached. visible: mean of the frames.
-With actors cull_ms is the whole of Cull(), its look for changes included, and frame_ms the median of up to 24 frames of the path, 512 x 384;
-frame_best_ms, frame_worst_ms: the fastest and the slowest of them. added_bytes: of the tree, in percent of what a list of its objects takes.
-wrong_culls, false_keeps (percent of what was kept): against faces cut by the planes, at 5 frames.
+processor time, else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own
+size. nodes, bytes, depth: at the path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to the
+depth that the pixel one reached. visible: mean of the frames. With actors cull_ms is the whole of Cull(), its look for changes included,
+and frame_ms the median of up to 24 frames of the path, 512 x 384; frame_best_ms, frame_worst_ms: the fastest and the slowest of them.
+added_bytes: of the tree, in percent of what a list of its objects takes. wrong_culls, false_keeps (percent of what was kept): against
+faces cut by the planes, at 5 frames.
 )";
 
 struct options {

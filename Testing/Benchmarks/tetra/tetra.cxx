@@ -19,8 +19,8 @@ namespace {
 
 const char* const help = R"(stratus-bench tetra [options]
 
-  --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice), or a file of
-                            tetrahedra with point scalars; default: the four
+  --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice), or a
+                            file of tetrahedra with point scalars; default: the four
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
   --method M,...            stratus:auto|march|project, stratus:march@device (the first OpenCL device), vtk:projected,
                             vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk);
@@ -38,13 +38,14 @@ const char* const help = R"(stratus-bench tetra [options]
   --pictures FOLDER         each method's window in the first view, and the reference, as PNG
   --no-error                times and orders only
 
-frame_ms: whole Render() with WaitForCompletion(), median over the 8 views of record, each the median of its repeats, methods in turns; before
-each the camera moves, so that no order is the last one's. rmse255 (of float pixels) and rmse255_8bit (of the window read back): root mean square
-of RGBA in 0..255 over the pixels that either shows, against a march in double precision through the cells; reference_rmse255: by how much that
-changes with steps of four times the length. sort_ms: median over the 8 views, signs and cut cells included, build_ms (neighbours; VTK: centres)
-apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over 24 views: 6 directions (3 along axes) x parallel,
-perspective, near, inside. cycles are the sum over those. bytes: the core's own after the first picture or order, peak_bytes: at most until then.
-VTK's mappers of tetrahedra take opacity for attenuation: they are given functions that mean the same to them.
+frame_ms: whole Render() with WaitForCompletion(), median over the 8 views of record, each the median of its repeats, methods in turns;
+before each the camera moves, so that no order is the last one's. rmse255 (of float pixels) and rmse255_8bit (of the window read back):
+root mean square of RGBA in 0..255 over the pixels that either shows, against a march in double precision through the cells;
+reference_rmse255: by how much that changes with steps of four times the length. sort_ms: median over the 8 views, signs and cut cells
+included, build_ms (neighbours; VTK: centres) apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over
+24 views: 6 directions (3 along axes) x parallel, perspective, near, inside. cycles are the sum over those. bytes: the core's own after
+the first picture or order, peak_bytes: at most until then. VTK's mappers of tetrahedra take opacity for attenuation: they are given
+functions that mean the same to them.
 )";
 
 struct options {

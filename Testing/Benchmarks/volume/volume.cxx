@@ -13,14 +13,14 @@ namespace {
 
 const char* const help = R"(stratus-bench volume [options]
 
-  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), cloud-N (resampled to N x N/2 x N), or
-                            an image file; each with +shade behind it: lit by a headlight;
-                            default: cloud,plume,fog,voxel,peak,plume2,cloud+shade and ../shared/data/isabel_02.vti, plain and lit, where it is
+  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), cloud-N (resampled to N x N/2
+                            x N), or an image file; each with +shade behind it: lit by a headlight; default:
+                            cloud,plume,fog,voxel,peak,plume2,cloud+shade and ../shared/data/isabel_02.vti, plain and lit, where it is
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
                             vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
-  --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `# name,value`:
-                            processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
+  --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `#
+                            name,value`: processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
   --chart FILE.png          frame time against error
   --reference-cache FOLDER  keep the reference's pictures, which take most of the time
   --no-error                times and differing pixels only
@@ -30,8 +30,8 @@ update_ms: from a change of the transfer function to the next picture, median ov
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
-floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel until a ray is opaque, at the rate of a tight loop that sets up,
-skips and tests nothing. A method can take fewer samples than floor counts.
+floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel until a ray is opaque, at the rate of a tight loop that sets
+up, skips and tests nothing. A method can take fewer samples than floor counts.
 
 stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling,
 stratus-bench tetra --help of tetrahedra.
