@@ -45,11 +45,11 @@ static stratus_status aim(stratus_context* context, const double eye[3], const d
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "camera aspect %g times half the window's height, %g, must be finite", aspect, half_height);
   }
-  if (!stratus_vector_normalize(forward)) {
+  if (stratus_vector_normalize(forward) == 0.0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera eye and focal point (%g, %g, %g) must differ, by a finite distance",
       focal[0], focal[1], focal[2]);
   }
-  if (!stratus_vector_normalize(upwards)) {
+  if (stratus_vector_normalize(upwards) == 0.0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera view_up is (0, 0, 0), must have a length");
   }
   stratus_vector_cross(forward, upwards, right);

@@ -143,7 +143,7 @@ static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3]
       world[row] += slope * shader->world_to_index[4 * axis + row];
     }
   }
-  if (!stratus_vector_normalize(world)) {
+  if (stratus_vector_normalize(world) == 0.0) {
     return false;
   }
   const double sign = stratus_vector_dot(world, direction) > 0.0 ? -1.0 : 1.0;
@@ -192,7 +192,7 @@ static void illuminate(
     for (int axis = 0; axis < 3; ++axis) {
       to[axis] = shader->lights[i].vector[axis] - (shader->lights[i].positional ? point[axis] : 0.0);
     }
-    if (shader->lights[i].positional && !stratus_vector_normalize(to)) {
+    if (shader->lights[i].positional && stratus_vector_normalize(to) == 0.0) {
       memcpy(to, normal, sizeof to); /* the light stands on the hit */
     }
     const double cosine = stratus_vector_dot(normal, to);
