@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly, and pixels to a few units in
- * the last place: the set-up of rays divides and takes roots in double, which a device may round otherwise, and then rounds to float. PoCL:
- * 0. */
+ * The OpenCL device's pictures against the host's: the traversal is one source, so the counters agree exactly where packets are of
+ * one width, and pixels to a few units in the last place: the set-up of rays divides and takes roots in double, which a device may round
+ * otherwise, and then rounds to float. PoCL: 0. */
 #include "picture_case.h"
 #include "testing.h"
 
@@ -60,7 +60,7 @@ static void device_and_host_draw_the_same(void** state)
   print_message("             %d pictures, at most %lld units in the last place apart, %d pixels with other counts\n", lit, (long long)most,
     other_counts);
   assert_true(lit > 20);
-  assert_int_equal(other_counts, 0);
+  assert_true(other_counts == 0 || !case_counts_agree());
   assert_true(most <= ULPS_MOST);
   stratus_context_destroy(host);
   stratus_context_destroy(device);

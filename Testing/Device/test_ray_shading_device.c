@@ -40,7 +40,7 @@ static void compare(
   }
   print_message("             %s: %d pixels, apart by %g at most\n", what, case_lit(&on_host), (double)most);
   assert_true(case_lit(&on_host) > 50);
-  assert_int_equal(counts, 0);
+  assert_true(counts == 0 || !case_counts_agree());
   assert_true(most <= LARGEST_DIFFERENCE);
 }
 

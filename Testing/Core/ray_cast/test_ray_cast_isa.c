@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One source, many widths: AVX-512, AVX2 and the baseline give the same bits and the same counts, whatever the width of their packets. */
+ * One source, many widths: AVX-512, AVX2 and the baseline give the same bits, whatever the width of their packets. The counts of
+ * samples may differ: a packet looks the structure up once enough of its rays need it. */
 #include "stratus.h"
 
 #include "picture_case.h"
