@@ -9,10 +9,10 @@
 extern "C" {
 #endif
 
-/* Rays of the picture. With u, v in -1..1 at the window's edges (pixel i of n has its centre at (2i+1)/n - 1), the
- * ray is, for near_k <= k <= far_k,
+/* A camera, which assigns one ray to each pixel. With u, v in -1..1 at the window's edges (pixel i of n has its centre at (2i+1)/n - 1),
+ * the ray is, for near_k <= k <= far_k,
  *   perspective: eye + k (forward + u right + v up)      parallel: eye + u right + v up + k forward.
- * So with |forward| = 1 and right, up orthogonal to it, k is the distance to the eye's plane. Samples lie at (n + 1/2)
+ * If |forward| = 1, and right and up are orthogonal to it, k is the distance from the plane through the eye. Samples lie at (n + 1/2)
  * sample distances from the eye (parallel: from its plane), n an integer. */
 typedef struct stratus_camera {
   double eye[3];
@@ -21,27 +21,30 @@ typedef struct stratus_camera {
   double up[3];
   double near_k; /* >= 0 (parallel: any), finite. Default 0. */
   double far_k;  /* > near_k, may be INFINITY. Default INFINITY. */
-  int parallel;  /* default 0 */
+  int parallel;  /* 1: parallel rays, 0: perspective. Default 0. */
 } stratus_camera;
 
-/* Perspective camera: view_angle is the full vertical angle, degrees in (0,180); aspect is width/height. */
+/* Makes a perspective camera. view_angle: full vertical angle, degrees in (0,180); aspect: width/height. */
 STRATUS_API stratus_status stratus_camera_perspective(stratus_context* context, const double eye[3], const double focal[3],
   const double view_up[3], double view_angle, double aspect, stratus_camera* camera);
-/* Parallel camera: parallel_scale is half the height of the window in world units, > 0. */
+/* Makes a parallel camera. parallel_scale: half the height of the window in world units, > 0. */
 STRATUS_API stratus_status stratus_camera_parallel(stratus_context* context, const double eye[3], const double focal[3],
   const double view_up[3], double parallel_scale, double aspect, stratus_camera* camera);
 
-/* The picture and what bounds it. All buffers are the caller's, width*height pixels, bottom row first. */
+/* The picture that a renderer fills, and the geometry that ends its rays. The caller owns all buffers, of width*height pixels each, bottom
+ * row first. */
 typedef struct stratus_image {
-  int width;                 /* 1..65536 */
-  int height;                /* 1..65536 */
-  float* rgba;               /* out: 4 floats a pixel, premultiplied by alpha; 0 where nothing is */
-  float* depth;              /* out, may be NULL: world distance along the ray from the eye (parallel: from its plane) to the first segment
-                              * that contributes; INFINITY where none does */
-  uint8_t* rgba8;            /* out, may be NULL: rgba in 0..255, rounded to the nearest; above 1 is 255 */
-  uint32_t* samples;         /* out, may be NULL: samples taken in the pixel */
-  const float* opaque_depth; /* in, may be NULL: OpenGL window depth 0..1 of opaque geometry between near_k and far_k (both
-                              * finite then); rays end there */
+  int width;   /* 1..65536 */
+  int height;  /* 1..65536 */
+  float* rgba; /* out: 4 floats for each pixel, premultiplied by alpha; 0 where nothing shows */
+  /* Out, may be NULL: world distance along the ray from the eye (parallel: from its plane) to the first segment that contributes; INFINITY
+   * where none does. */
+  float* depth;
+  uint8_t* rgba8;    /* out, may be NULL: rgba times 255, rounded to the nearest; values above 1 become 255 */
+  uint32_t* samples; /* out, may be NULL: number of samples taken in the pixel */
+  /* In, may be NULL: OpenGL window depth in 0..1 of opaque geometry, at which rays end. The depths lie between near_k and far_k, which both
+   * must be finite. */
+  const float* opaque_depth;
 } stratus_image;
 
 #ifdef __cplusplus

@@ -15,12 +15,12 @@ extern "C" {
 typedef enum stratus_status {
   STRATUS_OK = 0,
   STRATUS_INVALID_ARGUMENT, /* a value out of its range; the message names value and range */
-  STRATUS_OVERFLOW,         /* a product of sizes does not fit the address space */
+  STRATUS_OVERFLOW,         /* the byte size or item count of an array does not fit the address space */
   STRATUS_OUT_OF_MEMORY,    /* the allocator or the device returned nothing */
-  STRATUS_CANCELLED,        /* the progress callback asked to stop; outputs are undefined, objects intact */
+  STRATUS_CANCELLED,        /* the progress callback asked to stop; output arrays are undefined, objects stay usable */
   STRATUS_NO_DEVICE,        /* no such OpenCL device */
   STRATUS_DEVICE_ERROR,     /* an OpenCL call failed, or the device disappeared */
-  STRATUS_UNSUPPORTED       /* understood, but not built */
+  STRATUS_UNSUPPORTED       /* the request is valid, but this build or method does not implement it */
 } stratus_status;
 
 /* English name of a status, never NULL. */
@@ -30,19 +30,19 @@ typedef struct stratus_context stratus_context;
 
 typedef enum stratus_log_level { STRATUS_LOG_DEBUG, STRATUS_LOG_INFO, STRATUS_LOG_WARNING } stratus_log_level;
 
-typedef void* (*stratus_allocate_function)(void* user, size_t bytes); /* at least 64-byte aligned, or NULL */
+typedef void* (*stratus_allocate_function)(void* user, size_t bytes); /* returns memory aligned to 64 bytes at least, or NULL */
 typedef void (*stratus_release_function)(void* user, void* memory);   /* takes NULL */
 typedef void (*stratus_log_function)(void* user, stratus_log_level level, const char* line);
-/* stage: a short name ("value ranges", "ray cast"); fraction 0..1. Return non-zero to cancel. Called on the thread
- * that called the core, never from a worker. */
+/* stage: a short name ("value ranges", "ray cast"); fraction: 0..1. A non-zero result cancels the call. The core calls this function on the
+ * thread that called the core, never on a worker. */
 typedef int (*stratus_progress_function)(void* user, const char* stage, double fraction);
 
 typedef struct stratus_context_options {
-  /* "auto" (or NULL): the first OpenCL GPU, else the host; "host": plain C; else the index of stratus_device_name(),
-   * or a part of its name, any case. Default "auto". */
+  /* "auto" or NULL: the first OpenCL GPU, or the host if there is none. "host": plain C. Otherwise the device's index for
+   * stratus_device_name(), or a part of its name in any case. Default "auto". */
   const char* device;
-  int threads;                        /* of the host, 1..1024; 0: as many as OpenMP would take. Default 0. */
-  stratus_allocate_function allocate; /* both or neither; default: the C library */
+  int threads;                        /* threads on the host, 1..1024; 0: as many as OpenMP offers. Default 0. */
+  stratus_allocate_function allocate; /* give both functions or neither. Default: the C library. */
   stratus_release_function release;
   void* allocator_user;
   stratus_log_function log; /* default: silent */
@@ -53,22 +53,23 @@ typedef struct stratus_context_options {
 
 STRATUS_API stratus_context_options stratus_context_options_default(void);
 
-/* options may be NULL. On failure *context is NULL and `message`, if not NULL, gets up to `capacity` bytes of reason. */
+/* Creates a context. options may be NULL. On failure *context is NULL, and `message`, if not NULL, receives the reason, cut to `capacity`
+ * bytes. */
 STRATUS_API stratus_status stratus_context_create(
   const stratus_context_options* options, stratus_context** context, char* message, size_t capacity);
 STRATUS_API void stratus_context_destroy(stratus_context* context);
 
-/* Why the last failing call on this context failed; "" before any failure. Valid until the next call. */
+/* Returns the reason of the last failure on this context, "" before the first. The string is valid until the next call. */
 STRATUS_API const char* stratus_context_message(const stratus_context* context);
-/* Name of the device in use, "host (AVX-512, 2 threads)" for plain C. */
+/* Returns the name of the device in use, such as "host (AVX-512, 2 threads)" for plain C. */
 STRATUS_API const char* stratus_context_device(const stratus_context* context);
-/* 1 if an OpenCL device draws, 0 if the host does. */
+/* Returns 1 if an OpenCL device draws, 0 if the host does. */
 STRATUS_API int stratus_context_on_device(const stratus_context* context);
 STRATUS_API int stratus_context_threads(const stratus_context* context);
 
-/* All OpenCL devices of all platforms, in the loader's order; 0 where there is no platform. */
+/* Returns the number of OpenCL devices of all platforms, in the order in which the loader lists them; 0 if there is no platform. */
 STRATUS_API int stratus_device_count(void);
-/* Copies the name of device 0..count-1, cut to capacity; returns STRATUS_NO_DEVICE beyond. */
+/* Copies the name of device `index`, 0..count-1, cut to `capacity` bytes. A larger index gives STRATUS_NO_DEVICE. */
 STRATUS_API stratus_status stratus_device_name(int index, char* name, size_t capacity);
 
 #ifdef __cplusplus

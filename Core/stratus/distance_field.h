@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Euclidean distance fields of effective voxels. */
+ * Euclidean distance fields of effective voxels: the distance, voxel centre to voxel centre, from each voxel to the nearest effective one.
+ */
 #ifndef STRATUS_PUBLIC_DISTANCE_FIELD_H
 #define STRATUS_PUBLIC_DISTANCE_FIELD_H
 
@@ -9,55 +10,59 @@
 extern "C" {
 #endif
 
-/* Euclidean distance, voxel centre to voxel centre, from each voxel to the nearest effective one. */
-
 typedef enum stratus_field_method {
-  STRATUS_FIELD_EXACT,       /* separable, squared distances as integers; zigzag or envelope, whichever is cheaper for the set */
-  STRATUS_FIELD_ZIGZAG,      /* rows searched outward from each voxel, up to the best so far */
+  STRATUS_FIELD_EXACT,       /* separable, squared distances as integers; uses zigzag or envelope, whichever is cheaper for the set */
+  STRATUS_FIELD_ZIGZAG,      /* searches each row outward from each voxel, as far as the best distance found */
   STRATUS_FIELD_ENVELOPE,    /* lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012) */
-  STRATUS_FIELD_JFA,         /* jump flooding (Rong & Tan 2006): steps n/2, n/4 .. 1 */
+  STRATUS_FIELD_JFA,         /* jump flooding (Rong & Tan 2006): steps n/2, n/4 and so on down to 1 */
   STRATUS_FIELD_JFA_1,       /* JFA+1: one more pass of step 1 */
-  STRATUS_FIELD_JFA_2,       /* JFA+2: passes of steps 2 and 1 more */
+  STRATUS_FIELD_JFA_2,       /* JFA+2: two more passes, of steps 2 and 1 */
   STRATUS_FIELD_1_JFA,       /* 1+JFA: a pass of step 1 first */
   STRATUS_FIELD_JFA_SQUARED, /* JFA^2: all passes twice */
-  STRATUS_FIELD_AJFA,        /* adaptive: E1 (1 - E2) of a pass (eq. 6 and 7) of .05 or more lets the step fall to 3/4, else to 1/2 */
-  STRATUS_FIELD_AJFA_FIG5    /* the paper's figure 5: 64, 48, 15, 10, 3, 1, scaled to the grid; leaves voxels unfilled */
+  /* Adaptive: after each pass the step falls to 3/4 if E1 (1 - E2) of the pass (eq. 6 and 7) is .05 or more, else to 1/2. */
+  STRATUS_FIELD_AJFA,
+  STRATUS_FIELD_AJFA_FIG5 /* the steps of the paper's figure 5, scaled to the grid: 64, 48, 15, 10, 3, 1; leaves voxels unfilled */
 } stratus_field_method;
 
 STRATUS_EXPERIMENTAL const char* stratus_field_method_name(stratus_field_method method);
 
 typedef struct stratus_field_options {
   stratus_field_method method; /* default exact */
-  int is_signed;               /* 1: inside effective voxels minus the distance to the nearest voxel that is not one. Default 0. */
-  int first_step;              /* floodings: cap on the first step, >= 1; 0 (default): half the longest edge */
+  /* 1: inside, the distance is that to the nearest voxel that is not effective, negated. Default 0. */
+  int is_signed;
+  int first_step; /* floodings: upper bound on the first step, >= 1; 0 (default): half the longest edge */
 } stratus_field_options;
 
 STRATUS_EXPERIMENTAL stratus_field_options stratus_field_options_default(void);
 
 typedef struct stratus_field_report {
-  int passes;            /* over the grid; exact: 3, signed too, for both halves share them; signed floodings: both of them */
-  uint64_t updated;      /* voxels that a flooding pass brought nearer, all passes */
-  int steps[64];         /* floodings: step of each of the first 64 passes */
-  double e1[64], e2[64]; /* floodings: eq. 6 and 7 of each, over the voxels that are not sought; e2 is 1 where none came nearer */
+  /* Passes over the grid. Exact: 3, signed or not, since both halves share them. Floodings: if signed, those of both halves. */
+  int passes;
+  uint64_t updated; /* floodings: voxels that a pass brought nearer, summed over all passes */
+  int steps[64];    /* floodings: step of each of the first 64 passes */
+  /* Floodings: eq. 6 and 7 of each of these passes, over the voxels that are not targets. e2 is 1 where no voxel came nearer. */
+  double e1[64], e2[64];
   double build_ms;
 } stratus_field_report;
 
 typedef struct stratus_field stratus_field;
 
-/* Over all of the voxels' dimensions. report: may be NULL. Exact fields take 2 bytes a voxel where all distances are below 176, 8 where the
- * grid's diagonal is 46339 or longer, else 4; none where no voxel or every one is effective. STRATUS_OVERFLOW where 4 bytes a voxel do not
- * fit the address space, or where a flooding would need more than 31 bits to name a voxel. Floodings err on the long side only. */
+/* Makes a field over all of the voxels' dimensions. report may be NULL. An exact field takes 2 bytes for each voxel where all distances are
+ * below 176, 8 where the grid's diagonal is 46339 or longer, else 4. It takes none where no voxel or every voxel is effective.
+ * STRATUS_OVERFLOW where 4 bytes for each voxel do not fit the address space, or where a flooding would need more than 31 bits for a
+ * voxel's position. Floodings may overestimate a distance, and never underestimate one. */
 STRATUS_EXPERIMENTAL stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels,
   const stratus_field_options* options, stratus_field** field, stratus_field_report* report);
 STRATUS_EXPERIMENTAL void stratus_field_destroy(stratus_field* field);
-/* Distance in voxels; INFINITY where no effective voxel is known (none at all, or a flooding left it unfilled), -INFINITY inside a signed
- * field that is all effective; INFINITY beyond the dimensions. */
+/* Returns the distance in voxels. INFINITY where no effective voxel is known, because there is none or a flooding left the voxel unfilled,
+ * and beyond the dimensions. -INFINITY in a signed field where every voxel is effective. */
 STRATUS_EXPERIMENTAL double stratus_field_get(const stratus_field* field, int64_t i, int64_t j, int64_t k);
-/* dimensions[0]*[1]*[2] distances, x fastest. */
+/* Fills dimensions[0]*[1]*[2] distances, x fastest. */
 STRATUS_EXPERIMENTAL void stratus_field_distances(const stratus_field* field, float* distances);
-/* The paper's layout (2.3): four floats a voxel, the nearest effective voxel's position and the distance; -1, -1, -1, INFINITY where
- * unknown. A signed field names the voxel that its distance goes to; of several equally near ones, the one of the smallest index (a
- * flooding: of those that it found). voxels: those of the field; others of another size or count are STRATUS_INVALID_ARGUMENT. */
+/* Fills the paper's layout (2.3): four floats for each voxel, the position of the nearest effective voxel and the distance to it; -1, -1,
+ * -1, INFINITY where it is unknown. A signed field gives the voxel that its distance refers to. Of several equally near voxels it is the
+ * one of the smallest index (floodings: among those that they found). voxels: the set that the field was made from.
+ * STRATUS_INVALID_ARGUMENT if its dimensions or its count differ. */
 STRATUS_EXPERIMENTAL stratus_status stratus_field_rgba(const stratus_field* field, const stratus_voxels* voxels, float* rgba);
 
 #ifdef __cplusplus

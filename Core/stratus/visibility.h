@@ -10,51 +10,61 @@
 extern "C" {
 #endif
 
-/* The cells of a mesh in an order in which none hides one before it. Which of two neighbours lies in front follows from the side of their
- * face on which the eye is: in double where its rounding cannot matter, else in exact arithmetic. So an order is exact where relations pass
- * through faces. Cells on both sides of a gap are ordered by their border faces where these cover one another in the view (nearest first
- * only; layers crosses gaps as it comes). Leaves are in order by their planes. Cells without volume pass relations on; folded ones (two
- * neighbours on the same side of a face) count as not sharing it. Cells with coincident faces count as sharing them, even if they name
- * different points. */
+/* A visibility order lists the cells of a mesh so that no cell hides one before it. Of two neighbours, the one on the eye's side of their
+ * common face is in front. This test uses double where rounding cannot change its result, else exact arithmetic. An order is therefore
+ * exact for relations through faces. Cells on both sides of a gap are ordered by their border faces where these overlap in the view
+ * (peeling nearest only; peeling layers ignores gaps). The planes of the tree order the leaves. Cells without volume pass relations on.
+ * Neighbours on the same side of a face (folded) count as not sharing it. Cells with coincident faces count as sharing them, even if they
+ * name different points. */
 
 typedef struct stratus_visibility_order stratus_visibility_order;
 
 typedef enum stratus_peeling {
-  STRATUS_PEELING_NEAREST, /* one of the nearest, by distance in steps of hundreds of cells, after all that hide it and have not come yet,
-                            * which are looked for depth first (Williams 1992). Default. */
-  STRATUS_PEELING_LAYERS   /* all that nothing hides, then all that only these hid, ... (Li et al. 2012, section 3.1) */
+  /* Lists the nearest cell next, by distance in steps of hundreds of cells, after a depth-first search has listed all cells that hide it
+   * (Williams 1992). Default. */
+  STRATUS_PEELING_NEAREST,
+  /* Lists all cells that none hides, then all that only these hid, and so on (Li et al. 2012, section 3.1). */
+  STRATUS_PEELING_LAYERS
 } stratus_peeling;
 
-/* Borrows the mesh (points, vertices) and what `leaves` points at, for as long as the order lives. leaves NULL: one leaf. A cell that
- * leaves its leaf's box, by more than a partition's cells may, is STRATUS_INVALID_ARGUMENT. Finds the neighbours once. */
+/* Makes an order, and finds each cell's neighbours once. The order borrows the mesh (points, vertices) and the arrays of `leaves` for as
+ * long as it lives. leaves NULL: one leaf. A cell that reaches out of its leaf's box by more than a partition's cells may gives
+ * STRATUS_INVALID_ARGUMENT. */
 STRATUS_API stratus_status stratus_visibility_order_create(
   stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** order);
 STRATUS_API void stratus_visibility_order_destroy(stratus_visibility_order* order);
 
 typedef struct stratus_visibility_result {
-  const uint32_t* cells; /* all cells of the mesh, front to back, without volume included; valid until the order's next call or end */
+  /* All cells of the mesh, front to back, those without volume included. Valid until the order's next call or its end. */
+  const uint32_t* cells;
   int64_t count;
-  int layers;     /* peeling layers: of the leaf that has most; else 0 */
-  int64_t cycles; /* found, and broken: across a gap if they lead across one, else where the face between two of them is seen
-                   * smallest, unless that took too long; those across gaps count if no other was broken in their leaf */
-  int64_t
-    forced;            /* cells that may have come before some that hide them. Layers: by distance alone, as cycles were too many to follow.
-                        * Nearest:      that came without a look across the gaps at them, as those were given up, see `overlaps` and `gate_tests` */
-  int64_t overlaps;    /* nearest: rings across gaps, found and broken: what lies across was both before and behind, as where cells overlap.
-                        * A leaf of n cells gives up gaps after 64 + sqrt(n), */
-  int64_t gate_tests;  /* nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps make.
-                        * or after 64 g sqrt(g) of these, for its g border faces at gaps, or after parts of both that add up to one */
-  int64_t exact_signs; /* that double could not tell */
-  int64_t flat, folded, inverted; /* cells without volume; faces with both cells on one side, 2 a pair; cells of negative orientation */
-  int reused;   /* 1: the order is the last one, as every cell hides the neighbours that it hid then. Not with gaps, unless the eye
-                 * has not moved (parallel: nor the direction turned). */
-  size_t bytes; /* the order's own */
-  double build_ms, signs_ms, peel_ms; /* of its making; of this call */
+  int layers; /* peeling layers: number of layers of the leaf with most; else 0 */
+  /* Cycles found and broken: across a gap if the cycle crosses one, else at the face that is seen smallest, unless the search for it took
+   * too long. A leaf counts its cycles across gaps only if it had no others. */
+  int64_t cycles;
+  /* Cells that may come before cells that hide them. Layers: cells listed by distance alone, because a leaf had too many cycles. Nearest:
+   * cells listed without regard to gaps, because their leaf had exceeded the limit of `overlaps` and `gate_tests`. */
+  int64_t forced;
+  /* Nearest: cycles across gaps, found and broken. The cells across the gap were both before and behind, as where cells overlap. A leaf of
+   * n cells with g border faces at gaps ignores gaps after 64 + sqrt(n) such cycles, after 64 g sqrt(g) gate tests, or once its fractions
+   * of both limits add up to 1. */
+  int64_t overlaps;
+  /* Nearest: tests of border faces, and of boxes around some, against those across a gap: the work that gaps cause. */
+  int64_t gate_tests;
+  int64_t exact_signs; /* signs that double could not decide */
+  int64_t flat, folded,
+    /* Cells without volume; faces with both cells on one side, 2 for each pair; cells of negative orientation. */
+    inverted;
+  /* 1: the order is the last one, because every cell hides the same neighbours as before. In a mesh with gaps this needs an eye that has
+   * not moved (parallel: a direction that has not turned). */
+  int reused;
+  size_t bytes;                       /* memory of the order itself */
+  double build_ms, signs_ms, peel_ms; /* build_ms: creation of the order; signs_ms, peel_ms: this call */
 } stratus_visibility_result;
 
-/* The order from the camera's eye (parallel: along its forward), whose right and up don't count. matrix: world = matrix * local, as in
- * stratus_mesh, NULL: the mesh's. After the same calls the same at any number of threads and on any device: a GPU with doubles finds the
- * signs of meshes that are not small, the host what rounding leaves open, and the order. */
+/* Sorts the cells as the camera's eye sees them (parallel: along its forward). right and up do not matter. matrix: world = matrix * local,
+ * as in stratus_mesh; NULL: the mesh's. The same sequence of calls gives the same order at any number of threads and on any device. A GPU
+ * with doubles computes the signs of meshes that are not small. The host computes the signs that rounding leaves open, and the order. */
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels, rays among them, and the densities of them. */
+ * Effective voxels, the rays that hit them, and their density. */
 #ifndef STRATUS_PUBLIC_VOXELS_H
 #define STRATUS_PUBLIC_VOXELS_H
 
@@ -9,58 +9,63 @@
 extern "C" {
 #endif
 
-/* The voxels that a criterion makes visible (Guo et al. 2025, section 3). Voxel (i,j,k) is the cube of edge 1 about (i,j,k) in index
- * coordinates. At most 2^18 voxels along an axis. */
+/* Effective voxels are those that a criterion makes visible (Guo et al. 2025, section 3). Voxel (i,j,k) is the cube of edge 1 about (i,j,k)
+ * in index coordinates. A set has at most 2^18 voxels along an axis. */
 
 typedef struct stratus_voxels stratus_voxels;
 
-/* Finite values that meet the criterion, but none that is hidden or owned by another piece (cell flags count where cell_centered). */
+/* Makes the set of finite values that meet the criterion, without those that are hidden or that another piece owns. Cell flags count if the
+ * volume is cell_centered. */
 STRATUS_API stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
-/* For ray casting: every voxel of the 4^3 blocks of cells whose value range shows anything (a block's ranges as stratus_value_range has
- * them; what a criterion without transfer function tells is rounded outward). A tree of it may serve structure HYBRID. Voxel (i,j,k) is
- * cell (i,j,k), between the values of that place and the next; brick (a 4^3 of voxels) b is block b; dimensions: 4 times the ranges'
+/* Makes the set for ray casts: every voxel of the 4^3 blocks of cells whose value range shows anything. The ranges are those of
+ * stratus_value_range; a criterion without transfer function is rounded outward. Structure HYBRID can use a tree of this set. Voxel (i,j,k)
+ * is cell (i,j,k), between the values at (i,j,k) and (i+1,j+1,k+1). Brick b (4^3 voxels) is block b. The dimensions are 4 times the ranges'
  * blocks. */
 STRATUS_API stratus_status stratus_voxels_create_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
-/* `count` triples of i, j, k, each in 0..dimensions-1; one that comes twice counts once. Index (i,j,k) is world (i+.5, j+.5, k+.5): the
- * voxel fills [i,i+1] and so on. */
+/* Makes a set from `count` triples i, j, k, each in 0..dimensions-1; a repeated triple counts once. Index (i,j,k) is world (i+.5, j+.5,
+ * k+.5), so that the voxel fills [i,i+1] x [j,j+1] x [k,k+1]. */
 STRATUS_API stratus_status stratus_voxels_create_list(
   stratus_context* context, const int64_t dimensions[3], const int32_t* positions, size_t count, stratus_voxels** voxels);
 STRATUS_API void stratus_voxels_destroy(stratus_voxels* voxels);
 STRATUS_EXPERIMENTAL int64_t stratus_voxels_count(const stratus_voxels* voxels);
 STRATUS_EXPERIMENTAL void stratus_voxels_dimensions(const stratus_voxels* voxels, int64_t dimensions[3]);
 STRATUS_EXPERIMENTAL int stratus_voxels_get(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k); /* 0 beyond the dimensions */
-/* Tight box [lo, hi) in voxels; lo = hi = 0 if there is none. */
+/* Gives the tight box of the voxels, [lo, hi); lo = hi = 0 if there are none. */
 STRATUS_EXPERIMENTAL void stratus_voxels_bounds(const stratus_voxels* voxels, int64_t lo[3], int64_t hi[3]);
 
 typedef struct stratus_ray {
   double origin[3];    /* world */
-  double direction[3]; /* world, any length > 0 (longest component at least 1e-290 voxels) */
-  double t_min, t_max; /* origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
+  double direction[3]; /* world, any length > 0 (its longest component is at least 1e-290 voxels) */
+  double t_min, t_max; /* the ray is origin + t direction, t_min <= t <= t_max; t_max may be INFINITY */
 } stratus_ray;
 
 typedef struct stratus_hit {
-  double t;         /* where the ray enters the voxel, t_min if it begins inside; INFINITY: no hit */
-  int32_t voxel[3]; /* -1: no hit */
-  int32_t face; /* 2*axis + (1 if it is the upper one) of the voxel's face that the ray enters by; -1 where it begins inside, or no hit */
-  float normal[3];  /* outward, world, of that face (of length 1); begun inside: against the direction */
-  uint32_t visited; /* nodes and steps in distance fields */
+  double t;         /* where the ray enters the voxel, t_min if it begins inside; INFINITY if it hits nothing */
+  int32_t voxel[3]; /* -1 each if the ray hits nothing */
+  /* The voxel's face that the ray enters through: 2*axis, plus 1 for the upper face of that axis. -1 if the ray begins inside or hits
+   * nothing. */
+  int32_t face;
+  /* World, length 1: the outward normal of that face. If the ray begins inside, the reverse of its direction. */
+  float normal[3];
+  uint32_t visited; /* number of nodes visited, plus steps in distance fields */
 } stratus_hit;
 
-/* The first effective voxel along each of `count` rays, by a plain walk from voxel to voxel in double precision, one thread: slow, and the
- * measure of stratus_tree_first_hit(). */
+/* Finds the first effective voxel along each of `count` rays, by a plain walk from voxel to voxel in double precision on one thread. It is
+ * slow: stratus_tree_first_hit() is measured against it. */
 STRATUS_EXPERIMENTAL stratus_status stratus_voxels_first_hit(
   stratus_context* context, const stratus_voxels* voxels, const stratus_ray* rays, size_t count, stratus_hit* hits);
 
-/* Kernel density of effective voxels (eq. 2 to 5) with the quartic kernel, whose constant in three dimensions is 105 / (32 pi) for
- * densities a voxel to add up to 1. Lengths are voxels, at voxel centres. */
+/* Kernel density of effective voxels (Guo et al. 2025, eq. 2 to 5) with the quartic kernel. Its constant in three dimensions is 105 / (32
+ * pi), which makes the kernel integrate to 1. Lengths are in voxels, between voxel centres. */
 
-/* Bandwidth by eq. 3 and 4, never below 1 voxel (a shell's deviation of radii is next to nothing, and below 1 a voxel sees only itself);
- * 1 for fewer than two voxels. `raw`, may be NULL: as printed, unbounded below. */
+/* Computes the bandwidth by eq. 3 and 4, but never below 1 voxel: the radii of a shell hardly deviate, and below 1 each voxel sees only
+ * itself. Fewer than two voxels give 1. raw, may be NULL: the bandwidth as printed, without the lower bound. */
 STRATUS_EXPERIMENTAL stratus_status stratus_density_bandwidth(
   stratus_context* context, const stratus_voxels* voxels, double* bandwidth, double* raw);
-/* Density at a point in index coordinates, with its first (eq. 10) and second (eq. 11) partial derivatives. first, second: may be NULL. */
+/* Computes the density at a point in index coordinates, with its first (eq. 10) and second (eq. 11) partial derivatives. first and second
+ * may be NULL. */
 STRATUS_EXPERIMENTAL stratus_status stratus_density_at(stratus_context* context, const stratus_voxels* voxels, double bandwidth,
   const double point[3], double* density, double first[3], double second[3]);
 
