@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What all files of the core share: the context and its services. Rooms' headers are never installed; only tests include them from
- * outside of Core/. */
+ * The context and its services, which all files of the core use. Room headers are never installed; outside of Core/ only tests include
+ * them. */
 #ifndef STRATUS_BASE_H
 #define STRATUS_BASE_H
 
@@ -13,15 +13,15 @@
 typedef struct stratus_device stratus_device;
 
 struct stratus_context {
-  stratus_context_options options; /* device is not kept: see device_name */
+  stratus_context_options options; /* `device` is not kept, see device_name */
   int threads;
   stratus_device* device; /* NULL: the host draws */
-  int isa;                /* of the host's traversal at most: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
+  int isa;                /* best instruction set that host code may use: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
   char device_name[256];
   char message[1024];
 };
 
-/* Returns at once with the status of a call that failed. For functions that hold nothing to release. */
+/* Returns from the calling function with the status of a failed call. For functions that hold nothing to release. */
 #define TRY(call)                                                                                                                          \
   do {                                                                                                                                     \
     const stratus_status try_status = (call);                                                                                              \
@@ -30,7 +30,7 @@ struct stratus_context {
     }                                                                                                                                      \
   } while (0)
 
-/* The same for functions with a `status` and a `cleanup:` label. */
+/* Does the same in functions with a variable `status` and a label `cleanup`. */
 #define TRY_CLEANUP(call)                                                                                                                  \
   do {                                                                                                                                     \
     status = (call);                                                                                                                       \
@@ -41,19 +41,20 @@ struct stratus_context {
 
 /* ---- services.c */
 
-/* Leaves the message and returns the status. */
+/* Formats the context's message, and returns `status`. */
 stratus_status stratus_fail(stratus_context* context, stratus_status status, const char* format, ...) __attribute__((format(printf, 3, 4)));
 void stratus_log(stratus_context* context, stratus_log_level level, const char* format, ...) __attribute__((format(printf, 3, 4)));
-/* STRATUS_CANCELLED if the caller's callback says so. */
+/* Reports progress. Returns STRATUS_CANCELLED if the caller's callback asks to stop. */
 stratus_status stratus_progress(stratus_context* context, const char* stage, double fraction);
-/* count*size bytes (at least 1), 64-byte aligned, not cleared. Sets *memory; STRATUS_OVERFLOW, STRATUS_OUT_OF_MEMORY with a message. */
+/* Sets *memory to count*size bytes (at least 1), 64-byte aligned, not cleared. Fails with STRATUS_OVERFLOW or STRATUS_OUT_OF_MEMORY, and a
+ * message. */
 stratus_status stratus_allocate(stratus_context* context, size_t count, size_t size, void** memory);
 stratus_status stratus_allocate_zero(stratus_context* context, size_t count, size_t size, void** memory);
 void stratus_release(stratus_context* context, void* memory);
-/* a*b*c into *product; STRATUS_OVERFLOW with `what` in the message. */
+/* Sets *product to a*b*c. STRATUS_OVERFLOW, with `what` in the message, if it does not fit. */
 stratus_status stratus_product(stratus_context* context, const char* what, size_t a, size_t b, size_t c, size_t* product);
-/* STRATUS_OVERFLOW where `count` items of `size` bytes, "points" say, can't be in any array. */
+/* Returns STRATUS_OVERFLOW if no array can hold `count` items of `size` bytes. `what` names them in the message, such as "points". */
 stratus_status stratus_array_check(stratus_context* context, const char* what, size_t count, size_t size);
-double stratus_now_ms(void); /* monotonic clock */
+double stratus_now_ms(void); /* monotonic clock, milliseconds */
 
 #endif

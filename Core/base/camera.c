@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cameras from what people say of them: where from, where to, which way is up. */
+ * Cameras from the usual description (eye, focal point, view-up), their checks, and the window of pixels that a box covers. */
 #include "camera.h"
 
 #include "matrix.h"
 #include "vector.h"
 
 #define DEGREES_TO_RADIANS 0.017453292519943295
-/* sin of the smallest angle between view direction and view-up that still tells which way is up in double. */
+/* Sine of the smallest angle between view direction and view-up at which double still defines the upward direction. */
 #define PARALLEL_BELOW 1e-9
-/* Squared lengths of the forward vector that a camera may have. */
+/* Limits on the squared length of a camera's forward vector. */
 #define SMALLEST_VECTOR 1e-30
 #define LARGEST_VECTOR 1e30
 
@@ -25,7 +25,7 @@ static stratus_status check_vector(stratus_context* context, const char* what, c
   return STRATUS_OK;
 }
 
-/* The camera whose window is half_height*aspect by half_height. */
+/* Makes a camera whose `right` has the length half_height*aspect, and whose `up` has the length half_height. */
 static stratus_status aim(stratus_context* context, const double eye[3], const double focal[3], const double view_up[3], double half_height,
   double aspect, int parallel, stratus_camera* camera)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A function's clones for instruction sets beyond the compiler's flags: a body that is ALWAYS_INLINE is compiled for the set of the
- * function that it lands in. Which one runs is asked of the processor. */
+ * Clones of a function for instruction sets beyond the compiler's flags. The compiler compiles an ALWAYS_INLINE body for the instruction
+ * set of the function that includes it. The processor decides at run time which clone runs. */
 #ifndef STRATUS_CLONES_H
 #define STRATUS_CLONES_H
 

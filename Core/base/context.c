@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A context's life: its options, its device and its threads. */
+ * Creation and destruction of a context: its options, its device and its threads. */
 #define _POSIX_C_SOURCE 200809L
 #include "device.h"
 #include "instruction_set.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * OpenCL 1.2: choice of a device, buffers. Calls that release are never refused, so that a lost device frees all. */
+ * OpenCL 1.2: choice of a device, and buffers. Calls that release are never refused, so that everything can be freed after a device is
+ * lost. */
 #define _POSIX_C_SOURCE 200809L
 #include "device_state.h"
 
@@ -13,12 +14,12 @@
 
 #define PLATFORMS_MAX 16
 #define DEVICES_MAX 64
-/* malloc's promise: enough for the scalar loads that kernels do. A host pointer with less is copied. */
+/* Alignment that malloc() guarantees: enough for the scalar loads of kernels. A host pointer of less is copied. */
 #define BORROW_ALIGNMENT 16
 
 typedef struct device_list {
   int count;
-  const char* call; /* the last that found nothing, and why */
+  const char* call; /* the last call that found nothing, and its error */
   cl_int error;
   cl_device_id ids[DEVICES_MAX];
 } device_list;
@@ -27,9 +28,9 @@ typedef struct device_list {
 
 /* ---------------------------------------------------------------- choice */
 
-/* The core's only state that is not a context's. Platforms may be asked by several threads at once, but PoCL (3.1) finds its devices when
- * they are first asked for, and a thread that asks while another one's question makes it do so sees none, or crashes. Whoever uses a device
- * has asked for the list before, so that nothing else needs the lock: programs of several contexts are built, and drawn with, at once. */
+/* Serialises the question for OpenCL's devices: the core's only state that belongs to no context. OpenCL lets several threads ask at once,
+ * but PoCL (3.1) finds its devices on the first question, and a thread that asks meanwhile gets none, or crashes. Every user of a device
+ * has asked for the list before, so that nothing else needs the lock: several contexts build programs and draw at the same time. */
 static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
 
 static device_list find_devices(void)
@@ -44,7 +45,7 @@ static device_list find_devices(void)
   for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX && list.count < DEVICES_MAX; ++p) {
     const cl_uint space = (cl_uint)(DEVICES_MAX - list.count);
     cl_uint found = 0;
-    /* A platform without devices is no error of ours: others may have some. */
+    /* A platform without devices is not an error: other platforms may have some. */
     const cl_int error = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, space, list.ids + list.count, &found);
     if (error == CL_SUCCESS) {
       list.count += (int)(found < space ? found : space);
@@ -113,7 +114,7 @@ static bool contains(const char* text, const char* part)
   return false;
 }
 
-/* A simulator may call itself everything at once; a GPU is no CPU. */
+/* True for a GPU that is not also a CPU: a simulator may report every type at once. */
 static bool is_gpu(cl_device_id id)
 {
   cl_device_type type = 0;
@@ -121,7 +122,7 @@ static bool is_gpu(cl_device_id id)
     !(type & CL_DEVICE_TYPE_CPU);
 }
 
-/* Index of the device that the selector means, -1 if none. */
+/* Returns the index of the device that the selector names, -1 if there is none. */
 static int select_device(const device_list* list, const char* selector)
 {
   const bool automatic = strcmp(selector, "auto") == 0;
@@ -173,7 +174,7 @@ static stratus_status describe(stratus_context* context, stratus_device* device)
   TRY(query(context, device, CL_DEVICE_HOST_UNIFIED_MEMORY, "clGetDeviceInfo(CL_DEVICE_HOST_UNIFIED_MEMORY)", sizeof unified, &unified));
   TRY(query(
     context, device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, "clGetDeviceInfo(CL_DEVICE_MEM_BASE_ADDR_ALIGN)", sizeof align_bits, &align_bits));
-  /* Devices without the extension may refuse this question instead of answering 0. */
+  /* Devices without doubles may refuse this question instead of answering 0. */
   if (clGetDeviceInfo(device->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL) != CL_SUCCESS) {
     doubles = 0;
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * OpenCL, as the core uses it. Every call that fails leaves the OpenCL error's name in the context's message. */
+ * The core's interface to OpenCL. Every call that fails leaves the name of OpenCL's error in the context's message. */
 #ifndef STRATUS_DEVICE_LAYER_H
 #define STRATUS_DEVICE_LAYER_H
 
@@ -10,11 +10,12 @@
 #endif
 #include <CL/cl.h>
 
-/* selector: "auto" (first GPU; none: STRATUS_OK and *device NULL), a decimal index, or a part of a name, any case. */
+/* Opens a device. selector: "auto" (the first GPU; if there is none, STRATUS_OK and *device NULL), a decimal index, or a part of a name in
+ * any case. */
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
 void stratus_device_close(stratus_device* device); /* takes NULL */
 
-/* Whether structures are built on the context's device: the host builds them faster than a CPU's OpenCL. */
+/* True if the context's device builds structures. A CPU's OpenCL does not: the host builds them faster. */
 bool stratus_device_builds(const stratus_context* context);
 
 const char* stratus_device_label(const stratus_device* device);
@@ -22,37 +23,38 @@ bool stratus_device_is_cpu(const stratus_device* device);
 bool stratus_device_has_double(const stratus_device* device);
 size_t stratus_device_largest_allocation(const stratus_device* device);
 
-/* Kernel `kernel` of the embedded source `source` (its file's name without .cl) built with `defines` ("-DA=1 -DB=2"). Programs and kernels
- * are cached in the device by source and defines; the kernel belongs to the cache. A failed build leaves the build log in the message. */
+/* Gives kernel `kernel` of the embedded source `source` (its file's name without .cl), built with `defines` ("-DA=1 -DB=2"). The device
+ * caches programs and kernels by source and defines, and owns the kernel. A failed build leaves its log in the message. */
 stratus_status stratus_device_kernel(
   stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result);
-/* The same from a text of the caller's; `source` is the name that it is cached and reported by. */
+/* Gives a kernel of the caller's `text`. `source` is its name in the cache and in messages. */
 stratus_status stratus_device_kernel_from(
   stratus_context* context, const char* source, const char* text, const char* defines, const char* kernel, cl_kernel* result);
 
-/* A buffer of `bytes` (at least 1). `host` NULL: not initialised. Else copied from, or, where device and host share memory (`borrow`), used
- * in place: then `host` must outlive the buffer. */
+/* Creates a buffer of `bytes` (at least 1). host NULL: it is not initialised. Else it is a copy of `host`, or, with `borrow` and where
+ * device and host share memory, `host` itself, which must then outlive the buffer. */
 stratus_status stratus_device_buffer(
   stratus_context* context, cl_mem_flags access, size_t bytes, const void* host, bool borrow, cl_mem* buffer);
 void stratus_device_buffer_release(cl_mem buffer); /* takes NULL */
 stratus_status stratus_device_write(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, const void* host);
 stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, void* host); /* blocks */
 
-/* True where a buffer over `host` is that memory itself, for kernels to write too; settled, the host sees what they wrote. */
+/* True if a buffer over `host` is that memory itself, also for kernels that write. After stratus_device_settle() the host sees what they
+ * wrote. */
 bool stratus_device_lends(const stratus_device* device, const void* host);
 stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, size_t bytes); /* blocks */
 
-/* Sets argument `index`. */
+/* Sets argument `index` of a kernel. */
 stratus_status stratus_device_argument(stratus_context* context, cl_kernel kernel, unsigned index, size_t size, const void* value);
-/* Enqueues over `global` items, rounded up to whole groups of `local` (both `dimensions` long, 1..3; local > 0): the kernel ignores items
- * beyond the end. In order. */
+/* Enqueues a kernel, in order. `global` items are rounded up to whole groups of `local` (both have `dimensions` entries, 1..3; local > 0),
+ * so that the kernel must ignore items beyond the end. */
 stratus_status stratus_device_run(
   stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local);
 stratus_status stratus_device_finish(stratus_context* context);
 
 typedef struct stratus_kernel_argument {
   size_t size;
-  const void* value; /* NULL: so much local memory */
+  const void* value; /* NULL: `size` bytes of local memory */
 } stratus_kernel_argument;
 
 #define ARGUMENT(x)                                                                                                                        \
@@ -60,19 +62,20 @@ typedef struct stratus_kernel_argument {
     sizeof(x), &(x)                                                                                                                        \
   }
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
-#define STRATUS_DEVICE_GROUP 64 /* items along x of a group: a device compiles each new shape anew */
+/* Items of a group along x. The number is constant because a device compiles a kernel anew for each shape of groups. */
+#define STRATUS_DEVICE_GROUP 64
 
-/* All of it: kernel `kernel` of `source`, its arguments in order, enqueued over items[0] x items[1] x items[2]. */
+/* Builds kernel `kernel` of `source`, sets its arguments in order, and enqueues it over items[0] x items[1] x items[2]. */
 stratus_status stratus_device_launch(stratus_context* context, const char* source, const char* defines, const char* kernel,
   const stratus_kernel_argument* arguments, size_t count, const int64_t items[3]);
 
-/* The text of kernels/<name>.cl with its headers inside, NULL if there is none. Generated by the build. */
+/* Returns the text of kernels/<name>.cl with its headers included, NULL if there is none. The build generates it. */
 const char* stratus_kernel_source(const char* name);
-/* "CL_OUT_OF_RESOURCES" for -5. */
+/* Returns the name of an OpenCL error, such as "CL_OUT_OF_RESOURCES" for -5. */
 const char* stratus_device_error_name(int error);
 
-/* For tests: after `calls` more OpenCL calls every one fails with `error`, as on a device that disappears, until this is called
- * again; negative: none fails. Calls that release are neither counted nor refused. */
+/* For tests: lets `calls` more OpenCL calls through, and makes every later one fail with `error`, as on a device that disappears. The next
+ * call of this function ends that; a negative `calls` makes none fail. Calls that release are neither counted nor refused. */
 void stratus_device_fail_after(stratus_device* device, int64_t calls, int error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * OpenCL's errors by name, as statuses, and as a test asks for them. */
+ * OpenCL's errors: their names, their statuses, and the injection of errors by tests. */
 #include "device_state.h"
 
 const char* stratus_device_error_name(int error)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Buffers of an OpenCL device that live from frame to frame. */
+ * Buffers of an OpenCL device that are kept from frame to frame. */
 #include "device_frame.h"
 
-#define NOTHING 16 /* bytes of a buffer that stands for no array */
+#define NOTHING 16 /* bytes of the buffer that replaces a missing array */
 
 void stratus_slot_drop(stratus_device_slot* slot)
 {

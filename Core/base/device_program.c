@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Leaves the log from its first error on in the message; a log may be far longer than the message. */
+/* Leaves the build log in the message, from its first error on: a log may be far longer than the message. */
 static stratus_status build_failed(stratus_context* context, stratus_device* device, cl_program program, const char* what, cl_int error)
 {
   size_t size = 0;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What device.c, which chooses a device and talks to it, device_program.c, which builds and caches its kernels, and device_error.c share.
- */
+ * State of a device, shared by device.c (choice, buffers), device_program.c (kernels and their cache) and device_error.c (errors). */
 #ifndef STRATUS_DEVICE_STATE_H
 #define STRATUS_DEVICE_STATE_H
 
@@ -9,7 +8,7 @@
 typedef struct cached_program {
   struct cached_program* next;
   cl_program program;
-  const char* defines; /* behind the name */
+  const char* defines; /* stored behind `name` */
   char name[];
 } cached_program;
 
@@ -30,16 +29,17 @@ struct stratus_device {
   size_t largest_allocation;
   size_t borrow_alignment;
   bool is_cpu, has_double, shares_memory;
-  int64_t calls_left; /* until every call fails with `injected`; negative: never */
+  int64_t calls_left; /* OpenCL calls until every one fails with `injected`; negative: none fails */
   cl_int injected;
   char label[192];
 };
 
-/* STRATUS_OK for CL_SUCCESS; else the status that the error means, with both names in the message. */
+/* Returns STRATUS_OK for CL_SUCCESS. Otherwise it returns the status that stands for the error, with the names of call and error in the
+ * message. */
 stratus_status stratus_device_check(stratus_context* context, const stratus_device* device, const char* call, cl_int error);
-/* What a test asked the next call to fail with, else CL_SUCCESS. */
+/* Returns the error that a test injects into the next call, else CL_SUCCESS. */
 cl_int stratus_device_next_error(stratus_device* device);
-/* The call is evaluated only where no test asked it to fail. */
+/* Checks an OpenCL call, which is evaluated only if no test injects an error. */
 #define CALL(context, device, name, call)                                                                                                  \
   stratus_device_check(context, device, name, stratus_device_next_error(device) != CL_SUCCESS ? (device)->injected : (call))
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The instruction sets that packets were compiled for, and the one that this machine runs. */
+ * The instruction sets that this build contains, and the best that this machine runs. */
 #include "instruction_set.h"
 
 int stratus_isa_best(void)

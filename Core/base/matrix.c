@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A determinant below this, the columns brought to length about 1, flattens space to a plane for all that doubles can tell. */
+/* Determinant, after the columns are scaled to length about 1, below which the matrix is singular within the precision of doubles. */
 #define SINGULAR_BELOW 1e-12
 
 void stratus_matrix_vector(const double matrix[16], const double vector[3], double result[3])
@@ -28,7 +28,7 @@ void stratus_matrix_point(const double matrix[16], const double point[3], double
 
 bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16])
 {
-  /* Columns are brought to length about 1 by powers of two, which is exact: a spacing of 1e-120 must not underflow the determinant. */
+  /* Powers of two scale the columns to length about 1 without rounding: a spacing of 1e-120 must not underflow the determinant. */
   double a[3][3];
   int exponent[3];
   for (int c = 0; c < 3; ++c) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Affine matrices of 4x4 numbers, row-major: point' = matrix * (point, 1). The last row is taken for 0 0 0 1. */
+ * Affine matrices of 4x4 numbers, row-major: point' = matrix * (point, 1). The functions take the last row for 0 0 0 1. */
 #ifndef STRATUS_MATRIX_H
 #define STRATUS_MATRIX_H
 
 #include <stdbool.h>
 
-/* False, and nothing written, where the matrix has no inverse in doubles. */
+/* Returns false, and writes nothing, if the matrix has no inverse in doubles. */
 bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16]);
 void stratus_matrix_point(const double matrix[16], const double point[3], double result[3]);
-/* A direction: without the matrix's translation. */
+/* Transforms a direction, without the matrix's translation. */
 void stratus_matrix_vector(const double matrix[16], const double vector[3], double result[3]);
 
 #endif

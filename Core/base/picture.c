@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures that a renderer is given to fill. */
+ * Checks and clears the pictures that renderers fill. */
 #include "picture.h"
 
 #include <string.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures that a renderer is given to fill. */
+ * Pictures that renderers fill. */
 #ifndef STRATUS_IMAGE_H
 #define STRATUS_IMAGE_H
 
 #include "base.h"
 
-/* Whether there is one, of sides that are allowed. */
+/* Checks that the image and its colours exist, and that its sides are within limits. */
 stratus_status stratus_image_check(stratus_context* context, const stratus_image* image);
-/* Nothing there, nothing hit, nothing counted. */
+/* Sets all pixels to transparent, their depth to INFINITY and their samples to 0. */
 void stratus_image_clear(const stratus_image* image);
 
 #endif

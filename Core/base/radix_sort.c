@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A stable radix sort by bytes: the same order at any number of threads. */
+ * A stable radix sort by bytes. The order is the same at any number of threads. */
 #include "radix_sort.h"
 
 #include <omp.h>
@@ -13,7 +13,7 @@ typedef struct digit_pass {
   const uint32_t* values;
   uint64_t* keys_out;
   uint32_t* values_out;
-  uint32_t (*places)[DIGITS]; /* a row a chunk */
+  uint32_t (*places)[DIGITS]; /* one row for each chunk: counts, then places */
   uint32_t count, chunks;
   int shift;
 } digit_pass;
@@ -32,7 +32,7 @@ static void count_digits(const digit_pass* p, uint32_t chunk)
   }
 }
 
-/* Counts become first places. False: all keys have the same digit. */
+/* Turns counts into first places. Returns false if all keys have the same digit, so that the pass can be skipped. */
 static bool place_digits(const digit_pass* p)
 {
   uint32_t place = 0;
@@ -80,7 +80,7 @@ stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint
 {
   stratus_status status = STRATUS_OK;
   void *other_keys = NULL, *other_values = NULL, *places = NULL;
-  const int threads = count < 1 << 14 ? 1 : context->threads; /* the sum over rows of counts isn't worth it below */
+  const int threads = count < 1 << 14 ? 1 : context->threads; /* for fewer keys the sum over the chunks' counts costs too much */
 
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *keys, &other_keys));
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *values, &other_values));

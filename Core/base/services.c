@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What every file of the core asks of its context: memory, a message for a failure, the log, progress, and the clock. */
+ * The services of a context: memory, the message of a failure, the log, progress, and the clock. */
 #define _POSIX_C_SOURCE 200809L
 #include "base.h"
 
@@ -9,7 +9,7 @@
 
 stratus_status stratus_fail(stratus_context* context, stratus_status status, const char* format, ...)
 {
-  /* Formatted apart first: an argument may point into the message itself. */
+  /* The text is formatted in a buffer of its own first: an argument may point into the message. */
   char text[sizeof context->message];
   va_list arguments;
   va_start(arguments, format);

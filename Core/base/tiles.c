@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The tiles of a picture, shared out among the host's threads. */
+ * Distributes the tiles of a picture over the host's threads. */
 #include "tiles.h"
 
 #include <omp.h>

@@ -18,8 +18,8 @@ static inline void stratus_vector_cross(const double a[3], const double b[3], do
   result[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Makes the length 1 and returns the length that it was; 0, and nothing written, for a zero or infinite vector. The components are scaled
- * first, so that no square over- or underflows. */
+/* Scales v to length 1, and returns its former length. Returns 0, and writes nothing, for a zero or infinite vector. The components are
+ * scaled first, so that no square over- or underflows. */
 static inline double stratus_vector_normalize(double v[3])
 {
   const double largest = fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2]));
