@@ -16,6 +16,7 @@ static inline int stratus_isa_at_most(int most)
   const int best = stratus_isa_best();
   return most < best ? most : best;
 }
+/* Returns its name, such as "AVX-512". */
 const char* stratus_isa_name(void);
 
 /* Names a function for the instruction set of its file: *_isa.c is compiled with STRATUS_ISA 0, 1 or 2. */

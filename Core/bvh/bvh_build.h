@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the builders of bounding volume hierarchies share. Each makes a binary tree down to single boxes, in whatever way is its own;
- * bvh_layout.c then gathers boxes into leaves where that is cheaper, bounds the depth and lays the nodes out. So builders differ in shape
- * only. */
+ * Declarations that the builders of bounding volume hierarchies share. Each builder makes a binary tree down to single boxes by a method of
+ * its own. bvh_layout.c then gathers boxes into leaves where that is cheaper, limits the depth, and lays the nodes out. Builders therefore
+ * differ only in the shape of their trees. */
 #ifndef STRATUS_BVH_BUILD_H
 #define STRATUS_BVH_BUILD_H
 
@@ -20,12 +20,12 @@ typedef struct stratus_bvh_pair {
  * index in that order. */
 typedef struct stratus_bvh_build {
   stratus_context* context;
-  uint32_t count; /* of boxes; builders are called with at least 2 */
-  int max_depth;  /* below this depth the layout splits at the median, whatever the builder did */
+  uint32_t count; /* number of boxes; builders are called with at least 2 */
+  int max_depth;  /* below this depth the layout splits at the median, whatever the builder's split */
   stratus_box* boxes;
-  uint32_t* number;        /* index in the caller's boxes, by rank */
-  uint64_t* codes;         /* by rank */
-  stratus_bvh_pair* pairs; /* count - 1 pairs, the builder's result: each box, and each pair but the root, is a child exactly once */
+  uint32_t* number;        /* index in the caller's boxes, for each rank */
+  uint64_t* codes;         /* Morton code, for each rank */
+  stratus_bvh_pair* pairs; /* count - 1 pairs, the builder's result: each box, and each pair except the root, is a child exactly once */
   uint32_t root;
 } stratus_bvh_build;
 
@@ -37,7 +37,7 @@ stratus_status stratus_bvh_sort_boxes(stratus_bvh_build* build, const stratus_bo
 /* ---- bvh_device.c: gives the same bits as the host */
 /* True if the context's device builds structures and can hold so many boxes. */
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count);
-/* Fills `count` codes in the order of the boxes. least: least lo + hi of all boxes along each axis. */
+/* Fills `count` codes in the order of the boxes. least: the least lo + hi of all boxes along each axis. */
 stratus_status stratus_device_morton_codes(
   stratus_context* context, const stratus_box* boxes, uint32_t count, const int32_t least[3], int shift, uint64_t* codes);
 stratus_status stratus_device_morton_hierarchy(stratus_context* context, const uint64_t* codes, uint32_t count, stratus_bvh_pair* pairs);
@@ -51,7 +51,7 @@ stratus_status stratus_bvh_build_agglomerative(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_density_peaks(stratus_bvh_build* build);
 stratus_status stratus_bvh_build_k_means(stratus_bvh_build* build);
 
-/* bvh_density_peaks.c: fills each box's cluster by rank. Clusters are numbered in the order of their first ranks; *clusters is their
+/* Fills each box's cluster by rank (bvh_density_peaks.c). Clusters are numbered in the order of their first ranks. *clusters is their
  * number. */
 stratus_status stratus_bvh_density_clusters(const stratus_bvh_build* build, uint32_t* cluster, uint32_t* clusters);
 
@@ -63,8 +63,8 @@ typedef struct stratus_bvh_item {
 
 stratus_status stratus_bvh_items_create(const stratus_bvh_build* build, stratus_bvh_item** items);
 /* Splits items [begin, end) by the binned surface area heuristic (SAH) and reorders them. A split before item m becomes pair m - 1. Each
- * place splits at most once, so that pairs need no counter and do not depend on the order of threads. *child: the range's root, as in a
- * pair. One thread of a parallel region calls it. */
+ * position splits at most once, so that pairs need no counter and do not depend on the order of threads. *child receives the range's root,
+ * as in a pair. One thread of a parallel region calls this function. */
 void stratus_bvh_split_items(
   stratus_bvh_item* items, uint32_t begin, uint32_t end, int depth, int max_depth, stratus_bvh_pair* pairs, uint32_t* child);
 
@@ -76,11 +76,11 @@ typedef enum stratus_bvh_measure { STRATUS_BVH_SURFACE, STRATUS_BVH_EDGES } stra
 stratus_status stratus_bvh_agglomerate(
   stratus_context* context, stratus_bvh_measure measure, const stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs, uint32_t* root);
 /* ---- bvh_join.c: joins consecutive ranges of items by a tree over the ranges. The function reorders the ranges to the order of that tree,
- * fills the pairs that split between them, and tells where each range's root is to be stored. */
+ * fills the pairs that split between them, and reports the address for each range's root. */
 typedef struct stratus_bvh_join {
   uint32_t ranges;            /* >= 2 */
   const stratus_bvh_pair* of; /* ranges - 1 pairs; their leaves are indices of ranges in the original order */
-  uint32_t root;              /* in `of` */
+  uint32_t root;              /* index of the root in `of` */
   uint32_t* start;            /* first item of each range, and the end: ranges + 1 numbers; updated with the order */
   uint32_t** child;           /* result: where to store the root of each range, in the new order */
   uint32_t* room;             /* scratch of 3 * ranges + 1 numbers */

@@ -31,8 +31,8 @@ static inline int stratus_bits_get(const stratus_bits* set, int64_t i, int64_t j
   return (int)(set->bits[(k * set->n[1] + j) * set->words + (i >> 6)] >> (i & 63) & 1);
 }
 
-/* Whether a context's device makes a field: a GPU (see device.h) does where buffers of `bytes` a voxel fit, else the host does.
- * distance_field_device.c */
+/* True if the context's device makes a field: it is a GPU (see device.h), and holds buffers of `bytes` for each voxel. Otherwise the host
+ * makes it. distance_field_device.c */
 bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes);
 
 /* distance_field_exact.c: true if squared distances of a grid need 64 bits. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Jump flooding: what distance_field.c calls, and what host and device passes share. */
+ * Jump flooding: its entry for distance_field.c, and declarations that host and device passes share. */
 #ifndef STRATUS_JUMP_FLOODING_PASSES_H
 #define STRATUS_JUMP_FLOODING_PASSES_H
 

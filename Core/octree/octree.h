@@ -154,7 +154,7 @@ void stratus_octree_count_splits(stratus_octree_level* level); /* fills rank[] *
 /* Merges each split node of `level` with its children if none of these is split and no border has crossed the node for more than `age`
  * calls. age < 0: merges whatever its age. */
 stratus_status stratus_octree_collapse(stratus_octree* tree, int level, int64_t age, uint64_t* collapses);
-/* The root's cell holds the box, or the tree is flat. */
+/* Doubles the root until its cell holds the box. Beyond a limit of growth the tree becomes a flat list instead. */
 stratus_status stratus_octree_grow(stratus_octree* tree, const float box[6]);
 
 /* ---- octree_split.c */
@@ -241,8 +241,8 @@ stratus_status stratus_octree_split_all(stratus_octree_view* view, uint64_t* spl
 stratus_status stratus_octree_view_reserve_stamps(stratus_octree_view* view);
 
 /* ---- octree_nodes.c */
-/* Every object where its placement has it, once a place, and all counts right; STRATUS_INVALID_ARGUMENT, and what is wrong in the message.
- */
+/* Checks that every object is listed once in each node where its placement puts it, and that all counts are right. Otherwise returns
+ * STRATUS_INVALID_ARGUMENT, with the error in the message. */
 stratus_status stratus_octree_check(const stratus_octree* octree);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Transforms from which distance_map.c chooses: Chebyshev distances in a grid of blocks. */
+ * Transforms that compute Chebyshev distances in a grid of blocks. distance_map.c chooses one. */
 #ifndef STRATUS_DISTANCE_SWEEP_H
 #define STRATUS_DISTANCE_SWEEP_H
 

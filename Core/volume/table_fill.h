@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What kernels are told of a transfer function's table. */
+ * The arguments that describe a transfer function's table to kernels. */
 #ifndef STRATUS_TABLE_FILL_H
 #define STRATUS_TABLE_FILL_H
 

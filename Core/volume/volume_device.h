@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The structures built by the context's OpenCL device, equal to the bit to what the host builds. The host is faster on a CPU, so only
- * GPUs are asked (stratus_device_builds); tests call the builders on any device. Each fills arrays that its caller allocated. */
+ * Builders of a volume's structures on the context's OpenCL device. Their results equal the host's to the bit. A CPU's OpenCL is slower
+ * than the host, so that only GPUs build (stratus_device_builds()); tests call the builders on any device. Each fills arrays that its
+ * caller allocated. */
 #ifndef STRATUS_VOLUME_DEVICE_H
 #define STRATUS_VOLUME_DEVICE_H
 
@@ -10,7 +11,7 @@
 /* True if the device can hold the volume: it fits an allocation, and the device has doubles for wide types. */
 bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume);
 
-/* Fills lo, hi and gaps of ranges, whose other fields are set. gaps tells only of values that are not finite; the caller adds hidden
+/* Fills lo, hi and gaps of `ranges`, whose other fields are set. gaps marks only values that are not finite; the caller adds hidden
  * cells. */
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges);
 
@@ -18,7 +19,7 @@ stratus_status stratus_device_value_range(stratus_context* context, const stratu
 stratus_status stratus_device_occupancy(
   stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy);
 
-/* True if the running sums, with which the device counts, fit one of its allocations. */
+/* True if the running sums, by which the device counts, fit one of its allocations. */
 bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3]);
 
 /* Fills bytes[] except its padding. `kind` must not be STRATUS_DISTANCE_BLOCK. */
