@@ -25,7 +25,8 @@ static stratus_status number_voxels(stratus_context* context, const stratus_bric
   return STRATUS_OK;
 }
 
-/* The device computes the sums where the context builds on one and the set fits; else rows where few bricks are in reach, else cells. */
+/* Chooses how to compute the sums: on the device if the context builds there and the set fits; else by rows if few bricks are in reach;
+ * else by cells. */
 static stratus_status sum_weights(
   stratus_context* context, const stratus_brick* bricks, int64_t count, const stratus_density* density, int64_t voxels, uint64_t* sums)
 {
@@ -109,7 +110,7 @@ void stratus_density_destroy(stratus_density* density)
 
 typedef struct peak_search {
   float density;
-  int64_t order; /* z, y and x in one number; the least wins ties */
+  int64_t order; /* z, y and x in one number; the least wins a tie */
   int32_t at[3];
 } peak_search;
 
@@ -123,7 +124,7 @@ static void offer(peak_search* best, float density, const stratus_brick* brick, 
   }
 }
 
-/* Bit of the voxel nearest to the brick's middle, the first of several. */
+/* Returns the bit of the voxel nearest to the brick's middle, the first of several. */
 static int middle_bit(uint64_t mask)
 {
   int best = 0, least = 64;

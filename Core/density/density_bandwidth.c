@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define CHUNKS 64
-#define BINS 4096 /* of the histogram of squared distances; three refinements leave 2^-36 of the largest */
+#define BINS 4096 /* bins of the histogram of squared distances; three refinements leave 2^-36 of the largest */
 
 /* Runs `body` for each voxel of the brick, with its offset (x, y, z) from `origin` in voxels. */
 #define FOR_EACH_VOXEL(brick, origin, x, y, z, body)                                                                                       \
@@ -21,7 +21,7 @@
     body                                                                                                                                   \
   }
 
-/* Mean position of the voxels; returns their number. Integer sums make the mean independent of their order. */
+/* Finds the mean position of the voxels; returns their number. Integer sums make the mean independent of their order. */
 static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean[3])
 {
   int64_t voxels = 0, sum[3] = { 0, 0, 0 };
@@ -40,7 +40,7 @@ static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean
   return voxels;
 }
 
-/* Standard deviation of the distances to `mean` (eq. 4); *largest: the largest squared distance. Distances are taken relative to one
+/* Computes the standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances are taken relative to one
  * voxel's: those of a shell differ by little, which the squares of whole distances would lose. */
 static double find_deviation(
   stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double* largest)
@@ -74,7 +74,7 @@ static double find_deviation(
   return variance > 0.0 ? sqrt(variance) : 0.0;
 }
 
-/* Number of voxels whose squared distance to `mean` is below `limit`. */
+/* Counts the voxels whose squared distance to `mean` is below `limit`. */
 static int64_t count_below(stratus_context* context, const stratus_brick* bricks, int64_t count, const double mean[3], double limit)
 {
   int64_t below = 0;
@@ -127,7 +127,7 @@ static int64_t fill_bins(
   return below;
 }
 
-/* Median of the distances to `mean`: of an even number, the upper of the middle two. */
+/* Finds the median of the distances to `mean`: of an even number, the upper of the middle two. */
 static stratus_status find_median(stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels,
   const double mean[3], double largest, double* median)
 {
@@ -158,7 +158,7 @@ stratus_status stratus_density_bandwidth_of(
   const int64_t voxels = find_mean(bricks, count, mean);
   if (voxels >= 2) {
     double spread = find_deviation(context, bricks, count, voxels, mean, &largest);
-    /* The median matters only if it gives less than the deviation does, which is when more than half of the voxels are this near. */
+    /* The median matters only if it gives less than the deviation does. It does if more than half of the voxels are nearer than this. */
     const double near = spread / widen;
     if (count_below(context, bricks, count, mean, near * near) > voxels / 2) {
       double median;

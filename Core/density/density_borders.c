@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALL_BANDWIDTH 16.0 /* below it bricks are too coarse to stand for their voxels along a line, and few voxels are in reach */
+#define SMALL_BANDWIDTH 16.0 /* below it bricks are too coarse to represent their voxels along a line, and few voxels are in reach */
 
 /* ---- at a point */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The sums of density_rows.c on the context's OpenCL device: buffers, arguments and launches of kernels/density.cl. */
+ * Computes the sums of density_rows.c on the context's OpenCL device: buffers, arguments and launches of kernels/density.cl. */
 #include "density_plan.h"
 #include "device.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sums of weights over few bricks in reach. A voxel's neighbours are read as rows of bits, and a row's sum of weights is looked up. Bricks
- * are in ascending order, and so are the bricks at a fixed distance from them: each row of neighbours has a cursor that only moves forward.
- */
+ * Sums of weights for bandwidths that reach over few bricks. A voxel's neighbours are read as rows of bits, and a table gives a row's sum
+ * of weights. Bricks are in ascending order, and so are the bricks at a fixed offset from them: each row of neighbours has a cursor that
+ * only moves forward. */
 #include "density_plan.h"
 
 #include <omp.h>
@@ -78,7 +78,7 @@ static stratus_status plan_exact(density_plan* plan)
   return STRATUS_OK;
 }
 
-/* Mean weight of the 64 places of a brick `d` bricks away, seen from a brick's middle. */
+/* Returns the mean weight of the 64 places of a brick `d` bricks away, seen from a brick's middle. */
 static uint32_t mean_weight(const int d[3], double bandwidth)
 {
   uint64_t sum = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The scenes of record: volumes defined to the last voxel, so that figures measured on them can be compared over years.
- * A noise field is cut at an exact quantile, which fixes the occupied fraction, and what is above is shaded. Everything is single
- * precision without fused operations; a scene is never changed. */
+ * The volumes of record, defined to the last voxel, so that figures measured on them can be compared over years. A noise field is cut at an
+ * exact quantile, which fixes the occupied fraction, and the values above the cut are shaded. All arithmetic is in single precision without
+ * fused operations. A scene is never changed. */
 #include "stratus/scenes.h"
 #include "volume.h"
 #include "scenes_fields.h"
@@ -23,7 +23,7 @@ typedef struct recipe {
   double top; /* upper end of the scalar range */
   double opacity;
   void (*field)(const field_tables* tables, int j, int k, float* row); /* NULL: a single voxel is set */
-  /* threshold: the field's quantile; height: the field's maximum less the threshold. `values` may be `row`. */
+  /* Shades a row. threshold: the field's quantile; height: the field's maximum less the threshold. `values` may be `row`. */
   void (*shade)(int j, int k, const float* row, float threshold, float height, void* values);
 } recipe;
 
@@ -165,7 +165,7 @@ static void measure(stratus_scene* scene, int threads)
   const int64_t row = scene->volume.dimensions[0];
   const int64_t rows = scene->volume.dimensions[1] * scene->volume.dimensions[2];
   int64_t occupied = 0;
-  double slices[512] = { 0 }; /* sums added in order, so that the mean does not depend on the number of threads */
+  double slices[512] = { 0 }; /* sums in a fixed order, so that the mean does not depend on the number of threads */
   const int64_t per_slice = scene->volume.dimensions[1];
 #pragma omp parallel for num_threads(threads) reduction(+ : occupied)
   for (int64_t k = 0; k < rows / per_slice; ++k) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The fields of the scenes of record, one row of x at a time, and their shading above the threshold. Only scenes.c includes this file. */
+ * The fields of the volumes of record, one row of x at a time, and their shading above the threshold. Only scenes.c includes this file. */
 #ifndef STRATUS_SCENES_FIELDS_H
 #define STRATUS_SCENES_FIELDS_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The meshes of record that are made, not read: a lattice of tetrahedra, where every plane and edge lies in line with others, and a plate
- * full of holes, whose surface a mesher fills: gaps all over, which an order has to see across. Tests and benchmarks share them; a scene is
- * never changed. */
+ * The meshes of record that are generated, not read. The first is a lattice of tetrahedra, whose planes and edges lie in line with one
+ * another. The second is a plate full of holes, whose surface a mesher fills: a visibility order has to see across its many gaps. Tests and
+ * benchmarks share them. A scene is never changed. */
 #include "stratus/scenes.h"
 #include "volume.h"
 
@@ -41,7 +41,7 @@ static double wavelet_value(const double point[3])
   return 150.0 * exp(-2.0 * square) + 20.0 * sin(12.0 * p[0]) + 36.0 * sin(6.0 * p[1]) + 10.0 * cos(16.0 * p[2]);
 }
 
-/* Speed of a plane flow along x around cylinders, each as if it stood alone, times a wave along z. */
+/* Returns the speed of a plane flow along x around cylinders, each as if it stood alone, times a wave along z. */
 static double holes_value(const double point[3])
 {
   double along = 1.0, across = 0.0;
@@ -91,7 +91,7 @@ static stratus_status make_wavelet(stratus_context* context, mesh_storage* stora
 
 /* ---------------------------------------------------------------- the plate */
 
-/* Place of point s on a square's border, counted counterclockwise in pieces of its edge from the lower left corner. */
+/* Gives the position of point s on a square's border, counted counterclockwise in pieces of its edge from the lower left corner. */
 static void around_square(int s, int at[2])
 {
   const int edge = s / SIDE, t = s % SIDE;

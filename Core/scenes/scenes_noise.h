@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Value noise on an integer hash. It defines the scenes of record to the last bit: single precision, in this order of operations. */
+ * Value noise on an integer hash. It defines the volumes of record to the last bit: single precision, in this order of operations. */
 #ifndef STRATUS_SCENES_NOISE_H
 #define STRATUS_SCENES_NOISE_H
 
@@ -17,13 +17,13 @@ static inline uint32_t noise_hash(uint32_t x, uint32_t y, uint32_t z, uint32_t s
   return k ^ (k >> 15);
 }
 
-/* Random number in 0..1 at a lattice point. */
+/* Returns a random number in 0..1 at a lattice point. */
 static inline float noise_corner(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
 {
   return (float)(noise_hash(x, y, z, seed) >> 8) * (1.0f / 16777216.0f);
 }
 
-/* The i-th random number of a seed, in 0..1. */
+/* Returns the i-th random number of a seed, in 0..1. */
 static inline float noise_unit(uint32_t i, uint32_t seed)
 {
   return noise_corner(i, 17, 91, seed);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in noise
- * whose density has a given deviation. A set never changes. */
+ * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in
+ * noise whose density has a given deviation. A set never changes. */
 #include "stratus/scenes.h"
 #include "voxels.h"
 
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define RAYS_ACROSS 512
-#define LEAST_DIRECTION 1e-6f /* magnitude below which no component of a ray's direction lies */
+#define LEAST_DIRECTION 1e-6f /* least magnitude of each component of a ray's direction */
 #define BLOBS_MAX 64
 #define TWO_PI 6.283185307179586
 #define DEVIATION_BLOCK 8
@@ -107,7 +107,7 @@ typedef struct ball {
   double at[3], weight;
 } ball;
 
-/* Fills blobs, which fall off as a normal distribution. A blob's share of the voxels goes with the cube of its weight. */
+/* Fills blobs, which fall off as a normal distribution. A blob's fraction of the voxels is proportional to the cube of its weight. */
 static void fill_blobs(bit_set* set, const ball* blobs, int count, int64_t voxels, uint64_t* state)
 {
   double total = 0.0;
@@ -132,7 +132,7 @@ static void fill_blobs(bit_set* set, const ball* blobs, int count, int64_t voxel
   }
 }
 
-/* Fills shells one voxel thick. They may become full, so after 50 tries for each voxel their radii spread. */
+/* Fills shells one voxel thick. Shells may become full: after 50 tries for each voxel their radii spread. */
 static void fill_shells(bit_set* set, const ball* shells, int count, int64_t voxels, uint64_t* state)
 {
   const int *n = set->n, shorter = n[1] < n[2] ? n[1] : n[2], least = n[0] < shorter ? n[0] : shorter;
@@ -198,7 +198,7 @@ static void fill_cubes(bit_set* set, double in_cubes, uint64_t seed)
   fill_noise(set, DEVIATION_VOXELS - done, &state);
 }
 
-/* Standard deviation of the density of those blocks of 8^3 that hold any voxel. A row of 8 voxels is a byte. */
+/* Returns the standard deviation of the density of those blocks of 8^3 that hold any voxel. A row of 8 voxels is a byte. */
 static double deviation_of(const bit_set* set)
 {
   const int *n = set->n, rows = DEVIATION_BLOCK;
@@ -316,7 +316,7 @@ void stratus_voxel_scene_release(stratus_context* context, int32_t* positions)
 
 /* ---------------------------------------------------------------- rays */
 
-/* Sets a direction in a float's precision that is never nearly parallel to a face. */
+/* Sets a direction in float precision, such that the ray is never nearly parallel to a face. */
 static void set_direction(stratus_ray* ray, const double d[3], double length)
 {
   for (int a = 0; a < 3; ++a) {
@@ -332,7 +332,7 @@ static double round_to_float(double x)
   return (double)rounded;
 }
 
-/* Rays from an eye outside, one through a random place of each pixel. */
+/* Makes rays from an eye outside, one through a random point of each pixel. */
 static void primary_rays(const int64_t n[3], stratus_ray* rays)
 {
   const double nx = (double)n[0], ny = (double)n[1], nz = (double)n[2], diagonal = sqrt(nx * nx + ny * ny + nz * nz);
@@ -355,7 +355,7 @@ static void primary_rays(const int64_t n[3], stratus_ray* rays)
   }
 }
 
-/* Rays from random places in empty voxels, in random directions. */
+/* Makes rays from random points in empty voxels, in random directions. */
 static void random_rays(const stratus_voxels* voxels, stratus_ray* rays)
 {
   const int64_t* n = voxels->dimensions;

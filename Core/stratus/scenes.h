@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The reference scenes that tests, benchmarks, examples and the command line share. They are a library of their own, Stratus::Scenes. */
+ * The scenes of record, which tests, benchmarks, examples and the command line share. They are a library of their own, Stratus::Scenes. */
 #ifndef STRATUS_PUBLIC_SCENES_H
 #define STRATUS_PUBLIC_SCENES_H
 
@@ -30,11 +30,11 @@ STRATUS_EXPERIMENTAL int stratus_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_scene_name(int index); /* NULL for other indices */
 STRATUS_EXPERIMENTAL stratus_status stratus_scene_create(stratus_context* context, const char* name, stratus_scene** scene);
 STRATUS_EXPERIMENTAL void stratus_scene_destroy(stratus_context* context, stratus_scene* scene);
-/* Makes reference camera `view`, 0..7, around bounds xmin xmax ymin ymax zmin zmax. Its distance is R / sin 15 deg, its view angle 21.6
+/* Makes camera `view` of record, 0..7, around bounds xmin xmax ymin ymax zmin zmax. Its distance is R / sin 15 deg, its view angle 21.6
  * deg, its elevation 25 deg, its azimuth 30 + 45 view deg about up_axis, its parallel scale .72 R. */
 STRATUS_EXPERIMENTAL stratus_status stratus_scene_camera(
   stratus_context* context, const double bounds[6], int up_axis, int view, int parallel, double aspect, stratus_camera* camera);
-/* Reference sets of voxels: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M. */
+/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M. */
 STRATUS_EXPERIMENTAL int stratus_voxel_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_voxel_scene_name(int index); /* NULL for other indices */
 /* Makes *count triples in *positions. Free them with stratus_voxel_scene_release(). */
@@ -45,7 +45,7 @@ STRATUS_EXPERIMENTAL void stratus_voxel_scene_release(stratus_context* context, 
 STRATUS_EXPERIMENTAL stratus_status stratus_voxel_scene_rays(
   stratus_context* context, const stratus_voxels* voxels, int kind, stratus_ray* rays);
 
-/* Generated reference meshes: holes (a plate with 24 holes) and wavelet (998,250 tetrahedra of a lattice). */
+/* Meshes of record that are generated: holes (a plate with 24 holes) and wavelet (998,250 tetrahedra of a lattice). */
 typedef struct stratus_mesh_scene {
   const char* name;
   /* wavelet: tetrahedra and one float for each point. holes: the points of a closed surface, without cells or values. */
@@ -61,7 +61,7 @@ STRATUS_EXPERIMENTAL int stratus_mesh_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_mesh_scene_name(int index); /* NULL for other indices */
 STRATUS_EXPERIMENTAL stratus_status stratus_mesh_scene_create(stratus_context* context, const char* name, stratus_mesh_scene** scene);
 STRATUS_EXPERIMENTAL void stratus_mesh_scene_destroy(stratus_context* context, stratus_mesh_scene* scene);
-/* Returns the field of a reference mesh at a point that a mesher added; NaN for an unknown name. */
+/* Returns the field of a mesh of record at a point that a mesher added; NaN for an unknown name. */
 STRATUS_EXPERIMENTAL double stratus_mesh_scene_value(const char* name, const double point[3]);
 
 #ifdef __cplusplus

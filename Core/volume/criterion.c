@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The intervals of values that a criterion shows, and the test whether one set of intervals may stand in for another.
+ * The intervals of values that a criterion shows, and the test whether one set of intervals covers another.
  *
- * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers; of doubles, every one of them is closed.
- * For ray casting the question is what a table shows that samples the function at its entries: an entry stands for all values that round to
- * it. */
+ * A piecewise linear opacity is above 0 on a union of open and closed intervals of real numbers. Among doubles, each of them has a closed
+ * equivalent. Ray casting reads a table that samples the function at its entries, and an entry stands for all values that round to it: the
+ * intervals of cells are therefore those that the table shows. */
 #include "criterion.h"
 
 #include <string.h>
 
 /* Sample distance, in unit distances, so long that any opacity above 0 is above 0 in a float, too. */
 #define LONG_SAMPLE 1e30
-/* Share of a table's size by which fma() and rounding to floats can shift a value's entry. The bounds of intervals move outward by it. */
+/* Fraction of a table's size by which fma() and rounding to floats can shift a value's entry. The bounds of intervals move outward by
+ * it. */
 #define ENTRY_ROUNDING 2.4e-7
 
 stratus_criterion stratus_criterion_default(void)
@@ -175,7 +176,7 @@ static stratus_status append_tables(stratus_context* context, const stratus_valu
   return STRATUS_OK;
 }
 
-/* Makes ends beyond the volume's values infinite. They say nothing about the volume, and then compare equal whatever made them. */
+/* Makes ends beyond the volume's values infinite. Such ends carry no information about the volume, and infinite ones compare equal. */
 static void open_ends(stratus_intervals* list, const stratus_value_range* ranges)
 {
   const double lo = (double)ranges->whole_lo + ranges->bias, hi = (double)ranges->whole_hi + ranges->bias;

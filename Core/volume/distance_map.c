@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance maps: allocation, choice of transform, and plain block skipping as the shortest of them. */
+ * Distance maps: their allocation, the choice of transform, and plain block skipping, which needs none. */
 #include "volume.h"
 #include "distance_sweep.h"
 #include "volume_device.h"

@@ -3,7 +3,7 @@
  * searches as far as its own distance for a nearer block. This is the baseline for the sweeps, and equal to them to the bit. */
 #include "distance_sweep.h"
 
-/* Distances along a line, from seeds of 0 and DISTANCE_MAX. */
+/* Computes distances along a line, from seeds of 0 and DISTANCE_MAX. */
 static void scan_line(uint8_t* line, int64_t n)
 {
   for (int64_t x = 1; x < n; ++x) {
@@ -14,7 +14,7 @@ static void scan_line(uint8_t* line, int64_t n)
   }
 }
 
-/* The paper's second and third pass: the least over k of max(|k|, line[x+k]). */
+/* The paper's second and third pass: returns the least over k of max(|k|, line[x+k]). */
 static uint8_t search_line(const uint8_t* line, int64_t x, int64_t n)
 {
   int nearest = line[x];

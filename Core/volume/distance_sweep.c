@@ -3,7 +3,8 @@
  * block in the next row are one step away: D = min(D, 1 + least of them). Along z these are 3x3 neighbours, in one octant 2x2. The sweeps
  * up and down z are independent, and the distance is the minimum of both. Threads share these sweeps and the octants.
  *
- * An octant's distance is that to the nearest occupied block which is behind on no axis, so that each axis is swept one way only. */
+ * An octant's distance counts only occupied blocks that lie behind the block on no axis, as seen along the octant's direction. Each axis
+ * therefore needs one sweep in one direction. */
 #include "distance_sweep.h"
 #include "distance_rows.h"
 
@@ -53,7 +54,7 @@ static room make_room(uint8_t* memory, const int64_t blocks[3], size_t pitch)
   return r;
 }
 
-/* Distances along x of one row. */
+/* Computes the distances along x of one row. */
 static void spread_row(const room* r, const uint8_t* occupied, uint8_t target, int64_t n, int side, uint8_t* out)
 {
   const int64_t found = row_seed(occupied, target, n, r->spread);

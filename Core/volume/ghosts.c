@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the ghost flags of points and cells say of a volume: which cells are transparent, which another piece draws. */
+ * The meaning of a volume's ghost flags: the cells that are transparent, and those that another piece draws. */
 #include "volume.h"
 
 /* Flags of points and cells in one form. Along a flat axis VTK counts one cell. */
@@ -20,7 +20,7 @@ static ghosts ghosts_of(const stratus_volume* volume)
   return g;
 }
 
-/* *any: a corner of the cell has `flag`; *all: each corner has it. */
+/* Sets *any if a corner of the cell has `flag`, and *all if each corner has it. */
 static void corner_flags(const ghosts* g, int64_t i, int64_t j, int64_t k, unsigned flag, bool* any, bool* all)
 {
   unsigned some = 0, every = flag;

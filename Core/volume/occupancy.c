@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Occupancy: which blocks the transfer function shows, by the range test of Deakin & Knackstedt 2019 on value ranges that include the
+ * Occupancy: the blocks that the transfer function shows, by the range test of Deakin & Knackstedt 2019 on value ranges that include the
  * halo. */
 #include "clones.h"
 #include "volume.h"
@@ -18,7 +18,7 @@ static ALWAYS_INLINE void test_run(
   int first[RUN], last[RUN];
   for (int64_t b = 0; b < count; ++b) {
     const float from = lo[b] <= hi[b] ? lo[b] : 0.0f, to = lo[b] <= hi[b] ? hi[b] : 0.0f;
-    /* Not fmaxf(): what it promises of NaN keeps it a call. */
+    /* Not fmaxf(), which remains a call because of its rule for NaN. */
     const float slack = STRATUS_HULL_SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
     first[b] = stratus_table_entry(table, from - slack);
     last[b] = stratus_table_entry(table, to + slack);
@@ -36,7 +36,7 @@ static void test_run_portable(const stratus_table* table, const float* lo, const
 }
 
 #if HAVE_CLONES
-/* stratus_table_entry() is a fused multiply-add, which is a library call where this instruction set lacks. */
+/* stratus_table_entry() is a fused multiply-add, which compiles to a library call without this instruction set. */
 __attribute__((target("avx2,fma"))) static void test_run_fused(
   const stratus_table* table, const float* lo, const float* hi, int64_t count, uint8_t* occupied)
 {
@@ -185,7 +185,7 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
       STRATUS_SAMPLING_PREINTEGRATED);
   }
   TRY(stratus_transfer_check(context, transfer));
-  /* Pre-integration shows whatever single samples show, so it serves for both. */
+  /* Pre-integration shows all that single samples show, so that it serves both samplings. */
   const stratus_sampling used = sampling == STRATUS_SAMPLING_AUTO ? STRATUS_SAMPLING_PREINTEGRATED : sampling;
   const int any = ranges->whole_lo <= ranges->whole_hi;
   stratus_table* table = NULL;
@@ -196,8 +196,8 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   return status;
 }
 
-/* Finds the least and the greatest fetched value that may stand for a value in lower..upper. For wide types the fetched ends serve:
- * fetching is monotone, so a value beyond an end is fetched as a float beyond that end or as the same float. */
+/* Finds the least and the greatest fetched value that may stand for a value in lower..upper. Wide types use the fetched ends: fetching is
+ * monotone, so that a value beyond an end is fetched as a float beyond that end or as the same float. */
 static void find_ends(const stratus_value_range* ranges, double lower, double upper, float* first, float* last)
 {
   *first = ranges->wide ? (float)(lower - ranges->bias) : stratus_float_above(lower); /* narrow types are fetched exactly */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Transfer functions kept beyond the call that brought them, and whether the next call brings the same. */
+ * Copies of transfer functions, which structures keep after the call, and the comparison with those of the next call. */
 #include "volume.h"
 
 #include <string.h>
@@ -30,7 +30,7 @@ static const double* copy_points(double** end, const double* points, size_t coun
 
 stratus_status stratus_transfer_copy(stratus_context* context, const stratus_transfer* transfers, int count, stratus_transfer** copy)
 {
-  /* The functions, then the points of each: opacity, colour, gradient opacity. */
+  /* The allocation holds the functions, then the points of each: opacity, colour, gradient opacity. */
   const size_t first = ((size_t)count * sizeof *transfers + sizeof(double) - 1) / sizeof(double);
   size_t numbers = first;
   void* memory = NULL;

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The transfer function as traversal samples it: a table over the data's values, each entry the function at the entry's middle (midpoint
- * sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
+ * The transfer function as traversal samples it: a table over the data's values. An entry holds the function at the entry's middle
+ * (midpoint sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
 #include "volume.h"
 
 #include <string.h>
 
-/* Entries by sampling, entries at most, and entries that the function's narrowest feature shall have. */
+/* Number of entries by sampling, most entries, and number of entries over the function's narrowest feature. */
 #define MIDPOINT_ENTRIES 4096
 #define PREINTEGRATED_ENTRIES 16384
 #define MOST_ENTRIES 65536
 #define ENTRIES_A_FEATURE 32
-/* Optical depth of a midpoint sample of opacity 1, in place of infinity: any part of the sample that floats tell from none stays opaque. */
+/* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as
+ * floats tell it from 0. */
 #define OPAQUE_DEPTH 1e30f
-/* Optical depth per unit distance of entries of opacity 1, in place of infinity, which running sums cannot hold. fill_opaque() marks these
+/* Optical depth per unit distance of entries of opacity 1, instead of infinity, which running sums cannot hold. fill_opaque() marks these
  * entries, since opacities just below 1 may be deeper. */
 #define OPAQUE_TAU 16.0
-/* Bound on the optical depth per length, whose unit may be next to nothing: sums of it stay finite. */
+/* Bound on the optical depth per length, which keeps sums finite if the unit of length is tiny. */
 #define TAU_MOST 1e290
 /* Inverse of the colour change allowed within a piece of a segment; longer pieces are cut. Averaging a piece's colours is wrong by about
  * 1/12 of that change, half of 1/255. */
@@ -72,7 +73,7 @@ stratus_status stratus_transfer_check(stratus_context* context, const stratus_tr
   return STRATUS_OK;
 }
 
-/* Piecewise linear function at x, in calls with rising x. *at: the last point with value <= x, or -1; begins at -1. */
+/* Returns the piecewise linear function at x, in calls with rising x. *at is the last point with value <= x, or -1, and begins at -1. */
 static double walk(const double* points, size_t count, size_t width, size_t component, double x, ptrdiff_t* at)
 {
   while (*at + 1 < (ptrdiff_t)count && points[(size_t)(*at + 1) * width] <= x) {
@@ -104,13 +105,13 @@ void stratus_transfer_at(const stratus_transfer* transfer, double value, double 
   rgba[3] = outside(transfer, value) ? 0.0 : walk(transfer->opacity, transfer->opacity_count, 2, 1, value, &at);
 }
 
-/* Optical depth per world unit. */
+/* Returns the optical depth per world unit. */
 static double tau_of(const stratus_transfer* transfer, double opacity)
 {
   return fmin((opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance, TAU_MOST);
 }
 
-/* Width of the narrowest interval between points where the opacity changes or is 1; at most `range`. */
+/* Returns the width of the narrowest interval between points where the opacity changes or is 1, at most `range`. */
 static double narrowest_feature(const stratus_transfer* transfer, double range)
 {
   double narrowest = range;
@@ -123,7 +124,7 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* Shrinks lo..hi, the data's values, to the function's points and a margin, beyond which nothing changes. */
+/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. */
 static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
 {
   const double* first = transfer->opacity;
@@ -169,7 +170,7 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
 }
 
 /* Writes the four running sums in doubles. Returns the largest change of a colour between neighbouring entries of which one shows. An entry
- * is the function at its middle, not the mean over its width: a value that is transparent must stay so beside one that is not. */
+ * is the function at its middle, not the mean over its width: a transparent value must stay transparent beside one that shows. */
 static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
@@ -210,8 +211,8 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
 /* Fills the two rows behind the sums, which tell where rays meet opacity 1. For an entry of opacity 1 both rows hold the entry itself. For
  * any other, the first row holds the next entry upwards where the function stays 1 over an interval, or `size`; the second row holds the
  * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray on its way to other entries stops at the first where the
- * function stays 1. Where the function only touches 1 its depth is infinite, too, but as a logarithm is: it adds little to rays that pass,
- * and everything to rays that stay. */
+ * function stays 1. Where the function only touches 1, the optical depth is also infinite, but only logarithmically: it adds little to rays
+ * that pass, and everything to rays that stay. */
 static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
 {
   const int size = table->size;

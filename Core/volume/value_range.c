@@ -106,7 +106,7 @@ typedef struct span {
 #define FLOATS 1
 #include "value_range_rows.h"
 
-/* A double is fetched before it is compared: one that overflows a float counts as not finite, as it does everywhere else. */
+/* Doubles are fetched before they are compared: one that overflows a float counts as not finite, as it does everywhere else. */
 #define TYPE double
 #define ACC float
 #define NAME(f) f##_float64
@@ -145,7 +145,7 @@ static reduce_function reduce_of(stratus_type type)
   return NULL;
 }
 
-/* Bytes of a thread's scratch, which give_room() divides. */
+/* Returns the bytes of a thread's scratch, which give_room() divides. */
 static size_t room_bytes(int64_t nx)
 {
   const size_t row = ((size_t)nx * ROW_BYTES + 63) / 64 * 64;
@@ -257,7 +257,7 @@ static void flag_hidden(const stratus_volume* volume, const uint8_t* hidden, str
   }
 }
 
-/* Lanes are independent, where a single running minimum would wait for itself. */
+/* Keeps independent extremes in lanes: a single running minimum would wait for itself. */
 static void widen_lanes(const float* restrict lo, const float* restrict hi, float* restrict least, float* restrict most)
 {
   for (int lane = 0; lane < LANES; ++lane) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The view of a volume: checks, geometry, ghosts, and the float that everything later sees of a value. */
+ * The view of a volume: its checks, its geometry, and the float that the rest of the core sees of a value. */
 #include "volume.h"
 
 #include "matrix.h"
 
 #include <string.h>
 
-/* Values, evenly spread, among which the least in magnitude is what wide types are taken relative to. */
+/* Number of values, evenly spread, among which stratus_volume_bias() seeks the one of least magnitude. */
 #define BIAS_VALUES_ASKED 4096
 
 static const double identity3[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -80,7 +80,7 @@ void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[1
   }
 }
 
-/* World bounds, without checks. */
+/* Computes world bounds without checks. */
 static void bounds_of(const stratus_volume* volume, double bounds[6])
 {
   double matrix[16];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A volume's content in 64 bits, so that a structure that comes with the data is used for these data only. Rows are hashed apart and
- * added up: the order of threads doesn't matter, and whoever reads the rows anyway hashes them while they are in the cache. */
+ * A hash of a volume's content, of 64 bits. It ensures that a structure that comes with data is used for these data only. Rows are hashed
+ * independently and their hashes added: threads may take them in any order, and a pass that reads the rows for another purpose can hash
+ * them while they are in the cache. */
 #include "volume_hash.h"
 
 #include <omp.h>
@@ -30,7 +31,7 @@ static uint64_t finish(uint64_t x)
   return x ^ x >> 32;
 }
 
-/* Four chains, so that no multiplication waits for the one before. */
+/* Runs four chains, so that no multiplication waits for the one before. */
 static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
 {
   uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
@@ -78,7 +79,7 @@ const void* stratus_volume_row(const stratus_volume* volume, int64_t j, int64_t 
   }
 }
 
-/* Hash of the wanted flags of one row. It is 0 if none is set, so that flags of 0 throughout equal no flags. */
+/* Returns the hash of the wanted flags of one row. It is 0 if none is set, so that flags of 0 throughout equal no flags. */
 static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint64_t seed)
 {
   uint64_t sum = 0;
