@@ -65,6 +65,7 @@ STRATUS_API const char* stratus_context_message(const stratus_context* context);
 STRATUS_API const char* stratus_context_device(const stratus_context* context);
 /* Returns 1 if an OpenCL device draws, 0 if the host does. */
 STRATUS_API int stratus_context_on_device(const stratus_context* context);
+/* Returns the number of threads on the host. */
 STRATUS_API int stratus_context_threads(const stratus_context* context);
 
 /* Returns the number of OpenCL devices of all platforms, in the order in which the loader lists them; 0 if there is no platform. */

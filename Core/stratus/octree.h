@@ -83,6 +83,7 @@ STRATUS_API stratus_octree_options stratus_octree_options_default(void);
 
 typedef struct stratus_octree stratus_octree;
 
+/* Creates an empty tree. options may be NULL. */
 STRATUS_API stratus_status stratus_octree_create(stratus_context* context, const stratus_octree_options* options, stratus_octree** octree);
 /* Destroys a tree. Destroy its views first. */
 STRATUS_API void stratus_octree_destroy(stratus_octree* octree);
@@ -95,11 +96,13 @@ STRATUS_API stratus_status stratus_octree_insert_oriented(stratus_octree* octree
 /* Gives new bounds to objects in the tree. An object that stays in its node costs one write. If memory runs out, each object has its old or
  * its new bounds. An id that is not in use gives STRATUS_INVALID_ARGUMENT, and moves no object. */
 STRATUS_API stratus_status stratus_octree_move(stratus_octree* octree, const uint32_t* ids, const double* bounds, size_t count);
+/* The same for turned boxes. */
 STRATUS_API stratus_status stratus_octree_move_oriented(stratus_octree* octree, const uint32_t* ids, const double* boxes, size_t count);
 /* Removes objects; needs no memory. An id that is not in use, or twice in the list, gives STRATUS_INVALID_ARGUMENT, and removes no
  * object. */
 STRATUS_API stratus_status stratus_octree_remove(stratus_octree* octree, const uint32_t* ids, size_t count);
 STRATUS_API void stratus_octree_clear(stratus_octree* octree); /* removes all objects; no id stays in use */
+/* Returns the number of objects. */
 STRATUS_API size_t stratus_octree_count(const stratus_octree* octree);
 /* Returns a number above all ids in use. */
 STRATUS_API size_t stratus_octree_id_limit(const stratus_octree* octree);

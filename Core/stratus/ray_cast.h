@@ -85,8 +85,8 @@ typedef struct stratus_shading {
 
 typedef struct stratus_ray_cast_options {
   stratus_structure structure; /* default auto: the cheapest that the scene needs; the report names it */
-  stratus_sampling
-    sampling; /* default auto: by how much the transfer function bends over the data. Nearest interpolation is never pre-integrated. */
+  /* Default auto: by how much the transfer function bends over the data. Nearest interpolation is never pre-integrated. */
+  stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */
   double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
   double termination;     /* a ray ends when its alpha exceeds this, 0..1; default .999 */
@@ -95,7 +95,8 @@ typedef struct stratus_ray_cast_options {
   double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
   /* Regions that show, of the 27 into which the bounds' six planes divide space. Bit x + 3 y + 9 z stands for region (x, y, z), where each
    * coordinate is 0 (below the lower plane), 1 (between the planes) or 2 (above the upper plane). Default STRATUS_CROP_INSIDE: between all
-   * planes. */
+   * planes. First hits support no other value. */
+
   uint32_t crop_regions;
   int clip_plane_count;                           /* 0..6 */
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world: points with a x + b y + c z + d >= 0 show */
@@ -115,8 +116,8 @@ typedef struct stratus_ray_cast_options {
   int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */
   double contours[STRATUS_CONTOURS_MAX]; /* finite, in any order */
   /* One byte for each value of the volume, NULL: no mask. A sample is transparent where the byte of the nearest value is 0; a
-   * pre-integrated segment is transparent where the byte at either end is 0. First hits ignore the mask. The caster copies it when it, its
-   * revision or the volume's data changes. */
+   * pre-integrated segment is transparent where the byte at either end is 0. First hits with a mask give STRATUS_UNSUPPORTED. The caster
+   * copies the mask when its pointer, its revision or the volume's data changes. */
   const uint8_t* mask;
   uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
   /* Composite, one component. 0 (default): no labels. 1..255: the mask's bytes are labels and hide nothing. A sample of label l in
@@ -156,11 +157,12 @@ typedef struct stratus_ray_caster stratus_ray_caster;
 STRATUS_API stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** caster);
 STRATUS_API void stratus_ray_caster_destroy(stratus_ray_caster* caster);
 
-/* Draws a picture. The caster borrows volume->values and the ghost flags until the next call with another volume, _release or _destroy. It
- * keeps the structures that it builds, and rebuilds one only when its inputs change: ranges with the volume's pointers, type, dimensions,
- * stride, centring or revision, or the block size; tables, occupancy and structure with the transfer function or the sampling, and tables
- * also with the sample distance. A change of geometry or camera rebuilds nothing. report may be NULL. A failed call leaves the picture
- * undefined, and the caster ready for the next call. */
+/* Draws a picture. transfer: one function, or as many as a volume has independent components, or label_count + 1. The caster borrows
+ * volume->values and the ghost flags until the next call with another volume, _release or _destroy. It keeps the structures that it builds,
+ * and rebuilds one only when its inputs change: ranges with the volume's pointers, type, dimensions, stride, centring or revision, or the
+ * block size; tables, occupancy and structure with the transfer function or the sampling, and tables also with the sample distance. A
+ * change of geometry or camera rebuilds nothing. report may be NULL. A failed call leaves the picture undefined, and the caster ready for
+ * the next call. */
 STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);

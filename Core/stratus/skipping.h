@@ -49,8 +49,8 @@ STRATUS_EXPERIMENTAL stratus_status stratus_occupancy_create_between(
 STRATUS_EXPERIMENTAL void stratus_occupancy_destroy(stratus_occupancy* occupancy);
 STRATUS_EXPERIMENTAL void stratus_occupancy_blocks(const stratus_occupancy* occupancy, int64_t blocks[3], int* block_size);
 STRATUS_EXPERIMENTAL int64_t stratus_occupancy_count(const stratus_occupancy* occupancy); /* number of occupied blocks */
-STRATUS_EXPERIMENTAL int stratus_occupancy_get(
-  const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k); /* 0 beyond the blocks */
+/* Returns 1 if the block is occupied; 0 if it is empty, and beyond the blocks. */
+STRATUS_EXPERIMENTAL int stratus_occupancy_get(const stratus_occupancy* occupancy, int64_t i, int64_t j, int64_t k);
 /* Gives the smallest box of occupied blocks, [lo, hi) in blocks; lo = hi = 0 if no block is occupied. */
 STRATUS_EXPERIMENTAL void stratus_occupancy_bounds(const stratus_occupancy* occupancy, int64_t lo[3], int64_t hi[3]);
 

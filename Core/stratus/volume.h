@@ -51,8 +51,9 @@ typedef struct stratus_volume {
    * images. If cell_centered, there are `dimensions` cells. */
   const uint8_t* cell_ghosts;
   uint64_t revision; /* the caller raises it when values or ghost flags change under the same pointer. Default 0. */
-  /* 1..4, default 1 (0 counts as 1). Component c of value v is values[v*value_stride + c]. Only ray casts in composite mode use more than
-   * the first component. */
+  /* 1..4, default 1 (0 counts as 1). Component c of value v is values[v*value_stride + c]. Ray casts in composite mode use all components;
+   * in other modes they give STRATUS_UNSUPPORTED for more than 1. Everything else reads the first component. */
+
   int components;
 } stratus_volume;
 
@@ -81,6 +82,7 @@ typedef struct stratus_transfer {
 } stratus_transfer;
 
 STRATUS_API stratus_transfer stratus_transfer_default(void);
+/* Checks a transfer function: points that are finite and in order, opacities and colours in 0..1, a positive finite unit distance. */
 STRATUS_API stratus_status stratus_transfer_check(stratus_context* context, const stratus_transfer* transfer);
 
 /* The values that show, for structures that need nothing else of a transfer function. */

@@ -29,6 +29,7 @@ STRATUS_API stratus_status stratus_voxels_create_cells(
 STRATUS_API stratus_status stratus_voxels_create_list(
   stratus_context* context, const int64_t dimensions[3], const int32_t* positions, size_t count, stratus_voxels** voxels);
 STRATUS_API void stratus_voxels_destroy(stratus_voxels* voxels);
+/* Returns the number of effective voxels. */
 STRATUS_EXPERIMENTAL int64_t stratus_voxels_count(const stratus_voxels* voxels);
 STRATUS_EXPERIMENTAL void stratus_voxels_dimensions(const stratus_voxels* voxels, int64_t dimensions[3]);
 STRATUS_EXPERIMENTAL int stratus_voxels_get(const stratus_voxels* voxels, int64_t i, int64_t j, int64_t k); /* 0 beyond the dimensions */
