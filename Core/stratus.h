@@ -10,11 +10,11 @@
  * - A call that fails returns a status, leaves its outputs unchanged, and leaves a sentence in stratus_context_message() with the value and
  *   the allowed range.
  * - Options may be NULL and then have their defaults. Any other pointer may be NULL only where a comment says so. Otherwise a call that
- *   returns a status refuses NULL with STRATUS_INVALID_ARGUMENT, without a message if no object is there to hold one. A call without a
- * status treats an object that is NULL as an empty one, and writes to no address that is NULL.
+ *   returns a status refuses NULL with STRATUS_INVALID_ARGUMENT, without a message if no object is there to hold one. A call without
+ *   a status treats an object that is NULL as an empty one, and writes to no address that is NULL.
  * - One context serves one thread at a time. Different contexts are independent, and several threads may create theirs at once. The core's
- *   only global state is one lock: a single thread at a time asks OpenCL for its devices, since some platforms allow no more. The lock
- * covers nothing else.
+ *   only global state is one lock: a single thread at a time asks OpenCL for its devices, since some platforms allow no more. The
+ *   lock covers nothing else.
  * - Each calling thread, and each OpenMP thread, needs 128 KiB of stack on the host. An OpenCL implementation may need more.
  */
 #ifndef STRATUS_H

@@ -35,11 +35,11 @@ STRATUS_API stratus_status stratus_mesh_check(stratus_context* context, const st
  * all cells alike: no cut moves it, and its cells may reach over the plane by that distance. A cell with a volume has only pieces with a
  * volume. */
 
+/* The rule chooses the candidates for a node's plane. Of those within the bounds on growth and imbalance, the plane that adds fewest cells
+ * cuts the node, or of several such planes the most balanced. */
 typedef enum stratus_partition_rule {
-  /* Candidates are planes through the mesh's own points between the 40 % and the 60 % quantile. The one that cuts fewest cells wins. */
-  STRATUS_PARTITION_MEDIAN,
-  /* Candidates are evenly spaced planes that satisfy the bounds on growth and imbalance. The one that adds fewest cells wins. */
-  STRATUS_PARTITION_PAPER
+  STRATUS_PARTITION_MEDIAN, /* planes through the mesh's own points between the 40 % and the 60 % quantile of the cells */
+  STRATUS_PARTITION_PAPER   /* evenly spaced planes */
 } stratus_partition_rule;
 
 typedef struct stratus_partition_options {

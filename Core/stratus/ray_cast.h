@@ -10,13 +10,14 @@
 extern "C" {
 #endif
 
+/* The structure by which a ray skips empty space. */
 typedef enum stratus_structure {
-  STRATUS_STRUCTURE_AUTO,
-  STRATUS_STRUCTURE_NONE,
-  STRATUS_STRUCTURE_BLOCK,
-  STRATUS_STRUCTURE_DISTANCE,
-  STRATUS_STRUCTURE_OCTANT,
-  STRATUS_STRUCTURE_HYBRID /* leaps by the distances of a hybrid tree */
+  STRATUS_STRUCTURE_AUTO,     /* the cheapest of the others that the scene needs */
+  STRATUS_STRUCTURE_NONE,     /* no skipping */
+  STRATUS_STRUCTURE_BLOCK,    /* empty blocks, one at a time */
+  STRATUS_STRUCTURE_DISTANCE, /* distance map, STRATUS_DISTANCE_FULL */
+  STRATUS_STRUCTURE_OCTANT,   /* eight distance maps, STRATUS_DISTANCE_OCTANT */
+  STRATUS_STRUCTURE_HYBRID    /* the distances in a hybrid tree */
 } stratus_structure;
 
 STRATUS_API const char* stratus_structure_name(stratus_structure structure);

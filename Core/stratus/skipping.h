@@ -30,8 +30,8 @@ STRATUS_EXPERIMENTAL void stratus_value_range_block(
 typedef enum stratus_sampling {
   STRATUS_SAMPLING_AUTO,
   STRATUS_SAMPLING_MIDPOINT, /* one value in the middle of each segment */
-  /* The transfer function is integrated between the values at a segment's ends (Engel, Kraus & Ertl 2001), from cumulative tables. Segments
-     that are opaque are cut into shorter steps. */
+  /* The transfer function is integrated between the values at a segment's ends (Engel, Kraus & Ertl 2001), from cumulative tables. A
+   * segment of high optical depth is cut into pieces where its colour changes. */
   STRATUS_SAMPLING_PREINTEGRATED
 } stratus_sampling;
 
