@@ -121,11 +121,11 @@ struct stratus_occupancy {
   int64_t lo[3], hi[3]; /* box of the occupied blocks */
 };
 
-/* With pre-integration, a block with gaps counts as occupied if the table shows anything at all: two blocks whose shared layer is not
- * finite may lie on both sides of a peak. (Blocks without gaps share finite voxels, so that a cube of empty blocks has one connected,
- * transparent hull.) */
 /* Adds the occupied blocks of `other`, which has the same blocks. */
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other);
+/* Marks the blocks that the table shows. With pre-integration, a block with gaps counts as occupied if the table shows anything at all:
+ * two blocks whose shared layer is not finite may lie on both sides of a peak. Blocks without gaps share finite voxels, so that a cube
+ * of empty blocks has one connected, transparent hull. */
 stratus_status stratus_occupancy_build(
   stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy** occupancy);
 
@@ -142,11 +142,11 @@ struct stratus_distance_map {
   size_t map_bytes;  /* pitch*blocks[1]*blocks[2] */
   size_t bytes_size; /* all maps and 64 bytes of padding, which traversal may read */
   uint8_t* bytes;
-  /* If > 0, the offset of the bits that bound the values, one float for each block, for rays that look for extremes:
-   * kernels/ray_extremes.h. */
+  /* If > 0, the offset in bytes[] of one float for each block: a bound on its largest value, or on the negative of its smallest. Rays that
+   * look for extremes skip blocks by it, see kernels/ray_cast/ray_extremes.h. */
   size_t bounds_at;
-  /* If > 0, bytes[] holds no map but a tree of so many nodes, in the layout of kernels/tree_map.h. kind, pitch and map_bytes then mean
-   * nothing. */
+  /* If > 0, bytes[] holds no map but a tree of so many nodes, in the layout of kernels/ray_cast/tree_map.h. kind, pitch and map_bytes then
+   * mean nothing. */
   int tree_nodes;
 };
 
