@@ -18,8 +18,10 @@ function (stratus_add_core_build name)
   stratus_test_needs(${name} NOTHING)
   set_tests_properties(${name} PROPERTIES TIMEOUT 2700 PROCESSORS 2)
 endfunction ()
-stratus_add_core_build(core_under_sanitizers
-  "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_C_FLAGS_DEBUG=-O1 -g")
+# By clang: gcc takes minutes a file where it checks vectors wider than the machine's for undefined behaviour. One instruction set is the
+# same source as the others.
+stratus_add_core_build(core_under_sanitizers -DCMAKE_C_COMPILER=${CLANG} -DSTRATUS_ISAS=portable
+  "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_C_FLAGS_DEBUG=-O1 -g -Wno-pass-failed")
 # Two instruction sets, so that they are compared; AVX-512 by clang is left to who builds with it.
 stratus_add_core_build(core_by_clang -DCMAKE_C_COMPILER=${CLANG} -DCMAKE_BUILD_TYPE=Release -DSTRATUS_ISAS=avx2)
 
