@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First-hit pictures: rays of a camera, in batches, to the first effective voxel, and what it looks like there.
+ * First-hit pictures: batches of camera rays find their first effective voxel, which is then shaded.
  *
- * Rays are in index coordinates; k of the camera is a ray's t. A tree or a walk only names the voxel: where the ray enters it, and all that
- * follows, is computed here from the ray and the voxel, so that the picture is the same by every way. */
+ * Rays are in index coordinates; the camera's k is the ray parameter t. The tree or the walk yields only the voxel. Entry point and colour
+ * are computed from ray and voxel, so that every structure gives the same picture. */
 #include "first_hit_picture.h"
 
 #include "camera.h"
@@ -12,9 +12,9 @@
 
 #include <string.h>
 
-/* Rays are handed over tile by tile, so that those of a packet lie together. */
+/* Side of a tile in pixels. Rays are ordered by tile, so that the rays of a packet lie close together. */
 #define TILE 4
-/* Enough for the threads or the device to share, few enough for their caches. */
+/* Enough rays to keep all threads or the device busy, few enough for their caches. */
 #define BATCH_RAYS 32768
 
 typedef struct first_hit_frame {
@@ -30,12 +30,12 @@ typedef struct first_hit_frame {
   stratus_ray* rays;
   stratus_first_hit_pixel* pixels;
   stratus_hit *hits, *plain_hits;
-  int rows; /* a batch, in tiles */
+  int rows; /* rows of tiles in a batch */
 } first_hit_frame;
 
 /* ---- rays */
 
-/* Cuts the ray to where slope*t + height >= 0. What begins there carries `cut`. */
+/* Clips the ray to slope*t + height >= 0. A ray whose start moves records `number` in *cut_by. */
 static void cut(double height, double slope, uint32_t number, stratus_ray* ray, uint32_t* cut_by)
 {
   if (slope > 0.0) {
@@ -59,14 +59,14 @@ static double opaque_k(const first_hit_frame* frame, uint32_t x, uint32_t y)
   return frame->camera->parallel ? near_k + extent : near_k * far_k / (far_k - extent);
 }
 
-/* Whether the ray, cut by what it is cut by, can meet the box of all voxels. */
+/* Whether the clipped ray can meet the bounds of all voxels. */
 static bool meets(const first_hit_frame* frame, const stratus_ray* ray)
 {
   double begin = ray->t_min, end = ray->t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double d = ray->direction[axis], lo = frame->scene.lo[axis] - ray->origin[axis], hi = frame->scene.hi[axis] - ray->origin[axis];
     if (d != 0.0) {
-      /* a little wider: no rounding may lose a voxel's edge */
+      /* widened, so that rounding cannot lose a voxel's edge */
       const double a = lo / d, b = hi / d, slack = 1e-9 * (fabs(a) + fabs(b));
       begin = fmax(begin, fmin(a, b) - slack);
       end = fmin(end, fmax(a, b) + slack);
@@ -77,7 +77,7 @@ static bool meets(const first_hit_frame* frame, const stratus_ray* ray)
   return begin <= end;
 }
 
-/* False where the ray can't meet anything. */
+/* Returns false if the ray cannot meet a voxel. */
 static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, stratus_ray* ray, stratus_first_hit_pixel* pixel)
 {
   const double u = (2.0 * x + 1.0) / frame->image->width - 1.0, v = (2.0 * y + 1.0) / frame->image->height - 1.0;
@@ -106,7 +106,7 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   return ray->t_min <= ray->t_max && meets(frame, ray);
 }
 
-/* The rays of one row of tiles, from `at` on; returns how many. */
+/* Stores the rays of one row of tiles from index `at` on; returns their count. */
 static size_t make_row(first_hit_frame* frame, int tile_row, size_t at)
 {
   size_t count = 0;
@@ -123,7 +123,7 @@ static size_t make_row(first_hit_frame* frame, int tile_row, size_t at)
   return count;
 }
 
-/* All rows' rays of a batch, one behind another. counts: of `rows` sizes. */
+/* Stores the rays of a batch without gaps; returns their count. counts: scratch, one for each row. */
 static size_t make_batch(const stratus_context* context, first_hit_frame* frame, int first, int rows, size_t* counts)
 {
   const size_t pitch = (size_t)(frame->window[1] - frame->window[0]) * TILE;
@@ -167,7 +167,7 @@ static void shade_batch(const stratus_context* context, const first_hit_frame* f
       image->depth[at] = depth;
     }
     for (int c = 0; image->rgba8 && c < 4; ++c) {
-      image->rgba8[4 * at + (size_t)c] = (uint8_t)(image->rgba[4 * at + (size_t)c] * 255.0f + 0.5f); /* within 0..1 */
+      image->rgba8[4 * at + (size_t)c] = (uint8_t)(image->rgba[4 * at + (size_t)c] * 255.0f + 0.5f); /* rgba is within 0..1 */
     }
     if (image->samples) {
       image->samples[at] = hit->voxel[0] >= 0;

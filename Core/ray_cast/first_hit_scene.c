@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What first-hit pictures are drawn from: data and opacity -> voxels -> tree, each kept until what it was built from changes. */
+ * Structures of first-hit pictures: data and opacity -> voxels -> tree. Each is kept until its input changes. */
 #include "first_hit_picture.h"
 
 #include "ray_caster.h"
@@ -70,7 +70,7 @@ static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volu
   return STRATUS_OK;
 }
 
-/* The volume with its voxels at whole coordinates. */
+/* A view of the volume whose world coordinates are its index coordinates. */
 static stratus_volume in_index_coordinates(const stratus_volume* volume)
 {
   stratus_volume plain = *volume;
@@ -129,7 +129,7 @@ static void bounds_of(const stratus_tree* tree, const stratus_voxels* voxels, st
       hi[axis] = tree->nodes[0].hi[axis];
     }
   }
-  for (int axis = 0; axis < 3; ++axis) { /* with nothing in it the box is reversed */
+  for (int axis = 0; axis < 3; ++axis) { /* an empty box becomes reversed: lo > hi */
     scene->lo[axis] = (double)lo[axis] - 0.5;
     scene->hi[axis] = lo[axis] < hi[axis] ? (double)hi[axis] - 0.5 : -1.0;
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The colour of a hit: the transfer function's at the voxel's value, in the light that falls on the face, the field or the cut. */
+ * The colour of a hit: the transfer function's colour of the voxel's value, lit with the normal of the face, the gradient or the cut. */
 #include "first_hit_picture.h"
 
 #include "matrix.h"
@@ -74,7 +74,7 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
   shader->bias = stratus_volume_bias(volume);
   memcpy(shader->index_to_world, index_to_world, sizeof shader->index_to_world);
   memcpy(shader->world_to_index, world_to_index, sizeof shader->world_to_index);
-  for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's rows, shear or not */
+  for (int axis = 0; axis < 3; ++axis) { /* rows of the inverse matrix are face normals, even under shear */
     memcpy(shader->face[axis], world_to_index + 4 * axis, sizeof shader->face[axis]);
     (void)stratus_vector_normalize(shader->face[axis]);
   }
@@ -91,11 +91,11 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
 
 /* ---- colour */
 
-/* Last point with value <= x, or the first one. */
+/* Interpolates the colour linearly at value x; beyond the end points, their colours hold. */
 static void color_at(const stratus_transfer* transfer, double x, double rgb[3])
 {
   const double* points = transfer->color;
-  size_t below = 0, above = transfer->color_count; /* of points <= x: at least `below`, at most `above` */
+  size_t below = 0, above = transfer->color_count; /* the number of points <= x lies in below..above */
   while (below < above) {
     const size_t middle = below + (above - below) / 2;
     if (points[4 * middle] <= x) {
@@ -118,9 +118,9 @@ static double value_at(const stratus_shader* shader, const int64_t at[3])
   return (double)stratus_volume_fetch(shader->volume, shader->bias, (size_t)((at[2] * n[1] + at[1]) * n[0] + at[0]));
 }
 
-/* ---- normals: outward, world, of length 1 */
+/* ---- normals: outward, in world coordinates, of length 1 */
 
-/* Central differences, one-sided where a neighbour is missing or no number. False where the field is flat. */
+/* Computes the normal by central differences, one-sided where a neighbour is missing or not finite. Returns false if the gradient is 0. */
 static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3], const double direction[3], double normal[3])
 {
   const int64_t here[3] = { voxel[0], voxel[1], voxel[2] };
@@ -162,7 +162,7 @@ static void cut_normal(const stratus_shader* shader, uint32_t cut, const double 
   }
 }
 
-/* Where the ray enters the voxel; face 2*axis + upper, -1 where it begins inside. */
+/* Returns t where the ray enters the voxel. *face: 2*axis + upper, or -1 if the ray begins inside. */
 static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
 {
   double t = ray->t_min;
@@ -171,7 +171,7 @@ static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
     const double d = ray->direction[axis];
     if (d != 0.0) {
       const double at = ((double)voxel[axis] + (d > 0.0 ? -0.5 : 0.5) - ray->origin[axis]) / d;
-      if (at > t || (at == t && *face >= 0)) { /* as first hits order crossings */
+      if (at > t || (at == t && *face >= 0)) { /* ties go to the last axis, as in first_hit_exact.c */
         t = at;
         *face = 2 * axis + (d < 0.0);
       }
@@ -200,7 +200,7 @@ static void illuminate(
       continue;
     }
     const double mirrored =
-      stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R V, with V against the direction */
+      stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R . V, with V = -direction */
     const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
     for (int c = 0; c < 3; ++c) {
       light[c] += shading->diffuse * cosine * shader->lights[i].color[c];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The OpenCL device's way through the traversal: copies of what was built, kept until it is built anew, and the launch. */
+ * The traversal on the OpenCL device: keeps copies of volume, table and map until they are rebuilt, and launches the kernel. */
 #include "ray_cast_device.h"
 
 #include "device_frame.h"
@@ -11,11 +11,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LOCAL_SIDE 8 /* work items a group along each axis where a work item is a ray */
-/* Pixels along each side of a work item's tile where it marches packets: PoCL hands out the last 64 groups in one piece. */
+#define LOCAL_SIDE 8 /* work items along each side of a group, if a work item is a ray */
+/* Pixels along each side of the tile that a work item marches in packets. PoCL hands out the last 64 groups in one piece, so tiles are
+ * small.
+ */
 #define TILE 16
 
-/* Parts of 4-byte scalars need no padding between them; the kernel's compiler is told the size, and asserts the same. */
+/* All members are 4-byte scalars, so no padding separates them. The kernel gets the size by a define and asserts it, too. */
 _Static_assert(sizeof(stratus_ray_cast_arguments) ==
     sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
       sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_map) + sizeof(stratus_table_arguments) +
@@ -40,7 +42,7 @@ void stratus_ray_device_destroy(stratus_ray_caster* caster)
   }
 }
 
-/* Copies (or borrows) what was built. */
+/* Replaces a buffer by a copy of the host's bytes, or by the bytes themselves if the device shares the host's memory. */
 static stratus_status replace(stratus_ray_caster* caster, buffer_name name, const void* host, size_t bytes)
 {
   TRY(stratus_slot_keep(caster->context, &caster->device->slots[name], host, bytes));
@@ -53,7 +55,7 @@ static size_t value_bytes(const stratus_ray_caster* caster)
   const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   const size_t components = (size_t)stratus_volume_components(volume);
-  if (volume->values == caster->fetched) { /* one component after the other */
+  if (volume->values == caster->fetched) { /* fetched values store one component after the other */
     return values * components * sizeof(float);
   }
   return ((values - 1) * (size_t)volume->value_stride + components) * stratus_type_size(volume->type);
@@ -75,13 +77,13 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, HIDDEN, frame->hidden, frame->hidden ? hidden_bytes(caster) : 0));
     d->data_serial = caster->data_serial;
   }
-  const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* with shading it is another table */
+  const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* shading has a table of its own */
   if (d->table_serial != table_serial) {
     const size_t bytes = stratus_table_words(caster->table) * sizeof(float);
     TRY(replace(caster, TABLE, frame->table, caster->shades ? caster->shading_tables.bytes : bytes));
     d->table_serial = table_serial;
   }
-  const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* without a map, none may stay borrowed */
+  const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* 0 without a map, so that the device keeps none borrowed */
   if (!d->slots[MAP].memory || d->map_serial != map_serial) {
     TRY(replace(caster, MAP, frame->map, frame->map ? caster->map->bytes_size : 0));
     d->map_serial = map_serial;
@@ -89,7 +91,7 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
   return STRATUS_OK;
 }
 
-/* Why the device can't draw this volume, or NULL. */
+/* Returns the reason why the device cannot draw this volume, or NULL. */
 static const char* obstacle(const stratus_ray_caster* caster)
 {
   const stratus_device* device = caster->context->device;
@@ -126,7 +128,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_
   return stratus_device_kernel(context, "ray_cast", defines, "ray_cast", kernel);
 }
 
-/* counts: 4 numbers a tile or a row, 0 before. */
+/* counts: 4 zeros for each tile of packets or row of rays, to which the kernel adds. */
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {

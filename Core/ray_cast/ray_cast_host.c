@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The host's way through the traversal: which instruction set, which tiles, which threads. */
+ * The traversal on the host: picks the instruction set and distributes tiles over threads. */
 #include "ray_cast_host.h"
 
 #include "stratus/ray_cast.h"
@@ -7,7 +7,7 @@
 #include "instruction_set.h"
 #include "tiles.h"
 
-/* Pixels a tile: small enough to share out evenly, large enough that its rays meet the same voxels. */
+/* Side of a tile in pixels: small enough to balance the threads, large enough that the tile's rays share voxels. */
 #define TILE 32
 
 int stratus_ray_cast_type_is_fast(int type)
@@ -28,7 +28,7 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_
                                                    : shading)[isa](type, variant);
 }
 
-/* rgba8 of the pixels [x0, x1) x [y0, y1), where it is wanted. */
+/* Rounds pixels [x0, x1) x [y0, y1) to rgba8, if that is wanted. */
 static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1)
 {
   const size_t width = (size_t)frame->arguments->picture.width, count = 4 * (size_t)(x1 - x0);
@@ -38,7 +38,7 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
     uint8_t* restrict rgba8 = frame->rgba8 + first;
     for (size_t i = 0; i < count; ++i) {
       const float value = rgba[i] * 255.0f + 0.5f;
-      rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
+      rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* rgba is never negative */
     }
   }
 }

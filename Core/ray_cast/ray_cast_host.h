@@ -9,14 +9,14 @@
 
 #include <stdint.h>
 
-/* Bodies that the traversal is compiled with. */
+/* The variants of the traversal, each compiled separately. */
 typedef enum stratus_ray_variant {
   STRATUS_VARIANT_MIDPOINT,
   STRATUS_VARIANT_PREINTEGRATED,
-  STRATUS_VARIANT_EXTREMES,         /* maxima and minima */
-  STRATUS_VARIANT_SUMS,             /* means and sums */
-  STRATUS_VARIANT_ISOSURFACE,       /* isosurfaces */
-  STRATUS_VARIANT_SHADING_MIDPOINT, /* samples that are lit, .. */
+  STRATUS_VARIANT_EXTREMES, /* maxima and minima */
+  STRATUS_VARIANT_SUMS,     /* means and sums */
+  STRATUS_VARIANT_ISOSURFACE,
+  STRATUS_VARIANT_SHADING_MIDPOINT, /* samples are lit, gradient-thinned, multi-component or labelled */
   STRATUS_VARIANT_SHADING_PREINTEGRATED
 } stratus_ray_variant;
 
@@ -24,13 +24,13 @@ typedef struct stratus_ray_counts {
   uint64_t rays, samples, skipped, lookups;
 } stratus_ray_counts;
 
-/* Pixels and the arrays that a frame reads. */
+/* The arrays that a frame reads and writes. */
 typedef struct stratus_ray_cast_frame {
   const stratus_ray_cast_arguments* arguments;
   const void* values;
   const uint8_t* hidden;
   const uint8_t* map;
-  const void* table; /* midpoint: 4 floats an entry, then 4 (optical depth, 0, 0, 0) an entry; pre-integrated: sums */
+  const void* table; /* midpoint: 4 floats per entry, then 4 more (optical depth, 0, 0, 0) per entry; pre-integrated: sums */
   const float* opaque_depth;
   float* rgba;
   float* depth;      /* NULL: not wanted */
@@ -38,15 +38,16 @@ typedef struct stratus_ray_cast_frame {
   uint8_t* rgba8;    /* NULL: not wanted */
 } stratus_ray_cast_frame;
 
-/* Marches the rays of pixels [x0, x1) x [y0, y1); x0, y0 multiples of 8. */
+/* Marches the rays of pixels [x0, x1) x [y0, y1); x0 and y0 are multiples of 8. */
 typedef void stratus_ray_cast_tile(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts);
 
-/* The traversal of this machine's best instruction set (or of `isa` 0..2 if that is less) for stratus_type `type`, -1 the generic one. */
+/* Returns the traversal for stratus_type `type` (-1: generic), compiled for this machine's best instruction set or for `isa` (0..2),
+ * whichever is lower. */
 stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant);
-/* Types that have a fast fetch. */
+/* Whether a type has a fast fetch. */
 int stratus_ray_cast_type_is_fast(int type);
 
-/* One a compiled instruction set. */
+/* One definition for each instruction set. */
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
@@ -60,7 +61,7 @@ stratus_ray_cast_tile* stratus_ray_shading_tile_isa0(int type, stratus_ray_varia
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa2(int type, stratus_ray_variant variant);
 
-/* All tiles on the host. */
+/* Draws all tiles on the host. */
 stratus_status stratus_ray_cast_host(
   stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
 

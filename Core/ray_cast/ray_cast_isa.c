@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The traversal headers compiled for one instruction set, STRATUS_ISA: light, every type, both sampling rules. */
+ * Composite rays, compiled for one instruction set, STRATUS_ISA: all fast types and the generic one, under both sampling rules. */
 #include "ray_cast_packets.h"
 
 #define STRATUS_PREINTEGRATED 0

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a caller may ask of a render, by default and by name. */
+ * Render options: their names and defaults. */
 #include "ray_caster.h"
 
 const char* stratus_structure_name(stratus_structure structure)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From packets to pixels and counters on the host, for every file that compiles the traversal for one instruction set, STRATUS_ISA. */
+ * Stores packets as pixels and counts on the host. Every file that compiles the traversal for one instruction set, STRATUS_ISA, includes
+ * it. */
 #ifndef STRATUS_RAY_CAST_PACKETS_H
 #define STRATUS_RAY_CAST_PACKETS_H
 
@@ -8,10 +9,10 @@
 #include "ray_segment.h"
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-function" /* each type uses its part of the fetches */
+#pragma GCC diagnostic ignored "-Wunused-function" /* each type uses only some of the fetches */
 #endif
 
-/* Counters of a tile, a lane each: added up once a tile. */
+/* A tile's counters. Each lane counts for itself; add_counts() sums the lanes once per tile. */
 typedef struct tile_counts {
   vint samples, skipped, lookups;
   uint64_t rays;
@@ -37,7 +38,7 @@ static void store_pixels(const stratus_ray_cast_frame* frame, const stratus_pack
 }
 
 #if STRATUS_ISA == 2
-/* The same for a packet wholly inside the picture: a row of four pixels is a quarter of the registers. */
+/* store_pixels() for a packet wholly inside the picture. After the 4x4 transposes, each 128-bit quarter of a register is one pixel. */
 static void store_rows(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
 {
   const size_t row = 4 * (size_t)frame->arguments->picture.width;
@@ -55,7 +56,7 @@ static void store_rows(const stratus_ray_cast_frame* frame, const stratus_packet
   }
 }
 
-/* Depth and samples of one, where they are wanted. */
+/* store_extras() for a packet wholly inside the picture. */
 static void store_extra_rows(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
 {
   const size_t width = (size_t)frame->arguments->picture.width, pixel = (size_t)y * width + (size_t)x;
@@ -75,7 +76,7 @@ static void store_extra_rows(const stratus_ray_cast_frame* frame, const stratus_
 }
 #endif
 
-/* Depth and samples, where they are wanted. */
+/* Stores depths and sample counts, if they are wanted. */
 static void store_extras(const stratus_ray_cast_frame* frame, const stratus_packet* k, int x, int y)
 {
   const stratus_ray_cast_arguments* a = frame->arguments;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One type's tile of rays on the host: included with STRATUS_TYPE, STRATUS_PREINTEGRATED, STRATUS_RAY_MODE (none: light) and RAY_NAME set.
- */
+ * Marches a tile of rays on the host. The including file defines STRATUS_TYPE, STRATUS_PREINTEGRATED, RAY_NAME and, unless rays composite,
+ * STRATUS_RAY_MODE. */
 #include "ray_cast.h"
 
 static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k, stratus_crop* crop)
@@ -23,7 +23,7 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
       stratus_packet k[PACKETS_TOGETHER];
       stratus_crop crop[PACKETS_TOGETHER];
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
-        RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture: no live ray, nothing stored */
+        RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture, no ray is live and nothing is stored */
       }
       for (int piece = 0; piece < pieces; ++piece) {
         for (int i = 0; a->crop.regions && i < PACKETS_TOGETHER; ++i) {

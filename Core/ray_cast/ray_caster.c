@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The ray caster's life. */
+ * Creates and destroys ray casters. */
 #include "ray_caster.h"
 
 #include "first_hit_picture.h"

@@ -16,50 +16,50 @@ typedef struct stratus_first_hit stratus_first_hit;
 struct stratus_ray_caster {
   stratus_context* context;
 
-  /* what was built, and from what */
-  stratus_volume volume;
-  stratus_volume traversed; /* what rays read: the volume itself, or its fetched values */
-  float* fetched;           /* those, NULL as long as rays have not paid for them */
-  uint64_t samples_since_data;
+  stratus_volume volume;       /* as last rendered */
+  stratus_volume traversed;    /* what rays read: the volume itself, or its fetched values */
+  float* fetched;              /* float copy of the values; NULL: none */
+  uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */
   stratus_value_range* ranges;
-  uint8_t* hidden; /* in the form that traversal reads, or NULL */
-  bool hidden_by_value;
-  int hides;           /* HIDDEN_CELLS, HIDDEN_BY_MASK, HIDDEN_LABELS: what `hidden` holds */
-  const uint8_t* mask; /* that it was made from, or NULL */
+  uint8_t* hidden;      /* hidden bytes as traversal reads them; NULL: none */
+  bool hidden_by_value; /* its cells are centred on values */
+  int hides;            /* contents of `hidden`: HIDDEN_CELLS, HIDDEN_BY_MASK, HIDDEN_LABELS */
+  const uint8_t* mask;  /* the mask in `hidden`; NULL: none */
   uint64_t mask_revision;
-  stratus_transfer* transfers; /* copies, transfer_count of them; NULL: none yet */
+  stratus_transfer* transfers; /* transfer_count copies; NULL: none yet */
   int transfer_count;
-  stratus_interpolation interpolation; /* with the next three: what the choice was made for */
+  stratus_interpolation interpolation; /* input of `choice`, as the next three */
   stratus_sampling wanted_sampling;
   double wanted_distance, voxel_length;
   stratus_ray_choice choice;
   stratus_table* table;
-  double table_distance;   /* the sample distance that the table is for .. */
-  stratus_ray_shown shown; /* .. and the values */
-  bool shades, dependent;  /* of the render at hand: stratus_ray_shading_wanted() */
+  double table_distance;   /* sample distance of the table */
+  stratus_ray_shown shown; /* mode and values of the table */
+  bool shades, dependent;  /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
-  stratus_tree* offered; /* a tree that came with the data, in index coordinates; NULL: none */
-  int tree_serves;       /* whether that tree shows what the transfer function does: 1, 0, or -1 where that is to be asked */
-  uint64_t hash;         /* of the volume's values and shape, .. */
-  uint64_t hash_ranges;  /* .. if this is range_builds */
-  uint64_t lookups_since_edit;
+  stratus_tree* offered;       /* a tree that came with the data, in index coordinates; NULL: none */
+  int tree_serves;             /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
+  uint64_t hash;               /* of the volume's values and shape */
+  uint64_t hash_ranges;        /* range_builds when `hash` was computed; `hash` is stale if they differ */
+  uint64_t lookups_since_edit; /* look-ups in the map since the transfer function changed */
 
-  stratus_first_hit* first_hit; /* NULL until asked for: first_hit_picture.h */
+  stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
-  stratus_ray_device* device;                     /* copies on the OpenCL device, NULL on the host */
-  uint64_t data_serial, table_serial, map_serial; /* raised with each build: tells the device what is stale */
+  stratus_ray_device* device;                     /* buffers on the OpenCL device; NULL: none */
+  uint64_t data_serial, table_serial, map_serial; /* incremented by each build, so that the device knows which buffers are stale */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
 };
 
-/* ray_caster_drop.c: each drops what was built from it, too. The last drops a map that is an offered tree's. */
+/* ray_caster_drop.c: each function also drops everything derived from what it drops. The last one makes the caster check the offered tree
+ * again, and drops the map if a tree's. */
 void stratus_ray_drop_transfer(stratus_ray_caster* caster);
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
 void stratus_ray_drop_map(stratus_ray_caster* caster);
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 
-/* ray_caster_update.c: builds anew what changed and nothing else. */
+/* ray_caster_update.c: rebuilds only what changed. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What becomes stale together is dropped together: data -> transfer function -> occupancy -> map. */
+ * Drops stale structures with everything derived from them: data -> transfer function -> occupancy -> map. */
 #include "ray_caster.h"
 
 void stratus_ray_drop_map(stratus_ray_caster* caster)
 {
   stratus_distance_map_destroy(caster->map);
   caster->map = NULL;
-  ++caster->map_serial; /* a device may still borrow it */
+  ++caster->map_serial; /* so that the device returns the map that it may have borrowed */
 }
 
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster)

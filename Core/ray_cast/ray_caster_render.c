@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A render of the ray caster: checks what it is given, has rebuilt what changed, draws on device or host, audits, reports. */
+ * Renders a frame: checks the input, updates tables and structures, draws on device or host, audits and reports. */
 #include "ray_caster.h"
 
 #include "first_hit_picture.h"
@@ -98,7 +98,7 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   return stratus_ray_cast_host(caster->context, &frame, type, variant, counts);
 }
 
-/* Draws again without structure and counts the pixels whose bits differ. */
+/* Draws the frame again without a structure and counts the pixels whose bits differ. */
 static stratus_status audit(
   stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
 {
@@ -166,7 +166,7 @@ static void fill_report(
 static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
-  _Alignas(64) stratus_ray_cast_arguments arguments; /* as devices want what they borrow */
+  _Alignas(64) stratus_ray_cast_arguments arguments; /* aligned so that a device can borrow them */
   stratus_structure used = STRATUS_STRUCTURE_NONE;
   stratus_ray_counts counts = { 0 };
   char why[128] = "";

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray caster builds anew when: data -> ranges; transfer function -> table, occupancy and map; camera -> nothing. */
+ * Rebuilds what an input change makes stale. New data: value ranges. New transfer function: table, occupancy and map. New camera: nothing.
+ */
 #include "ray_caster.h"
 
 #include "ray_fetched.h"
@@ -14,11 +15,11 @@
 #include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
-/* Traversal addresses the eight maps with one int. */
+/* Traversal addresses all eight octant maps with one int. */
 #define MAP_BYTES_MOST 2000000000.0
-/* Above this share of occupied blocks there is too little to skip for what the look-ups cost. */
+/* Above this share of occupied blocks, skipping saves less than its look-ups cost. */
 #define OCCUPIED_LARGEST 0.8
-/* Eight maps cost about this many look-ups a block to build, and save every other look-up. */
+/* The eight octant maps cost as much to build as about this many look-ups per block, and save every other look-up. */
 #define OCTANT_LOOKUPS_A_BLOCK 6
 
 static bool same_data(const stratus_ray_caster* caster, const stratus_volume* volume, int block_size)
@@ -110,7 +111,7 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
   return STRATUS_OK;
 }
 
-/* Transfer function, the choices that follow from it, and the table. */
+/* Updates the copied transfer functions, the sampling that follows from them, and the table. */
 static stratus_status update_table(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, double* ms)
 {
@@ -168,8 +169,8 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
-/* The cheapest structure that the scene needs: from the share of occupied blocks and the look-ups that rays have made since the last edit.
- */
+/* Chooses the cheapest structure for the scene by the share of occupied blocks and the look-ups that rays have made since the last edit of
+ * the transfer function. */
 static stratus_structure choose_structure(
   const stratus_ray_caster* caster, stratus_structure wanted, bool offered, char* why, size_t capacity)
 {
@@ -212,7 +213,7 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
   const double start = stratus_now_ms();
   stratus_distance_map* map = NULL;
   if (structure == STRATUS_STRUCTURE_HYBRID && caster->occupancy->count == 0) {
-    return STRATUS_OK; /* nobody will ask */
+    return STRATUS_OK; /* the picture is empty: no ray reads the map */
   }
   if (structure == STRATUS_STRUCTURE_HYBRID) {
     TRY(stratus_ray_tree_map(caster, offered, &map));

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The values that rays read: the volume's own, or, once rays have read more values than there are, those of a type that is slow to read as
- * floats, fetched once and for all. The bits of the picture stay the same. */
+ * Chooses the values that rays read: the volume's own or a float copy of them. A volume that is slow to read is copied once rays have taken
+ * as many samples as it has values. The copy does not change the picture. */
 #include "ray_fetched.h"
 
 #include "ray_cast_host.h"
 #include "ray_caster.h"
 #include "ray_shading_table.h"
 
-/* Fetched values are kept up to this many bytes. */
+/* The largest copy in bytes. */
 #define FETCHED_BYTES_MOST ((size_t)1 << 31)
 
 void stratus_ray_fetched_drop(stratus_ray_caster* caster)
@@ -17,7 +17,7 @@ void stratus_ray_fetched_drop(stratus_ray_caster* caster)
   caster->samples_since_data = 0;
 }
 
-/* The fast fetches have 32-bit indices, consecutive values and a neighbour on each axis. */
+/* Whether the shape suits the fast fetches: they use 32-bit indices and need a neighbour along each axis. */
 static bool is_regular(const stratus_volume* volume)
 {
   const double values = (double)volume->dimensions[0] * (double)volume->dimensions[1] * (double)volume->dimensions[2];
@@ -35,7 +35,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
   const int type = stratus_ray_fetch_type(volume);
   const int components = stratus_volume_components(volume);
   const bool slow = type < 0 || type == STRATUS_FLOAT64;
-  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* each component has an offset of its own */
+  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* traversal applies one bias, but each component has its own */
   caster->traversed = *volume;
   if (!slow || (!is_regular(volume) && !must)) {
     return STRATUS_OK;
@@ -58,7 +58,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
     }
     if (status != STRATUS_OK) {
       stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
-      caster->samples_since_data = 0; /* tried again when as many more have been read */
+      caster->samples_since_data = 0; /* try again after as many samples more */
       return STRATUS_OK;
     }
     float* fetched = memory;

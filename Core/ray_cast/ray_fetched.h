@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Values as rays read them: the volume's own, or copies as floats once rays have paid for them. */
+ * The values that rays read: the volume's own, or a float copy once enough samples have been taken. */
 #ifndef STRATUS_RAY_FETCHED_H
 #define STRATUS_RAY_FETCHED_H
 
 #include "ray_caster.h"
 
-/* Decides caster->traversed, and makes what it needs. */
+/* Sets caster->traversed, and makes the copy when it is due. */
 stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster);
 void stratus_ray_fetched_drop(stratus_ray_caster* caster);
-int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE that traversal is compiled for, -1 the generic one */
+int stratus_ray_fetch_type(const stratus_volume* volume); /* STRATUS_TYPE of the traversal that reads this volume; -1: generic */
 
 #endif
