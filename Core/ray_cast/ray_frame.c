@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * From camera, volume and options to the numbers that every ray of a frame shares. */
+ * Computes the arguments that all rays of a frame share, from camera, volume and options. */
 #include "ray_frame.h"
 
 #include "camera.h"
@@ -9,18 +9,19 @@
 
 #include <string.h>
 
-/* More samples than this on one ray, and floats no longer tell them apart. */
+/* Floats cannot tell more samples than this apart on one ray. */
 #define SAMPLES_MOST 4e6
-/* Bounds are drawn in by this part of a voxel (and more where floats are coarser), so that no rounding takes a sample outside. */
+/* Bounds shrink by this fraction of a voxel, or by FLOAT_COARSENESS times the dimension if that is more, so that no rounding takes a sample
+ * outside. */
 #define BOUNDS_MARGIN 0x1p-10
 #define FLOAT_COARSENESS 0x1p-21
-/* More voxels than this a sample, and the margin above would no longer hold. */
+/* The margin suffices only if no sample is longer than this many voxels. */
 #define VOXELS_A_SAMPLE_MOST 4096.0
 #define SMALLEST_SAMPLE_DISTANCE 1e-30
 #define LARGEST_SAMPLE_DISTANCE 1e30
 #define UNBOUNDED 1e30f
 
-/* World distance from the eye (parallel: from anywhere in the window) that no point of the volume exceeds. */
+/* Returns an upper bound of the world distance from the eye (parallel: from any point of the window) to a point of the volume. */
 static double farthest_point(const stratus_volume* volume, const stratus_camera* camera, const double m[16])
 {
   double farthest = 0.0;
@@ -66,7 +67,7 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
   a->camera.parallel = camera->parallel != 0;
 }
 
-/* Bounds in index coordinates, crop included; false if nothing is left. */
+/* Sets the bounds, cropped, in index coordinates. Returns false if they are empty. */
 static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const double half = volume->cell_centered ? 0.5 : 0.0;
@@ -83,12 +84,12 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
     }
     a->crop.box[0][axis] = stratus_pair_of(lo);
     a->crop.box[1][axis] = stratus_pair_of(hi);
-    a->values.last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`: the cell there, and its block, must exist */
+    a->values.last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`, so that the position's cell and block exist */
   }
   return true;
 }
 
-/* Any other regions than the inside: false if none is shown. */
+/* Sets crop regions other than just the inside. Returns false if none is shown. */
 static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const double half = volume->cell_centered ? 0.5 : 0.0;
@@ -120,7 +121,7 @@ static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* 
   return true;
 }
 
-/* World planes to index coordinates: n . (M x + t) + d. */
+/* Transforms the world planes to index coordinates: n . (M x + t) + d. */
 static void set_clip_planes(const stratus_ray_cast_options* options, const double m[16], stratus_ray_cast_arguments* a)
 {
   a->crop.clip_count = options->clip_plane_count;
@@ -132,7 +133,7 @@ static void set_clip_planes(const stratus_ray_cast_options* options, const doubl
         result[column] += plane[row] * m[4 * row + column];
       }
     }
-    /* brought to length 1: only its sign counts, and small or large spacings shall not leave the floats' range */
+    /* Only the sign counts. Normalize, so that tiny or huge spacings stay within the range of floats. */
     const double length = sqrt(stratus_vector_dot(result, result));
     for (int i = 0; i < 4; ++i) {
       a->crop.clip[p][i] = stratus_pair_of(length > 0.0 ? result[i] / length : result[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Isosurfaces, compiled for one instruction set, STRATUS_ISA. Types that have no fetch of their own here take the generic one, until their
- * values are kept as floats. */
+ * Isosurfaces, compiled for one instruction set, STRATUS_ISA. Types without a fetch of their own use the generic one, until ray_fetched.c
+ * copies their values as floats. */
 #include "ray_cast_packets.h"
 
 #define STRATUS_PREINTEGRATED 0

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What is taken out of the picture: cells that are hidden, and values by a mask, a byte each. */
+ * Builds the hidden bytes: a mask byte for each value, and a byte for each hidden cell. */
 #include "ray_mask.h"
 
 #include "ray_caster.h"
@@ -23,7 +23,7 @@ size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)
   return cells;
 }
 
-/* Cell values interpolated between cells: a cell of eight values is hidden with any of them. */
+/* Converts bytes of values to bytes of the cells between them. Interpolation reads eight values, so any hidden one hides the cell. */
 static stratus_status spread_hidden(stratus_context* context, const stratus_volume* volume, uint8_t** hidden)
 {
   size_t cells[3], total;
@@ -65,7 +65,8 @@ stratus_status stratus_ray_mask_join(
   if (!mask) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(context, values + cells, 1, &memory)); /* fits: the volume's values do, and take as much at least */
+  TRY(stratus_allocate(
+    context, values + cells, 1, &memory)); /* no overflow: cells <= values, and values of one byte or more are in memory already */
   memcpy(memory, mask, values);
   if (cells > 0) {
     memcpy((uint8_t*)memory + values, *hidden, cells);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Modes of the ray cast beside light: which values matter to them, how they are sampled, and what their rays are told. */
+ * Ray modes other than composite: which values matter, how they are sampled, and the arguments of their rays. */
 #include "ray_modes_render.h"
 
 #include "ray_cast_host.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* Maxima are sampled this densely, in voxels: what lies between two samples is missed by a quarter of what the field bends over them. */
+/* Sample distance of maxima and minima in voxels. It misses a peak between two samples by a quarter of the field's bend over them. */
 #define EXTREME_STEP 0.5
 
 const char* stratus_mode_name(stratus_mode mode)
@@ -69,7 +69,7 @@ stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* option
     shown.average_range[0] = options->average_range[0];
     shown.average_range[1] = options->average_range[1];
   }
-  for (int n = 0; options->mode == STRATUS_MODE_ISOSURFACE && n < options->contour_count; ++n) { /* by rising values, each once */
+  for (int n = 0; options->mode == STRATUS_MODE_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
     const double contour = options->contours[n];
     int at = shown.contour_count;
     while (at > 0 && shown.contours[at - 1] >= contour) {
@@ -106,7 +106,7 @@ void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double vo
     choice->sample_distance = EXTREME_STEP * voxel;
   }
   if (options->mode == STRATUS_MODE_ISOSURFACE) {
-    choice->sample_distance = voxel; /* only a unit of length: rays go from cell to cell */
+    choice->sample_distance = voxel; /* only the unit of t: these rays step from cell to cell */
   }
 }
 
@@ -115,7 +115,7 @@ double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options,
   return options->mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
 }
 
-/* Entries first..last show, and no others. */
+/* Makes first..last the only entries that show. */
 static void show_only(stratus_table* table, int first, int last)
 {
   table->shown = last >= first ? last - first + 1 : 0;
@@ -125,7 +125,8 @@ static void show_only(stratus_table* table, int first, int last)
   }
 }
 
-/* Entries of contours that are not transparent. A block whose range holds a contour has its entry between those of the range's ends. */
+/* Makes the entries of visible contours the only ones that show. A block whose value range holds a contour also holds its entry between the
+ * entries of the range's ends. */
 static void show_contours(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table)
 {
   show_only(table, table->size, -1);
@@ -148,11 +149,11 @@ void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transf
   const double* range = shown->average_range;
   if (shown->mode == STRATUS_MODE_ISOSURFACE) {
     show_contours(shown, transfer, bias, table);
-  } else if (shown->mode == STRATUS_MODE_MAXIMUM) { /* a maximum below all that shows is as good as none */
+  } else if (shown->mode == STRATUS_MODE_MAXIMUM) { /* a maximum below the lowest visible value shows nothing */
     show_only(table, table->next_shown[0], table->size - 1);
   } else if (shown->mode == STRATUS_MODE_MINIMUM) {
     show_only(table, 0, table->last_shown);
-  } else if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count as much as others */
+  } else if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count, too */
     show_only(table, stratus_table_entry(table, (float)(range[0] - bias)), stratus_table_entry(table, (float)(range[1] - bias)));
   }
 }
@@ -191,7 +192,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
   a->mode.sum = is_sum(options->mode);
-  /* outward: no value in the range may be left out */
+  /* rounded outward, so that no value of the range is left out */
   a->mode.counted_first = additive ? -INFINITY : stratus_float_below(options->average_range[0] - ranges->bias);
   a->mode.counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
   a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
@@ -201,7 +202,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   for (int n = 0; n < caster->shown.contour_count; ++n) {
     double rgba[4];
     stratus_transfer_at(caster->transfers, caster->shown.contours[n], rgba);
-    if (rgba[3] > 0.0) { /* one that is transparent is none */
+    if (rgba[3] > 0.0) { /* transparent contours are left out */
       float* contour = a->mode.contour[a->mode.contour_count++];
       contour[0] = (float)(caster->shown.contours[n] - ranges->bias);
       contour[4] = (float)rgba[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What other modes than composite ask of a render. */
+ * Ray modes other than composite: what they change in a render. */
 #ifndef STRATUS_RAY_MODES_RENDER_H
 #define STRATUS_RAY_MODES_RENDER_H
 
@@ -8,7 +8,7 @@
 #include "ray_sampling.h"
 #include "volume.h"
 
-/* What of the options decides which values matter, beside the transfer function. */
+/* The options that decide, with the transfer function, which values matter. */
 typedef struct stratus_ray_shown {
   stratus_mode mode;
   double average_range[2];
@@ -17,20 +17,21 @@ typedef struct stratus_ray_shown {
 } stratus_ray_shown;
 
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options);
-/* The options' part that decides it, with what the mode does not use left out. */
+/* Extracts them from the options. Fields that the mode does not use are 0. */
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options);
 bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown* b);
 void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice);
-/* The distance that the table's opacity is taken over: alpha of a mode that takes it as it is, not per length, is that over one unit. */
+/* Returns the distance over which the table's opacity accumulates: the sample distance in mode COMPOSITE. Other modes use alpha as given,
+ * so theirs is the unit distance. */
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
-/* Marks the entries that the mode can't do without as those that show. */
+/* Marks the table entries that matter to the mode as those that show. */
 void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table);
-/* Puts what each block holds at best behind the map's bytes, where the mode asks for it. */
+/* Appends an upper bound of each block's values (MINIMUM: of their negatives) to the map's bytes. Other modes than extremes need none. */
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map);
 void stratus_ray_modes_arguments(
   const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster);
-/* Rays show something wherever they meet the bounds, whatever the values. */
+/* Whether rays show something wherever they meet the bounds, whatever the values. */
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options);
 
 #endif

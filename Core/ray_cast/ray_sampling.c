@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How a scene is sampled when the user leaves it open: how far the transfer function bends over one step of the field, and how
- * much of the opacity changes from voxel to voxel. */
+ * Chooses sampling rule and sample distance where the user leaves them open. Two measures decide: how far the transfer function bends over
+ * one step of the field, and how much the opacity changes from voxel to voxel. */
 #include "ray_sampling.h"
 
 #include <string.h>
 
-/* Blocks looked at, spread evenly over those that may show something. */
+/* About so many blocks are surveyed, spread evenly over those that may show something. */
 #define BLOCKS_ASKED 4096
-/* Points of the opacity function between which it is averaged. */
+/* Points of a block's value range at which the opacity function is evaluated. */
 #define PLACES 8
-/* Pre-integration pays where the opacity is this far from linear within a step, relative to itself. */
+/* Pre-integration pays above this bend: the opacity's distance from linear within a step, relative to the opacity. */
 #define BEND_LARGEST 0.25
-/* Steps of the midpoint rule, in voxels, by the mean change of alpha from voxel to voxel. Thin smooth media bear more than a voxel (fog
- * at 1.15: 82 dB); at .9 what the step gets wrong is well below what 8 bits round away; where more than SHARPNESS_LARGEST changes, the step
- * shrinks with it. */
+/* Steps of the midpoint rule in voxels, by sharpness: the mean change of alpha from voxel to voxel. Below SHARPNESS_THIN, thin smooth media
+ * bear more than a voxel (fog at 1.15: 82 dB). At .9 the error of the step is well below the rounding to 8 bits. Above SHARPNESS_LARGEST
+ * the step shrinks in inverse proportion. */
 #define SHARPNESS_THIN 0.005
 #define SHARPNESS_LARGEST 0.08
 #define MIDPOINT_LONGEST 1.15
 #define MIDPOINT_USUAL 0.9
 #define MIDPOINT_SHORTEST 0.25
-/* Of pre-integration, in voxels: what lies between two steps' ends is taken as linear, which narrow peaks over rough fields feel most.
- * Scene peak: 40.1, 38.8, 37.6, 36.5, 35.5 dB at steps of .5, .55, .6, .65, .7, its edited function 1 dB less each: of these the longest
- * that keeps both above 36. */
+/* Step of pre-integration in voxels. The field counts as linear between the ends of a step, which costs narrow peaks over rough fields
+ * most. Scene peak reaches 40.1, 38.8, 37.6, 36.5, 35.5 dB at steps of .5, .55, .6, .65, .7, and 1 dB less each with its edited function:
+ * .6 is the longest that keeps both above 36 dB. */
 #define PREINTEGRATED_STEP 0.6
 
-/* Axes of no extent count where they are this many times shorter than the others: a sample may not be long along any of them. */
+/* Axes without extent limit the voxel length only if they are this many times shorter than the others. The limit bounds the length of a
+ * sample along them. */
 #define FLAT_SHORTER 1000.0
 
 double stratus_ray_voxel_length(const stratus_volume* volume)
@@ -49,7 +50,7 @@ static double opacity_at(const stratus_transfer* transfer, double x)
   if (x > points[2 * (count - 1)]) {
     return transfer->clamp ? points[2 * count - 1] : 0.0;
   }
-  size_t lo = 0, hi = count; /* the last point with value <= x */
+  size_t lo = 0, hi = count; /* binary search for the last point with value <= x */
   while (hi - lo > 1) {
     const size_t middle = (lo + hi) / 2;
     if (points[2 * middle] <= x) {
@@ -65,7 +66,7 @@ static double opacity_at(const stratus_transfer* transfer, double x)
   return left[1] + (x - left[0]) / (left[2] - left[0]) * (left[3] - left[1]);
 }
 
-/* The open interval of values outside which the function is surely transparent, so that most empty blocks cost one comparison. */
+/* Returns an open interval of values outside which the function is transparent, so that most empty blocks cost one comparison. */
 static void opaque_span(const stratus_transfer* transfer, double* lo, double* hi)
 {
   const double* points = transfer->opacity;
@@ -80,7 +81,8 @@ static void opaque_span(const stratus_transfer* transfer, double* lo, double* hi
   *hi = last == transfer->opacity_count - 1 && points[2 * last + 1] > 0.0 ? INFINITY : points[2 * last];
 }
 
-/* Adds what one block shows: opacity, its distance from linear over one voxel's change of value, its change over a voxel. */
+/* Adds a block's means to the sums: [0] the opacity, [1] its distance from linear over one voxel's change of value, [2] its change over a
+ * voxel. */
 static void survey_block(const stratus_transfer* transfer, double lo, double hi, int block_size, double sums[3], int64_t* shown)
 {
   const double half_step = 0.5 * (hi - lo) / block_size;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Samples that are more than their value's colour and opacity: what of a render's input asks for them, and what their rays are told. */
+ * Shading: samples that are lit, thinned by the gradient, of several components or labelled. Decides whether a render has them, and sets
+ * the arguments of their rays. */
 #include "ray_shading_render.h"
 
 #include "first_hit_picture.h"
@@ -21,7 +22,7 @@ bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_tran
   return options->mode == STRATUS_MODE_COMPOSITE && more;
 }
 
-/* In voxels: from here on light comes from one direction, whatever place it falls on. */
+/* A positional light at least this many voxel edges away counts as directional. */
 #define LIGHT_FAR 1e15
 
 static double length_of(const double v[3])
@@ -29,7 +30,7 @@ static double length_of(const double v[3])
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* The light as floats tell it: directions of length 1, positions from index (0,0,0) in units of `edge`. */
+/* Converts a light to floats: a direction of length 1, or a position relative to index (0,0,0) in units of `edge`. */
 static void set_light(const stratus_light* light, const double index_to_world[16], double edge, int number, stratus_ray_cast_arguments* a)
 {
   double vector[3];
@@ -104,7 +105,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     return; /* stratus_ray_frame_arguments() has refused it */
   }
   for (int row = 0; row < 3; ++row) {
-    for (int axis = 0; axis < 3; ++axis) { /* normals go by the inverse's transposed, against the gradient */
+    for (int axis = 0; axis < 3; ++axis) { /* normals transform by the inverse's transpose and point against the gradient */
       a->light.normal[3 * row + axis] = (float)(-world_to_index[4 * axis + row] * edge);
       a->light.place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
     }
@@ -114,7 +115,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     a->media.gradient_length[axis] = (float)(mean / volume->spacing[axis]);
   }
   set_tables(caster, a);
-  if (!options->shade) { /* nobody has checked the lights, and nothing asks for them */
+  if (!options->shade) { /* the lights are unchecked and unused */
     return;
   }
   const stratus_shading* shading = &options->shading;

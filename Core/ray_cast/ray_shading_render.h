@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Samples that are more than their value's colour and opacity: whether a render has any, and what their rays are told. */
+ * Shading: samples that are lit, thinned by the gradient, of several components or labelled. */
 #ifndef STRATUS_RAY_SHADING_RENDER_H
 #define STRATUS_RAY_SHADING_RENDER_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What shaded samples are looked up in: gradient opacity behind the transfer function's table, and of volumes of several components a
- * table each, all in one run of memory. With them the components' value ranges and what they add to the occupied blocks. */
+ * Tables of shading, all in one allocation: the table of each component or label, and gradient opacities. This file also makes the
+ * components' value ranges and their joint occupancy. */
 #include "ray_shading_table.h"
 
 #include "ray_caster.h"
@@ -9,7 +9,7 @@
 #include <float.h>
 #include <string.h>
 
-/* Floats tell so many entries apart, less what stands before them. */
+/* Rays store entry numbers as floats, which are exact up to 2^24. The margin is for the tables before those of the labels. */
 #define LABEL_ENTRIES_MOST 16000000
 
 int stratus_volume_components(const stratus_volume* volume)
@@ -148,7 +148,7 @@ void stratus_ray_shading_choose(
 
 /* ---- tables */
 
-/* Entries of color times optical depth, and optical depth, from those of color times alpha, and alpha. */
+/* Converts entries (colour times alpha, alpha) to (colour times optical depth, optical depth). */
 static void thicken(const stratus_table* table, float* out)
 {
   for (size_t e = 0; e < (size_t)table->size; ++e) {
@@ -193,7 +193,8 @@ static stratus_status create_label_tables(stratus_ray_caster* caster)
   return STRATUS_OK;
 }
 
-/* A table for each component that has one: media, and the colour that goes with a dependent opacity. */
+/* Makes the tables of several components. Independent components have one each. Of dependent ones, the last has one for opacity; of two,
+ * the first has another for colour. */
 static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
@@ -222,7 +223,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
   return create_table(caster, caster->transfers, last, &shading->tables[last]);
 }
 
-/* The function over magnitudes from 0 to its last point. */
+/* Samples the gradient opacity from magnitude 0 to the function's last point. */
 static void fill_factors(const stratus_transfer* transfer, float* out)
 {
   const stratus_transfer function = { .opacity = transfer->gradient,
@@ -239,7 +240,7 @@ static void fill_factors(const stratus_transfer* transfer, float* out)
   }
 }
 
-/* Labels: where each one's table stands, and the tables. */
+/* Appends a record for each label (scale, offset, last entry, first entry), then the labels' tables. Returns the end. */
 static size_t lay_out_labels(stratus_ray_shading_tables* shading, size_t at, float* out)
 {
   const size_t labels = (size_t)shading->label_tables_count;
@@ -258,7 +259,7 @@ static size_t lay_out_labels(stratus_ray_shading_tables* shading, size_t at, flo
   return at;
 }
 
-/* Writes all tables one after the other, where out is not NULL; returns how many words they take. */
+/* Lays all tables out one after another, and writes them unless out is NULL. Returns their size in words of 4 bytes. */
 static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
@@ -279,7 +280,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     }
     at += table ? 4 * (size_t)table->size : 0;
   }
-  for (int c = 0; c < shading->components; ++c) { /* of labels, the first function's */
+  for (int c = 0; c < shading->components; ++c) { /* all labels share the first function's gradient opacity */
     const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
     const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == shading->components);
     const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;

@@ -1,40 +1,40 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What samples that are more than one value's colour and opacity are looked up in, and what of the input their tables need. */
+ * Tables of shading: samples that are lit, thinned by the gradient, of several components or labelled. */
 #ifndef STRATUS_RAY_SHADING_TABLE_H
 #define STRATUS_RAY_SHADING_TABLE_H
 
 #include "stratus/ray_cast.h"
 #include "volume.h"
 
-/* Steps of a gradient opacity function, between which it is taken as linear. */
+/* Steps of a sampled gradient opacity, which is linear between them. */
 #define STRATUS_SHADING_FACTORS 4096
 
 typedef struct stratus_ray_shading_tables {
   int components;                 /* of the volume */
-  stratus_value_range* ranges[4]; /* of components 1 .. */
-  stratus_table* tables[4];       /* of several components: where each has one */
-  void* memory;                   /* all tables, and gradient opacity, as rays read them */
+  stratus_value_range* ranges[4]; /* value range of each component; [0] is NULL: caster->ranges serves */
+  stratus_table* tables[4];       /* table of each component that has one; all NULL if components is 1 */
+  void* memory;                   /* all tables and gradient opacities, as rays read them */
   size_t bytes;
-  int first[4], factor_first[4]; /* in floats; factor_first -1: none */
-  float factor_scale[4];         /* entries per magnitude */
-  stratus_table** label_tables;  /* of label 0 and on, NULL: no labels */
+  int first[4], factor_first[4]; /* where each component's table and gradient opacity begin, in floats; factor_first -1: none */
+  float factor_scale[4];         /* entries of the gradient opacity per unit of magnitude */
+  stratus_table** label_tables;  /* of labels 0, 1, 2 and so on; NULL: no labels */
   int label_tables_count, label_first;
-  uint64_t range_builds, table_builds; /* the caster's, that they belong to */
+  uint64_t range_builds, table_builds; /* the caster's counts when ranges and tables were made */
 } stratus_ray_shading_tables;
 
 int stratus_volume_components(const stratus_volume* volume);
-stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* as a volume of its own */
+stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* a component as a volume of its own */
 int stratus_ray_shading_media(
-  const stratus_volume* volume, const stratus_ray_cast_options* options); /* transfer functions that the render takes */
+  const stratus_volume* volume, const stratus_ray_cast_options* options); /* number of transfer functions that the render takes */
 stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* of the components beside the first */
+stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* value ranges of all components but the first */
 void stratus_ray_shading_choose(
   stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* after caster->table */
-bool stratus_ray_shading_several(const stratus_ray_caster* caster);       /* tables, so that one map of opacity is not enough */
-bool stratus_ray_shading_show(const stratus_ray_caster* caster);          /* anything at all */
-stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster); /* caster->occupancy, of several components */
+stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* call after caster->table is made */
+bool stratus_ray_shading_several(const stratus_ray_caster* caster);       /* whether several tables decide which blocks are occupied */
+bool stratus_ray_shading_show(const stratus_ray_caster* caster);          /* whether any table shows anything */
+stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster); /* makes caster->occupancy from several tables */
 void stratus_ray_shading_release(stratus_ray_caster* caster);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Structure HYBRID: the tree that came with the data, where it serves, or one of the caster's own. */
+ * Structure HYBRID: uses the tree that came with the data if it serves, else one that the caster builds. */
 #include "ray_tree.h"
 
 #include "ray_caster.h"
@@ -23,7 +23,7 @@ stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const v
   stratus_ray_drop_offer_map(caster);
   if (bytes) {
     TRY(stratus_tree_load(caster->context, bytes, size, &tree));
-    /* rays come in index coordinates: where the volume was when the tree was made does not count */
+    /* rays are in index coordinates, so the volume's geometry at the time of the build does not matter */
     memcpy(tree->index_to_world, identity, sizeof identity);
     memcpy(tree->world_to_index, identity, sizeof identity);
     caster->offered = tree;
@@ -31,7 +31,8 @@ stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const v
   return STRATUS_OK;
 }
 
-/* A tree of cells serves the march, one of voxels first hits: never both, so that one answer is enough. */
+/* Returns the offered tree if it is of cells, for the march, or of voxels, for first hits. It cannot be both, so caster->tree_serves holds
+ * the answer for either. */
 static const stratus_tree* offered_tree(const stratus_ray_caster* caster, bool of_cells)
 {
   const stratus_tree* tree = caster->offered;
@@ -62,7 +63,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
   const stratus_tree* tree = offered_tree(caster, true);
   *serves = false;
   if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_shading_several(caster)) {
-    /* what other modes need is not what the opacity shows */
+    /* only here does one table's opacity alone decide which cells matter */
     return STRATUS_OK;
   }
   if (caster->tree_serves < 0) {
@@ -75,7 +76,7 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
     }
     TRY(stratus_origin_take_cells(caster->context, caster->ranges, &criterion, &wanted));
     wanted.hash = caster->hash;
-    /* Cells of values taken as they are lie apart from those between values: who built the tree knew of the latter only. */
+    /* hidden_by_value centres cells on values, but the tree was built of cells between values. */
     caster->tree_serves =
       stratus_tree_fits(tree, &caster->volume) && stratus_origin_covers(&tree->origin, &wanted) && !caster->hidden_by_value;
   }

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Structure HYBRID: a tree, offered or made, as the march asks it. */
+ * Structure HYBRID: an offered or built tree as a map for the march. */
 #ifndef STRATUS_RAY_TREE_H
 #define STRATUS_RAY_TREE_H
 
 #include "ray_caster.h"
 
-/* Whether a tree was offered that shows all that the transfer function does, of this very volume. */
+/* Whether the offered tree covers all cells of this very volume that the transfer function shows. */
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves);
-/* The same of first hits: whether its voxels are those that the criterion shows. Asked once, which takes *ms more. */
+/* Whether the offered tree holds exactly the voxels that the criterion shows. The first call after a change reads the volume; its time is
+ * added to *ms. */
 stratus_status stratus_ray_tree_serves_first_hits(
   stratus_ray_caster* caster, const stratus_volume* in_index, const stratus_criterion* criterion, bool* serves, double* ms);
-/* That tree, or a new one, as the march asks it; caster->occupancy is there. */
+/* Makes the map of the offered tree, or of a new tree of caster->occupancy. */
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);
 
 #endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree as the march asks it: the nodes' boxes in blocks, and for each leaf what a distance map holds of the leaf's own blocks. */
+ * Converts a tree to a map for the march: the nodes' boxes in blocks, and for each leaf a distance map of its own blocks. The layout is
+ * that of kernels/ray_cast/tree_map.h. */
 #include "tree_map_build.h"
 
 #include <string.h>
 
 #define PADDING 64
-/* Leaves of so few blocks are not worth a transform: their empty blocks are told to be next to something. */
+/* Leaves of at most this many blocks get no distance transform; all their distances are 1. */
 #define SMALL_LEAF 64
 
 typedef struct extent {
@@ -32,7 +33,7 @@ static void mark(const extent* e, const int32_t at[3], uint8_t* occupied)
   occupied[((size_t)(at[2] - e->lo[2]) * (size_t)e->n[1] + (size_t)(at[1] - e->lo[1])) * (size_t)e->n[0] + (size_t)(at[0] - e->lo[0])] = 1;
 }
 
-/* 1 in the leaf's occupied blocks. */
+/* Sets the bytes of the leaf's occupied blocks to 1, all others to 0. */
 static void mark_leaf(const stratus_tree* tree, const stratus_tree_node* node, const extent* e, uint8_t* occupied)
 {
   memset(occupied, 0, volume_of(e));
