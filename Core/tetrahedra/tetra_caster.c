@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The renderer of tetrahedra: checks what it is given, builds anew what changed (mesh -> cells and border; transfer function -> table),
- * draws, reports. */
+ * The renderer of tetrahedra: checks its input, rebuilds what changed (mesh: cells and border faces; transfer function: table), draws and
+ * reports. */
 #include "tetra_caster.h"
 
 #include "picture.h"
@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Cells are longer than a volume's segments, and no finer step makes up for them: they go into twice as many pieces, a quarter of the
- * error. */
+/* Factor on the table's color_slope. Cells are longer than a volume's segments, and have no step that could be shortened. The factor
+ * integrates them in twice as many pieces, which quarters the error. */
 #define PIECES 4.0f
-/* Cells end at any value, tables at entries: what light errs by falls with their width. */
+/* Entries of the table. Segments end at any value, which is rounded to an entry: the error of light falls with the width of entries. */
 #define ENTRIES 32768
 
 stratus_tetra_options stratus_tetra_options_default(void)
@@ -49,8 +49,8 @@ static void drop_table(stratus_tetra_caster* caster)
 
 static void drop_mesh(stratus_tetra_caster* caster)
 {
-  drop_table(caster);                                            /* it spans the mesh's values */
-  stratus_tetra_device_destroy(caster->context, caster->device); /* it may read the mesh in place */
+  drop_table(caster);                                            /* the table spans the mesh's values */
+  stratus_tetra_device_destroy(caster->context, caster->device); /* the device may read the mesh in place */
   caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
   caster->projector = NULL;
@@ -115,7 +115,7 @@ static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_me
   return STRATUS_OK;
 }
 
-/* Composite: running sums, a world unit as their sample distance. Maximum: colour and alpha of one unit distance. */
+/* Updates the table. Composite: running sums per world unit. Maximum: colour and alpha over one unit distance. */
 static stratus_status update_table(stratus_tetra_caster* caster, const stratus_transfer* transfer, stratus_tetra_mode mode, double* ms)
 {
   const double start = stratus_now_ms();
@@ -163,7 +163,7 @@ static void set_shading(
   arguments->termination = arguments->maximum ? 0.0f : (float)(1.0 - options->termination);
 }
 
-/* On the device if there is one that can. */
+/* Marches on the device if there is one and it can, else on the host. */
 static stratus_status march_rays(
   stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_counts* counts, stratus_tetra_report* report)
 {
@@ -253,7 +253,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   TRY(check_options(caster->context, options));
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_camera_check(caster->context, camera, image));
-  /* what has been checked once need not be again: a moved camera shall not cost a pass over the mesh */
+  /* a mesh is checked only when it changes, so that a moved camera costs no pass over it */
   if (!mesh || !caster->mesh || !same_mesh(&caster->view, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
     TRY(stratus_mesh_check(caster->context, mesh));
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A frame of tetrahedra before its rays march: points in the rays' coordinates (kernels/tetra_arguments.h), a line for each row and
+ * Prepares a frame of tetrahedra: points in the rays' coordinates (kernels/tetrahedra/tetra_arguments.h), the rays' parts by row and
  * column of pixels, and for each tile the border faces that may cover it. */
 #include "tetra_caster.h"
 
@@ -8,12 +8,12 @@
 
 #include <string.h>
 
-/* Faces that come nearer than this to the eye's plane, in units of the largest coordinate, have no safe outline on the screen: each tile is
- * tried against their edges, which are linear in u and v whatever lies behind the eye. */
+/* Faces that come nearer than this to the eye's plane, in units of the largest coordinate, have no safe outline on the screen. Their edge
+ * functions are tested in each tile instead, because these are linear in u and v even for points behind the eye. */
 #define NEAREST_OUTLINE 0x1p-6
-/* More than an edge is wrong by for the floats' sake: coordinates are below 1 (parallel: what is beyond the window need not be found). */
+/* Exceeds the float error of an edge function: coordinates are below 1 (parallel: larger ones lie beyond the window and do not matter). */
 #define EDGE_SLACK 1e-5
-#define RIGHT_ANGLE 0x1p-50 /* a cosine of some roundings */
+#define RIGHT_ANGLE 0x1p-50 /* cosines below it are rounding errors */
 
 typedef struct frame_build {
   stratus_context* context;
@@ -21,7 +21,7 @@ typedef struct frame_build {
   const stratus_mesh* mesh;
   stratus_tetra_frame* frame;
   double matrix[16]; /* local -> a, b, c */
-  double scale;      /* of what the floats hold; parallel: of z alone */
+  double scale;      /* from a, b, c to the floats' coordinates; parallel: of z alone */
   bool mirrored;
   stratus_tetra_border_face* faces;
 } frame_build;
@@ -51,15 +51,15 @@ void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffe
   }
 }
 
-/* The part of a parallel camera's right or up that is along its forward, in forwards; what rounding leaves of a right angle is none. */
+/* Returns the component of a parallel camera's right or up along forward, in units of forward. Rounding errors of a right angle give 0. */
 static double lean_of(const double side[3], const double forward[3])
 {
   const double along = stratus_vector_dot(side, forward), square = stratus_vector_dot(forward, forward);
   return fabs(along) > RIGHT_ANGLE * sqrt(stratus_vector_dot(side, side) * square) ? along / square : 0.0;
 }
 
-/* Parallel rays are the same from wherever along them k is counted: from a plane at right angles to them, so that a mesh is as deep as it
- * is, and not as its width leans along a sheared camera's right and up. Perspective: as the camera is. */
+/* Finds the basis of a, b and c. Perspective: the camera's own. Parallel: k may count from any point of a ray, so it counts from a plane
+ * perpendicular to the rays. A sheared camera's right and up then do not add the mesh's width to its depth. */
 static void find_basis(frame_build* build, double basis[16])
 {
   stratus_tetra_frame* frame = build->frame;
@@ -75,7 +75,7 @@ static void find_basis(frame_build* build, double basis[16])
   }
 }
 
-/* a, b, c of a local point, the eye subtracted before anything is lost. */
+/* Finds the matrix from local coordinates to a, b and c. Subtracting the eye first avoids cancellation. */
 static stratus_status find_matrix(frame_build* build)
 {
   const stratus_camera* camera = &build->frame->camera;
@@ -99,9 +99,9 @@ static stratus_status find_matrix(frame_build* build)
   return STRATUS_OK;
 }
 
-/* World lengths, along rays, and optical depths over them have to be floats; parallel: edges of faces, products of two coordinates in
- * windows, times values, too. *largest in forwards. What is flat, seen from the front, may be as thin as it likes: it is not drawn, nor
- * refused. */
+/* Refuses a mesh whose numbers exceed the range of floats: world lengths along rays and the optical depths over them; parallel: also edges
+ * of faces (products of two coordinates in half windows) times values. *largest is in units of forward. A flat mesh perpendicular to
+ * forward is not drawn, but not refused either. */
 static stratus_status check_reach(const frame_build* build, double size, double across, double* largest)
 {
   const stratus_tetra_frame* frame = build->frame;
@@ -125,11 +125,11 @@ static stratus_status check_reach(const frame_build* build, double size, double 
     return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right or up is %g times as long as forward, must be at most %g",
       wide, STRATUS_TETRA_WINDOWS);
   }
-  *largest = fmax(*largest, fmax(1.0 / unit, lean) / STRATUS_TETRA_REACH); /* so that a lean is a float in units of it */
+  *largest = fmax(*largest, fmax(1.0 / unit, lean) / STRATUS_TETRA_REACH); /* so that a lean in units of *largest is a float */
   return STRATUS_OK;
 }
 
-/* The middle depth, and a power of two that brings the largest coordinate into 1/2..1. */
+/* Finds the middle depth, and the power of two that scales the largest coordinate into 1/2..1. */
 static stratus_status find_scale(frame_build* build)
 {
   const double *lo = build->tetra->lo, *hi = build->tetra->hi;
@@ -142,7 +142,7 @@ static stratus_status find_scale(frame_build* build)
     stratus_matrix_vector(build->mesh->matrix, diagonal, q);
     size = fmax(size, fmax(fmax(fabs(q[0]), fabs(q[1])), fabs(q[2])));
     stratus_matrix_point(build->matrix, local, p);
-    unknown += 0.0 * (p[0] + p[1] + p[2]); /* what is not finite stays, which minima and maxima forget */
+    unknown += 0.0 * (p[0] + p[1] + p[2]); /* NaN if any is not finite, which fmin and fmax would ignore */
     nearest = fmin(nearest, p[2]);
     farthest = fmax(farthest, p[2]);
     across = fmax(across, fmax(fabs(p[0]), fabs(p[1])));
@@ -184,7 +184,7 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
   return STRATUS_OK;
 }
 
-/* A row's and a column's part of their rays; those beyond the picture repeat the last. */
+/* Stores the parts of rays that depend on the column or the row alone. The padding beyond the picture repeats the last ones. */
 static stratus_status place_lines(frame_build* build, stratus_tetra_buffers* buffers)
 {
   stratus_tetra_frame* frame = build->frame;
@@ -208,7 +208,7 @@ static stratus_status place_lines(frame_build* build, stratus_tetra_buffers* buf
   return STRATUS_OK;
 }
 
-/* What is seen of a ray, in z: from the near plane to the far one or to what is opaque; and its length. */
+/* Sets the visible part of rays in z, from the near plane to the far plane or to opaque geometry, and their world lengths. */
 static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buffers)
 {
   stratus_tetra_frame* frame = build->frame;
@@ -218,7 +218,7 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   const double *f = c->forward, *r = c->right, *u = c->up, square = stratus_vector_dot(f, f);
   const double products[6] = { square, 2.0 * stratus_vector_dot(f, r), 2.0 * stratus_vector_dot(f, u), stratus_vector_dot(r, r),
     2.0 * stratus_vector_dot(r, u), stratus_vector_dot(u, u) };
-  for (int i = 0; i < 6; ++i) { /* parallel rays are all as long, however wide their window */
+  for (int i = 0; i < 6; ++i) { /* parallel rays all have the length of forward */
     a->square[i] = c->parallel && i > 0 ? 0.0f : (float)(products[i] / square);
   }
   for (int side = 0; side < 2; ++side) {
@@ -257,7 +257,7 @@ static void face_points(const stratus_tetra_frame* frame, const stratus_tetra_fa
   }
 }
 
-/* First and last pixel along a side of `pixels`, of what spans lo..hi in -1..1, a pixel more each way. False: outside. */
+/* Finds the first and last pixel that lo..hi covers, one more on each side; -1..1 spans `pixels`. Returns false if there is none. */
 static bool pixel_span(double lo, double hi, int pixels, uint16_t span[2])
 {
   const double first = floor(0.5 * (lo + 1.0) * pixels - 1.5), last = ceil(0.5 * (hi + 1.0) * pixels + 0.5);
@@ -269,8 +269,8 @@ static bool pixel_span(double lo, double hi, int pixels, uint16_t span[2])
   return true;
 }
 
-/* Whether rays surely come out of the mesh by the face, if any pass it: its points turn the other way, seen from the eye. In front of the
- * eye, the edges times depths sum up to this determinant; each edge is off by less than a millionth of the face's extent. */
+/* Whether rays surely leave the mesh by this face and never enter: its points turn the other way, seen from the eye. The determinant is the
+ * sum of edges times depths, which are positive in front of the eye. Each edge's error is below a millionth of the face's extent. */
 static bool faces_away(const double p[3][3])
 {
   double extent = 0.0;
@@ -283,7 +283,7 @@ static bool faces_away(const double p[3][3])
   return det < -1e-6 * extent;
 }
 
-/* The pixels that a face may cover. False: none. */
+/* Finds the pixels that a face may cover. Returns false if there are none. */
 static bool outline(const stratus_tetra_frame* frame, stratus_tetra_border_face* face)
 {
   double p[3][3], lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
@@ -303,7 +303,7 @@ static bool outline(const stratus_tetra_frame* frame, stratus_tetra_border_face*
     pixel_span(lo[1], hi[1], frame->image.height, face->rows);
 }
 
-/* Whether some ray of the tile may pass the face turned as it is: none does if an edge is negative in all four corners. */
+/* Whether some ray of the tile may enter by the face. None does if one edge function is negative in all four corners of the tile. */
 static bool tile_may_meet(const stratus_tetra_frame* frame, const double p[3][3], int column, int row)
 {
   const double u0 = 2.0 * (column * TETRA_TILE) / frame->image.width - 1.0, u1 = u0 + 2.0 * TETRA_TILE / frame->image.width;
@@ -318,7 +318,7 @@ static bool tile_may_meet(const stratus_tetra_frame* frame, const double p[3][3]
   return true;
 }
 
-/* Counts the face in each of its tiles, or puts it there. */
+/* Counts the face in each tile that it may cover and, unless bins is NULL, stores it there. */
 static uint64_t deal_face(const frame_build* build, size_t i, uint32_t* begin, int32_t* bins)
 {
   const stratus_tetra_frame* frame = build->frame;
@@ -366,7 +366,7 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
     faces[i] =
       (stratus_tetra_border_face){ .face = { { p[0], p[build->mirrored ? 2 : 1], p[build->mirrored ? 1 : 2] }, face->fourth, face->cell } };
     if (!outline(frame, faces + i)) {
-      faces[i].columns[0] = UINT16_MAX; /* none */
+      faces[i].columns[0] = UINT16_MAX; /* covers no pixel */
       faces[i].columns[1] = 0;
     }
   }
@@ -389,7 +389,7 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
   for (size_t i = 0; i < count; ++i) {
     (void)deal_face(build, i, begin, buffers->bins.memory);
   }
-  memmove(begin + 1, begin, tiles * sizeof *begin); /* each stands at its end now: the next one's begin */
+  memmove(begin + 1, begin, tiles * sizeof *begin); /* each begin has advanced to its bin's end, the next bin's begin */
   begin[0] = 0;
   frame->bin_begin = begin;
   frame->bins = buffers->bins.memory;

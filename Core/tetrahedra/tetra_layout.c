@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The order in which a mesh's cells and points lie in memory for rays: along a Morton curve, so that what rays of a tile pass one after
- * the other shares cache lines, whatever order a mesh generator wrote. */
+ * Orders a mesh's cells and points in memory along a Morton curve, so that cells which rays of a tile pass in succession share cache lines,
+ * whatever the order of the mesh generator. */
 #include "cell_morton.h"
 #include "tetra_caster.h"
 
@@ -22,10 +22,10 @@ static void bounds_of(const stratus_mesh* mesh, int threads, double lo[3], doubl
   memcpy(hi, most, sizeof most);
 }
 
-/* A mesh, as the curve asks for its cells' places. */
+/* Data of place_cell(). */
 typedef struct mesh_places {
   const stratus_mesh* mesh;
-  double lo[3], scale[3]; /* of sums of four */
+  double lo[3], scale[3]; /* scale: from the sum of four points to curve coordinates */
 } mesh_places;
 
 static uint32_t place_cell(const void* data, int64_t cell, double at[3])

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * All tiles of a picture of tetrahedra on the host: first how many ways into the mesh each pixel has, then the ways and the march. */
+ * Marches all tiles of a picture of tetrahedra on the host. A first pass counts each pixel's entries into the mesh. A second pass finds
+ * them and marches. */
 #include "tetra_caster.h"
 
 #include "instruction_set.h"
@@ -87,7 +88,7 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
   }
   TRY(stratus_allocate(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
   *sums = memory;
-  memcpy(*sums + 8 * size, table->sums + 4 * (size + 1), 2 * size * sizeof(int32_t)); /* where the function is opaque */
+  memcpy(*sums + 8 * size, table->sums + 4 * (size + 1), 2 * size * sizeof(int32_t)); /* the rows of opaque entries */
   for (size_t entry = 0; entry < size; ++entry) {
     for (size_t which = 0; which < 4; ++which) {
       const int64_t below = table->sums[which * (size + 1) + entry], above = table->sums[which * (size + 1) + entry + 1];

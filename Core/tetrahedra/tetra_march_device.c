@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The OpenCL device's way through tetrahedra: copies of what was built, kept until it is built anew, what a frame needs, and two
- * launches. */
+ * Marches through tetrahedra on the OpenCL device: keeps copies of mesh and table until they are rebuilt, sends the frame, and launches two
+ * kernels. */
 #include "tetra_march_device.h"
 
 #include "device_frame.h"
@@ -10,9 +10,9 @@
 #include <string.h>
 
 #define PIXELS ((size_t)TETRA_TILE * TETRA_TILE)
-#define GROUP 64 /* work items where each is a pixel */
+#define GROUP 64 /* work items in a group, if each is a pixel */
 
-/* The kernel's compiler is told the arguments' size, and asserts the same. */
+/* The kernel gets the arguments' size by a define and asserts it, too. */
 _Static_assert(_Alignof(stratus_tetra_arguments) == sizeof(float), "arguments must be scalars of four bytes");
 _Static_assert(sizeof(stratus_tetra_border_face) == 4 * TETRA_FACE, "a face must have no padding");
 
@@ -135,7 +135,7 @@ static stratus_status count_entries(device_march* m, stratus_tetra_buffers* buff
   return stratus_slot_send(m->context, m->slots + FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes);
 }
 
-/* sums: four numbers a tile, 0 before. */
+/* sums: four zeros per tile, to which the kernel adds. */
 static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
 {
   static const buffer_name order[] = { ARGUMENTS, CELLS, CELL_VALUES, SUMS, COLORS, POINTS, LINES, ENDS, FACES, BIN_BEGIN, BINS, FIRST,
@@ -186,7 +186,7 @@ static stratus_status draw(device_march* m, const stratus_tetra_device_source* s
   return status;
 }
 
-/* Why the device can't draw this mesh, or NULL. */
+/* Returns the reason why the device cannot draw this mesh, or NULL. */
 static const char* obstacle(const stratus_context* context, const stratus_tetra_device_source* source)
 {
   const size_t largest = stratus_device_largest_allocation(context->device);

@@ -7,15 +7,16 @@
 
 typedef struct stratus_tetra_device stratus_tetra_device;
 
-/* Copies (where the device lends memory, none) of what a caster keeps, and which build of it they are of: numbers > 0 that rise. Mesh and
- * table must not be freed before the device, or the copies of the table by stratus_tetra_device_drop_table(). */
+/* Identifies the mesh and table of a frame by build numbers > 0 that rise, so that the device copies them only once. A device that shares
+ * the host's memory reads them in place: call stratus_tetra_device_drop_table() before freeing the table, and
+ * stratus_tetra_device_destroy() before freeing the mesh. */
 typedef struct stratus_tetra_device_source {
   uint64_t mesh, table;
   int64_t cell_count, point_count;
 } stratus_tetra_device_source;
 
-/* stratus_tetra_march() on the device. *device NULL: it is made. *drawn false: the device can't, a warning says why, and nothing was
- * done. */
+/* stratus_tetra_march() on the device. Makes *device if that is NULL. *drawn false: the device cannot draw this mesh; a warning says why.
+ */
 stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts,
   double* entries_ms, double* march_ms, bool* drawn);

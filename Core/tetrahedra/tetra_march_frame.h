@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Marching through tetrahedra on the host, compiled once for each instruction set and picked at run time. */
+ * A frame of tetrahedra, and the march on the host, which is compiled once for each instruction set and picked at run time. */
 #ifndef STRATUS_TETRA_MARCH_HOST_H
 #define STRATUS_TETRA_MARCH_HOST_H
 
@@ -9,17 +9,17 @@
 
 #include "volume.h"
 
-/* A face of one shown cell only, turned so that a ray that enters the cell by it sees its points turn from right to up. */
+/* A border face, which only one shown cell has. A ray that enters the cell by it sees its points turn from right to up. */
 typedef struct stratus_tetra_face {
-  int32_t point[3], fourth; /* of the cell */
-  int32_t cell;             /* where its ints begin */
+  int32_t point[3], fourth; /* fourth: the cell's point opposite the face */
+  int32_t cell;             /* where the cell's ints begin */
 } stratus_tetra_face;
 
-/* The same in a frame, as kernels/tetra_arguments.h has it. */
+/* A border face of a frame, in the layout of kernels/tetrahedra/tetra_arguments.h. */
 typedef struct stratus_tetra_border_face {
   stratus_tetra_face face;
-  uint16_t columns[2], rows[2]; /* first and last of pixels */
-  int32_t anywhere;
+  uint16_t columns[2], rows[2]; /* first and last pixel that it may cover */
+  int32_t anywhere;             /* 1: these are not known */
 } stratus_tetra_border_face;
 
 typedef struct stratus_tetra_buffer {
@@ -27,7 +27,7 @@ typedef struct stratus_tetra_buffer {
   size_t bytes;
 } stratus_tetra_buffer;
 
-/* Memory of a frame, kept for the next one. */
+/* Memory of a frame, reused by the next one. */
 typedef struct stratus_tetra_buffers {
   stratus_tetra_buffer points, places, faces, lines, ends, bin_begin, bins, first, entries;
 } stratus_tetra_buffers;
@@ -39,40 +39,43 @@ typedef struct stratus_tetra_counts {
 typedef struct stratus_tetra_frame {
   stratus_tetra_arguments arguments;
   const int32_t* cells;
-  const float* points;                    /* x, y, z, value each */
-  const float* places;                    /* the same in the order of the cells' points: tetra_mesh.c */
-  const float* cell_values;               /* a cell each in the order of `cells`, or NULL */
-  const stratus_tetra_border_face* faces; /* turned for this camera */
+  const float* points;                    /* x, y, z and value of each mesh point */
+  const float* places;                    /* the same in the order of stratus_tetra_mesh.names */
+  const float* cell_values;               /* in the order of `cells`; NULL: values belong to points */
+  const stratus_tetra_border_face* faces; /* their points turn as this camera sees them */
   size_t face_count;
-  const float *us, *uw, *vs, *vw; /* a column each, a row each: STRATUS_WIDTH_MOST of them beyond the picture */
+  const float *us, *uw, *vs, *vw; /* parts of rays by column and by row, TETRA_PADDING of them beyond the picture */
   int columns, rows;              /* of tiles */
-  const uint32_t* bin_begin;      /* columns*rows + 1 places in bins */
-  const int32_t* bins;            /* faces that may cover a tile, rising */
+  const uint32_t* bin_begin;      /* where each tile's faces begin in `bins`, and the end */
+  const int32_t* bins;            /* faces that may cover a tile, in rising order */
   uint32_t* first;                /* entries of tile t's pixel p begin at first[256 t + p] */
-  int32_t* entries;               /* z's bits and the face: where rays come in. Those of a pixel lie together, nearest first */
-  const float* ends;              /* a pixel each, what is opaque in z, or NULL */
-  const int32_t* march_sums;      /* stratus_tetra_sums() */
+  int32_t* entries;          /* where rays enter the mesh: the bits of z, and the face. A pixel's entries are consecutive, nearest first */
+  const float* ends;         /* z of opaque geometry in each pixel; NULL: none */
+  const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
   stratus_camera camera;
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;
 
-/* k of a pixel's ray where z is 0. */
+/* Returns k of a pixel's ray where z is 0. */
 static inline double stratus_tetra_middle(const stratus_tetra_frame* frame, int x, int y)
 {
   const double u = (2.0 * x + 1.0) / frame->image.width - 1.0, v = (2.0 * y + 1.0) / frame->image.height - 1.0;
   return frame->middle - (frame->lean[0] * u + frame->lean[1] * v);
 }
 
-/* counting: writes how many entries each pixel of the tile has to first[]; else fills the entries, marches and stores the pixels. */
+/* counting: writes the number of entries of each pixel of the tile to first[]. Otherwise fills the entries, marches and stores the pixels.
+ */
 typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts);
 
 stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tetra_tile_isa2;
 
-/* tetra_march.c: counts of entries a pixel in frame->first, `pixels` of them and one more, become where each pixel's begin. */
+/* tetra_march.c: turns the counts of entries in frame->first, one per pixel, into where each pixel's entries begin; first[pixels] is the
+ * end.
+ */
 stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra_frame* frame, size_t pixels, size_t* total);
-/* All tiles. */
+/* Marches all tiles. */
 stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
   stratus_tetra_counts* counts, double* entries_ms, double* march_ms);
 

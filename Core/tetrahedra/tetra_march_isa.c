@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tile of rays through tetrahedra, compiled for one instruction set, STRATUS_ISA: kernels/tetra_tile.h on the host. */
+ * Marches a tile of rays on the host: kernels/tetrahedra/tetra_tile.h compiled for one instruction set, STRATUS_ISA. */
 #include "tetra_march_frame.h"
 
 #include "tetra_tile.h"
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-function" /* the headers have more words than this file needs */
+#pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
 #endif
 
 static stratus_tetra_view view_of(const stratus_tetra_frame* frame)

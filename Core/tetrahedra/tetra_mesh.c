@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What rays read of a mesh of tetrahedra: a few ints a cell, packed from its neighbours, and the faces by which rays come in. Cells that
- * show nothing (hidden, with a value that is not finite, or a point named twice) are left out, as if there were a hollow. */
+ * Converts a mesh of tetrahedra to the form that rays read: a few ints per cell, packed from its neighbours, and the border faces by which
+ * rays enter. Cells that show nothing (hidden, with a value that is not finite, or with a point named twice) are left out as hollows. */
 #include "mesh.h"
 #include "tetra_caster.h"
 
 #include <string.h>
 
 #define CELL_INTS_MOST INT32_MAX
-#define POINTS_MOST (INT32_MAX / 4) /* four floats each */
+#define POINTS_MOST (INT32_MAX / 4) /* four floats per point */
 
 bool stratus_tetra_shows(
   const stratus_mesh* mesh, const stratus_volume* volume, const float* point_values, double bias, int64_t cell, float range[2])
@@ -69,7 +69,7 @@ static void find_bounds(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
   memcpy(tetra->hi, hi, sizeof hi);
 }
 
-/* The face of `cell` that names the same points as another's face. -1: none. */
+/* Returns the face of `cell` with these points, ordered by stratus_face_points(); -1: none. */
 static int face_with(const int32_t cell[4], const int32_t point[3])
 {
   for (int f = 0; f < 4; ++f) {
@@ -82,7 +82,7 @@ static int face_with(const int32_t cell[4], const int32_t point[3])
   return -1;
 }
 
-/* A flat cell's faces look the way that its neighbours need: as if it had volume between them. 0 if no neighbour has any. */
+/* Returns the orientation of a cell. A flat cell gets the one that fits a neighbour with volume; 0 if there is none. */
 static int nominal_orientation(const stratus_mesh* mesh, const stratus_adjacency* adjacency, int64_t cell)
 {
   const int32_t* v = mesh->vertices + 4 * cell;
@@ -102,22 +102,22 @@ static int nominal_orientation(const stratus_mesh* mesh, const stratus_adjacency
   return 0;
 }
 
-/* The neighbour through face f, -1 where a ray would be outside. */
+/* Returns the shown neighbour behind face f; -1: none, the face is a border face. */
 static int32_t shown_neighbour(const stratus_tetra_mesh* tetra, const stratus_adjacency* adjacency, int64_t cell, int f)
 {
   const int32_t other = adjacency->neighbours[4 * cell + f];
   return other >= 0 && tetra->shown[other] ? other : -1;
 }
 
-/* For each of the cell's points, lowest name first, the next cell opposite and the point by which that one is more than the face between.
- * */
+/* Packs a cell. Each of its points, lowest name first, has two ints: the neighbour behind the opposite face, and the neighbour's fourth
+ * point. */
 static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const int32_t* places,
   int64_t cell, int32_t ints[TETRA_CELL])
 {
   const int32_t* v = mesh->vertices + 4 * cell;
   const int32_t all = v[0] ^ v[1] ^ v[2] ^ v[3];
   for (int f = 0; f < 4; ++f) {
-    int rank = 0; /* cells whose points are not four have no neighbours: any place will do */
+    int rank = 0; /* cells that name a point twice have no neighbours, so the order of equals does not matter */
     for (int i = 0; i < 4; ++i) {
       rank += tetra->names[v[i]] < tetra->names[v[f]] || (v[i] == v[f] && i < f);
     }
@@ -145,7 +145,8 @@ static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, cons
   }
 }
 
-/* In the order of places, so that faces of a tile lie together, too. */
+/* Lists the border faces unless faces is NULL, and returns their count. Their order is that of their cells' places, so that the faces of a
+ * tile are near each other in memory. */
 static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency,
   const stratus_tetra_places* places, stratus_tetra_face* faces)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * March or projection: which should cost less for a view, told from counts of cells, pixels and segments that a sample of the cells stands
- * for. Nothing of earlier frames goes into it, so that a camera that stands still never changes the method. */
+ * Chooses between march and projection by their estimated cost for a view. A sample of the cells gives counts of cells, pixels and
+ * segments. Earlier frames have no influence, so a still camera never changes the method. */
 #include "tetra_caster.h"
 
 #include "mesh.h"
@@ -8,17 +8,17 @@
 
 #include <stdio.h>
 
-/* Cells looked at: their counts are right to some percent, which costs less than a tenth of a millisecond. */
+/* Cells in the sample. Its counts are right to some percent, and it takes less than a tenth of a millisecond. */
 #define SAMPLE 2048
 
-/* Nanoseconds of one core, measured on three meshes of 190 to 860 thousand cells at 512 x 512: per cell that a ray passes; per piece
- * composited, packet of pixels tried, cell in view, cell sorted. Only their proportions count. */
+/* Nanoseconds of one core, measured on three meshes of 190 to 860 thousand cells at 512 x 512. March: per cell that a ray passes.
+ * Projection: per piece composited, packet of pixels tested, cell in view, cell sorted. Only the ratios matter. */
 #define MARCH_SEGMENT 7.5
 #define PROJECT_PIECE 6.0
 #define PROJECT_PACKET 14.0
 #define PROJECT_CELL 90.0
 #define PROJECT_SORT 70.0
-/* A convex body's box is so many times what it covers, on the mean over directions. */
+/* Area of a convex body's bounding rectangle on the screen over the area that the body covers, averaged over directions. */
 #define BOX_OVER_COVERED 2.5
 #define PACKET_EDGE 4.0
 
@@ -29,8 +29,8 @@ const char* stratus_tetra_method_name(stratus_tetra_method method)
 }
 
 typedef struct view_counts {
-  double passed;                 /* segments of rays */
-  double shown, pieces, packets; /* cells in view that can show something, and of those */
+  double passed;                 /* cells that rays pass, counted once per ray */
+  double shown, pieces, packets; /* cells in view that can show something, their pieces and packets */
 } view_counts;
 
 static double triangle_area(const double a[3], const double b[3], const double c[3])
@@ -52,7 +52,7 @@ static double length_of(const double v[3])
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Pixels that a cell covers, on the mean over its turns: a quarter of its surface (Cauchy). 0: out of view. */
+/* Returns how many pixels a cell covers, averaged over its orientations: a quarter of its surface (Cauchy). 0: it is out of view. */
 static double covered_pixels(
   const stratus_mesh* mesh, const stratus_camera* camera, const stratus_image* image, const double inverse[16], int64_t cell)
 {
@@ -100,7 +100,7 @@ static void count_view(const stratus_tetra_caster* caster, const stratus_mesh* m
   const double each = (double)mesh->cell_count / (double)sample;
   const stratus_volume values = stratus_mesh_values(mesh);
   for (int64_t i = 0; i < sample; ++i) {
-    /* a step of nearly the golden section: no rhythm of a generated mesh is met again and again */
+    /* steps of nearly the golden section do not fall in with the regular order of a generated mesh */
     const int64_t place = (int64_t)(((uint64_t)i * 2654435769u) & 0xffffffffu);
     const int64_t cell = sample == mesh->cell_count ? i : (int64_t)((double)place * 0x1p-32 * (double)mesh->cell_count);
     const double pixels = covered_pixels(mesh, camera, image, inverse, cell);
