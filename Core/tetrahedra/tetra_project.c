@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra on the host: the cells in view, in order of visibility, dealt to tiles so that each tile has its own nearest
- * first; then all tiles, in parallel. Which thread does what changes nothing: a tile's cells come in the one order. */
+ * Projects tetrahedra on the host: sorts the cells by visibility, puts those in view into bins by tile, nearest first, and draws the tiles
+ * in parallel. Threads do not affect the picture, because the order of a tile's cells is fixed. */
 #include "tetra_caster.h"
 
 #include "mesh.h"
@@ -117,7 +117,7 @@ static stratus_status sort_cells(stratus_tetra_projector* projector, const strat
   return STRATUS_OK;
 }
 
-/* Where each cell may show. */
+/* Finds each cell's rectangle of pixels. Returns how many cells are in view. */
 static int64_t find_rects(const stratus_context* context, stratus_tetra_projection* projection)
 {
   stratus_tetra_outlines* const work = outlines_for(context);
@@ -131,7 +131,7 @@ static int64_t find_rects(const stratus_context* context, stratus_tetra_projecti
   return found;
 }
 
-/* Counts the cells first..beyond-1 of the order in each of their tiles, or puts them there. */
+/* Counts the cells first..beyond-1 of the order in each tile that they may cover and, unless bins is NULL, stores them there. */
 static uint64_t deal_cells(
   const stratus_tetra_projection* projection, const uint32_t* cells, int64_t first, int64_t beyond, uint32_t* begin, uint32_t* bins)
 {
@@ -156,7 +156,8 @@ static uint64_t deal_cells(
   return count;
 }
 
-/* Each part of the order counts for itself; then its places follow those of the parts before it, tile by tile. */
+/* Fills the bins in parallel. Each thread counts its part of the order. Running sums over tiles, and over parts within a tile, then place
+ * each part's cells behind those of earlier parts. */
 static stratus_status bin_cells(
   stratus_tetra_projector* projector, stratus_tetra_projection* projection, const uint32_t* cells, uint64_t* pairs)
 {
@@ -230,7 +231,7 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
   stratus_context* context = projector->context;
   stratus_tetra_project_counts counts = { 0 };
   const uint32_t* cells = NULL;
-  const double lean = fabs(frame->lean[0]) + fabs(frame->lean[1]); /* at most, at the window's edge */
+  const double lean = fabs(frame->lean[0]) + fabs(frame->lean[1]); /* its most, in a corner of the window */
   stratus_tetra_projection projection = { .frame = frame,
     .vertices = mesh->vertices,
     .cell_values = projector->cell_values,
@@ -241,7 +242,7 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
     .rays_differ = frame->image.opaque_depth || lean > 0.0,
     .columns = (frame->image.width + PROJECT_TILE - 1) / PROJECT_TILE,
     .rows = (frame->image.height + PROJECT_TILE - 1) / PROJECT_TILE };
-  if (!frame->arguments.maximum) { /* the largest value is the same in any order */
+  if (!frame->arguments.maximum) { /* the maximum does not depend on the order */
     TRY(sort_cells(projector, mesh, &frame->camera, leaves, &cells, report));
   }
   const double start = stratus_now_ms();

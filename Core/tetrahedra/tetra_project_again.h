@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pixels of a tile whose pieces came out of order, drawn again: the nearest pieces of their rays are collected from all cells of the tile,
- * drawn, and then the nearest behind those. Included by tetra_project_isa.c. */
+ * Redraws the pixels of a tile whose pieces came out of order. Each pass collects the nearest remaining pieces of their rays from all cells
+ * of the tile, then draws them in order. Included by tetra_project_isa.c. */
 #ifndef STRATUS_TETRA_PROJECT_AGAIN_H
 #define STRATUS_TETRA_PROJECT_AGAIN_H
 
 #include "tetra_project_cells.h"
 
-#define KEPT 64 /* pieces a pixel, nearest first */
+#define KEPT 64 /* pieces per pixel and pass */
 
-/* As many wrong pixels of a tile as there are lanes. */
+/* Up to WIDTH wrong pixels of a tile, one per lane, with their nearest pieces in order. */
 typedef struct nearest_pieces {
-  int pixel[WIDTH], pixels; /* which, how many */
+  int pixel[WIDTH], pixels; /* their places in the tile, and their number */
   float us[WIDTH], uw[WIDTH], vs[WIDTH], vw[WIDTH];
-  int x0, x1, y0, y1;            /* about them, of the picture */
-  int count[WIDTH], lost[WIDTH]; /* lost: there are more than KEPT */
+  int x0, x1, y0, y1;            /* bounding rectangle of the pixels in the picture */
+  int count[WIDTH], lost[WIDTH]; /* lost: pieces beyond KEPT were dropped */
   float at[WIDTH][KEPT], to[WIDTH][KEPT], first[WIDTH][KEPT], last[WIDTH][KEPT];
-  uint32_t rank[WIDTH][KEPT]; /* of the cell, for equal depths */
+  uint32_t rank[WIDTH][KEPT]; /* 1 + the place of the cell in its bin; breaks ties of depth */
   float after[WIDTH];
-  uint32_t after_rank[WIDTH]; /* only what comes behind these counts */
+  uint32_t after_rank[WIDTH]; /* depth and rank of the last piece drawn; only pieces behind it remain */
 } nearest_pieces;
 
 static bool comes_before(float at, uint32_t rank, float other, uint32_t other_rank)
@@ -49,7 +49,7 @@ static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint32_t 
   n->rank[l][i] = rank;
 }
 
-/* The nearest pieces behind those that the pixels have had. */
+/* Collects the nearest pieces behind those already drawn. */
 static void collect_nearest(const project_tile* t, const uint32_t* cells, uint32_t count, nearest_pieces* n)
 {
   const vmask on = vi_lt(vi_lanes(), vi_set(n->pixels));
@@ -81,7 +81,7 @@ static void collect_nearest(const project_tile* t, const uint32_t* cells, uint32
   }
 }
 
-/* Whether some pixel has more to come. */
+/* Draws the collected pieces. Returns whether more remain. */
 static bool draw_nearest(project_tile* t, nearest_pieces* n)
 {
   bool more = false;
@@ -103,7 +103,7 @@ static bool draw_nearest(project_tile* t, nearest_pieces* n)
   return more;
 }
 
-/* Pixel p of the tile becomes one of those to be drawn again. */
+/* Clears pixel p of the tile and adds it to the pixels to redraw. */
 static void take_pixel(project_tile* t, int p, nearest_pieces* n)
 {
   const int l = n->pixels++, packet = p / WIDTH, row = packet / ACROSS, column = packet % ACROSS, lane = p % WIDTH;
@@ -129,7 +129,7 @@ static void draw_again(project_tile* t, const uint32_t* cells, uint32_t count)
     n.pixels = 0;
     n.x0 = n.y0 = INT32_MAX;
     n.x1 = n.y1 = -1;
-    for (int l = 0; l < WIDTH; ++l) { /* lanes without a pixel hold some ray */
+    for (int l = 0; l < WIDTH; ++l) { /* lanes without a pixel need finite numbers */
       n.us[l] = n.uw[l] = n.vs[l] = n.vw[l] = 0.0f;
     }
     for (; p < PIXELS && n.pixels < WIDTH; ++p) {

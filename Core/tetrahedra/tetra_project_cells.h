@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which rays of a packet meet a cell, and where they enter and leave it. Included by tetra_project_isa.c.
+ * Intersects the rays of a packet with a cell: where they enter and leave it. Included by tetra_project_isa.c.
  *
- * Any cell: by the signs of its edges as rays see them, exact and the same for all cells that share one, as the march does. Most cells: by
- * the four planes. Where a ray meets plane k is linear over the screen in s = 1 - w0/w (parallel: w - w0), w0 the depth of the cell's first
- * point: so that nothing is lost of a small cell far away. It enters at the largest s of the planes that face the eye, leaves at the
- * smallest of the others. A cell for which floats would not do (seen edge-on, thin, behind the eye in part) goes the other way. */
+ * pass_cell() serves any cell. Like the march, it decides by the signs of the cell's edges as rays see them, which are exact and the same
+ * for all cells that share an edge. meet_planes() serves most cells, by their four planes. A ray meets plane k at s = 1 - w0/w (parallel:
+ * z - z0), where index 0 is the cell's first point. s is linear over the screen, and relative to the cell, so that a small cell far away
+ * keeps its digits. The ray enters at the largest s of the planes that face the eye, and leaves at the smallest s of the others. A cell for
+ * which floats are too inaccurate (seen edge-on, thin, or partly behind the eye) takes pass_cell(). */
 #ifndef STRATUS_TETRA_PROJECT_CELLS_H
 #define STRATUS_TETRA_PROJECT_CELLS_H
 
@@ -12,8 +13,8 @@
 
 /* Cells that come nearer than this to the eye's plane, in units of the largest coordinate, have no safe outline in floats. */
 #define NEAREST_OUTLINE 0x1p-6f
-/* Planes may be used where rounding moves a barycentric coordinate by less than 2^-13, and where rays meet a plane by less than 2^-12 of
- * the cell's depth; 2^-22 is what each of their few operations adds at most. */
+/* Planes serve if rounding moves barycentric coordinates by less than 2^-13, and crossings by less than 2^-12 of the cell's depth. Their
+ * few operations have a relative error of 2^-22, so these limits bound the magnitudes that are rounded. */
 #define COORDINATE_MOST 0x1p9f
 #define CROSSING_MOST 0x1p10f
 
@@ -38,7 +39,7 @@ INLINE void load_points(const stratus_tetra_projection* projection, uint32_t cel
   }
 }
 
-/* Where rays pass face pqr, if they do: the nearer of it and what there is becomes the piece's begin, the farther its end. */
+/* Extends the piece, for rays of `mask`, to where they pass face pqr. */
 INLINE void pass_face(const cell_points* c, vmask mask, int p, int q, int r, vfloat qr, vfloat pr, vfloat pq, ray_piece* piece)
 {
   const vfloat edge[3] = { v_abs(qr), v_abs(pr), v_abs(pq) }, z[3] = { c->z[p], c->z[q], c->z[r] }, s[3] = { c->s[p], c->s[q], c->s[r] };
@@ -54,6 +55,7 @@ INLINE void pass_face(const cell_points* c, vmask mask, int p, int q, int r, vfl
   piece->last = v_select(farther, value, piece->last);
 }
 
+/* Sets the piece of each live ray inside the cell. Returns the rays that meet the cell. */
 INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vfloat vw, vmask live, ray_piece* piece)
 {
   static const int ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
@@ -69,7 +71,7 @@ INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vf
     e[i] = tetra_edge(x[p], y[p], x[q], y[q]);
     n[i] = tetra_negative(e[i], x[p], y[p], x[q], y[q]);
   }
-  /* face pqr is passed where pq, qr and rp have one sign; rp has the other one than pr */
+  /* a ray passes face pqr if edges pq, qr and rp have one sign; rp has the opposite sign of pr */
 #define PASSED(pq, qr, pr) (live & (m_andnot(n[pq] & n[qr], n[pr]) | m_andnot(n[pr], n[pq] | n[qr])))
   const vmask f0 = PASSED(3, 5, 4), f1 = PASSED(1, 5, 2), f2 = PASSED(0, 4, 2), f3 = PASSED(0, 3, 1);
 #undef PASSED
@@ -85,16 +87,16 @@ INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vf
 
 /* ---- most cells */
 
-/* Planes of a batch of cells, a cell a lane. s of plane k = c + a dx + b dy; the field at s is value + (vc + va dx + vb dy - vs s)/(1 -
- * shear s). */
+/* The planes of a batch of cells, one cell per lane. Plane k is at s = c + a dx + b dy; the field at s is
+ * value + (vc + va dx + vb dy - vs s)/(1 - shear s). */
 typedef struct cell_planes {
   float a[4][WIDTH], b[4][WIDTH], c[4][WIDTH];
   float value[WIDTH], va[WIDTH], vb[WIDTH], vc[WIDTH], vs[WIDTH], least[WIDTH], most[WIDTH];
-  float z[WIDTH], w[WIDTH]; /* of the first point */
-  int fronts[WIDTH];        /* bit k: plane k faces the eye; 0: planes won't do */
+  float z[WIDTH], w[WIDTH]; /* of the cell's first point */
+  int fronts[WIDTH];        /* bit k: plane k faces the eye; 0: the planes are too inaccurate */
 } cell_planes;
 
-/* Each with a relative error of a float's, so that points in one line, or in one place, make nothing out of roundings. */
+/* Each component has the relative error of a float, so that collinear or coincident points do not leave a product of rounding errors. */
 INLINE void cross_product(const vfloat p[3], const vfloat q[3], vfloat out[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,7 +105,7 @@ INLINE void cross_product(const vfloat p[3], const vfloat q[3], vfloat out[3])
   }
 }
 
-/* Points as the tile's first pixel sees them, x y z value; the first three relative to point 0 from point 1 on. */
+/* Loads the points as the tile's first pixel sees them: x, y, z, value; those of points 1 to 3 are relative to point 0. */
 INLINE void see_cells(const project_tile* t, const int* cells, vfloat p[4][4], cell_planes* out, vfloat* nearest, vfloat* depth)
 {
   const stratus_tetra_projection* projection = t->projection;
@@ -151,16 +153,16 @@ static void find_planes(const project_tile* t, const int* cells, cell_planes* ou
   cross_product(p[1], p[2], m[3]);
   for (int axis = 0; axis < 3; ++axis) {
     side[0][axis] = p[2][axis] - p[1][axis];
-    side[1][axis] = p[1][axis] - p[3][axis]; /* turned round */
+    side[1][axis] = p[1][axis] - p[3][axis]; /* this way round, m[0] = -(m[1] + m[2] + m[3]) */
   }
   cross_product(side[0], side[1], m[0]);
   const vfloat volume = v_fma(p[1][0], m[1][0], v_fma(p[1][1], m[1][1], p[1][2] * m[1][2])), per_volume = one / volume;
-  /* how far from the first point, and it from the tile's first pixel */
+  /* the cell's extent about its first point, plus that point's distance from the tile's first pixel */
   const vfloat wide = v_max(v_max(v_abs(p[1][0]), v_abs(p[2][0])), v_abs(p[3][0])) + v_abs(p[0][0]);
   const vfloat high = v_max(v_max(v_abs(p[1][1]), v_abs(p[2][1])), v_abs(p[3][1])) + v_abs(p[0][1]);
   vmask fit = v_le(v_set(NEAREST_OUTLINE), nearest);
   vint fronts = vi_set(0);
-  for (int k = 0; k < 4; ++k) { /* coordinate k at depth w0: `level` at the first pixel */
+  for (int k = 0; k < 4; ++k) { /* barycentric coordinate k; at depth w0 it is `level` at the first pixel */
     const vfloat x = m[k][0] * per_volume, y = m[k][1] * per_volume, z = m[k][2] * per_volume, start = k ? zero : one;
     const vfloat level = start - v_fma(x, p[0][0], y * p[0][1]), fall = v_fma(shear, level, zero - z * w), per_fall = one / fall;
     const vfloat doubt = v_fma(v_abs(x), wide, v_abs(y) * high);
@@ -185,11 +187,11 @@ static void find_planes(const project_tile* t, const int* cells, cell_planes* ou
   vi_store(out->fronts, vi_select(fit, fronts, vi_set(0)));
 }
 
-/* A cell of a batch, its planes in order: those that face the eye first. */
+/* One cell of a batch. The planes that face the eye come first. */
 typedef struct one_cell {
   vfloat a[4], b[4], c[4];
   vfloat value, va, vb, vc, vs, least, most, z, w, shear;
-  int fronts; /* how many */
+  int fronts; /* number of planes that face the eye */
 } one_cell;
 
 INLINE void take_cell(const project_tile* t, const cell_planes* planes, int l, one_cell* c)
@@ -214,7 +216,7 @@ INLINE void take_cell(const project_tile* t, const cell_planes* planes, int l, o
   c->shear = v_set(t->projection->frame->arguments.shear);
 }
 
-/* rows: of each plane, at the row of pixels that dy is. */
+/* Finds where rays enter and leave the cell, in s, and returns those that meet it. rows: each plane's b dy + c. */
 INLINE vmask meet_planes(const one_cell* c, int fronts, const vfloat rows[4], vfloat dx, vfloat* near, vfloat* far)
 {
   vfloat s[4];
@@ -233,6 +235,7 @@ INLINE vmask meet_planes(const one_cell* c, int fronts, const vfloat rows[4], vf
   return v_lt(*near, *far);
 }
 
+/* Converts a piece from s to z, and finds the field at its ends. */
 INLINE void cut_piece(const one_cell* c, vfloat dx, vfloat dy, vfloat near, vfloat far, ray_piece* piece)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);

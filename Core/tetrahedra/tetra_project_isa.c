@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projection of tetrahedra for one instruction set, STRATUS_ISA: outlines of cells, a cell a lane; then the cells of a tile, a pixel a
- * lane. What a pixel shows depends on its cells and their order alone, not on how many lanes there are. Where cells come in a wrong order
- * (across gaps, in cycles, where they overlap) it shows: a piece begins before the last one ends. Such pixels are drawn again, nearest
- * pieces first. */
+ * Projection of tetrahedra for one instruction set, STRATUS_ISA: the outlines of cells, one cell per lane, then the cells of a tile, one
+ * pixel per lane. A pixel depends only on its cells and their order, not on the number of lanes. A wrong order of cells (across gaps, in
+ * cycles, in overlaps) is noticed when a piece begins before the last one ends. Such pixels are redrawn, nearest pieces first. */
 #include "tetra_project_again.h"
 #include "tetra_project_cells.h"
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-function" /* the headers have more words than this file needs */
+#pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
 #endif
 
-/* ---- outlines, a cell a lane */
+/* ---- outlines, one cell per lane */
 
 static vmask transparent(const stratus_tetra_projection* projection, vmask mask, vfloat lo, vfloat hi)
 {
   const stratus_table* table = projection->frame->table;
   const stratus_table_arguments* a = &projection->frame->arguments.table;
-  /* widened by more than interpolation can round, as in stratus_table_shows() */
+  /* exceeds the rounding of interpolation, as in stratus_table_shows() */
   const vfloat slack = v_set(1e-6f) * v_max(v_abs(lo), v_abs(hi));
   const vint first = table_entry(a, lo - slack), last = table_entry(a, hi + slack);
   return mask & vi_lt(last, v_gather_ints(table->next_shown, first, mask));
 }
 
-/* Smallest and largest pixel whose middle may lie within lo..hi, of -1..1. */
+/* Finds the first and last pixel whose centre may lie within lo..hi; -1..1 spans `pixels`. */
 static void pixel_span(vfloat lo, vfloat hi, int pixels, vint* first, vint* last)
 {
   const vfloat half = v_set(0.5f * (float)pixels), shift = v_set(0.5f * (float)pixels - 0.5f), slack = v_set(1e-3f + 2e-6f * (float)pixels);
@@ -111,7 +110,7 @@ int64_t STRATUS_ISA_NAME(stratus_tetra_outlines)(const stratus_tetra_projection*
 
 /* ---- cells of a tile */
 
-/* The lanes of `mask` go to `place`, side by side; up to WIDTH places are written to. */
+/* Stores the lanes of `mask` one after another at `place`. Up to WIDTH floats are overwritten. */
 INLINE void put_floats(float* place, vmask mask, vfloat value)
 {
 #if STRATUS_ISA == 2
@@ -140,7 +139,7 @@ INLINE void put_piece(project_tile* t, vmask mask, const ray_piece* piece, int p
   }
 }
 
-/* Packets that a cell may cover. */
+/* The packets that a cell may cover. */
 typedef struct span {
   int x0, x1, y0, y1;
 } span;
@@ -174,7 +173,7 @@ static void draw_any_cell(project_tile* t, uint32_t cell)
   }
 }
 
-/* The loops are compiled for each number of planes that face the eye. */
+/* Callers pass a constant `fronts`, so that meet_planes() has no branches. */
 INLINE void draw_by_planes(project_tile* t, const one_cell* c, int fronts, const stratus_tetra_rect* rect)
 {
   const span s = span_of(t, rect);
@@ -217,7 +216,7 @@ static void draw_cell(project_tile* t, const cell_planes* planes, int l, uint32_
   }
 }
 
-/* How far anything can still count: beyond what the farthest pixel shows, once all are opaque. */
+/* Returns the depth from which on no pixel shows anything, once all are opaque. */
 static float farthest_open(const project_tile* t)
 {
   float farthest = -LARGEST_FLOAT;
@@ -257,7 +256,7 @@ void STRATUS_ISA_NAME(stratus_tetra_project_tile)(
   const stratus_tetra_projection* projection, int tile, stratus_tetra_project_counts* counts)
 {
   const uint32_t begin = projection->bin_begin[tile], count = projection->bin_begin[tile + 1] - begin;
-  project_tile t; /* cleared by what follows */
+  project_tile t; /* begin_tile() initializes it */
   t.projection = projection;
   t.counts = counts;
   begin_tile(&t, tile);

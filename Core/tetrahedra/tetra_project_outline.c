@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The outline of a cell that reaches behind the eye: what of it lies before the near plane is cut off, then the rest has one. */
+ * The outline of a cell that reaches behind the eye. The cell is clipped at the near plane, and the rest is projected. */
 #include "tetra_project.h"
 
-/* Nearer than this to the eye's plane nothing is looked for, in units of the largest coordinate: less than a float's rounding of the depth.
- */
+/* The clipping plane's least depth, in units of the largest coordinate. It is less than a float's rounding of the depth. */
 #define NEAREST_CUT 0x1p-30
 #define SLACK 1.0 /* pixels */
 
@@ -19,7 +18,7 @@ static void add_point(outline* box, const double p[3])
   }
 }
 
-/* First and last pixel of a side that spans lo..hi in -1..1. False: outside. */
+/* Finds the first and last pixel that lo..hi covers; -1..1 spans `pixels`. Returns false if there is none. */
 static bool pixel_span(double lo, double hi, int pixels, uint16_t span[2])
 {
   const double first = ceil(0.5 * (lo + 1.0) * pixels - 0.5 - SLACK), last = floor(0.5 * (hi + 1.0) * pixels - 0.5 + SLACK);

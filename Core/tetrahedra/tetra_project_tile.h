@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tile of pixels under projection: what its pixels have gathered, and pieces of cells on their way there. Included by
- * tetra_project_isa.c. Pieces are shaded a piece a lane, then put behind what their pixels have gathered, one after the other. */
+ * A tile of pixels under projection: its pixels, and a buffer of pieces. A piece is the part of a pixel's ray inside a cell. Pieces are
+ * shaded one per lane, then composited one after another behind what their pixels hold. Included by tetra_project_isa.c. */
 #ifndef STRATUS_TETRA_PROJECT_TILE_H
 #define STRATUS_TETRA_PROJECT_TILE_H
 
@@ -12,25 +12,25 @@
 #define PIXELS (PROJECT_TILE * PROJECT_TILE)
 #define ACROSS (PROJECT_TILE / PACKET_X) /* packets side by side in a tile */
 #define UPWARDS (PROJECT_TILE / PACKET_Y)
-#define PIECES 256 /* collected before they are shaded: few enough to stay in the innermost cache */
+#define PIECES 256 /* size of the buffer: few enough pieces to stay in the innermost cache */
 
-/* A piece lies before the last one of its pixel, out of order, if it begins by more before that one's end than rounding explains: a share
- * of its depth and of its length. */
+/* A piece is out of order if it begins before the end of its pixel's last piece by more than rounding explains: OUT_OF_ORDER of its depth
+ * plus OUT_OF_ORDER_LENGTH of its length. */
 #define OUT_OF_ORDER 0x1p-19f
 #define OUT_OF_ORDER_LENGTH 0x1p-8f
 
 typedef float four_floats __attribute__((vector_size(16), may_alias));
 
-/* What a pixel has gathered. */
+/* A pixel: the pieces composited so far. */
 typedef struct tile_pixel {
-  four_floats light; /* red, green, blue, transparency; maximum: where the largest value is, it, - , - */
-  float back;        /* where the last piece that counts ends */
+  four_floats light; /* red, green, blue, transparency; maximum: distance of the largest value, that value, two unused */
+  float back;        /* z where the last visible piece ends */
   float depth;
   uint32_t samples;
   uint32_t wrong; /* 1: pieces came out of order */
 } tile_pixel;
 
-/* Pixels lie packet by packet: pixel p is lane p % WIDTH of packet p / WIDTH. */
+/* Pixels are stored packet by packet: pixel p is lane p % WIDTH of packet p / WIDTH. */
 typedef struct project_tile {
   const stratus_tetra_projection* projection;
   stratus_tetra_project_counts* counts;
@@ -38,11 +38,11 @@ typedef struct project_tile {
   float us[ACROSS][WIDTH], uw[ACROSS][WIDTH], vs[UPWARDS][WIDTH], vw[UPWARDS][WIDTH];
   float dx[ACROSS][WIDTH], dy[UPWARDS][WIDTH]; /* from the tile's first pixel, in pixels */
   float length[PIXELS], offset[PIXELS];        /* world distance = offset + length z */
-  float begin[PIXELS], end[PIXELS];            /* what is seen, in z */
-  float open[PIXELS];                          /* what begins behind it need not be looked at: no end, until the pixel is opaque */
+  float begin[PIXELS], end[PIXELS];            /* the visible part of the ray, in z */
+  float open[PIXELS];                          /* pieces that begin behind it are invisible; LARGEST_FLOAT until the pixel is opaque */
   tile_pixel pixels[PIXELS];
-  int wrong; /* pixels */
-  int count; /* pieces */
+  int wrong; /* number of wrong pixels */
+  int count; /* pieces in the buffer */
   float at[PIECES + 2 * WIDTH], to[PIECES + 2 * WIDTH], first[PIECES + 2 * WIDTH], last[PIECES + 2 * WIDTH];
   int pixel[PIECES + 2 * WIDTH];
 } project_tile;
@@ -52,7 +52,7 @@ static int place_of(int x, int y)
   return (y / PACKET_Y * ACROSS + x / PACKET_X) * WIDTH + y % PACKET_Y * PACKET_X + x % PACKET_X;
 }
 
-/* Nothing gathered yet. Pixels beyond the picture are closed. */
+/* Empties a pixel. Pixels beyond the picture are closed: they take no pieces. */
 static void clear_pixel(project_tile* t, int p, bool inside)
 {
   const bool maximum = t->projection->frame->arguments.maximum;
@@ -103,9 +103,9 @@ static void begin_tile(project_tile* t, int tile)
 
 /* ---- pieces */
 
-/* Of WIDTH pieces. maximum: light holds where the larger end is, and the value there. */
+/* WIDTH shaded pieces. maximum: light holds the distance of the end with the larger value, and that value. */
 typedef struct layers {
-  four_floats light[WIDTH]; /* red, green, blue, less transparency */
+  four_floats light[WIDTH]; /* red, green, blue, transparency - 1 */
   float limit[WIDTH];       /* the piece is out of order if another ends behind this */
   float to[WIDTH], depth[WIDTH];
   int visible[WIDTH];
@@ -216,7 +216,7 @@ static void composite_pieces(project_tile* t, int i, int count, const layers* la
   }
 }
 
-/* The nearest place, if there are several. */
+/* Keeps the largest value, and of equal ones the nearest. */
 static void take_largest(project_tile* t, int i, int count, const layers* layer)
 {
   for (int l = 0; l < count; ++l) {
@@ -250,7 +250,7 @@ static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel
 {
   const stratus_tetra_frame* frame = t->projection->frame;
   const stratus_image* image = &frame->image;
-  /* sums may have been rounded up */
+  /* rounding may lift sums above 1 */
   float rgba[4] = { fminf(p->light[0], 1.0f), fminf(p->light[1], 1.0f), fminf(p->light[2], 1.0f), 1.0f - p->light[3] }, depth = p->depth;
   if (frame->arguments.maximum) {
     const bool any = p->samples > 0;
@@ -260,7 +260,9 @@ static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel
       rgba[c] = any ? entry[c] : 0.0f;
     }
   }
-  depth = frame->arguments.shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: what begins at the eye, rounded to behind it */
+  depth = frame->arguments.shear > 0.0f && depth < 0.0f
+    ? 0.0f
+    : depth; /* perspective: rounding may put a piece that begins at the eye behind it */
   memcpy(image->rgba + 4 * pixel, rgba, sizeof rgba);
   if (image->depth) {
     image->depth[pixel] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;
@@ -270,7 +272,7 @@ static void store_pixel(const project_tile* t, const tile_pixel* p, size_t pixel
   }
   for (int c = 0; image->rgba8 && c < 4; ++c) {
     const float value = rgba[c] * 255.0f + 0.5f;
-    image->rgba8[4 * pixel + (size_t)c] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
+    image->rgba8[4 * pixel + (size_t)c] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* rgba is never negative */
   }
 }
 
