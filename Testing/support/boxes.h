@@ -8,12 +8,12 @@
 
 typedef enum box_set {
   BOXES_RANDOM,   /* of any size, overlapping */
-  BOXES_UNIT,     /* voxels in a small grid: many in one place, and many at equal distances */
-  BOXES_ONE,      /* all in one place */
+  BOXES_UNIT,     /* voxels in a small grid: many coincide, and many lie at equal distances */
+  BOXES_ONE,      /* all coincide */
   BOXES_LINE,     /* voxels along y */
   BOXES_PLANE,    /* voxels in z = 5 */
-  BOXES_DOUBLING, /* each twice as far out as the last: the deepest trees */
-  BOXES_UNEVEN,   /* a blob, a shell and noise, negative places too */
+  BOXES_DOUBLING, /* each twice as far out as the last, which makes the deepest trees */
+  BOXES_UNEVEN,   /* a blob, a shell and noise, also at negative coordinates */
   BOX_SETS
 } box_set;
 
@@ -27,7 +27,7 @@ static inline stratus_box uneven_box(uint32_t i, uint32_t count, uint32_t* rando
 {
   double at[3];
   double length = 0.0;
-  for (int a = 0; a < 3; ++a) { /* sums of four: round enough for a blob and its directions */
+  for (int a = 0; a < 3; ++a) { /* sums of four uniform numbers are nearly normal, so blob and shell are nearly round */
     at[a] = 0.0;
     for (int k = 0; k < 4; ++k) {
       at[a] += (double)random_below(random, 2001) / 1000.0 - 1.0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Random sets and plain sums over all their voxels in double precision, for the tests of density. */
+ * Random sets of voxels, and densities by plain sums over all voxels in double precision, for the tests of density. */
 #ifndef STRATUS_TESTING_DENSITY_PLAIN_H
 #define STRATUS_TESTING_DENSITY_PLAIN_H
 
@@ -12,7 +12,7 @@ static stratus_context* context;
 static voxel_set set;
 static int32_t at[VOXEL_SET_MAX][3];
 
-/* A random set in a random box: noise, sometimes with a solid part, so that bricks are full, sparse and absent. */
+/* Makes a random set in a random box: noise, sometimes with a solid part, so that bricks are full, sparse or absent. */
 static inline stratus_voxels* random_set(uint32_t* random, int64_t longest, int64_t noise)
 {
   set_begin(&set, 1 + random_below(random, longest), 1 + random_below(random, longest), 1 + random_below(random, longest));
@@ -38,8 +38,8 @@ typedef struct plain {
   double density, first[3], second[3];
 } plain;
 
-/* Eq. 5, and its derivatives term by term. Voxels whose distance is the bandwidth to within rounding are left to either side: their terms
- * in the density and its slope vanish there; that of the second derivative jumps, and `edge` tells. */
+/* Sums eq. 5 and its derivatives term by term. A voxel whose distance equals the bandwidth up to rounding may count or not: its terms of
+ * the density and the slope are 0, but its term of the second derivative jumps. *edge is 1 if there is such a voxel. */
 static inline plain sum_plainly(const stratus_voxels* voxels, double h, const double p[3], int* edge)
 {
   plain sum = { .density = 0.0 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What OpenEXR's own library finds in a file of float channels: it judges what Stratus writes.
+// Reads a file of float channels with OpenEXR's own library, to check the files that Stratus writes.
 #ifndef exr_reading_h
 #define exr_reading_h
 
@@ -13,7 +13,7 @@
 struct ExrPicture {
   int Width = 0, Height = 0;
   exr_compression_t Compression = EXR_COMPRESSION_NONE;
-  std::map<std::string, std::vector<float>> Channels; // rows from the top down
+  std::map<std::string, std::vector<float>> Channels; // rows from top to bottom
 };
 
 inline bool ReadExrChunks(exr_context_t file, ExrPicture& picture)

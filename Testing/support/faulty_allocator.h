@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * An allocator for tests: it counts what lives, and refuses one call. */
+ * An allocator for tests. It counts live allocations, and refuses one call. */
 #ifndef STRATUS_FAULTY_ALLOCATOR_H
 #define STRATUS_FAULTY_ALLOCATOR_H
 
@@ -9,8 +9,8 @@
 
 typedef struct faulty_allocator {
   int64_t calls;   /* so far */
-  int64_t live;    /* allocations less releases */
-  int64_t fail_at; /* the call that is refused, counted from 1; 0: none */
+  int64_t live;    /* allocations minus releases */
+  int64_t fail_at; /* number of the call that is refused, from 1; 0: none */
 } faulty_allocator;
 
 static inline void* faulty_allocate(void* user, size_t bytes)
@@ -19,7 +19,7 @@ static inline void* faulty_allocate(void* user, size_t bytes)
   if (++allocator->calls == allocator->fail_at) {
     return NULL;
   }
-  /* aligned_alloc wants a multiple of the alignment. */
+  /* aligned_alloc() needs a size that is a multiple of the alignment. */
   void* memory = bytes > SIZE_MAX - 63 ? NULL : aligned_alloc(64, (bytes + 63) / 64 * 64);
   allocator->live += memory != NULL;
   return memory;

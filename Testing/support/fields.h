@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sets of effective voxels from a byte a voxel, and distances by looking at every voxel, for the tests of distance fields. */
+ * Sets of effective voxels from one byte per voxel, and distances by a search of all voxels, for the tests of distance fields. */
 #ifndef STRATUS_TESTING_FIELDS_H
 #define STRATUS_TESTING_FIELDS_H
 
@@ -49,7 +49,7 @@ static inline void take_set(stratus_context* context, test_set* s)
   free(positions);
 }
 
-/* One voxel in `fill` is effective; 0: none, 1: all. */
+/* fill: one voxel in so many is effective; 0: none, 1: all. */
 static inline test_set make_random_set(stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
 {
   test_set s = make_set(nx, ny, nz);
@@ -66,8 +66,8 @@ static inline void free_set(test_set* s)
   free(s->effective);
 }
 
-/* Squared distance from voxel v to the nearest that is effective (or, if v is and the field is signed, to the nearest that is not), -1 if
- * there is none. *nearest: the one of the smallest index. */
+/* Returns the squared distance from voxel v to the nearest effective one, or -1 if there is none. If v is effective and the field is
+ * signed, the nearest voxel that is not effective counts instead. *nearest: the nearest of the smallest index. */
 static inline int64_t brute_squared(const test_set* s, int64_t v, int is_signed, int64_t* nearest)
 {
   const int sought = !(is_signed && s->effective[v]);
@@ -85,7 +85,7 @@ static inline int64_t brute_squared(const test_set* s, int64_t v, int is_signed,
   return best;
 }
 
-/* What stratus_field_get() should say of it. */
+/* Returns the value that stratus_field_get() should return for that distance. */
 static inline double expected_distance(const test_set* s, int64_t v, int is_signed, int64_t squared)
 {
   const double sign = is_signed && s->effective[v] ? -1.0 : 1.0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Random voxels and rays, and first hits compared with the plain walk's. */
+ * Random voxels and rays, and a comparison of a tree's first hits with those of the plain walk. */
 #ifndef STRATUS_TESTING_FIRST_HITS_H
 #define STRATUS_TESTING_FIRST_HITS_H
 
@@ -25,7 +25,7 @@ static inline double unit_random(uint32_t* state)
   return next_random(state) / 16777216.0;
 }
 
-/* `fill` in 0..1 of the voxels; cluster > 0: those lie in a few boxes of that edge. */
+/* fill: share of the voxels, 0..1, that are effective. cluster > 0: these lie in four random cubes of that half edge. */
 static inline stratus_voxels* random_voxels(
   stratus_context* context, const int64_t dimensions[3], double fill, int cluster, uint32_t* random)
 {
@@ -60,8 +60,8 @@ static inline stratus_voxels* random_voxels(
   return voxels;
 }
 
-/* Rays as they come, and those that are hard: along axes, through corners and edges, from faces, from inside, from behind, short, from far
- * away. */
+/* Makes a random ray of eight kinds: arbitrary rays, and hard ones along axes, through corners and edges, from faces, from inside, from
+ * behind, or short. */
 static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
 {
   stratus_ray ray = { .t_max = INFINITY };
@@ -70,15 +70,15 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
     const double size = (double)dimensions[a];
     ray.origin[a] = (unit_random(random) * 3.0 - 1.0) * size;
     ray.direction[a] = unit_random(random) * 2.0 - 1.0;
-    if (kind == 1) { /* along lattice lines and diagonals */
+    if (kind == 1) { /* along edges and diagonals of voxels */
       ray.origin[a] = floor(ray.origin[a]);
       ray.direction[a] = (double)(next_random(random) % 3) - 1.0;
-    } else if (kind == 2) { /* through the middles of voxels, along axes */
+    } else if (kind == 2) { /* through the centres of voxels, along axes and diagonals */
       ray.origin[a] = floor(ray.origin[a]) + 0.5;
       ray.direction[a] = (double)(next_random(random) % 3) - 1.0;
     } else if (kind == 3) { /* from inside */
       ray.origin[a] = unit_random(random) * size;
-    } else if (kind == 4) { /* at a corner, from elsewhere */
+    } else if (kind == 4) { /* from anywhere to a corner of a voxel */
       ray.direction[a] = floor(unit_random(random) * size) - ray.origin[a];
     }
   }
@@ -87,7 +87,7 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
     ray.t_max = ray.t_min + unit_random(random) * (double)dimensions[0];
   }
   if (kind == 7 && next_random(random) % 8 == 0) {
-    ray.t_max = -1e-6; /* no ray at all */
+    ray.t_max = -1e-6; /* an empty ray */
   }
   if (kind == 6) { /* almost along an axis */
     ray.direction[next_random(random) % 3] *= 1e-6;
@@ -96,7 +96,7 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
     ray.direction[next_random(random) % 3] = kind == 1 ? -1.0 : 1.0;
   }
   if (next_random(random) % 4 == 0) {
-    ray.direction[next_random(random) % 3] *= -1.0; /* makes -0 of 0, too */
+    ray.direction[next_random(random) % 3] *= -1.0; /* also turns 0 into -0 */
   }
   if (next_random(random) % 4 == 0) {
     ray.t_min -= unit_random(random) * 2.0 * (double)dimensions[0];
@@ -104,7 +104,7 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
   return ray;
 }
 
-/* Compares the tree's answers with the walk's, to the bit; rays in the coordinates of lists. */
+/* Checks that the tree's hits equal the walk's to the bit. Rays are in the world of stratus_voxels_create_list(). */
 static inline void compare_hits(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree* tree, const stratus_ray* rays, size_t count)
 {

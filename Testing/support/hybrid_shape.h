@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shapes of hybrid trees for tests, and the checks that every one of them must pass. */
+ * Shapes of hybrid trees for tests, and the checks that each shape must pass. */
 #ifndef STRATUS_TESTING_HYBRID_SHAPE_H
 #define STRATUS_TESTING_HYBRID_SHAPE_H
 
@@ -12,7 +12,7 @@ typedef struct hybrid_shape {
   uint32_t fields, leaves, inner;
   int depth;
   int64_t most_in_leaf; /* bricks */
-  double most_empty;    /* bricks that a field covers for an occupied one */
+  double most_empty;    /* the most bricks that a field covers per occupied one */
 } hybrid_shape;
 
 static inline stratus_tree_options hybrid_options(stratus_tree_method method)
@@ -29,7 +29,7 @@ static inline stratus_tree_options hybrid_options(stratus_tree_method method)
     .density_per_node = method == STRATUS_TREE_HYBRID_PAPER };
 }
 
-/* The tight box of bricks order[first .. first+count-1] in voxels. */
+/* Finds the tight box of `count` bricks of `order`, in voxels. */
 static inline void plain_box(const stratus_voxels* voxels, const uint32_t* order, uint32_t count, int32_t lo[3], int32_t hi[3])
 {
   for (int a = 0; a < 3; ++a) {
@@ -70,7 +70,7 @@ static inline void check_leaf(const stratus_tree_options* options, const stratus
   }
 }
 
-/* Checks node n and all below it; it must hold order[first ..], as many as it returns. */
+/* Checks node n and all nodes below it. Returns how many bricks they hold, which must follow order[first]. */
 static inline uint32_t check_node(
   const stratus_voxels* voxels, const stratus_tree_options* options, uint32_t n, uint32_t first, int depth, hybrid_shape* s)
 {
@@ -106,7 +106,8 @@ static inline void free_shape(stratus_context* context, hybrid_shape* s)
   stratus_release(context, s->shape.order);
 }
 
-/* Makes a shape and checks it: a permutation of the bricks, each in one leaf, boxes tight, leaves as the options have it. */
+/* Makes a shape and checks that its order is a permutation of the bricks, each brick is in one leaf, boxes are tight, and leaves obey the
+ * options. */
 static inline hybrid_shape make_shape(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options)
 {
   hybrid_shape s = { .depth = 0 };

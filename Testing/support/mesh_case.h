@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes of tetrahedra for tests, and who hides whom in them, asked of rays. */
+ * Meshes of tetrahedra for tests, and a check of visibility orders by rays. */
 #ifndef STRATUS_MESH_CASE_H
 #define STRATUS_MESH_CASE_H
 
@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-/* The host. */
+/* Makes a context of the host. */
 static inline stratus_context* mesh_context(int threads)
 {
   stratus_context_options options = stratus_context_options_default();
@@ -69,8 +69,8 @@ static inline void mesh_case_free(mesh_case* mesh)
   free(mesh->vertices);
 }
 
-/* n[0]*n[1]*n[2] unit cubes of six cells each (Kuhn): conforming. jitter < .2 moves inner points by as much at most, and turns no cell
- * inside out. */
+/* Makes a conforming mesh of n[0]*n[1]*n[2] unit cubes, six cells each (Kuhn). jitter moves inner points by at most so much; below .2 it
+ * inverts no cell. */
 static inline mesh_case mesh_grid(const int n[3], double jitter, uint32_t seed)
 {
   static const int path[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
@@ -97,7 +97,7 @@ static inline mesh_case mesh_grid(const int n[3], double jitter, uint32_t seed)
   return mesh;
 }
 
-/* Cells in another order, and each cell's vertices, too. */
+/* Shuffles the cells, and the vertices of each cell. */
 static inline void mesh_shuffle(mesh_case* mesh, uint32_t seed)
 {
   for (int64_t i = mesh->cell_count - 1; i > 0; --i) {
@@ -118,7 +118,7 @@ static inline void mesh_shuffle(mesh_case* mesh, uint32_t seed)
   }
 }
 
-/* The second mesh's points and cells behind the first's. Frees both. */
+/* Makes a mesh of both meshes' points and cells, the first's before the second's. Frees both. */
 static inline mesh_case mesh_join(mesh_case a, mesh_case b)
 {
   mesh_case mesh = mesh_case_allocate(a.point_count + b.point_count, a.cell_count + b.cell_count);
@@ -156,10 +156,10 @@ static inline void mesh_bounds(const mesh_case* mesh, double bounds[6])
 
 typedef struct mesh_interval {
   double low, high;
-  int64_t rank; /* of the cell in the order */
+  int64_t rank; /* place of the cell in the visibility order */
 } mesh_interval;
 
-/* 6*cell_count: boxes of the cells. Freed by the caller. */
+/* Returns the bounding boxes of the cells, 6 numbers each. The caller frees them. */
 static inline double* mesh_boxes(const mesh_case* mesh)
 {
   double* boxes = malloc((size_t)mesh->cell_count * 6 * sizeof(double) + 1);
@@ -192,7 +192,8 @@ static inline bool mesh_clip_box(const double* box, const double origin[3], cons
   return low <= high;
 }
 
-/* Where origin + t direction, t >= 0, is in the cell: by the planes of its faces. False where it is not, or for no longer than `least`. */
+/* Finds the interval of t >= 0 in which origin + t direction is inside the cell, by the planes of its faces. Returns whether the interval
+ * is longer than `least`. */
 static inline bool mesh_clip_cell(
   const mesh_case* mesh, int64_t cell, const double origin[3], const double direction[3], double least, mesh_interval* hit)
 {
@@ -240,9 +241,9 @@ static int mesh_compare_intervals(const void* p, const void* q)
   return (x > y) - (x < y);
 }
 
-/* Rays from the camera's eye (parallel: along its forward) through `rays` random points of random cells. Counts cells that follow one
- * another on a ray and come in the other order in `cells`, and how many did follow one another. Lengths below 1e-9 of the mesh don't count:
- * rounding could have made them. */
+/* Checks the visibility order `cells` by rays from the camera's eye (parallel: along its forward) through `rays` random points of random
+ * cells. *pairs counts the pairs of consecutive cells on rays. Returns how many of them are in the wrong order in `cells`. Intervals
+ * shorter than 1e-9 of the mesh do not count, because rounding could have caused them. */
 static inline int64_t mesh_wrong_pairs(
   const mesh_case* mesh, const stratus_camera* camera, const uint32_t* cells, int rays, uint32_t seed, int64_t* pairs)
 {
@@ -256,7 +257,7 @@ static inline int64_t mesh_wrong_pairs(
     rank[i] = -1;
   }
   for (int64_t i = 0; i < mesh->cell_count; ++i) {
-    assert_true(cells[i] < mesh->cell_count && rank[cells[i]] < 0); /* each cell once */
+    assert_true(cells[i] < mesh->cell_count && rank[cells[i]] < 0); /* each cell occurs once */
     rank[cells[i]] = i;
   }
   mesh_bounds(mesh, bounds);
@@ -283,7 +284,7 @@ static inline int64_t mesh_wrong_pairs(
     }
     int64_t count = 0;
     if (!mesh_clip_cell(mesh, through, origin, direction, 1e-9 * size, hits)) {
-      continue; /* a flat cell: such a ray runs between the others, in none of them */
+      continue; /* the cell is flat, and the ray may run between its neighbours, inside none */
     }
     for (int64_t c = 0; c < mesh->cell_count; ++c) {
       if (mesh_clip_box(boxes + 6 * c, origin, direction) && mesh_clip_cell(mesh, c, origin, direction, 1e-9 * size, hits + count)) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Boxes, cameras and slow, obvious answers for the tests of the octree: every box against every plane in long double, and the solid that a
- * frustum and a box share, cut out face by face. */
+ * Boxes and cameras for the tests of the octree, and slow, obvious tests of boxes against frustums: against each plane in long double, and
+ * by clipping the box's faces. */
 #ifndef STRATUS_TESTING_OCTREE_CASE_H
 #define STRATUS_TESTING_OCTREE_CASE_H
 
@@ -13,7 +13,7 @@ static inline double random_unit(uint32_t* random)
   return (double)next_random(random) / 16777216.0;
 }
 
-/* Uneven: clusters of clusters, and sizes from 1 to 100. */
+/* Makes uneven bounds: clusters of clusters, and a range of sizes of 1 to 100. */
 static inline void random_bounds(uint32_t* random, double scale, double bounds[6])
 {
   const double spread = pow(random_unit(random), 3.0), size = 0.001 * pow(100.0, random_unit(random));
@@ -24,7 +24,7 @@ static inline void random_bounds(uint32_t* random, double scale, double bounds[6
   }
 }
 
-/* inside: out, a point of it; may be NULL. */
+/* inside: receives a point of the frustum; may be NULL. */
 static inline stratus_frustum random_frustum(stratus_context* context, uint32_t* random, double scale, double inside[3])
 {
   stratus_camera camera;
@@ -43,7 +43,7 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
     STRATUS_OK);
   camera.near_k = scale * 0.1 * random_unit(random);
   camera.far_k = random_below(random, 3) == 0 ? INFINITY : camera.near_k + scale * (0.1 + random_unit(random));
-  /* Off centre: the window's middle is not where the camera looks. */
+  /* Off-axis: the window's middle does not lie straight ahead. */
   const double skew = random_below(random, 2) ? 0.8 * random_unit(random) : 0.0;
   for (int a = 0; a < 3; ++a) {
     camera.forward[a] += parallel ? 0.0 : skew * camera.right[a];
@@ -55,7 +55,7 @@ static inline stratus_frustum random_frustum(stratus_context* context, uint32_t*
   return frustum;
 }
 
-/* How far the box reaches into its worst half-space, over the size of the terms: below 0 it is outside. */
+/* Returns how far the box reaches into the half-space that holds least of it, relative to the size of the terms. Below 0 it is outside. */
 static inline long double reach_of(const stratus_frustum* frustum, const double bounds[6])
 {
   long double worst = INFINITY;
@@ -97,11 +97,11 @@ static inline void cut_polygon(polygon* face, const double plane[4], long double
   *face = cut;
 }
 
-/* True if the box, widened by room, meets the frustum: some of its faces does, or it holds `inside`, a point of the frustum. Planes of unit
- * normals. */
+/* Returns whether the box, widened by `room`, meets the frustum: one of its faces does, or it holds `inside`, a point of the frustum.
+ * Planes must have unit normals. */
 static inline bool box_meets_frustum(const stratus_frustum* frustum, const double bounds[6], const double inside[3], double room)
 {
-  /* Most boxes lie outside one half-space as a whole, or have their middle in all six. */
+  /* Decides most boxes early: they lie wholly outside one half-space, or have their centre inside all six. */
   bool holds = true;
   for (int p = 0; p < 6; ++p) {
     const double* n = frustum->planes[p];
@@ -145,7 +145,7 @@ static inline int compare_ids(const void* a, const void* b)
   return x < y ? -1 : x > y;
 }
 
-/* The list in rising order, in memory of its own; fails if an id comes twice. */
+/* Returns a sorted copy of the list. Fails if an id occurs twice. */
 static inline uint32_t* sorted_ids(const stratus_octree_visible* visible)
 {
   uint32_t* ids = malloc((visible->count + 1) * sizeof *ids);

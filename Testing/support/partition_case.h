@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partitions of small meshes, and what is asked of their pieces: what the partition tests share. */
+ * Partitions of small meshes, and checks of their pieces. */
 #ifndef STRATUS_TESTING_PARTITION_CASE_H
 #define STRATUS_TESTING_PARTITION_CASE_H
 
@@ -22,7 +22,8 @@ static inline mesh_case mesh_of(const stratus_partition_result* cut)
   return (mesh_case){ (double*)(uintptr_t)cut->points, (int32_t*)(uintptr_t)cut->vertices, cut->point_count, cut->cell_count };
 }
 
-/* Volumes and the integral of an interpolated field, cell by cell; orientations; points as their ends and weights have them. */
+/* Checks that the pieces of each cell have its volume, its integral of an interpolated field, and its orientation, and that new points lie
+ * where their ends and weights put them. */
 static inline void assert_pieces_fill_their_cells(const mesh_case* mesh, const stratus_partition_result* cut)
 {
   double* sums = calloc((size_t)mesh->cell_count * 2 + 1, sizeof(double));

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Small smooth volumes at random, views of them, and their pictures by the ray caster and by the reference: what the picture tests share.
- */
+ * Random smooth small volumes, views of them, and their pictures by the ray caster and by the reference, for the picture tests. */
 #ifndef STRATUS_TESTING_PICTURE_CASE_H
 #define STRATUS_TESTING_PICTURE_CASE_H
 
@@ -46,7 +45,7 @@ typedef struct picture_case {
 static const char* const case_type_names[] = { "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32",
   "float64" };
 
-/* Values are base + scale*f, f within -1..1: what each type is filled with. */
+/* For each type: values are base + scale*f, with f within -1..1. */
 static const struct {
   double base, scale;
 } case_type_values[] = { { 3, 120 }, { 127, 120 }, { -200, 30000 }, { 32000, 31000 }, { 1e9, 1e6 }, { 3e9, 1e6 }, { -4e15, 1e7 },
@@ -99,7 +98,7 @@ static inline void case_store(void* values, stratus_type type, size_t at, double
   }
 }
 
-/* The smooth field at random: a few waves longer than 12 voxels. */
+/* Fills the volume with a random smooth field: a sum of a few waves longer than 12 voxels. */
 static inline void case_fill(picture_case* c, uint32_t seed)
 {
   enum { WAVES = 5 };
@@ -123,7 +122,7 @@ static inline void case_fill(picture_case* c, uint32_t seed)
   }
 }
 
-/* World bounds, seen from camera of record `view`. */
+/* Sets the camera to scene camera number `view` about the volume's world bounds. */
 static inline void case_camera(stratus_context* context, picture_case* c, int view, int parallel)
 {
   double bounds[6];
@@ -131,8 +130,8 @@ static inline void case_camera(stratus_context* context, picture_case* c, int vi
   assert_int_equal(stratus_scene_camera(context, bounds, 2, view, parallel, (double)CASE_WIDTH / CASE_HEIGHT, &c->camera), STRATUS_OK);
 }
 
-/* Unit spacing, about half of the volume transparent, samples a quarter of a voxel apart: so near that what is left against the reference
- * is rounding and the sampling's own second-order error, and any misplaced half voxel or step stands out. */
+/* Makes a case of unit spacing, about half transparent. Samples are a quarter of a voxel apart, so close that only rounding and the
+ * second-order error of sampling separate the picture from the reference. Any misplaced half voxel or step then stands out. */
 static inline void case_create(
   stratus_context* context, picture_case* c, stratus_type type, int64_t nx, int64_t ny, int64_t nz, uint32_t seed)
 {
@@ -167,7 +166,7 @@ static inline void case_create(
   case_camera(context, c, 0, 0);
 }
 
-/* One random case of everything at once: type, size, sampling, interpolation, holes, crop, planes, camera. */
+/* Makes a case in which everything is random: type, size, sampling, interpolation, holes, crop, planes, camera. */
 static inline void case_create_random(stratus_context* context, uint32_t seed, picture_case* c)
 {
   uint32_t s = seed * 7919u + 13u;
@@ -179,7 +178,7 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
   c->options.sample_distance = case_uniform(&s, 0.2, 1.9);
   c->options.termination = case_random(&s) % 2 ? 0.999 : 0.9;
   c->volume.cell_centered = nx == 1 || ny == 1 || case_random(&s) % 3 == 0;
-  if (case_random(&s) % 2) { /* a narrow peak: mostly empty */
+  if (case_random(&s) % 2) { /* a narrow peak: the volume is mostly empty */
     const double base = case_type_values[type].base, scale = case_type_values[type].scale;
     const double peak[8] = { base + 0.1 * scale, 0, base + 0.13 * scale, 0.8, base + 0.16 * scale, 0, base + scale, 0 };
     memcpy(c->opacity, peak, sizeof peak);
@@ -260,7 +259,7 @@ static inline reference_scene case_scene(const picture_case* c)
   return scene;
 }
 
-/* Pixels with any alpha, so that no test passes on an empty picture. */
+/* Returns the number of pixels with alpha > 0. Tests check it, so that none passes on an empty picture. */
 static inline int case_lit(const picture* p)
 {
   int lit = 0;
@@ -270,7 +269,7 @@ static inline int case_lit(const picture* p)
   return lit;
 }
 
-/* PSNR of the ray caster's picture against the reference. */
+/* Returns the PSNR of the ray caster's picture against the reference. */
 static inline double case_psnr(const char* what, stratus_context* context, const picture_case* c, picture* p)
 {
   static float reference[4 * CASE_PIXELS];
@@ -298,7 +297,7 @@ static inline stratus_context* case_context(const char* device, int threads)
   return context;
 }
 
-/* Set-up and tear-down of a group: its state is a context of the host with two threads. */
+/* Set-up and tear-down of a group whose state is a context of the host with two threads. */
 static inline int case_set_up(void** state)
 {
   *state = case_context("host", 2);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The double-precision reference renderer: its rays, their steps, and how far two pictures differ. Kept slow and plain where that makes it
- * easier to believe. */
+ * The double-precision reference renderer: rays, steps, and the error between two pictures. It is slow and plain so that it is easy to
+ * verify. */
 #include "reference.h"
 
 #include "reference_field.h"
@@ -13,7 +13,7 @@
 
 typedef struct ray {
   double origin[3], direction[3];             /* world, direction of length 1 */
-  double index_origin[3], index_direction[3]; /* the same line by the same parameter */
+  double index_origin[3], index_direction[3]; /* the same line in index coordinates, with the same parameter */
   double begin, end;
 } ray;
 
@@ -69,7 +69,8 @@ static ray make_ray(const reference_scene* scene, const reference_field* f, doub
   return r;
 }
 
-/* Steps from number i, at p, to the first that may lie outside the transparent block around p; i itself where the block shows something. */
+/* Returns the first step from number i on, at p, that may lie outside the transparent block around p. If the block shows something, it is
+ * i. */
 static int64_t past_block(const reference_field* f, const ray* r, const double p[3], int64_t i, double step)
 {
   int64_t b[3];
@@ -91,7 +92,8 @@ static int64_t past_block(const reference_field* f, const ray* r, const double p
   return next > i ? next : i + 1;
 }
 
-/* Opacity of a step, and its colour, where a sample is more than one value's colour and opacity; a field and a cell a component. */
+/* Returns the opacity of a step, and finds its colour, with shading or several components. parts, c: one field and one cell per component.
+ */
 static double look(const reference_scene* scene, const reference_field* parts, const ray* r, double s, const double p[3], reference_cell* c,
   double step, double rgb[3])
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The field that the reference renderer samples: its values, what the transfer function makes of them, the blocks in which that is nothing,
- * and what ghosts hide. The one thing that it skips are blocks of cells in which every value maps to an opacity of zero. */
+ * The field that the reference renderer samples: values, the transfer function, transparent blocks, and ghosts. Its only acceleration skips
+ * blocks of cells in which all values map to an opacity of 0. */
 #include "reference_field.h"
 
 #include "reference_shading.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- values, and what the transfer function makes of them */
+/* ---- values and the transfer function */
 
 double reference_value_at(const stratus_volume* volume, int64_t number)
 {
@@ -77,7 +77,7 @@ void reference_color(const stratus_transfer* transfer, double value, double rgb[
   }
 }
 
-/* Is the opacity zero on the whole of [lo, hi]? It is piecewise linear: its ends and the points between decide. */
+/* Whether the opacity is 0 on all of [lo, hi]. It is piecewise linear, so the ends and the points between them decide. */
 static bool transparent_on(const stratus_transfer* transfer, double lo, double hi)
 {
   if (lo > hi) {
@@ -95,14 +95,14 @@ static bool transparent_on(const stratus_transfer* transfer, double lo, double h
   return true;
 }
 
-/* ---- where the field is, and where it shows anything */
+/* ---- the extent of the field, and the blocks that show anything */
 
 int64_t reference_clamp(int64_t i, int64_t n)
 {
   return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-/* Adds the blocks in which the transfer function shows anything of the volume. */
+/* Marks the blocks in which the transfer function shows anything of the volume. */
 static void find_shown_blocks(const reference_field* f, const stratus_volume* volume, const stratus_transfer* transfer)
 {
   const int64_t* n = volume->dimensions;
@@ -113,7 +113,7 @@ static void find_shown_blocks(const reference_field* f, const stratus_volume* vo
       b / f->blocks[0] / f->blocks[1] * REFERENCE_BLOCK };
     double lo = (double)INFINITY;
     double hi = -(double)INFINITY;
-    /* One value more on either side than any interpolation can read. */
+    /* Includes one value more on each side than interpolation can read. */
     for (int64_t k = at[2] - 1; k <= at[2] + REFERENCE_BLOCK + 1; ++k) {
       for (int64_t j = at[1] - 1; j <= at[1] + REFERENCE_BLOCK + 1; ++j) {
         for (int64_t i = at[0] - 1; i <= at[0] + REFERENCE_BLOCK + 1; ++i) {
@@ -198,7 +198,7 @@ void reference_field_release(reference_field* f)
 
 /* ---- a sample */
 
-/* Flags of the cell, and of the points at its corners, that take it out of the picture. */
+/* Whether ghost flags of the cell or of the points at its corners hide it. */
 static bool cell_hidden(const reference_field* f, const int64_t at[3])
 {
   const stratus_volume* v = f->volume;
@@ -240,7 +240,7 @@ static void load_cell(const reference_field* f, const int64_t at[3], reference_c
   }
 }
 
-/* Values in cells: is the cell around p another piece's or, where its value alone counts, hidden? */
+/* For values of cells: whether the cell around p belongs to another piece or, with nearest interpolation, is hidden. */
 static bool own_cell_hidden(const reference_field* f, const double p[3])
 {
   const int64_t* n = f->volume->dimensions;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A volume as the reference renderer samples it, in index coordinates. Private to the reference: everybody else includes reference.h. */
+ * A volume as the reference renderer samples it, in index coordinates. Private to the reference; tests include reference.h. */
 #ifndef STRATUS_TESTING_REFERENCE_FIELD_H
 #define STRATUS_TESTING_REFERENCE_FIELD_H
 
@@ -13,7 +13,7 @@ typedef struct reference_field {
   const stratus_volume* volume;
   double to_index[3][3]; /* inverse of the linear part of index -> world */
   double corner[3];      /* world position of the volume's origin */
-  double shift;          /* index coordinate of that origin: 0, or -1/2 where values sit in cells */
+  double shift;          /* index coordinate of that origin: 0, or -1/2 for values of cells */
   double lo[3], hi[3];   /* the box that is drawn, in index coordinates */
   double edge;           /* shortest edge of a voxel in the world */
   int64_t blocks[3];
@@ -22,19 +22,19 @@ typedef struct reference_field {
 } reference_field;
 
 typedef struct reference_cell {
-  int64_t at[3]; /* lower corner, -1 before the first */
+  int64_t at[3]; /* lower corner; -1: no cell is loaded yet */
   double corner[8];
   bool shown;
 } reference_cell;
 
-/* Returns 0, or -1, and nothing to release, where memory runs out or the volume has no extent. */
+/* Returns 0. If memory runs out or the volume has no extent, returns -1, with nothing to release. */
 int reference_field_create(const reference_scene* scene, reference_field* f);
 void reference_field_release(reference_field* f);
 
-/* The value at p (index coordinates inside the box); NAN where it is transparent by rule. c remembers the last cell. */
+/* Returns the value at p (index coordinates, inside the box), or NAN where something is hidden or not finite. c caches the last cell. */
 double reference_field_sample(const reference_field* f, const double p[3], reference_cell* c);
 
-/* i, or the nearest of 0..n-1. */
+/* Returns i clamped to 0..n-1. */
 int64_t reference_clamp(int64_t i, int64_t n);
 
 #endif

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PARTS 64 /* of a cell, in which an isosurface is looked for */
-/* The contract's bounds of values on points are drawn in by so many voxels: who looks for surfaces at the very rim must do the same. */
+#define PARTS 64 /* parts of a cell on a ray, each searched for an isosurface */
+/* The renderer shrinks the bounds of values on points by this fraction of a voxel. The reference must, too, to agree on surfaces at the
+ * rim. */
 #define RIM 0x1p-10
 #define CUTS 8
 
@@ -23,7 +24,7 @@ typedef struct scene {
   const stratus_volume* volume;
   const stratus_transfer* transfer;
   const stratus_ray_cast_options* options;
-  double to_world[3][4]; /* of index coordinates */
+  double to_world[3][4]; /* from index coordinates */
   double low, high;      /* of all finite values */
 } scene;
 
@@ -35,7 +36,7 @@ static bool cell_is_hidden(const stratus_volume* v, const int64_t at[3])
   return v->cell_ghosts && !v->cell_centered && (v->cell_ghosts[(at[2] * ny + at[1]) * nx + at[0]] & STRATUS_GHOST_HIDDEN_CELL);
 }
 
-/* Whether crop regions and mask leave the place p (index coordinates) in the picture. */
+/* Whether crop regions and mask keep position p (index coordinates). */
 static bool is_kept(const scene* s, const double p[3])
 {
   const stratus_volume* v = s->volume;
@@ -53,7 +54,7 @@ static bool is_kept(const scene* s, const double p[3])
     (!o->mask || o->mask[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
 }
 
-/* NAN where nothing is to be seen. */
+/* Returns the field at p, or NAN where it is hidden. */
 static double field_at(const scene* s, const double p[3])
 {
   const stratus_volume* v = s->volume;
@@ -131,7 +132,7 @@ static void set_to_world(scene* s)
   }
 }
 
-/* x with to_world x = b, by Cramer's rule. */
+/* Solves to_world x = b by Cramer's rule. */
 static void solve(const scene* s, const double b[3], double x[3])
 {
   double m[4];
@@ -186,7 +187,7 @@ static void point_on(const line* l, double t, double p[3])
 
 /* ---- the modes that sample */
 
-/* A ray's way cut where it passes the crop's planes, so that no sample's stretch lies on both sides of one. */
+/* Cuts a ray at the crop's planes, so that no sample's interval lies on both sides of one. Returns the number of pieces. */
 static int cut_line(const scene* s, const line* l, double cut[CUTS])
 {
   int count = 0;
@@ -210,7 +211,7 @@ static int cut_line(const scene* s, const line* l, double cut[CUTS])
   return count;
 }
 
-/* Samples of a ray: each in the middle of its stretch. */
+/* Iterates over the samples of a ray. Each lies in the middle of its interval. */
 typedef struct samples {
   double cut[CUTS], step, t, length;
   int pieces, piece;
@@ -331,13 +332,14 @@ static double field_on(const scene* s, const line* l, double t)
   return field_at(s, p);
 }
 
-/* before: the field where the ray left the cell before, NAN at the first; then at the end of this one. */
+/* Finds where the ray crosses a contour between `from` and `to`, inside one cell. *before: the field where the ray left the previous cell
+ * (NAN: there is none); receives the field at `to`. */
 static int cross_cell(const scene* s, const line* l, double from, double to, double contour, double* before, crossing* found)
 {
   int count = 0;
   const double begin = field_on(s, l, from);
   if (!isnan(*before) && !isnan(begin) && (*before < contour) != (begin < contour)) {
-    found[count++] = (crossing){ from, contour }; /* on the border itself */
+    found[count++] = (crossing){ from, contour }; /* the contour lies on the border of the cells */
   }
   *before = field_on(s, l, to);
   for (int part = 0; part < PARTS; ++part) {
@@ -378,7 +380,7 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
   for (int n = 0; n < s->options->contour_count; ++n) {
     double before = (double)NAN;
     for (int i = 0; i + 1 < plane_count && count < CROSSINGS - PARTS - 1; ++i) {
-      const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* so that both ends are this cell's */
+      const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* keeps both ends inside this cell */
       count += cross_cell(s, l, planes[i].t + hair, planes[i + 1].t - hair, s->options->contours[n], &before, found + count);
     }
   }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  *
- * Pictures of the ray cast's other modes, written apart from it: double precision, one ray at a time, as slow and plain as that can be. It
- * shares the public structs with the core and not a line of its code. */
+ * The reference for the ray cast's modes other than composite: double precision, one ray at a time, slow and plain. It shares the public
+ * structs with the core, but none of its code. */
 #ifndef STRATUS_TESTING_REFERENCE_MODES_H
 #define STRATUS_TESTING_REFERENCE_MODES_H
 
@@ -11,9 +11,9 @@
 extern "C" {
 #endif
 
-/* Draws what options->mode asks for, but first hits; of the options count: interpolation, average_range, contours, crop (bounds and
- * regions) and mask. step: length of a step, world. Isosurfaces don't step: each cell on a ray's way is cut into 64 parts, and sign changes
- * are halved. rgba: premultiplied, bottom row first. depth: world distance to the first contribution, INFINITY where there is none;
+/* Draws options->mode, except first hits. It obeys these options: interpolation, average_range, contours, crop (bounds and regions) and
+ * mask. step: length of a step in the world. Isosurfaces take no steps: each cell on a ray is cut into 64 parts, and sign changes are found
+ * by bisection. rgba: premultiplied, bottom row first. depth: world distance to the first contribution, INFINITY if there is none;
  * extremes: to the extreme value. */
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light, gradient opacity and components of the reference renderer: written from the contract in stratus.h, in doubles, without regard to
- * speed. */
+ * Light, gradient opacity and components of the reference renderer, written from the contract in stratus/ray_cast.h, in doubles, without
+ * regard to speed. */
 #include "reference_shading.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-/* An opaque sample's optical depth: large, and finite, so that it can be weighed against others. */
+/* Optical depth of an opaque sample: large, but finite, so that it can be weighted against others. */
 #define OPAQUE_DEPTH 1e6
 
 int reference_components(const stratus_volume* volume)
@@ -20,7 +20,7 @@ int reference_has_shading(const reference_scene* scene)
   return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 || scene->label_count > 0;
 }
 
-/* The transfer function of the nearest value's label. */
+/* Returns the transfer function of the nearest value's label. */
 static const stratus_transfer* function_of(const reference_scene* scene, const reference_place* place)
 {
   const int64_t* n = scene->volume->dimensions;
@@ -51,7 +51,7 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* To length 1, or 0 where there is none. */
+/* Normalizes a vector; 0 stays 0. */
 static void unit(double v[3])
 {
   const double length = length_of(v);
@@ -78,7 +78,7 @@ static double difference(const stratus_volume* volume, const int64_t at[3], int 
   return apart > 0.0 ? rise / apart : 0.0;
 }
 
-/* Value a voxel along each axis: the differences at the corners of the cell about p, each weighed by how near it is. */
+/* Finds the gradient in values per voxel: interpolates the differences at the corners of the cell around p. */
 static void gradient_at(const stratus_volume* volume, const double p[3], bool linear, double g[3])
 {
   memset(g, 0, 3 * sizeof *g);
@@ -167,7 +167,7 @@ static double depth_of(double opacity)
   return opacity < 1.0 ? fmin(-log1p(-opacity), OPAQUE_DEPTH) : OPAQUE_DEPTH;
 }
 
-/* Adds one medium: `shown` is the component whose gradient counts. */
+/* Adds the light and optical depth of one medium. shown: the component whose gradient counts. */
 static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
   double opacity, double weight, double rgb[3], double* tau, double glow[3])
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the reference renderer's samples show beyond colour and opacity of one value: light, gradient opacity, several components. Private
- * to the reference: everybody else includes reference.h. */
+ * Shading of the reference renderer: light, gradient opacity, several components and labels. Private to the reference; tests include
+ * reference.h. */
 #ifndef STRATUS_TESTING_REFERENCE_LOOKS_H
 #define STRATUS_TESTING_REFERENCE_LOOKS_H
 
@@ -8,22 +8,22 @@
 
 #define REFERENCE_COMPONENTS_MAX 4
 
-/* A sample: where it is, and how the ray passes it. */
+/* The position of a sample, and the direction of its ray. */
 typedef struct reference_place {
-  double index[3];       /* index coordinates, clamped to where values are */
-  double world[3];       /* its position */
-  double direction[3];   /* of the ray, world, length 1 */
+  double index[3];       /* index coordinates, clamped to the values' positions */
+  double world[3];       /* world position */
+  double direction[3];   /* of the ray, in the world, of length 1 */
   double to_index[3][3]; /* world vectors to index vectors */
 } reference_place;
 
-/* 1 where a sample is more than the colour and opacity of one value. */
+/* Returns 1 if the scene has light, gradient opacity, several components or labels. */
 int reference_has_shading(const reference_scene* scene);
 int reference_components(const stratus_volume* volume);
-/* Component c of a volume as a volume of its own. */
+/* Returns component c of a volume as a volume of its own. */
 stratus_volume reference_component(const stratus_volume* volume, int c);
 
-/* values: a value a component, NAN where there is none. tau: optical depth per unit distance of what is there, glow: the light that it
- * sends, per unit distance. */
+/* Shades a sample. values: one per component, NAN where it is hidden. *tau: optical depth per unit distance. glow: emitted light per unit
+ * distance. */
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3]);
 
 /* reference_field.c */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Random volumes and grids, and the slow, obvious ways to their structures, for the tests of host and device. */
+ * Random volumes and grids, and slow, obvious constructions of their structures, for the tests of host and device. */
 #ifndef STRATUS_TESTING_STRUCTURES_H
 #define STRATUS_TESTING_STRUCTURES_H
 
@@ -27,7 +27,7 @@ static inline int64_t random_below(uint32_t* state, int64_t n)
 
 /* ---- volumes */
 
-/* A volume with its own values, exactly as many as it may read: reading on is caught by the address sanitizer. */
+/* A volume that owns its values. Their memory has exactly their size, so that the address sanitizer catches any read beyond. */
 typedef struct sample_volume {
   stratus_volume view;
   void* values;
@@ -63,7 +63,7 @@ static inline void set_value(void* values, stratus_type type, int64_t at, uint32
   }
 }
 
-/* Puts NaN, infinities, both zeros and what overflows a float into one value of `one_in`. */
+/* Replaces one value in `one_in` by NaN, an infinity, a zero of either sign, or a number that overflows a float. */
 static inline void spoil(sample_volume* v, int64_t one_in, uint32_t* random)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 0.0, -0.0, 1e300, -1e300 };
@@ -99,7 +99,7 @@ static inline sample_volume make_volume(stratus_type type, int64_t nx, int64_t n
   return v;
 }
 
-/* Random flags on one point and one cell of `one_in`. */
+/* Sets random flags on one point in `one_in` and one cell in `one_in`. */
 static inline void add_ghosts(sample_volume* v, int cell_centered, int64_t one_in, uint32_t* random)
 {
   const int64_t* n = v->view.dimensions;
@@ -126,7 +126,7 @@ static inline void free_volume(sample_volume* v)
 
 /* ---- grids of blocks */
 
-/* fill: 0 empty, 1 full, 2 a single block, else one block of `fill` is occupied. */
+/* fill: 0: empty; 1: full; 2: a single occupied block; else one block in `fill` is occupied. */
 static inline stratus_occupancy* make_occupancy(
   stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
 {

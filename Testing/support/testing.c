@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * main() of every program of tests: PROGRAM TEST [--WORD...] [CASE...] runs one test, or those of its cases that match a pattern.
+ * main() of each test program. PROGRAM TEST [--WORD...] [CASE...] runs one test, or those of its cases that match a pattern CASE.
  *
- * The linker sends calls of cmocka's group runner and of its skip() through here, so that test files stay plain cmocka. cmocka returns 0
- * where cases skipped themselves and where a group's teardown failed; here the first is ctest's skip and the second a failure. */
+ * The linker redirects cmocka's group runner and skip() to this file, so that test files stay plain cmocka. cmocka returns 0 if cases were
+ * skipped, and if a group's tear-down failed. This file reports the first as ctest's skip, the second as a failure. */
 #include "testing.h"
 
 #include <fnmatch.h>

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a test file of the core may ask of the program it is linked into. The program of a folder holds all its test files: each function
- * `int test_NAME(void)` is a test of its own to ctest, run as `PROGRAM test_NAME`. It returns the number of failures, or TEST_SKIPPED. */
+ * The interface of a test program to its test files. One program holds all test files of a folder. Each function `int test_NAME(void)` is
+ * a ctest test of its own, run as `PROGRAM test_NAME`. It returns the number of failures, or TEST_SKIPPED. */
 #ifndef STRATUS_TESTING_H
 #define STRATUS_TESTING_H
 
 #include <stdbool.h>
 
-#define TEST_SKIPPED 77 /* the exit status that ctest counts as a skip */
+#define TEST_SKIPPED 77 /* exit status that ctest counts as a skip */
 
-/* Says why the whole test cannot run, and returns TEST_SKIPPED. */
+/* Prints why the whole test cannot run, and returns TEST_SKIPPED. */
 int test_skip(const char* why);
 
-/* Whether the command line holds this word, as "--tiny". */
+/* Whether the command line holds this word, such as "--tiny". */
 bool test_option(const char* word);
 
-/* The path of the running program, for a test that runs itself. */
+/* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);
 
 /* One line of the table that CMake writes for each program; its last line is empty. */

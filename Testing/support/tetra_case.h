@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Small meshes of tetrahedra at random, and the picture that the renderer is judged by, written apart from it: each ray against every cell
- * in double precision by barycentric coordinates, what it meets sorted by where it enters, each stretch in many midpoint steps. */
+ * Random small meshes of tetrahedra, and their reference picture, which shares no code with the renderer. It intersects each ray with every
+ * cell in double precision by barycentric coordinates, sorts the intervals by entry, and integrates each in many midpoint steps. */
 #ifndef STRATUS_TESTING_TETRA_CASE_H
 #define STRATUS_TESTING_TETRA_CASE_H
 
@@ -42,7 +42,7 @@ typedef struct tetra_picture {
   stratus_tetra_report report;
 } tetra_picture;
 
-/* What cases are drawn by: tests of all that must not depend on it run once with each. */
+/* The method that draws cases. Tests of results that must not depend on it run once with each method. */
 static stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_MARCH;
 
 static inline double tetra_uniform(uint32_t* state, double lo, double hi)
@@ -51,8 +51,8 @@ static inline double tetra_uniform(uint32_t* state, double lo, double hi)
   return lo + (hi - lo) * (double)(*state >> 8) / 16777216.0;
 }
 
-/* A cube of n^3 boxes, six cells each about the boxes' diagonals, its points moved by up to `jitter` of a box, corners of cells in any
- * order; `missing` of the cells left out; values within 0..1, those of neighbours alike. */
+/* Makes a cube of n^3 boxes with six cells each about the box's diagonal. Points move by up to `jitter` of a box, the corners of cells are
+ * shuffled, and a share `missing` of the cells is left out. Values lie within 0..1 and vary smoothly. */
 static inline void tetra_create(tetra_case* c, int n, double jitter, double missing, uint32_t seed)
 {
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
@@ -61,7 +61,7 @@ static inline void tetra_create(tetra_case* c, int n, double jitter, double miss
   memset(c, 0, sizeof *c);
   c->mesh = stratus_mesh_default();
   c->points = calloc((size_t)(side * side * side), 3 * sizeof(double));
-  c->values = calloc((size_t)(6 * side * side * side), sizeof(float)); /* enough for a value a cell, too */
+  c->values = calloc((size_t)(6 * side * side * side), sizeof(float)); /* also enough for a value per cell */
   c->vertices = calloc((size_t)(6 * n * n * n), 4 * sizeof(int32_t));
   c->hidden = calloc((size_t)(6 * n * n * n), 1);
   assert_true(c->points && c->values && c->vertices && c->hidden);
@@ -112,7 +112,7 @@ static inline void tetra_destroy(tetra_case* c)
   free(c->hidden);
 }
 
-/* Set-up and tear-down of a group: its state is a context of the host. */
+/* Set-up and tear-down of a group whose state is a context of the host. */
 static inline int tetra_start(void** state)
 {
   stratus_context* context = NULL;
@@ -129,7 +129,7 @@ static inline int tetra_stop(void** state)
   return 0;
 }
 
-/* From outside, camera of record `view` about a cube of edge n. */
+/* Sets the camera to scene camera number `view`, outside a cube of edge n. */
 static inline void tetra_camera(stratus_context* context, tetra_case* c, int n, int view, int parallel)
 {
   const double bounds[6] = { 0, n, 0, n, 0, n };
@@ -193,7 +193,7 @@ static inline double tetra_volume(const double a[3], const double b[3], const do
   return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/* What of the ray lies within the cell: each barycentric coordinate is linear along it. */
+/* Finds the stretch of the ray inside the cell. Each barycentric coordinate is linear along the ray. */
 static inline int tetra_meet(
   const tetra_case* c, int64_t cell, const double origin[3], const double along[3], double from, double to, tetra_stretch* stretch)
 {
@@ -214,8 +214,8 @@ static inline int tetra_meet(
   if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
     return 0;
   }
-  /* the ray from where it comes nearest to the cell, and a second point of it, as far away as the cell: another scale would drown the
-   * cell's in rounding */
+  /* The ray is measured at its point nearest to the cell, and at a second point as far from there as the cell reaches. Points on another
+   * scale would lose the cell's digits to rounding. */
   double reach = 0.0, nearest = 0.0, square = 0.0;
   for (int a = 0; a < 3; ++a) {
     nearest += 0.25 * (p[0][a] + p[1][a] + p[2][a] + p[3][a]) * along[a];
@@ -278,8 +278,7 @@ static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, 
   }
 }
 
-/* Of each cell the middle of its corners in the world and the square of their largest distance from it, both in `balls`: 4 numbers a cell.
- */
+/* Finds a bounding ball of each cell, 4 numbers each: the mean of the corners in the world, and their largest squared distance from it. */
 static inline void tetra_balls(const tetra_case* c, double* balls)
 {
   const double* m = c->mesh.matrix;
@@ -303,7 +302,7 @@ static inline void tetra_balls(const tetra_case* c, double* balls)
   }
 }
 
-/* Whether the line passes the ball by, with room for rounding; a ball that is not finite is never passed. */
+/* Whether the line surely misses the ball, with a margin for rounding. No line misses a ball that is not finite. */
 static inline bool tetra_passes(const double ball[4], const double origin[3], const double along[3])
 {
   double square = 0.0, far = 0.0, forward = 0.0;
@@ -316,7 +315,7 @@ static inline bool tetra_passes(const double ball[4], const double origin[3], co
   return far - forward * forward / square > 1.01 * ball[3] + 1e-9 * far;
 }
 
-/* rgba: TETRA_PIXELS times 4; depth, may be NULL. */
+/* Draws the reference. rgba: 4*TETRA_PIXELS; depth: TETRA_PIXELS or NULL. */
 static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
 {
   tetra_stretch* met = calloc((size_t)c->mesh.cell_count + 1, sizeof *met);
@@ -367,7 +366,7 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
   free(balls);
 }
 
-/* Root mean square of RGBA in 0..255 over the pixels that either shows. */
+/* Returns the root mean square error of RGBA in 0..255 over the pixels that either picture shows. */
 static inline double tetra_error(const float* rgba, const double* reference, double* largest)
 {
   double squares = 0.0, count = 0.0;
@@ -382,7 +381,7 @@ static inline double tetra_error(const float* rgba, const double* reference, dou
       }
     }
   }
-  return count > 0.0 ? sqrt(squares / count) : INFINITY; /* nothing to be compared is no agreement */
+  return count > 0.0 ? sqrt(squares / count) : INFINITY; /* two empty pictures do not count as agreement */
 }
 
 #endif

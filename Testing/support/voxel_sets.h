@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sets of voxels for tests: random ones, and shapes that break rules made for clouds. */
+ * Sets of voxels for tests: random ones, and shapes that break heuristics made for clouds. */
 #ifndef STRATUS_TESTING_VOXEL_SETS_H
 #define STRATUS_TESTING_VOXEL_SETS_H
 
@@ -31,7 +31,7 @@ static inline void set_add(voxel_set* set, int64_t x, int64_t y, int64_t z)
   at[2] = (int32_t)z;
 }
 
-/* All of [x0, x1) x [y0, y1) x [z0, z1). */
+/* Adds all voxels of [x0, x1) x [y0, y1) x [z0, z1). */
 static inline void set_add_box(voxel_set* set, int64_t x0, int64_t x1, int64_t y0, int64_t y1, int64_t z0, int64_t z1)
 {
   for (int64_t z = z0; z < z1; ++z) {
@@ -51,7 +51,7 @@ static inline void set_add_noise(voxel_set* set, int64_t count, uint32_t* random
   }
 }
 
-/* Voxels whose distance to (c, c, c) lies within half a voxel of the radius. */
+/* Adds the voxels whose distance to (c, c, c) is within half a voxel of the radius. */
 static inline void set_add_shell(voxel_set* set, int c, int radius)
 {
   for (int z = -radius - 1; z <= radius + 1; ++z) {
@@ -74,7 +74,7 @@ static inline stratus_voxels* make_voxels(stratus_context* context, const voxel_
   return voxels;
 }
 
-/* The voxels in the order of bricks, ascending, and of bits in them: as an exact density numbers them. at: voxels->count triples. */
+/* Lists the voxels by ascending brick and bit, the numbering of an exact density. at: voxels->count triples. */
 static inline void list_voxels(const stratus_voxels* voxels, int32_t (*at)[3])
 {
   for (int64_t b = 0; b < voxels->brick_count; ++b) {
