@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of stratus-bench share.
+// Declarations that the parts of stratus-bench share.
 #pragma once
 
 #include "stratus.h"
@@ -16,7 +16,7 @@
 
 namespace bench {
 
-constexpr int views = 8; // of record
+constexpr int views = 8; // number of cameras of a scene
 
 struct failure : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -25,8 +25,8 @@ struct failure : std::runtime_error {
 // ---- scenes.cxx
 
 struct transfer {
-  std::vector<double> opacity; // pairs
-  std::vector<double> color;   // quadruples
+  std::vector<double> opacity; // (value, opacity) pairs
+  std::vector<double> color;   // (value, red, green, blue) quadruples
   double unit_distance = 1.0;
   stratus_transfer view() const;
 };
@@ -36,27 +36,27 @@ struct scene {
   vtkSmartPointer<vtkImageData> image;
   stratus_volume volume; // borrows the image's values
   transfer first, edited;
-  std::vector<transfer> others; // of the components beside the first
-  bool shaded = false;          // lit by a headlight, in the material that vtkVolumeProperty begins with
+  std::vector<transfer> others; // of all components but the first
+  bool shaded = false;          // lit by a headlight, in the default material of vtkVolumeProperty
   int up_axis = 2;
   double bounds[6];
-  double voxel = 1.0; // shortest edge, world
+  double voxel = 1.0; // a voxel's shortest edge in the world
   std::shared_ptr<void> memory;
 };
 
-// A scene of record, cloud-N (the cloud resampled to N x N/2 x N over the same space), or a file, whose name is its stem; with "+shade"
-// behind it lit.
+// Makes a built-in scene, cloud-N (the cloud resampled to N x N/2 x N over the same space), or the scene of a file, named by its stem. The
+// suffix "+shade" lights it.
 scene make_scene(stratus_context* context, const std::string& source);
-// The transfer functions of all components.
+// Returns the transfer functions of all components.
 std::vector<stratus_transfer> transfers_of(const scene& s);
-// The light and material of a lit scene, as `camera` sees it.
+// Returns the light and material of a lit scene for a camera.
 stratus_shading shading_of(const stratus_camera& camera);
 stratus_camera camera_of(stratus_context* context, const scene& s, int view);
 
-// ---- a method draws a scene's views
+// ---- a method's pictures and times of a scene's views
 
 struct picture {
-  std::vector<float> rgba;    // premultiplied; empty where a method has no float picture
+  std::vector<float> rgba;    // premultiplied; empty if the method has no float picture
   std::vector<uint8_t> bytes; // RGBA of the window
 };
 
@@ -64,14 +64,14 @@ struct timing {
   double first_ms = 0.0;
   double frame_ms = 0.0;
   double update_ms = 0.0;
-  double samples = -1.0; // a frame, -1: not told
+  double samples = -1.0; // per frame; -1: unknown
   std::string device;
 };
 
 struct result {
   std::string scene, method;
   timing time;
-  std::vector<picture> pictures; // a view each
+  std::vector<picture> pictures; // one per view
   double psnr_db = 0.0, psnr8_db = 0.0, max_error = 0.0, reference_db = 0.0;
   double differing_pixels = -1.0; // -1: not compared
 };
@@ -95,12 +95,12 @@ floor_result run_floor(stratus_context* context, const scene& s, int size);
 
 // ---- cache.cxx
 
-// With the folders that it lies in, where they are not there; nothing where the name is empty. To be called before anything is measured: a
-// reference takes minutes, and is not to be lost to a folder that is not there.
+// Makes a folder and its parents, unless they exist or the name is empty. Call it before measuring: a reference takes minutes, and must not
+// be lost because its folder is missing.
 void make_folder(const std::string& folder);
-// False where there is no such file, or none of exactly as many floats.
+// Returns false if there is no such file, or if its number of floats differs.
 bool load_picture(const std::string& path, std::vector<float>& rgba);
-void save_picture(const std::string& path, const std::vector<float>& rgba); // whole or not at all
+void save_picture(const std::string& path, const std::vector<float>& rgba); // writes the whole file or none
 
 // ---- judge.cxx: fills the errors of all results of one scene
 void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results);
@@ -111,30 +111,30 @@ struct row {
   std::string scene, method, metric, unit;
   double value;
 };
-// What measured the rows of some scenes. In a CSV these are rows of their own before the header, `# name,value`.
+// The machine, compiler and commit that measured some scenes. In a CSV they are rows before the header, `# name,value`.
 struct origin {
   std::string processor = "unknown", cores = "unknown", compiler = "unknown", commit = "unknown", date = "unknown";
   std::vector<std::string> scenes;
 };
 struct table {
-  std::vector<origin> origins; // each scene is in one of them
+  std::vector<origin> origins; // each scene is in exactly one of them
   std::vector<row> rows;
 };
 origin origin_of_this_run(); // without scenes
 void write_origin(std::FILE* file, const origin& o);
 void read_origin(const std::string& line, std::vector<origin>& origins); // a row before the header
-// Rows of this run behind those of scenes that it did not measure.
+// Replaces the rows of the scenes that this run measured, and keeps those of other scenes before them.
 void replace_scenes(table& t, const std::vector<row>& rows);
 void add_rows(const result& r, std::vector<row>& rows);
 void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
-// "-": the standard output; benchmark: the first column. The rows' origin stands before the header.
+// path "-": the standard output; benchmark: the first column. The rows' origin comes before the header.
 void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark = "volume");
-// The same where rows of earlier runs come first.
+// Writes a table that also holds rows of earlier runs.
 void write_csv(const std::string& path, const table& t, const char* benchmark);
-// Without rows where there is no such file.
+// Returns a table without rows if there is no such file.
 table read_csv(const std::string& path);
 void print_table(const std::vector<row>& rows);
-// Frame time against error, both logarithmic, one mark a method, one chart a scene.
+// Charts frame time against error, both logarithmic: one chart per scene, one mark per method.
 void write_chart(const std::string& path, const std::vector<row>& rows);
 struct chart_mark {
   std::string scene, method;
@@ -145,6 +145,6 @@ void write_chart(const std::string& path, const std::vector<chart_mark>& marks, 
 // ---- volume.cxx
 int volume_main(int argc, char* argv[]);
 
-// ---- main.cxx: starts the program again under xvfb-run where there is no display
+// ---- main.cxx: restarts the program under xvfb-run if there is no display
 void ensure_display(char* argv[]);
 } // namespace bench

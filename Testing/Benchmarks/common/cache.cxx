@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of references are kept between runs: they take most of the time.
+// Keeps reference pictures between runs, because they take most of the time.
 #include "bench.h"
 
 #include <cstdio>

@@ -38,7 +38,8 @@ void style(const std::string& method, vtkPlotPoints* plot)
   }
   const size_t number = static_cast<size_t>(found - seen.begin());
   const unsigned char* c = colors[number % 10];
-  const bool ours = method.rfind("stratus", 0) == 0 && number < 10; // colours come again then
+  const bool ours =
+    method.rfind("stratus", 0) == 0 && number < 10; // from the tenth method on, colours repeat, so circles would be ambiguous
   plot->SetColor(c[0], c[1], c[2], 255);
   plot->SetMarkerStyle(ours ? vtkPlotPoints::CIRCLE : number % 2 ? vtkPlotPoints::DIAMOND : vtkPlotPoints::SQUARE);
   plot->SetMarkerSize(12.0f);
@@ -52,14 +53,14 @@ void range(vtkAxis* axis, double low, double high, const char* title)
   axis->SetTitle(title);
 }
 
-// Whole decades around the marks.
+// Finds the whole decades that contain the marks.
 void decades(std::vector<double> values, double& low, double& high)
 {
   low = std::pow(10.0, std::floor(std::log10(*std::min_element(values.begin(), values.end())) - 0.05));
   high = std::pow(10.0, std::ceil(std::log10(*std::max_element(values.begin(), values.end())) + 0.05));
 }
 
-// titles: of the axes x and y.
+// titles: of the x and the y axis.
 void add_chart(
   vtkContextScene* all, const std::string& title, const std::vector<chart_mark>& marks, const char* const titles[2], int column, int line)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench: hands over to the part that its first argument names.
+// stratus-bench: runs the part that its first argument names.
 #include "bench.h"
 #include "distance.h"
 #include "octree_bench.h"
@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <unistd.h>
 
-// VTK's windows of X end the process without a display; so start again with one. Those of EGL and OSMesa need none.
+// VTK's X windows end the process if there is no display, so restart with one. EGL and OSMesa need none.
 void bench::ensure_display(char* argv[])
 {
   if (std::getenv("DISPLAY") || !vtkNew<vtkRenderWindow>()->IsA("vtkXOpenGLRenderWindow")) {
@@ -48,7 +48,7 @@ int main(int argc, char* argv[])
     if (part == "tetra") {
       return bench::tetra_main(argc, argv);
     }
-    return bench::volume_main(argc, argv); // it has the help of all, too
+    return bench::volume_main(argc, argv); // it also prints the help of all parts
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stratus-bench: %s\n", error.what());
     return 1;

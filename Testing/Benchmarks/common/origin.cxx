@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where figures come from: the rows at the head of a table that name processor, compiler, commit and date.
+// The origin of figures: rows at the head of a table that name processor, compiler, commit and date.
 #include "bench.h"
 #include "bench_commit.h"
 
@@ -73,7 +73,7 @@ std::vector<std::string> scenes_in(const std::string& list)
   return scenes;
 }
 
-// Scenes that no origin names come from nobody knows where: a table of before there were origins.
+// Gives scenes without an origin an unknown one. Tables of older versions have such scenes.
 void add_missing(table& t)
 {
   origin unknown;
@@ -117,7 +117,7 @@ void read_origin(const std::string& line, std::vector<origin>& origins)
     return;
   }
   const std::string name = line.substr(2, comma - 2), value = line.substr(comma + 1);
-  if (name == "processor") { // the first row of each
+  if (name == "processor") { // the first row of each origin
     origins.emplace_back();
     origins.back().processor = value;
   } else if (!origins.empty()) {

@@ -74,7 +74,7 @@ table read_csv(const std::string& path)
   while (std::getline(file, line) && line.compare(0, 1, "#") == 0) {
     read_origin(line, t.origins);
   }
-  while (std::getline(file, line)) { // behind the header
+  while (std::getline(file, line)) { // rows after the header
     std::vector<std::string> p;
     std::istringstream stream(line);
     std::string part;

@@ -41,7 +41,7 @@ transfer own(const stratus_transfer& t)
   return result;
 }
 
-// An image around values that somebody else holds.
+// Wraps values in an image that does not own them.
 vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -68,7 +68,7 @@ vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
   return image;
 }
 
-// The same space in other voxels, by linear interpolation.
+// Resamples a scene over the same space by linear interpolation.
 void resample(scene& s, int64_t along)
 {
   const stratus_volume from = s.volume;
@@ -120,7 +120,7 @@ scene scene_of_record(stratus_context* context, const std::string& name)
   return s;
 }
 
-// The transfer functions of record for a file (isabel's): shares of the scalar range, per spacing.
+// Makes the scene of a file. Its transfer functions are isabel's: points are shares of the scalar range, opacity is per spacing.
 scene scene_of_file(const std::string& path)
 {
   scene s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench distance: exact distance fields and floodings, their times and errors, beside ITK's in one process.
+// stratus-bench distance: times and errors of exact distance fields and of floodings, compared with ITK's, in one process.
 #include "distance.h"
 #include "bench.h"
 
@@ -204,7 +204,7 @@ judgement judge(const std::vector<float>& distances, const std::vector<float>& r
   double squares = 0.0;
   for (size_t v = 0; v < right.size(); ++v) {
     if (std::isinf(right[v])) {
-      wrong += std::fabs(distances[v]) < 1e3f; // ITK says "none" by a large number
+      wrong += std::fabs(distances[v]) < 1e3f; // ITK marks "none" by a large number
     } else if (std::isinf(distances[v])) {
       ++unfilled;
     } else {
@@ -221,7 +221,7 @@ judgement judge(const std::vector<float>& distances, const std::vector<float>& r
   return j;
 }
 
-// The field as users of floats get it; memory is touched for the first time within, as in ITK.
+// Times until the field is an array of floats. They include the first touch of its memory, as ITK's times do.
 struct timed {
   std::vector<double> build_ms, array_ms, cpu_ms;
   std::vector<float> distances;
@@ -233,7 +233,7 @@ double processor_ms()
   return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Floodings and the peer take seconds.
+// Returns fewer repeats for large cases, because floodings and ITK take seconds.
 int repeats_of_slow(size_t count)
 {
   return count > 64 * 64 * 64 ? 1 : 3;
@@ -343,7 +343,7 @@ private:
   std::vector<row> rows_;
 };
 
-// Only what is of the largest size; no error at all is drawn at the lower edge, for the axes are logarithmic.
+// Charts the cases of one size. Methods without error are drawn at the lower edge, because the axes are logarithmic.
 void chart(const std::string& path, int64_t size, const std::vector<row>& rows)
 {
   constexpr double least = 1e-5; // below one voxel of 128^3

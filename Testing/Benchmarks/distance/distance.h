@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of stratus-bench distance share.
+// Declarations that the parts of stratus-bench distance share.
 #pragma once
 
 #include "stratus.h"
@@ -10,7 +10,7 @@
 
 namespace bench {
 
-// A byte a voxel, 1 where it is effective, x fastest.
+// One byte per voxel, 1 if it is effective, x fastest.
 struct distance_case {
   std::string name; // "sparse-128"
   int64_t size = 0; // voxels along each axis
@@ -22,10 +22,10 @@ std::vector<std::string> distance_case_names();
 distance_case make_distance_case(const std::string& name, int64_t size); // throws failure
 
 // ---- distance_itk.cxx
-// itk::SignedMaurerDistanceMapImageFilter, distances and not their squares, negative inside, on `threads` threads. Returns the milliseconds
-// of Update(), and the distances if `distances` is not null.
+// Runs itk::SignedMaurerDistanceMapImageFilter: distances, not squared, negative inside. Returns the milliseconds of Update(), and the
+// distances if `distances` is not null.
 double run_itk(const distance_case& c, int threads, std::vector<float>* distances);
-// The voxels that it measures from, inside and outside: effective ones with one of the 26 neighbours that is not.
+// Returns the voxels from which ITK measures, inside and outside: effective ones with at least one of 26 neighbours that is not.
 std::vector<uint8_t> itk_contour(const distance_case& c);
 
 // ---- distance.cxx

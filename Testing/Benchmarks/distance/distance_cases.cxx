@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sets of effective voxels that distance transforms are timed on. The same at every run: their chances come from a generator of their
-// own.
+// The sets of effective voxels that distance transforms are timed on. Random sets come from a generator of their own, so that every run
+// has the same.
 //
 //   sparse     one voxel in 1000, anywhere
 //   clustered  every second voxel of 20 balls of radius size/20, anywhere

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ITK's distance transform as the peer. It measures from the contour: 0 on the effective voxels that touch others, minus the distance to
-// them farther inside.
+// ITK's distance transform, for comparison. It measures from the contour: the distance is 0 on effective voxels that touch others, and
+// negative farther inside.
 #include "bench.h"
 #include "distance.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Embree 3 on voxels as user geometry: a box a voxel, or a box a brick of 4^3 voxels whose bit mask is walked. The callbacks do no more
-// than they must: reciprocals of the direction come with the ray, and only the distance and the primitive are written.
+// Embree 3 on voxels as user geometry: one box per voxel, or one box per brick of 4^3 voxels whose bit mask is walked. The callbacks do as
+// little as possible: reciprocals of the direction come with the ray, and only distance and primitive are written.
 #include "tree_methods.h"
 
 #include <embree3/rtcore.h>
@@ -19,7 +19,7 @@ namespace bench {
 
 namespace {
 
-constexpr int width = 512; // of a picture
+constexpr int width = 512; // of a picture, in pixels
 constexpr int packet = 16, tile = 4;
 
 struct brick {
@@ -27,11 +27,11 @@ struct brick {
   int32_t at[3]; // in voxels
 };
 
-// The library passes the context on to the callbacks: what a ray needs travels behind it.
+// Embree passes the context to the callbacks, so the members behind it carry what a callback needs.
 struct ray_context {
   RTCIntersectContext head;
   float inverse[3];
-  int32_t voxel; // bits: the bit of the mask
+  int32_t voxel; // bricks: the bit of the mask
 };
 struct packet_context {
   RTCIntersectContext head;
@@ -118,7 +118,7 @@ void brick_bounds(const RTCBoundsFunctionArguments* a)
   o->upper_z = static_cast<float>(b->at[2] + hi[2]);
 }
 
-// From voxel to voxel through the brick, by the planes between them.
+// Walks the brick from voxel to voxel, by the planes between them.
 void brick_hit_one(const RTCIntersectFunctionNArguments* a)
 {
   const brick* b = static_cast<const brick*>(a->geometryUserPtr) + a->primID;
@@ -233,7 +233,7 @@ private:
   bool coherent = false;
 };
 
-// As the other side makes them: bits in a field of masks, and from it those that are not empty.
+// Makes bricks as Stratus does: sets bits in an array of masks, then lists the masks that are not empty.
 void embree_hits::make_bricks()
 {
   int64_t n[3];

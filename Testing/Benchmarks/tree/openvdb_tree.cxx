@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB's mask tree, and its hierarchical DDA down to the voxel.
+// OpenVDB's mask tree, traversed by its hierarchical DDA down to the voxel.
 #include <openvdb/openvdb.h>
 #include <openvdb/math/DDA.h>
 #include <openvdb/math/Ray.h>
@@ -21,7 +21,7 @@ namespace {
 using mask_tree = openvdb::MaskTree;
 using index_ray = openvdb::math::Ray<double>;
 
-// What LevelSetHDDA asks on its way down: nodes by the accessor, at the end whether the voxel is on.
+// The callbacks of LevelSetHDDA: the accessor finds nodes, and the last level tests whether the voxel is on.
 class tester
 {
 public:
@@ -94,7 +94,7 @@ public:
   void prepare(const voxel_rays& from) override
   {
     this->rays.clear();
-    for (const stratus_ray& r : from.rays) { // it wants to begin past 0; no ray of record begins inside a voxel
+    for (const stratus_ray& r : from.rays) { // OpenVDB's rays must begin beyond 0, which is harmless: no measured ray begins inside a voxel
       this->rays.emplace_back(
         openvdb::Vec3d(r.origin), openvdb::Vec3d(r.direction), std::max(r.t_min, openvdb::math::Delta<double>::value()), 1e30);
     }

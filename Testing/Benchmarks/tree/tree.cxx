@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench tree: how long trees over effective voxels take to build and to trace, beside Embree and OpenVDB, in one process.
+// stratus-bench tree: build and trace times of trees over effective voxels, compared with Embree and OpenVDB, in one process.
 #include "tree_methods.h"
 
 #include <algorithm>
@@ -170,11 +170,11 @@ std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& m
 
 // ---------------------------------------------------------------- one scene
 
-// A set of record or the cloud's, its rays, and where they hit.
+// A set of voxels, built-in or the cloud's, with its rays and the plain walk's hits.
 struct tree_scene {
   context_pointer context = host(0);
   voxel_set set;
-  std::vector<int32_t> own; // positions of what is no set of record
+  std::vector<int32_t> own; // positions of a set that is not built in
   int32_t* listed = nullptr;
   stratus_voxels* voxels = nullptr;
   voxel_rays rays[2];
@@ -235,7 +235,7 @@ struct measured {
 
 void run_round(const tree_scene& scene, const std::string& method, bool first, measured& m)
 {
-  // Idle threads of the one before spin a while for more work; whoever is next shall not pay for it.
+  // The previous method's idle threads spin for a while. Wait, so that they do not slow the next method.
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const std::unique_ptr<first_hits> hits = make_hits(scene.set, method);
   double spent = 0.0;

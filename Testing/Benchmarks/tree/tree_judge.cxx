@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// First hits beside those of the plain walk in double precision.
+// Compares first hits with those of the plain walk in double precision.
 #include "tree_methods.h"
 
 #include <algorithm>
@@ -9,16 +9,16 @@ namespace bench {
 
 namespace {
 
-// What rounding can do to a crossing, beside the numbers that it is computed from.
+// Rounding error of a crossing, relative to the numbers that it is computed from.
 constexpr double relative = 1e-9;
-// A hit's distance may be rounded to a float, with a few operations before.
+// Error of a hit's distance that was computed in a few float operations.
 constexpr double float_relative = 4e-6;
 
 struct chord {
   double from, to;
 };
 
-// Where a ray enters and leaves a voxel; from > to: it passes by.
+// Finds where a ray enters and leaves a voxel; from > to: it misses the voxel.
 chord chord_of(const stratus_ray& r, const int32_t voxel[3])
 {
   chord c = { r.t_min, r.t_max };
@@ -39,7 +39,7 @@ double scale_of(const stratus_ray& r, double t)
   return most * relative;
 }
 
-// The two differ. It is rounding that decides if either voxel is touched for no length at all, or both are entered at once.
+// Whether rounding decides between two hits that differ: the ray's chord in either voxel has no length, or it enters both at once.
 bool is_grazing(const stratus_ray& r, const stratus_hit& walk, const voxel_hit& hit)
 {
   const bool walk_hit = walk.voxel[0] >= 0, other_hit = hit.t >= 0.0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of `stratus-bench tree` share: a set of voxels, its rays, and whoever finds first hits in it.
+// Declarations that the parts of `stratus-bench tree` share: a set of voxels, its rays, and the methods that find first hits.
 #pragma once
 
 #include "bench.h"
 
 namespace bench {
 
-// Voxel (i,j,k) fills [i,i+1] and so on.
+// Voxel (i,j,k) is [i,i+1] x [j,j+1] x [k,k+1].
 struct voxel_set {
   std::string name;
   int64_t dimensions[3];
@@ -16,7 +16,7 @@ struct voxel_set {
 
 struct voxel_rays {
   std::vector<stratus_ray> rays;
-  bool coherent; // 512 x 512 of a picture, row by row
+  bool coherent; // the rays of a picture of 512 x 512, row by row
 };
 
 struct voxel_hit {
@@ -25,18 +25,17 @@ struct voxel_hit {
 };
 
 struct tree_numbers {
-  double bytes = -1.0, nodes = -1.0, depth = -1.0, sah = -1.0; // -1: not told
+  double bytes = -1.0, nodes = -1.0, depth = -1.0, sah = -1.0; // -1: unknown
 };
 
-// One method on one set. build() makes everything anew from the list with 2 threads; trace() runs on one thread what prepare() has laid
-// out.
+// One method on one set. build() rebuilds everything from the list with 2 threads. trace() traces the prepared rays on one thread.
 class first_hits
 {
 public:
   virtual ~first_hits() = default;
   virtual void build() = 0;
   virtual tree_numbers numbers() const = 0;
-  virtual void prepare(const voxel_rays& rays) = 0; // not timed: rays in the method's own form
+  virtual void prepare(const voxel_rays& rays) = 0; // converts rays to the method's own form; not timed
   virtual void trace() = 0;
   virtual std::vector<voxel_hit> hits() const = 0; // of the last trace(), in the rays' order
 };
@@ -45,7 +44,7 @@ public:
 std::unique_ptr<first_hits> make_embree_hits(const voxel_set& set, const std::string& kind);
 // ---- openvdb_tree.cxx
 std::unique_ptr<first_hits> make_openvdb_hits(const voxel_set& set);
-// ---- tree_judge.cxx: hits that differ from the plain walk's; grazing: those where rounding decides
+// ---- tree_judge.cxx: counts hits that differ from the plain walk's; grazing: those of them that rounding decides
 struct wrong_count {
   int64_t wrong = 0, grazing = 0;
 };

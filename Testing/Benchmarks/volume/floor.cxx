@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Method `floor` estimates what a ray caster of this kind has to do: it counts the samples with alpha > 0 on the 1-voxel lattice until a
-// ray is opaque, and divides by the rate of a tight loop. It is no bound. A caster that lays its samples elsewhere can take fewer of them
-// (fog does).
+// Method `floor` estimates the time of an ideal ray caster. It counts the samples with alpha > 0, one voxel apart, until each ray is
+// opaque, and divides by the sample rate of a tight loop. It is no lower bound: a caster that places samples differently can take fewer of
+// them, as in scene fog.
 #include "bench.h"
 #include "rate.h"
 
@@ -137,7 +137,7 @@ double counter::count(const stratus_camera& camera, int size) const
         direction[a] = camera.forward[a] + ((2.0 * x + 1.0) / size - 1.0) * camera.right[a] + ((2.0 * y + 1.0) / size - 1.0) * camera.up[a];
         length += direction[a] * direction[a];
       }
-      for (int a = 0; a < 3; ++a) { // scenes lie straight: no rotation
+      for (int a = 0; a < 3; ++a) { // scenes are not rotated
         direction[a] /= std::sqrt(length) * this->Scene.volume.spacing[a];
         origin[a] = (camera.eye[a] - this->Scene.volume.origin[a]) / this->Scene.volume.spacing[a];
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of all pictures of a scene against the double reference, whose step is halved until it agrees with itself 10 dB beyond the best
-// figure printed; and the pixels that a structure changed.
+// Measures the errors of all pictures of a scene against the double-precision reference, and counts the pixels that a structure changed.
+// The reference's step is halved until two pictures agree by 10 dB more than the best figure printed.
 #include "bench.h"
 #include "reference.h"
 
@@ -32,7 +32,7 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
   return hash;
 }
 
-// Of everything that the reference's picture depends on but view, size and step.
+// Hashes everything that determines the reference's picture, except view, size and step.
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
@@ -50,7 +50,7 @@ uint64_t hash_of(const scene& s)
   return hash;
 }
 
-// On a terminal: what takes so long.
+// Shows on a terminal which reference is being drawn.
 void progress(const scene& s, double step, int view)
 {
   if (isatty(STDERR_FILENO)) {
@@ -113,7 +113,7 @@ private:
 struct error {
   double squares = 0.0, count = 0.0, largest = 0.0;
   void add(const float* a, const float* b, size_t pixels) { reference_error(a, b, pixels, &this->squares, &this->count, &this->largest); }
-  // Equal pictures get a figure that a table and a chart can hold.
+  // Equal pictures get a finite figure, which tables and charts can hold.
   double psnr() const { return this->squares > 0.0 ? -10.0 * std::log10(this->squares / this->count) : 200.0; }
 };
 
@@ -144,7 +144,7 @@ void measure(const std::vector<std::vector<float>>& reference, result& r)
   r.max_error = floats ? in_float.largest : in_bytes.largest;
 }
 
-// "@device" of stratus:octant@device: pictures are compared on one device.
+// Returns "@device" of stratus:octant@device. Only pictures of one device are compared.
 std::string where(const std::string& method)
 {
   const size_t at = method.find('@');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The methods by name, and the one way in which all of them are measured.
+// Makes methods by name, and measures all of them in the same way.
 #include "bench.h"
 #include "openvdb_mapper.h"
 #include "window.h"
@@ -20,7 +20,7 @@ namespace {
 
 const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
-// stratus:STRUCTURE[@host|@device] -> structure and device; false for other names.
+// Parses stratus:STRUCTURE[@host|@device]. Returns false for other names.
 bool parse_stratus(const std::string& name, int& structure, std::string& device)
 {
   if (name.rfind("stratus:", 0) != 0) {
@@ -49,7 +49,7 @@ vtkSmartPointer<vtkVolumeMapper> make_stratus(int structure, const std::string& 
   return mapper;
 }
 
-// Every automatic adjustment off; steps in world units.
+// All automatic adjustments are off. step is in world units.
 vtkSmartPointer<vtkVolumeMapper> make_fixed_point(double step)
 {
   auto mapper = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();

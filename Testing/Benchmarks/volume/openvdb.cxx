@@ -39,7 +39,7 @@ struct entry {
 };
 
 struct view {
-  openvdb::Vec3d eye, forward, right, up; // the ray of (u, v) within -1..1 goes along forward + u right + v up
+  openvdb::Vec3d eye, forward, right, up; // the ray of (u, v), within -1..1, has direction forward + u right + v up
 };
 
 view view_of(vtkRenderer* renderer)
@@ -63,7 +63,7 @@ struct openvdb_mapper::inside {
   stratus_volume volume;
   double step = 1.0;
   openvdb::FloatGrid::Ptr values;
-  openvdb::FloatGrid::Ptr shown; // its leaves are where a cell shows something
+  openvdb::FloatGrid::Ptr shown; // its leaves cover the cells that show something
   std::unique_ptr<intersector> rays;
   std::vector<entry> table;
   double low = 0.0, high = 1.0;
@@ -119,11 +119,11 @@ void openvdb_mapper::inside::make_table(vtkVolumeProperty* property)
   }
 }
 
-// A cell is active if the opacity is not zero everywhere between its lowest and highest corner.
+// Activates the cells whose opacity is not 0 for all values between their lowest and highest corner.
 void openvdb_mapper::inside::make_topology()
 {
   const int64_t* n = this->volume.dimensions;
-  std::vector<double> next(table_size + 2, 1e300); // lowest value from entry i on that shows
+  std::vector<double> next(table_size + 2, 1e300); // lowest visible value from entry i on
   for (int i = table_size; i >= 0; --i) {
     const double value = this->low + (this->high - this->low) * i / table_size;
     next[i] = this->table[i].rgba[3] > 0.0f ? value : next[i + 1];
@@ -158,11 +158,11 @@ void openvdb_mapper::inside::trace(intersector& hits,
   float left = 1.0f;
   double from = 0.0;
   double to = 0.0;
-  // Times are world lengths: the direction in voxels is that of one world unit.
+  // Times are world lengths, because the direction in voxels is that of one world unit.
   ray r(eye, direction, 1e-6, 1e30);
   const openvdb::Vec3d last(
     double(this->volume.dimensions[0] - 1), double(this->volume.dimensions[1] - 1), double(this->volume.dimensions[2] - 1));
-  // Leaves stick out of the volume; what they hold there is not to be seen.
+  // Leaves extend beyond the volume, so clip the ray to it.
   if (!r.clip(openvdb::BBoxd(openvdb::Vec3d(0.0), last)) || !hits.setIndexRay(r)) {
     return;
   }
@@ -246,8 +246,8 @@ void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   }
   const int* size = renderer->GetSize();
   this->In->cast(view_of(renderer), size[0], size[1]);
-  // Texel on pixel: vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, for which OpenVDB is not to blame. Nothing is
-  // behind.
+  // Draw each texel on its pixel. vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, an error that is not OpenVDB's.
+  // Nothing lies behind, so neither blending nor a depth test is needed.
   auto* target = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   vtkOpenGLState* state = target->GetState();
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB's way to draw a volume as a VTK mapper: its VolumeRayIntersector over the leaves that show something, its BoxSampler, TBB over
-// tiles, drawn texel on pixel. In a header without OpenVDB, whose macros and VTK's don't like each other.
+// A VTK mapper that draws a volume by OpenVDB: VolumeRayIntersector over the leaves that show something, BoxSampler, and TBB over tiles.
+// This header does not include OpenVDB, whose macros clash with VTK's.
 #pragma once
 
 #include "stratus.h"
@@ -17,7 +17,7 @@ public:
   static openvdb_mapper* New();
   vtkTypeMacro(openvdb_mapper, vtkVolumeMapper);
 
-  // Borrows the values; steps of `step` in the world.
+  // Borrows the values. step is in world units.
   void set_volume(const stratus_volume& volume, double step);
   unsigned long long samples() const; // of the last frame
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;

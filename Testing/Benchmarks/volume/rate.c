@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How fast this machine samples in a tight loop: the rate by which method `floor` estimates. */
+ * Measures this machine's sample rate in a tight loop, for the estimate of method `floor`. */
 #define _POSIX_C_SOURCE 200809L
 #include "rate.h"
 
@@ -21,10 +21,10 @@ typedef float row16[16] __attribute__((aligned(64)));
 
 typedef struct work {
   float* block;
-  float* table; /* red, green, blue, alpha: TABLE of each */
+  float* table; /* TABLE reds, then greens, blues and alphas */
 } work;
 
-/* Where 16 rays next to each other start, and their common step. */
+/* The start of a packet of 16 neighbouring rays, and their common step. */
 typedef struct packet {
   float start[3], step[3];
 } packet;
@@ -36,9 +36,9 @@ static double now(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-#define NEIGHBOURS 0.7f /* voxels from ray to ray */
+#define NEIGHBOURS 0.7f /* voxels between rays */
 
-/* Both return something of the picture so that nothing is optimised away. */
+/* Both versions return part of the picture, so that the compiler removes nothing. */
 static float packet_portable(const work* w, const packet* p)
 {
   row16 x[3], color[3] = { { 0 } }, left;
@@ -119,7 +119,7 @@ const char* bench_sample_loop(void)
   return has_avx512() ? "AVX-512" : "portable";
 }
 
-/* A packet anywhere in the block in any direction that stays inside: 48 steps of at most 0.8 along each axis from near its corner. */
+/* Marches a random packet that stays inside the block: 48 steps of at most 0.8 voxels along each axis from near its corner. */
 static float march(const work* w, int wide, uint32_t* random)
 {
   packet p;

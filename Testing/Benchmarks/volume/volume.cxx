@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench volume: this project's pictures and times beside those of what users have today, in one process.
+// stratus-bench volume: compares Stratus' pictures and times with those of existing volume renderers, in one process.
 #include "bench.h"
 #include "rate.h"
 

@@ -26,7 +26,7 @@ window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper
     this->Property->SetSpecular(c, 0.2);
     this->Property->SetSpecularPower(c, 10.0);
   }
-  // vtkFixedPointVolumeRayCastMapper's ambient light is the light's, and that is black unless told otherwise.
+  // vtkFixedPointVolumeRayCastMapper takes ambient light from the light, whose default is black.
   vtkNew<vtkLight> light;
   light->SetLightTypeToHeadlight();
   light->SetAmbientColor(1, 1, 1);
@@ -84,7 +84,7 @@ double window::render()
 double window::first()
 {
   this->Renderer->RemoveAllViewProps();
-  this->render(); // the window's own beginnings are not the method's
+  this->render(); // the window's set-up does not count as the method's
   this->Renderer->AddVolume(this->Volume);
   this->show(0);
   return this->render();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window with one volume in it, timed from Render() to WaitForCompletion().
+// A window with one volume. Frames are timed from Render() to WaitForCompletion().
 #pragma once
 
 #include "bench.h"
