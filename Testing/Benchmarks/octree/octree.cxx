@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench octree: which of many boxes a camera sees, by view-adaptive octrees, a static one and a plain list.
+// stratus-bench octree: finds which of many boxes a camera sees, by view-adaptive octrees, a static octree and a plain list.
 #include "octree_bench.h"
 #include "bench.h"
 
@@ -133,7 +133,7 @@ double false_percent(const verdict& v)
   return v.kept > 0 ? 100.0 * static_cast<double>(v.false_keeps) / static_cast<double>(v.kept) : 0.0;
 }
 
-// 1 % of the boxes, here and there, moved by their own size, five times.
+// Times five updates, each of which moves 1 % of the boxes, spread over all, by their own size.
 double update_ms(const path_run& run, const octree_run& octree)
 {
   std::vector<double> times;
@@ -189,7 +189,7 @@ void run_method(const path_run& run, const std::string& scene, const std::string
     false_percent(exact.judged), wrong);
 }
 
-// How deep the pixel octree becomes on the path: the static one's depth.
+// Returns the depth that the pixel octree reaches on the path. The static octree gets this depth.
 int pixel_depth(const path_run& run)
 {
   stratus_octree_statistics statistics;
@@ -278,7 +278,7 @@ std::vector<chart_mark> marks_of(const std::vector<row>& rows)
     mark.x = r.metric == "cull_ms" ? r.value : mark.x;
     mark.y = r.metric == "bytes" ? r.value : mark.y;
   }
-  std::vector<chart_mark> marks; // of actors no bytes are told
+  std::vector<chart_mark> marks; // rows of actors have no bytes, and so no mark
   for (const auto& entry : found) {
     if (entry.second.x > 0.0 && entry.second.y > 0.0) {
       marks.push_back(entry.second);

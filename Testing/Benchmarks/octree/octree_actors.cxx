@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The octree bench's boxes as actors of VTK: the whole of Cull(), its look for changes included, and whole frames.
+// The octree benchmark's boxes as actors of VTK. It times Cull(), including its check for changes, and whole frames.
 #include "bench.h"
 #include "octree_bench.h"
 
@@ -25,7 +25,7 @@ namespace bench {
 
 namespace {
 
-constexpr double frames_for_ms = 15000.0; // of one method on one path, at least 5 of them
+constexpr double frames_for_ms = 15000.0; // of one method on one path; at least 5 frames
 
 double processor_ms()
 {
@@ -34,7 +34,7 @@ double processor_ms()
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-// Each box an actor with a mapper of its own; one source for all, moved and scaled.
+// A scene in which each box is an actor with its own mapper, a moved and scaled copy of one source.
 struct stage {
   explicit stage(const std::vector<box_bounds>& boxes)
   {
@@ -52,7 +52,7 @@ struct stage {
       actor->SetPosition(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]));
       actor->SetScale(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
       actor->GetProperty()->SetColor(0.3 + 0.1 * static_cast<double>(i % 7), 0.3 + 0.1 * static_cast<double>(i % 5), 0.6);
-      this->renderer->GetViewProps()->AddItem(actor); // AddActor() looks through all that are there
+      this->renderer->GetViewProps()->AddItem(actor); // AddActor() would search all actors
       actor->AddConsumer(this->renderer);
       this->numbers[actor.Get()] = static_cast<uint32_t>(i);
       this->props.push_back(actor.Get());
@@ -121,7 +121,7 @@ culled cull_path(
   return result;
 }
 
-// Every n-th camera, so that few frames still see the whole path; the first look of a culler does not count.
+// Times every n-th camera, so that few frames cover the whole path. The culler's first frame does not count.
 std::vector<double> frame_times(stage& s, vtkCuller* culler, const std::vector<stratus_camera>& cameras)
 {
   std::vector<double> times;
@@ -156,7 +156,7 @@ void run_actors(stratus_context* context, const std::string& scene, const std::v
   const std::vector<box_bounds> boxes = make_boxes("boxes-" + scene.substr(scene.find('-') + 1));
   stage s(boxes);
   s.show(camera_path(context, "far", 1)[0]);
-  s.window->Render(); // all of them, so that no method pays for what graphics build once
+  s.window->Render(); // draws all actors, so that no method pays for one-time graphics set-up
   for (const std::string& path : paths) {
     std::fprintf(stderr, "%s/%s\n", scene.c_str(), path.c_str());
     const std::vector<stratus_camera> cameras = camera_path(context, path, frames);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of stratus-bench octree share: scenes of boxes, paths of cameras, and the judge.
+// Declarations that the parts of stratus-bench octree share: scenes of boxes, paths of cameras, and the judge.
 #pragma once
 
 #include "stratus.h"
@@ -20,7 +20,7 @@ int octree_main(int argc, char* argv[]);
 
 using box_bounds = std::array<double, 6>;
 
-// boxes-N: N boxes, unevenly spread over a cube of edge 100, edges 100 to 1; the same at each call.
+// boxes-N: N boxes, unevenly spread over a cube of edge 100, with edges in a range of 100 to 1; the same at each call.
 std::vector<box_bounds> make_boxes(const std::string& name);
 const std::vector<std::string>& path_names(); // far, near, inside, turn
 std::vector<stratus_camera> camera_path(stratus_context* context, const std::string& name, int frames);
@@ -30,7 +30,7 @@ std::vector<stratus_camera> camera_path(stratus_context* context, const std::str
 struct verdict {
   size_t kept = 0, wrong_culls = 0, false_keeps = 0;
 };
-// Every box cut out against the frustum, face by face; ids: what a method kept.
+// Clips every box against the frustum, face by face. ids: the boxes that a method kept.
 verdict judge_culling(
   const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count);
 
@@ -42,10 +42,10 @@ struct closer {
   void operator()(stratus_octree_view* v) const { stratus_octree_view_destroy(v); }
 };
 
-// A tree of boxes, not looked at yet, and a view of it.
+// A new tree of boxes, and a view of it.
 struct octree_run {
   octree_run(stratus_context* context, const std::vector<box_bounds>& boxes, const stratus_octree_options& options);
-  // Milliseconds of a call; threads: of the host.
+  // Returns the milliseconds of a call. threads: of the host.
   double look(const stratus_camera& camera, const stratus_octree_cull_options* options, int threads, stratus_octree_visible* visible) const;
 
   stratus_context* context;

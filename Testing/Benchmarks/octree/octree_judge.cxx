@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which boxes a frustum truly meets: by cutting the faces of each against its planes. It shares no code with what it judges.
+// Finds which boxes a frustum truly meets, by clipping their faces against its planes. It shares no code with the methods that it judges.
 #include "octree_bench.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ double value_of(const double plane[4], const point& p)
   return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3];
 }
 
-// Sutherland and Hodgman's way.
+// Clips a polygon (Sutherland and Hodgman).
 std::vector<point> cut(const std::vector<point>& face, const double plane[4], double room)
 {
   std::vector<point> kept;
@@ -38,7 +38,7 @@ point corner(const box_bounds& box, unsigned number)
   return { box[number & 1], box[2 + (number >> 1 & 1)], box[4 + (number >> 2)] };
 }
 
-// room: how far outside still counts; negative: how far inside is needed.
+// room: how far outside a box still counts; negative: how far inside it must reach.
 bool meets(const box_bounds& box, const stratus_frustum& frustum, const point& inside, double room)
 {
   bool all = true;
@@ -78,7 +78,7 @@ bool meets(const box_bounds& box, const stratus_frustum& frustum, const point& i
 verdict judge_culling(
   const std::vector<box_bounds>& boxes, const stratus_frustum& frustum, const stratus_camera& camera, const uint32_t* ids, size_t count)
 {
-  // Rounding of coordinates up to a thousand, and then some.
+  // Exceeds the rounding of coordinates up to 1000.
   constexpr double room = 1e-9;
   point inside;
   for (size_t a = 0; a < 3; ++a) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables 1 to 3 of Li & Huang 2024 on our 9454 boxes: what splitting on demand saves, what C does, and what a level costs. (Its table 4,
-// frames a second, is in the rows of actors-9454.) The paper's tree throughout: an object in every child that its sphere touches, split to
-// the last level or C.
+// Tables 1 to 3 of Li & Huang 2024 on our 9454 boxes: the savings of splitting on demand, the effect of C, and the cost of a level. (Rows
+// of actors-9454 are its table 4, frames per second.) All trees are the paper's: an object is in every child that its sphere touches, and
+// nodes are split to the last level or C.
 #include "bench.h"
 #include "octree_bench.h"
 
@@ -19,7 +19,7 @@ struct grown {
   double nodes, bytes, object_bytes, cull_ms, culled;
 };
 
-// A tree that has looked at the whole path; cull_ms and culled (percent) are means over the frames.
+// Walks a tree along the whole path. cull_ms and culled (percent) are means over the frames.
 grown grow(stratus_context* context, const std::vector<box_bounds>& boxes, const std::vector<stratus_camera>& cameras,
   const stratus_octree_options& o)
 {
@@ -37,7 +37,7 @@ grown grow(stratus_context* context, const std::vector<box_bounds>& boxes, const
     100.0 - 100.0 * visible / count / static_cast<double>(boxes.size()) };
 }
 
-// Leaves of one object, so that only the last level or C ends a branch; on demand: no rule by distance.
+// Leaves hold one object, so that only the last level or C ends a branch. C of 1e9 turns the rule by distance off; callers may lower it.
 stratus_octree_options options_of(bool on_demand, int levels)
 {
   stratus_octree_options o = stratus_octree_options_default();
@@ -69,7 +69,7 @@ void run_paper(stratus_context* context, std::vector<row>& rows)
   const std::vector<box_bounds> boxes = make_boxes(scene_of_the_paper);
   const teller to = { rows };
   const auto one_view = [&](const std::string& path) { return camera_path(context, path, 1); };
-  // Table 1: one view, and many.
+  // Table 1: one view, and many views.
   for (const char* path : { "inside", "turn" }) {
     for (const int views : { 1, frames }) {
       const std::string scene = std::string("paper-table-1/") + path + (views > 1 ? "-path" : "-view");
@@ -77,7 +77,7 @@ void run_paper(stratus_context* context, std::vector<row>& rows)
       to.tell(scene, "stratus:octree-on-demand", grow(context, boxes, camera_path(context, path, views), options_of(true, 5)));
     }
   }
-  // Table 2: C against the distance.
+  // Table 2: values of C at several distances.
   for (const char* path : { "far", "near", "inside" }) {
     for (const int c : { 5, 15, 25, 35, 40, 70 }) {
       stratus_octree_options o = options_of(true, 8);
@@ -85,7 +85,7 @@ void run_paper(stratus_context* context, std::vector<row>& rows)
       to.tell(std::string("paper-table-2/") + path, "stratus:octree-paper:" + std::to_string(c), grow(context, boxes, one_view(path), o));
     }
   }
-  // Table 3: the same depth, nodes and memory.
+  // Table 3: nodes and memory at the same depth.
   for (int depth = 2; depth <= 7; ++depth) {
     const std::string scene = "paper-table-3/depth-" + std::to_string(depth);
     to.tell(scene, "stratus:static", grow(context, boxes, one_view("inside"), options_of(false, depth)));

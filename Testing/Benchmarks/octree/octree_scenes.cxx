@@ -29,7 +29,7 @@ std::vector<box_bounds> make_boxes(const std::string& name)
   }
   generator random;
   std::vector<box_bounds> boxes(static_cast<size_t>(count));
-  // 64 heaps, each denser towards its middle; boxes shrink as they get more, so that they fill as much of the space.
+  // 64 clusters, each denser towards its centre. Boxes shrink as their number grows, so that they fill the same share of space.
   const double edge = 0.05 * std::cbrt(1e5 / static_cast<double>(count));
   for (box_bounds& box : boxes) {
     const double spread = 30.0 * std::pow(random.next(), 3.0);
@@ -50,7 +50,8 @@ const std::vector<std::string>& path_names()
   return names;
 }
 
-// far sees everything, near about half, inside a part from among the boxes, all three slowly; turn goes round four times.
+// Makes a path of cameras. far sees everything, near about half, inside a part from among the boxes, and all three move slowly. turn goes
+// round four times.
 std::vector<stratus_camera> camera_path(stratus_context* context, const std::string& name, int frames)
 {
   const double up[3] = { 0, 0, 1 };

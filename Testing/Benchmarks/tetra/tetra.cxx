@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench tetra: pictures and orders of tetrahedra beside those of what users have today, in one process.
+// stratus-bench tetra: compares pictures and visibility orders of tetrahedra with those of existing methods, in one process.
 #include "tetra_bench.h"
 
 #include <vtkImageData.h>
@@ -76,7 +76,7 @@ void check(options& o)
   known.insert(known.end(), tetra_sorters().begin(), tetra_sorters().end());
   o.meshes = o.meshes.empty() ? std::vector<std::string>{ "bluntfin", "post", "holes", "wavelet" } : o.meshes;
   o.functions = o.functions.empty() ? tetra_functions() : o.functions;
-  if (o.methods.empty()) { // of devices only where asked for
+  if (o.methods.empty()) { // methods on devices run only on request
     std::copy_if(
       known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
   }
@@ -136,7 +136,7 @@ using picture_table = std::vector<std::vector<std::vector<float>>>; // view, fun
 
 struct truth {
   picture_table pictures;
-  std::vector<double> agreement; // of each function
+  std::vector<double> agreement; // for each function
 };
 
 truth make_truth(stratus_context* context, const tetra_mesh& mesh, const options& o)
@@ -163,7 +163,7 @@ void add_more(const std::string& scene, const std::string& method, const sorter_
   }
 }
 
-// Over black, as the window shows it.
+// Writes a picture over black, as the window shows it.
 void write_picture(
   const std::string& folder, const std::string& scene, const std::string& method, const std::vector<uint8_t>& rgba, int size)
 {
@@ -225,7 +225,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
   for (const std::string& method : o.methods) {
     (has(tetra_mappers(), method) ? mappers : sorters).push_back(method);
   }
-  std::vector<std::string> needed = sorters; // what a picture's order is judged by
+  std::vector<std::string> needed = sorters; // the sorters asked for, and those that pictures depend on
   for (const std::string& mapper : mappers) {
     if (!sorter_of(mapper).empty() && !has(needed, sorter_of(mapper))) {
       needed.push_back(sorter_of(mapper));
@@ -253,7 +253,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
       add_more(scene, r.method, r.more, rows);
       if (!sorter_of(r.method).empty()) {
         sorter_metrics order = orders[sorter_of(r.method)];
-        for (const auto& m : r.more) { // a picture's own come before its order's
+        for (const auto& m : r.more) { // a picture's own metrics replace those of its order
           order.erase(m.first);
         }
         add_more(scene, r.method, order, rows);
@@ -265,7 +265,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
   }
 }
 
-// ---- what comes out
+// ---- output
 
 void print(const std::vector<row>& rows)
 {

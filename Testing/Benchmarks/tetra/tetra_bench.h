@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of stratus-bench tetra share: meshes, views, stretches of rays in cells, the judge, and the sorters.
+// Declarations that the parts of stratus-bench tetra share: meshes, views, stretches of rays in cells, the judge, and the sorters.
 #pragma once
 
 #include "bench.h"
@@ -19,34 +19,35 @@ int tetra_main(int argc, char* argv[]);
 struct tetra_mesh {
   std::string name;
   vtkSmartPointer<vtkUnstructuredGrid> grid; // tetrahedra with point scalars
-  std::vector<double> points;                // the same, as the core takes it
+  std::vector<double> points;                // the same in the core's form
   std::vector<int32_t> vertices;
   std::vector<float> values;
   double bounds[6];
   stratus_mesh view() const;
 };
-// bluntfin, post (of ../shared/data), holes, wavelet, or a file. cache: a folder that keeps what TetGen made, or empty. False, and why on
-// the standard error, where a mesh of record cannot be had here.
+// Makes bluntfin, post (of ../shared/data), holes, wavelet, or the mesh of a file. cache: a folder that keeps TetGen's meshes, or empty.
+// Returns false, with the reason on the standard error, if a built-in mesh is not available here.
 bool make_tetra_mesh(stratus_context* context, const std::string& source, const std::string& cache, tetra_mesh& mesh);
-// ramp, peaks, opaque over the mesh's values.
+// Names of transfer functions over the mesh's values: ramp, peaks, opaque.
 const std::vector<std::string>& tetra_functions();
 transfer tetra_transfer(const tetra_mesh& mesh, const std::string& function);
-// 24 cameras in which orders are asked for wrong pairs: 6 directions x parallel, perspective, near, inside.
+// Returns the 24 cameras for which orders are checked: 6 directions x parallel, perspective, near, inside.
 std::vector<stratus_camera> order_cameras(stratus_context* context, const tetra_mesh& mesh);
 
 // ---- tetra_rays.cxx
 
 struct stretch {
-  double low, high; // in lengths of the ray's direction
+  double low, high; // in units of the ray's direction
   int64_t cell;
   double first, last; // the field where the ray enters and leaves
 };
 struct ray_of_pixel {
   int pixel;
-  double length;                  // of the direction, world
-  std::vector<stretch> stretches; // front to back, by their middles
+  double length;                  // world length of the direction
+  std::vector<stretch> stretches; // front to back, sorted by their middles
 };
-// All rays of a picture of size x size, pixel centres or, scattered, a place in each pixel; from several threads at once.
+// Visits all rays of a picture of size x size, from several threads at once. Rays go through pixel centres or, if scattered, through a
+// random place in each pixel.
 void visit_rays(
   const stratus_mesh& mesh, const stratus_camera& camera, int size, bool scattered, const std::function<void(ray_of_pixel&)>& visit);
 
@@ -56,11 +57,11 @@ struct tetra_picture {
   std::vector<float> rgba;
   std::vector<uint8_t> bytes;
 };
-// Pictures of all functions from one camera, in double precision; cache: a folder, or empty. agreement: root mean square of 255 by which
-// steps of four times the length differ, for each function, or NULL.
+// Draws all functions from one camera in double precision. cache: a folder, or empty. agreement, unless NULL: for each function, the root
+// mean square difference of 255 from a picture with steps four times as long.
 std::vector<std::vector<float>> tetra_references(const tetra_mesh& mesh, const std::vector<transfer>& functions,
   const stratus_camera& camera, int size, const std::string& cache, std::vector<double>* agreement);
-// Sums of squares and counts over pixels that either shows.
+// Sums squares and counts over the pixels that either picture shows.
 struct tetra_error {
   double squares = 0.0, count = 0.0;
   void add(const float* rgba, const float* reference, size_t pixels);
@@ -72,9 +73,9 @@ struct tetra_error {
 using sorter_metrics = std::map<std::string, std::pair<double, std::string>>; // metric -> value, unit
 const std::vector<std::string>& tetra_sorters();
 struct order_options {
-  int rounds = 3, threads = 2, rays = 160; // rays x rays a view ask for wrong pairs
+  int rounds = 3, threads = 2, rays = 160; // rays x rays per view search for wrong pairs
 };
-// All of `names` on one mesh, interleaved.
+// Runs all of `names` on one mesh, interleaved.
 std::map<std::string, sorter_metrics> run_sorters(
   stratus_context* context, const tetra_mesh& mesh, const std::vector<std::string>& names, const order_options& options);
 
@@ -84,15 +85,15 @@ struct frame_result {
   std::string method;
   double first_ms = 0.0, frame_ms = 0.0;
   sorter_metrics more;
-  std::vector<tetra_picture> pictures; // a view each
+  std::vector<tetra_picture> pictures; // one per view
 };
 const std::vector<std::string>& tetra_mappers();
-// The sorter that a mapper's picture rests on, "" for none.
+// Returns the sorter that a mapper's picture depends on; "": none.
 std::string sorter_of(const std::string& method);
 std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh& mesh, const transfer& function,
   const std::vector<std::string>& methods, int size, int repeats);
 
-// ---- tetra_memory.cxx: bytes that a context asks for
+// ---- tetra_memory.cxx: counts the bytes that a context allocates
 
 class counted_context
 {

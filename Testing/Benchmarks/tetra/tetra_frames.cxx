@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole frames of every mapper in one window, in turns, so that all of them see the same machine.
+// Times whole frames of all mappers in one window, in turns, so that changes of the machine's speed affect all alike.
 #include "tetra_bench.h"
 
 #include "vtkStratusPartitionFilter.h"
@@ -29,7 +29,7 @@ namespace bench {
 
 namespace {
 
-constexpr double slow_ms = 1500.0; // frames that take longer are drawn once a view
+constexpr double slow_ms = 1500.0; // frames that take longer are drawn once per view
 
 using mapper_pointer = vtkSmartPointer<vtkUnstructuredGridVolumeMapper>;
 
@@ -42,7 +42,7 @@ mapper_pointer make_stratus(const tetra_mesh& mesh, stratus_tetra_method method,
   return mapper;
 }
 
-// VTK's own settings; the sorter is vtkCellCenterDepthSort then.
+// Keeps VTK's default settings, whose sorter is vtkCellCenterDepthSort.
 mapper_pointer make_projected(const tetra_mesh& mesh)
 {
   auto mapper = vtkSmartPointer<vtkProjectedTetrahedraMapper>::New();
@@ -76,7 +76,7 @@ mapper_pointer make_projected_one_leaf(const tetra_mesh& mesh)
   return make_projected_sorted(mesh, 0);
 }
 
-// A ray a pixel, always; else VTK's own settings.
+// Casts one ray per pixel in every frame, and otherwise keeps VTK's default settings.
 mapper_pointer make_ray_cast(const tetra_mesh& mesh)
 {
   auto mapper = vtkSmartPointer<vtkUnstructuredGridVolumeRayCastMapper>::New();
@@ -86,10 +86,10 @@ mapper_pointer make_ray_cast(const tetra_mesh& mesh)
   return mapper;
 }
 
-// A line a method.
+// One line per method.
 const struct recipe {
   const char* name;
-  mapper_pointer (*make)(const tetra_mesh& mesh); // nullptr: ours
+  mapper_pointer (*make)(const tetra_mesh& mesh); // nullptr: one of Stratus
   const char* sorter;
   stratus_tetra_method method;
   const char* device;
@@ -110,7 +110,7 @@ const recipe* find(const std::string& name)
   return found == std::end(recipes) ? nullptr : found;
 }
 
-// nullptr, said loudly, where there is no device.
+// Returns nullptr, with a message, if there is no device.
 mapper_pointer make_mapper(const tetra_mesh& mesh, const recipe& r)
 {
   if (r.make) {
@@ -123,12 +123,12 @@ mapper_pointer make_mapper(const tetra_mesh& mesh, const recipe& r)
   return make_stratus(mesh, r.method, r.device);
 }
 
-// VTK's mappers of tetrahedra take opacity for attenuation, where those of images, and ours, take it for what a unit distance absorbs. A
-// function that means the same to them: opacity -ln(1 - opacity), as far as their 1 reaches by a shorter unit distance. Colours get the
-// same points, for the ray caster knows no others.
+// Converts a transfer function for VTK's mappers of tetrahedra. They take opacity as attenuation, where VTK's mappers of images and Stratus
+// take it as the absorption over a unit distance. The equivalent attenuation is -ln(1 - opacity); a shorter unit distance scales it to
+// VTK's limit of 1. Colours get the same points, because VTK's ray caster ignores all others.
 transfer as_attenuation(const transfer& t)
 {
-  constexpr int parts = 24; // of each stretch, whose curve is drawn in lines
+  constexpr int parts = 24; // lines that approximate the curve between two points
   transfer same = t;
   same.opacity.clear();
   double most = 0.0;
@@ -189,7 +189,7 @@ public:
     this->Renderer->SetBackgroundAlpha(0.0);
     set_property(this->Property, t);
     set_property(this->VtkProperty, as_attenuation(t));
-    this->Window->Render(); // the window's own beginnings are no method's
+    this->Window->Render(); // the window's set-up counts for no method
   }
 
   void add(const mapper_pointer& mapper)
@@ -202,7 +202,7 @@ public:
     this->Volumes.emplace_back(volume);
   }
 
-  // ms of a whole frame; turned: degrees off the view of record, so that no order is the last one's.
+  // Returns the ms of a whole frame. turned: degrees off the standard view, so that no frame reuses the last order.
   double render(size_t method, int view, double turned)
   {
     stratus_camera at;
@@ -261,7 +261,7 @@ void check_drawn(const frame_result& r, int view)
   }
 }
 
-// Bytes that a picture of ours rests on, without the grid and the window, and what it was made of.
+// Adds the bytes that a picture of Stratus needs, without grid and window, and the picture's cells, segments and build time.
 void add_bytes(const tetra_mesh& mesh, const transfer& function, stratus_tetra_method method, int size, sorter_metrics& m)
 {
   counted_context counted(0);

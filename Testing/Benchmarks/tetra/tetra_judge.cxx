@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures in double precision from the stretches of rays in cells, and how far others are from them. Each stretch is split where the
-// transfer function bends and then into steps of little optical depth, each integrated by Gauss' three points; nothing comes from a table.
+// Draws pictures in double precision from the stretches of rays in cells, and measures the error of others. Each stretch is split where the
+// transfer function bends, then into steps of small optical depth, each integrated by three-point Gauss quadrature. No tables are used.
 #include "tetra_bench.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace bench {
 namespace {
 
 constexpr double depth_of_step = 0.01;
-constexpr double opaque_enough = 1e-9; // of the light left
+constexpr double opaque_enough = 1e-9; // transparency at which a ray ends
 
-// The function between two of its points, both linear there.
+// The transfer function between two of its points, where opacity and colour are linear.
 struct piece {
-  double from, to;              // of the field
+  double from, to;              // values of the field
   double opacity, opacity_rise; // at x: opacity + opacity_rise (x - from)
   double color[3], color_rise[3];
 };
@@ -38,7 +38,7 @@ double at_points(const std::vector<double>& points, size_t width, size_t column,
   return points[width * (count - 1) + column];
 }
 
-// From -infinity to infinity. Functions of record have no steps.
+// Splits a function into pieces from -infinity to infinity. The benchmark's functions have no steps.
 std::vector<piece> pieces_of(const transfer& t)
 {
   std::vector<double> bends;
@@ -75,7 +75,7 @@ class integrator
 public:
   integrator(const transfer& function, double step) : Pieces(pieces_of(function)), Unit(function.unit_distance), Step(step) {}
 
-  // The picture of one ray.
+  // Draws one ray.
   void ray(const ray_of_pixel& r, float* rgba) const
   {
     double color[3] = { 0, 0, 0 }, left = 1.0;
@@ -92,7 +92,7 @@ public:
   }
 
 private:
-  // length in unit distances
+  // Integrates a stretch. length is in unit distances.
   void pass(double first, double last, double length, double color[3], double& left) const
   {
     const bool rises = last >= first;
@@ -128,7 +128,7 @@ private:
       const double d =
         steps == 1 ? depth : gauss(p, first + (last - first) * i / steps, first + (last - first) * (i + 1) / steps, length / steps, tint);
       if (d > 0.0) {
-        const double alpha = -std::expm1(-d), nearer = d * d * (d / 24.0 - 1.0 / 12.0); // what is in front counts for more
+        const double alpha = -std::expm1(-d), nearer = d * d * (d / 24.0 - 1.0 / 12.0); // correction: nearer colours count more
         for (int c = 0; c < 3; ++c) {
           color[c] += left * (alpha * tint[c] / d + nearer * p.color_rise[c] * (last - first) / steps);
         }
@@ -137,13 +137,13 @@ private:
     }
   }
 
-  // Optical depth, and colours times it.
+  // Returns the optical depth; tint: the integral of colour times optical depth.
   static double gauss(const piece& p, double first, double last, double length, double tint[3])
   {
     static const double places[3] = { 0.11270166537925831, 0.5, 0.88729833462074169 }, weights[3] = { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 };
     double depth = 0.0;
     tint[0] = tint[1] = tint[2] = 0.0;
-    const double from = std::isfinite(p.from) ? p.from : first; // beyond the ends all is level
+    const double from = std::isfinite(p.from) ? p.from : first; // the function is constant beyond its ends
     for (int i = 0; i < 3; ++i) {
       const double x = first + places[i] * (last - first) - from;
       const double d = -std::log1p(-std::min(p.opacity + p.opacity_rise * x, 1.0 - 1e-12)) * weights[i] * length;
@@ -159,7 +159,7 @@ private:
   double Unit, Step;
 };
 
-// ---- kept pictures
+// ---- cached pictures
 
 uint64_t mix(uint64_t hash, const void* data, size_t bytes)
 {
@@ -244,6 +244,6 @@ void tetra_error::add(const float* rgba, const float* reference, size_t pixels)
 
 double tetra_error::rmse255() const
 {
-  return this->count > 0.0 ? std::sqrt(this->squares / this->count) : INFINITY; // nothing to be compared is no agreement
+  return this->count > 0.0 ? std::sqrt(this->squares / this->count) : INFINITY; // two empty pictures do not count as agreement
 }
 } // namespace bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The meshes of record, their transfer functions and their views.
+// The built-in meshes, their transfer functions and their views.
 #include "input.h"
 #include "tetra_bench.h"
 
@@ -139,7 +139,7 @@ std::string stem_of(const std::string& path)
   return path.substr(from, path.find_last_of('.') - from);
 }
 
-// What the core takes.
+// Copies the grid to the core's form.
 void copy_arrays(tetra_mesh& mesh)
 {
   vtkDataArray* scalars = mesh.grid->GetPointData()->GetScalars();

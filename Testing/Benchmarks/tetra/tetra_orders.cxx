@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sorters beside VTK's: how long they take, what they need, and how many pairs of cells come in the wrong order, asked of rays.
+// Compares sorters with VTK's: their times, their memory, and the pairs of cells in the wrong order, which rays find.
 #include "tetra_bench.h"
 
 #include <vtkCamera.h>
@@ -54,7 +54,7 @@ void check(stratus_context* context, stratus_status status)
   }
 }
 
-// A mesh as it is sorted: cut into leaves, or whole.
+// A mesh to be sorted: cut into leaves, or whole.
 struct pieces {
   partition_pointer partition = { nullptr, &stratus_partition_destroy };
   stratus_partition_result cut = {};
@@ -83,7 +83,7 @@ pieces cut_mesh(stratus_context* context, const stratus_mesh& mesh, const recipe
   p.mesh.point_count = p.cut.point_count;
   p.mesh.vertices = p.cut.vertices;
   p.mesh.cell_count = p.cut.cell_count;
-  p.mesh.values = nullptr; // orders don't ask for them
+  p.mesh.values = nullptr; // sorters need no values
   p.has_leaves = true;
   return p;
 }
@@ -124,7 +124,7 @@ public:
     this->SingleOrder = make_order(single, this->Pieces, &ms);
   }
 
-  // The order, valid until the next; and how long it took.
+  // Returns the order, valid until the next call, and its time.
   const std::vector<uint32_t>& sort(const stratus_camera& camera, double* ms)
   {
     if (this->Recipe.depth < 0) {
@@ -191,7 +191,7 @@ struct tally {
   double wrong = 0.0, pairs = 0.0, cycles = 0.0;
 };
 
-// How many cells that follow one another on a ray come the other way round in each of the orders (as ranks).
+// Counts, for each order (given as ranks), the pairs of consecutive cells on rays that it has in the wrong order.
 void ask_rays(const stratus_mesh& mesh, const stratus_camera& camera, int rays, const std::vector<std::vector<uint32_t>>& ranks,
   const std::vector<tally*>& tallies)
 {
@@ -199,7 +199,7 @@ void ask_rays(const stratus_mesh& mesh, const stratus_camera& camera, int rays, 
   for (int64_t i = 3; i < 3 * mesh.point_count; ++i) {
     size = std::max(size, std::abs(mesh.points[i] - mesh.points[i % 3]));
   }
-  const double least = 1e-9 * size; // of a stretch: shorter ones may be rounding's
+  const double least = 1e-9 * size; // shorter stretches may be rounding errors
   visit_rays(mesh, camera, rays, true, [&](ray_of_pixel& ray) {
     auto& s = ray.stretches;
     s.erase(std::remove_if(s.begin(), s.end(), [&](const stretch& x) { return (x.high - x.low) * ray.length <= least; }), s.end());
@@ -221,7 +221,7 @@ void ask_rays(const stratus_mesh& mesh, const stratus_camera& camera, int rays, 
   });
 }
 
-// Ranks of the whole mesh's cells where none was cut: such meshes need their rays only once.
+// Returns the ranks of cells. If no cell was cut, they are ranks of the whole mesh's cells, so that its rays are cast only once.
 std::vector<uint32_t> ranks_of(const sorter& s, const std::vector<uint32_t>& cells, int64_t whole)
 {
   const bool cut = s.cut().mesh.cell_count != whole;
@@ -276,7 +276,7 @@ void time_orders(
   }
 }
 
-// Bytes of an order with its partition's tree, the caller's mesh apart.
+// Adds the bytes of an order with its partition's tree, without the caller's mesh.
 void add_bytes(const tetra_mesh& mesh, const sorter& s, int threads, sorter_metrics& m)
 {
   counted_context counted(threads);

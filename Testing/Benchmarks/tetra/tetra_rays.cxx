@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cells a ray meets, and where: every cell against the rays of the pixels that its corners span, by the planes of its faces, in
-// double precision. No neighbours, no order and no line of the core's: what the core's pictures and orders are judged by.
+// Finds which cells a ray meets, and where. Each cell is intersected with the rays of the pixels that its corners span, by the planes of
+// its faces, in double precision. It uses no neighbours, no order and no code of the core, whose pictures and orders it judges.
 #include "tetra_bench.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace bench {
 namespace {
 
 constexpr int tile = 8;                // pixels
-constexpr double least_length = 1e-12; // of a stretch against its place: shorter ones may be rounding's
+constexpr double least_length = 1e-12; // relative to its position: shorter stretches may be rounding errors
 
 using vector3 = std::array<double, 3>;
 
@@ -36,7 +36,7 @@ vector3 of(const double* p)
   return { p[0], p[1], p[2] };
 }
 
-// A cell as barycentric coordinates, linear in a place relative to the eye; and the pixels that it can cover.
+// A cell as barycentric coordinates, linear in the position relative to the eye, and the pixels that it can cover.
 struct prepared {
   double slope[4][3], start[4], value[4];
   int64_t cell;
@@ -58,10 +58,10 @@ public:
     }
   }
 
-  // Coordinates along right, up and forward of a place relative to the eye.
+  // Returns the coordinates along right, up and forward of a position relative to the eye.
   vector3 along(const vector3& p) const { return { dot(this->Rows[0], p), dot(this->Rows[1], p), dot(this->Rows[2], p) }; }
 
-  // Pixels that the corners span; false where nothing lies before the eye or in the window.
+  // Finds the pixels that the corners span. Returns false if the cell lies behind the eye or outside the window.
   bool box_of(const vector3 (&corners)[4], double box[4]) const
   {
     const double nearest = this->Camera.near_k;
@@ -81,7 +81,7 @@ public:
         add(corners[i][0], corners[i][1]);
         continue;
       }
-      // As large as the window may be: nearer than this the whole window is spanned.
+      // The least depth at which corners are projected. A cell that comes nearer is cut there.
       const double least = std::max(nearest, 1e-9 * std::abs(corners[0][2]) + 1e-300);
       if (corners[i][2] >= least) {
         add(corners[i][0] / corners[i][2], corners[i][1] / corners[i][2]);
@@ -94,7 +94,7 @@ public:
         }
       }
     }
-    // A pixel's ray may lie half a pixel off its centre, and rounding a little more.
+    // A scattered ray may lie half a pixel off the pixel's centre. Rounding needs a little more.
     box[0] -= 0.51;
     box[1] += 0.51;
     box[2] -= 0.51;
@@ -113,7 +113,7 @@ vector3 corner(const stratus_mesh& mesh, const vector3& eye, int64_t cell, int v
   return minus(of(mesh.points + 3 * static_cast<int64_t>(mesh.vertices[4 * cell + v])), eye);
 }
 
-// False for a cell that is flat but for rounding: no ray is within it.
+// Returns false for a cell that is flat up to rounding, in which no ray lies.
 bool prepare(const stratus_mesh& mesh, const vector3& eye, int64_t cell, prepared& p)
 {
   vector3 q[4];
@@ -161,14 +161,14 @@ bool meet(const prepared& p, const vector3& origin, const vector3& direction, do
     hit.first += p.value[f] * (start[f] + hit.low * rise[f]);
     hit.last += p.value[f] * (start[f] + hit.high * rise[f]);
   }
-  const auto ends = std::minmax_element(p.value, p.value + 4); // slivers' rounding leads beyond them
+  const auto ends = std::minmax_element(p.value, p.value + 4); // in slivers, rounding may exceed them
   hit.first = std::min(std::max(hit.first, *ends.first), *ends.second);
   hit.last = std::min(std::max(hit.last, *ends.first), *ends.second);
   hit.cell = p.cell;
   return true;
 }
 
-// 0..1, the same for the same number.
+// Hashes a number to 0..1.
 double scattered_unit(uint32_t number)
 {
   number = (number ^ 61u ^ (number >> 16)) * 9u;
@@ -176,7 +176,7 @@ double scattered_unit(uint32_t number)
   return static_cast<double>((number ^ (number >> 15)) >> 8) / 16777216.0;
 }
 
-// Cells of each tile: where they begin, and their numbers.
+// The cells of each tile: where they begin, and their numbers.
 struct bins {
   std::vector<size_t> begin;
   std::vector<int32_t> cells;
@@ -223,7 +223,7 @@ bins bin_cells(const stratus_mesh& mesh, const picture_plane& plane, const vecto
       b.cells.resize(b.begin.back());
     }
   }
-  b.begin.insert(b.begin.begin(), 0); // each begins where the one before it ended
+  b.begin.insert(b.begin.begin(), 0); // each tile begins at the previous one's end
   return b;
 }
 
