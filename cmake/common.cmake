@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sources that several modules and programs share, each compiled once into an object library. A module takes the objects that it needs into
+# Sources that several modules and programs share, each compiled once into an object library. A module links the objects that it needs into
 # its own library, where their symbols are hidden. Object libraries are neither installed nor exported, and no exported target names one.
 set(stratus_common_libraries stratus-filters-common stratus-rendering-common)
 
-# Options of both libraries, which are no VTK modules.
+# Compile options of both object libraries, which are not VTK modules.
 function (stratus_common_flags target)
   set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC "${CMAKE_CURRENT_SOURCE_DIR}")
   target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
 endfunction ()
 
-# stratus_use_common(TARGET NAME...): the objects of NAME.cxx, the headers beside them, and those of Filters/Common in any case. The target
-# links what the objects need.
+# stratus_use_common(TARGET NAME...): adds to TARGET the objects of NAME.cxx and the folders of their headers, and always those of
+# Filters/Common. TARGET links the libraries that the objects need.
 function (stratus_use_common target)
   get_target_property(real ${target} ALIASED_TARGET)
   if (NOT real)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Target doc: HTML of the C API and the VTK classes into doc/, where Doxygen is found. Any warning of Doxygen's is an error.
+# Target doc, if Doxygen is found: writes HTML of the C API and the VTK classes to doc/. Any warning of Doxygen is an error.
 find_program(DOXYGEN doxygen)
 mark_as_advanced(DOXYGEN)
 if (NOT DOXYGEN)
@@ -7,7 +7,7 @@ if (NOT DOXYGEN)
 endif ()
 file(GLOB stratus_doc_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Filters/*/vtkStratus*.h" "${PROJECT_SOURCE_DIR}/Rendering/*/vtkStratus*.h"
   "${PROJECT_SOURCE_DIR}/ParaView/*/vtkStratus*.h")
-# Public headers begin with the class's name; what is private to a module has no such comment.
+# Comments of public headers begin with the class's name; headers that are private to a module have no such comment.
 set(stratus_doc_input "\"${PROJECT_SOURCE_DIR}/Core/stratus.h\" \"${PROJECT_SOURCE_DIR}/Core/stratus\"")
 foreach (header IN LISTS stratus_doc_headers)
   file(STRINGS "${header}" class REGEX "@class")

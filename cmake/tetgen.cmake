@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Finds TetGen, which has no CMake package, and sets stratus_tetgen: whether to build Filters/TetGen and the program that does TetGen's work.
+# Finds TetGen, which has no CMake package, and sets stratus_tetgen: whether to build Filters/TetGen and the program that calls TetGen.
 set(STRATUS_BUILD_TETGEN AUTO CACHE STRING "Build vtkStratusTetGenFilter, whose program links TetGen (AGPL): ON, OFF, or AUTO (where it is found)")
 set_property(CACHE STRATUS_BUILD_TETGEN PROPERTY STRINGS AUTO ON OFF)
 set(stratus_tetgen OFF)
