@@ -12,7 +12,7 @@
 #define CHUNKS 128 /* per launch */
 #define GROUP 64   /* work items per group, one ray each */
 
-/* The kernel's compiler is told the arguments' size, and asserts the same. */
+/* The kernel gets the arguments' size by a define and asserts it, too. */
 _Static_assert(_Alignof(stratus_hit_arguments) == sizeof(float), "arguments must be scalars of four bytes");
 
 typedef enum buffer_name { ARGUMENTS, ENTRIES, ROWS, MASKS, RAYS, RESULTS, BUFFERS } buffer_name;

@@ -13,8 +13,7 @@
 
 #define LOCAL_SIDE 8 /* work items along each side of a group, if a work item is a ray */
 /* Pixels along each side of the tile that a work item marches in packets. PoCL hands out the last 64 groups in one piece, so tiles are
- * small.
- */
+ * small. */
 #define TILE 16
 
 /* All members are 4-byte scalars, so no padding separates them. The kernel gets the size by a define and asserts it, too. */

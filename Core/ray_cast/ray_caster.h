@@ -53,7 +53,7 @@ struct stratus_ray_caster {
 };
 
 /* ray_caster_drop.c: each function also drops everything derived from what it drops. The last one makes the caster check the offered tree
- * again, and drops the map if a tree's. */
+ * again, and drops the map if it is a tree's. */
 void stratus_ray_drop_transfer(stratus_ray_caster* caster);
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
 void stratus_ray_drop_map(stratus_ray_caster* caster);

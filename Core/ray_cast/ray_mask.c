@@ -65,8 +65,7 @@ stratus_status stratus_ray_mask_join(
   if (!mask) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(
-    context, values + cells, 1, &memory)); /* no overflow: cells <= values, and values of one byte or more are in memory already */
+  TRY(stratus_allocate(context, values + cells, 1, &memory)); /* cannot overflow: cells <= values, whose bytes fit in memory */
   memcpy(memory, mask, values);
   if (cells > 0) {
     memcpy((uint8_t*)memory + values, *hidden, cells);

@@ -72,8 +72,7 @@ typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool
 stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tetra_tile_isa2;
 
 /* tetra_march.c: turns the counts of entries in frame->first, one per pixel, into where each pixel's entries begin; first[pixels] is the
- * end.
- */
+ * end. */
 stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra_frame* frame, size_t pixels, size_t* total);
 /* Marches all tiles. */
 stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,

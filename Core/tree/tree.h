@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The layout common to all trees, of which bvh.h has the nodes: leaves of distance fields, and the tree itself. */
+ * The layout common to all trees, whose nodes bvh.h declares: leaves of distance fields, and the tree itself. */
 #ifndef STRATUS_TREE_H
 #define STRATUS_TREE_H
 
@@ -72,8 +72,8 @@ stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus
 bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
 
 /* ---- tree_check.c */
-/* Every voxel in exactly one leaf, boxes tight, distances never too long: checked against the voxels. STRATUS_INVALID_ARGUMENT, and what is
- * wrong in the message. */
+/* Checks against the voxels that each voxel is in exactly one leaf, boxes are tight, and no distance is too long. If not, returns
+ * STRATUS_INVALID_ARGUMENT with a message. */
 stratus_status stratus_tree_check(stratus_context* context, const stratus_tree* tree, const stratus_voxels* voxels);
 
 #endif
