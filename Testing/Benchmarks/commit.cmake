@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DFOLDER=... -DHEADER=... -P commit.cmake: writes the commit of FOLDER's sources to HEADER, with `+` behind it if they have changed since.
+# cmake -DFOLDER=... -DHEADER=... -P commit.cmake: writes the commit of FOLDER's sources to HEADER, with `+` behind it if they have changed
+# since.
 cmake_minimum_required(VERSION 3.20)
 execute_process(COMMAND git -C "${FOLDER}" describe --always --exclude=* --abbrev=7 --dirty=+
   OUTPUT_VARIABLE commit RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
