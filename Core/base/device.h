@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The core's interface to OpenCL. Every call that fails leaves the name of OpenCL's error in the context's message. */
-#ifndef STRATUS_DEVICE_LAYER_H
-#define STRATUS_DEVICE_LAYER_H
+#ifndef STRATUS_DEVICE_H
+#define STRATUS_DEVICE_H
 
 #include "base.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pictures that renderers fill. */
-#ifndef STRATUS_IMAGE_H
-#define STRATUS_IMAGE_H
+#ifndef STRATUS_PICTURE_H
+#define STRATUS_PICTURE_H
 
 #include "base.h"
 

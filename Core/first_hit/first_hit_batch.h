@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Shared by the methods that find first hits. */
-#ifndef STRATUS_FIRST_HIT_LAYER_H
-#define STRATUS_FIRST_HIT_LAYER_H
+#ifndef STRATUS_FIRST_HIT_BATCH_H
+#define STRATUS_FIRST_HIT_BATCH_H
 
 #include "instruction_set.h"
 #include "tree.h"

@@ -68,8 +68,6 @@ struct stratus_octree {
   double hull[6]; /* world bounds of all bounded objects, those removed since included */
   bool has_origin, changed;
   uint32_t clock;
-  uint8_t* octants;
-  size_t octants_capacity;
   stratus_octree_view* walker; /* view that the queries use */
 };
 

@@ -7,24 +7,25 @@
 #define STRATUS_RAY_MODE STRATUS_RAY_ISOSURFACE
 
 #define STRATUS_TYPE -1
-#define RAY_NAME(x) JOIN(x, surface_any)
+#define RAY_NAME(x) JOIN(x, isosurface_any)
 #include "ray_cast_tile.h"
 #define STRATUS_TYPE 1
-#define RAY_NAME(x) JOIN(x, surface_uint8)
+#define RAY_NAME(x) JOIN(x, isosurface_uint8)
 #include "ray_cast_tile.h"
 #define STRATUS_TYPE 2
-#define RAY_NAME(x) JOIN(x, surface_int16)
+#define RAY_NAME(x) JOIN(x, isosurface_int16)
 #include "ray_cast_tile.h"
 #define STRATUS_TYPE 3
-#define RAY_NAME(x) JOIN(x, surface_uint16)
+#define RAY_NAME(x) JOIN(x, isosurface_uint16)
 #include "ray_cast_tile.h"
 #define STRATUS_TYPE 8
-#define RAY_NAME(x) JOIN(x, surface_float32)
+#define RAY_NAME(x) JOIN(x, isosurface_float32)
 #include "ray_cast_tile.h"
 
 stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_isosurface_tile)(int type)
 {
-  static stratus_ray_cast_tile* const tiles[11] = { tile_surface_any, tile_surface_any, tile_surface_uint8, tile_surface_int16,
-    tile_surface_uint16, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_any, tile_surface_float32, tile_surface_any };
+  static stratus_ray_cast_tile* const tiles[11] = { tile_isosurface_any, tile_isosurface_any, tile_isosurface_uint8, tile_isosurface_int16,
+    tile_isosurface_uint16, tile_isosurface_any, tile_isosurface_any, tile_isosurface_any, tile_isosurface_any, tile_isosurface_float32,
+    tile_isosurface_any };
   return tiles[type + 1];
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A tree as a map for the march. */
-#ifndef STRATUS_TREE_MAP_LAYER_H
-#define STRATUS_TREE_MAP_LAYER_H
+#ifndef STRATUS_TREE_MAP_BUILD_H
+#define STRATUS_TREE_MAP_BUILD_H
 
 #include "tree.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A frame of tetrahedra, and the march on the host, which is compiled once for each instruction set and picked at run time. */
-#ifndef STRATUS_TETRA_MARCH_HOST_H
-#define STRATUS_TETRA_MARCH_HOST_H
+#ifndef STRATUS_TETRA_MARCH_FRAME_H
+#define STRATUS_TETRA_MARCH_FRAME_H
 
 #include "stratus/tetrahedra.h"
 #include "instruction_set.h"

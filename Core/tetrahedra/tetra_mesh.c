@@ -30,8 +30,8 @@ static void find_shown(
 {
   int64_t shown = 0, blanked = 0, repeated = 0;
   float low = INFINITY, high = -INFINITY;
-#pragma omp parallel for num_threads(tetra->context->threads) reduction(+ : shown, blanked, repeated) reduction(min : low)                  \
-  reduction(max : high)
+  const int threads = tetra->context->threads;
+#pragma omp parallel for num_threads(threads) reduction(+ : shown, blanked, repeated) reduction(min : low) reduction(max : high)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const bool hidden = mesh->hidden && mesh->hidden[cell], twice = stratus_names_a_point_twice(mesh->vertices + 4 * cell);
     float range[2];

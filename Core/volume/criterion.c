@@ -252,5 +252,9 @@ int stratus_origin_covers(const stratus_origin* tree, const stratus_origin* want
   if (tree->hash == 0 || tree->hash != wanted->hash || tree->cells != wanted->cells) {
     return 0;
   }
+  /* The one interval from INFINITY to -INFINITY stands for more intervals than are kept, which may be any. */
+  if (tree->intervals > 0 && tree->interval[0][0] > tree->interval[0][1]) {
+    return 0;
+  }
   return is_within(wanted, tree) && (tree->cells || is_within(tree, wanted));
 }

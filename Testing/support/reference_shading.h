@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Shading of the reference renderer: light, gradient opacity, several components and labels. Private to the reference; tests include
  * reference.h. */
-#ifndef STRATUS_TESTING_REFERENCE_LOOKS_H
-#define STRATUS_TESTING_REFERENCE_LOOKS_H
+#ifndef STRATUS_TESTING_REFERENCE_SHADING_H
+#define STRATUS_TESTING_REFERENCE_SHADING_H
 
 #include "reference.h"
 

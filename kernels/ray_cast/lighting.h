@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The light that falls on a sample, as VTK's volume mappers compute it: ambient light, diffuse by N L, specular by (N H)^power with H half
  * way between the light and the eye (Blinn 1977). N points against the gradient; where both sides are lit it is turned towards the eye. */
-#ifndef STRATUS_SHADING_H
-#define STRATUS_SHADING_H
+#ifndef STRATUS_LIGHTING_H
+#define STRATUS_LIGHTING_H
 
 #include "ray_composite.h"
 

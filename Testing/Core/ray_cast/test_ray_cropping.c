@@ -62,7 +62,7 @@ static void crop_between(picture_case* c, uint32_t regions)
 static void each_region_is_where_it_should_be(void** state)
 {
   static const uint32_t named[] = { 0x2000u, 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfeba,
-    0x5140145u }; /* subvolume, its complement, .. */
+    0x5140145u }; /* the first two: subvolume, its complement */
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 61u);
   set_contours(&c);
