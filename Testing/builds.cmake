@@ -95,6 +95,6 @@ endif ()
 
 # ---- the documentation: no warning
 if (TARGET doc)
-  stratus_add_test(documentation documentation "${CMAKE_COMMAND}" --build "${CMAKE_BINARY_DIR}" --target doc)
+  stratus_add_test(documentation documentation "${PROJECT_SOURCE_DIR}/Testing/Documentation/test_doxygen" "${CMAKE_COMMAND}" "${CMAKE_BINARY_DIR}")
   stratus_test_needs(documentation NOTHING)
 endif ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DFOLDER=kernels -DFILES=kernels/x/a.cl,kernels/y/b.cl -DOUT=kernels_embedded.c -P embed.cmake
+# cmake -DFOLDER=kernels -DFILES=x/a.cl,y/b.cl -DOUT=kernels_embedded.c -P embed.cmake
 # Writes the entry points a.cl, b.cl as byte arrays. Each #include "x.h" is replaced, once per kernel, by the file of that name in a
 # subfolder of FOLDER, because an OpenCL device sees no file system. #line keeps build logs readable.
 cmake_minimum_required(VERSION 3.20)

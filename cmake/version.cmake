@@ -3,3 +3,4 @@
 file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../Core/stratus/version.h" stratus_version REGEX "^#define STRATUS_VERSION_(MAJOR|MINOR|PATCH) [0-9]+$")
 string(REGEX REPLACE "#define STRATUS_VERSION_[A-Z]+ " "" stratus_version "${stratus_version}")
 string(REPLACE ";" "." stratus_version "${stratus_version}")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../Core/stratus/version.h")

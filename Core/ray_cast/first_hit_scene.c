@@ -23,7 +23,7 @@ void stratus_first_hit_release(stratus_ray_caster* caster)
     stratus_release(caster->context, kept->transfer);
     kept->voxels = NULL;
     kept->transfer = NULL;
-    caster->tree_serves = -1;
+    stratus_ray_forget_offer(caster, false);
   }
 }
 

@@ -52,8 +52,10 @@ struct stratus_ray_caster {
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
 };
 
-/* ray_caster_drop.c: each function also drops everything derived from what it drops. The last one makes the caster check the offered tree
- * again, and drops the map if it is a tree's. */
+/* ray_caster_drop.c: each function also drops everything derived from what it drops. stratus_ray_forget_offer() makes the caster check an
+ * offered tree again if it is of cells, or of voxels. stratus_ray_drop_offer_map() does so for one of cells, and drops a map that is a
+ * tree's. */
+void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells);
 void stratus_ray_drop_transfer(stratus_ray_caster* caster);
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
 void stratus_ray_drop_map(stratus_ray_caster* caster);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Drops stale structures with everything derived from them: data -> transfer function -> occupancy -> map. */
 #include "ray_caster.h"
+#include "tree.h"
 
 void stratus_ray_drop_map(stratus_ray_caster* caster)
 {
@@ -9,9 +10,16 @@ void stratus_ray_drop_map(stratus_ray_caster* caster)
   ++caster->map_serial; /* so that the device returns the map that it may have borrowed */
 }
 
+void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells)
+{
+  if (caster->offered && (caster->offered->origin.cells != 0) == of_cells) {
+    caster->tree_serves = -1;
+  }
+}
+
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster)
 {
-  caster->tree_serves = -1;
+  stratus_ray_forget_offer(caster, true);
   if (caster->map && caster->map->tree_nodes > 0) {
     stratus_ray_drop_map(caster);
   }
@@ -20,7 +28,7 @@ void stratus_ray_drop_offer_map(stratus_ray_caster* caster)
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster)
 {
   stratus_ray_drop_map(caster);
-  caster->tree_serves = -1;
+  stratus_ray_forget_offer(caster, true);
   stratus_occupancy_destroy(caster->occupancy);
   caster->occupancy = NULL;
 }

@@ -27,6 +27,7 @@ stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const v
     memcpy(tree->index_to_world, identity, sizeof identity);
     memcpy(tree->world_to_index, identity, sizeof identity);
     caster->offered = tree;
+    caster->tree_serves = -1;
   }
   return STRATUS_OK;
 }

@@ -124,7 +124,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   stratus_table* table = NULL;
   int32_t* sums = NULL;
   stratus_transfer* copy = NULL;
-  if (caster->table && stratus_transfer_same(caster->transfer, transfer) && caster->mode == mode) {
+  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode) {
     return STRATUS_OK;
   }
   TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));

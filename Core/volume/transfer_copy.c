@@ -10,11 +10,15 @@ bool stratus_transfer_same_opacity(const stratus_transfer* a, const stratus_tran
     memcmp(a->opacity, b->opacity, 2 * sizeof(double) * a->opacity_count) == 0;
 }
 
+bool stratus_transfer_same_table(const stratus_transfer* a, const stratus_transfer* b)
+{
+  return stratus_transfer_same_opacity(a, b) && a->unit_distance == b->unit_distance && a->color_count == b->color_count &&
+    memcmp(a->color, b->color, 4 * sizeof(double) * a->color_count) == 0;
+}
+
 bool stratus_transfer_same(const stratus_transfer* a, const stratus_transfer* b)
 {
-  return stratus_transfer_same_opacity(a, b) && a->color_count == b->color_count && a->gradient_count == b->gradient_count &&
-    a->unit_distance == b->unit_distance && a->weight == b->weight &&
-    memcmp(a->color, b->color, 4 * sizeof(double) * a->color_count) == 0 &&
+  return stratus_transfer_same_table(a, b) && a->weight == b->weight && a->gradient_count == b->gradient_count &&
     (a->gradient_count == 0 || memcmp(a->gradient, b->gradient, 2 * sizeof(double) * a->gradient_count) == 0);
 }
 

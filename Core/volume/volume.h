@@ -105,8 +105,11 @@ static inline int stratus_table_shows(const stratus_table* table, float lo, floa
 }
 
 /* ---- transfer_copy.c */
-/* Return whether two functions give the same opacity everywhere, and whether all their fields and points are the same. */
+/* Returns whether two functions give the same opacity everywhere. */
 bool stratus_transfer_same_opacity(const stratus_transfer* a, const stratus_transfer* b);
+/* Compares what a stratus_table is made from: opacity, colour and unit distance. */
+bool stratus_transfer_same_table(const stratus_transfer* a, const stratus_transfer* b);
+/* Compares all fields and points. */
 bool stratus_transfer_same(const stratus_transfer* a, const stratus_transfer* b);
 /* Copies `count` functions with their points into one allocation, which the caller releases. */
 stratus_status stratus_transfer_copy(stratus_context* context, const stratus_transfer* transfers, int count, stratus_transfer** copy);

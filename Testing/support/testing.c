@@ -61,8 +61,9 @@ static bool pattern_for(const char* name)
 
 static int tear_down_group(void** state)
 {
+  ++failed_teardowns; /* an assertion that fails does not come back */
   const int status = group_teardown(state);
-  failed_teardowns += status != 0;
+  failed_teardowns -= status == 0;
   return status;
 }
 
@@ -83,7 +84,7 @@ int __wrap__cmocka_run_group_tests(
   group_teardown = tear_down;
   const int failed = number ? __real__cmocka_run_group_tests(name, chosen, number, set_up, tear_down ? tear_down_group : NULL) : 0;
   free(chosen);
-  return failed;
+  return failed != 0; /* a number of failures might be TEST_SKIPPED */
 }
 
 void __wrap__skip(const char* file, int line)
