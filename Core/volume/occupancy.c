@@ -82,7 +82,8 @@ static void widen_extent(extent* whole, const uint8_t* row, int64_t n, int64_t j
   }
 }
 
-/* ranges and table may be NULL: occupied[] is then set already and only counted. */
+/* ranges and table may be NULL: occupied[] is then set already and only counted. With pre-integration, a block with gaps (values that are
+ * not finite, or hidden cells) counts as occupied if the table shows anything: stratus_occupancy_build() tells why. */
 static void test_rows(
   const stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy)
 {

@@ -26,7 +26,7 @@
  * - label maps.
  *
  * All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, shaders of the
- * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn. The module's README has a table.
+ * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
  * Ambient, Diffuse, Specular and SpecularPower apply. Positional lights have no attenuation and no cone (a cone below 90 degrees is

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Densities summed by an OpenCL device against the host's, to the bit.
- * Run with the argument `tiny` it takes few and small sets: enough for a simulator to see every kernel. */
+ * Run with the argument `--tiny` it takes few and small sets: enough for a simulator to see every kernel. */
 #include "stratus.h"
 #include "density_plan.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Distance fields built by an OpenCL device against the host's, to the bit. A CPU device is taken for a GPU, since the core would leave the
- * work to the host there. Run with the argument `tiny` it takes few and small grids. */
+ * work to the host there. Run with the argument `--tiny` it takes few and small grids. */
 #include "fields.h"
 
 #include "device.h"

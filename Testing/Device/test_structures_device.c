@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Structures built by an OpenCL device against the host's, to the bit. A context chooses by its device, so the
  * builders of the device are called themselves, and the host's by a context of its own.
- * Run with the argument `tiny` it takes few and small grids: enough for a simulator to see every kernel. */
+ * Run with the argument `--tiny` it takes few and small grids: enough for a simulator to see every kernel. */
 #include "structures.h"
 
 #include "device.h"

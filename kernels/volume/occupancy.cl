@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Occupancy of blocks, one work item a block: what stratus_table_shows() does on the host. */
+ * Occupancy of blocks, one work item a block: what stratus_table_shows() in Core/volume/volume.h does on the host. 1e-6f is the
+ * STRATUS_HULL_SLACK of the same header. */
 #pragma OPENCL FP_CONTRACT OFF
 
 static int table_entry(float value, int size, float scale, float offset)
