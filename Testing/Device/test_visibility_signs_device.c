@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Signs of faces found by an OpenCL device against the host's, to the bit: those that take exact arithmetic, cells without volume, leaves
- * and scattered meshes among them. Run with the argument `tiny` it takes small meshes: enough for a simulator to see the kernel. */
+ * and scattered meshes among them. Run with the argument `--tiny` it takes small meshes: enough for a simulator to see the kernel. */
 #include "structures.h"
 
 #include "device.h"
