@@ -48,19 +48,11 @@ static stratus_status make_kept(stratus_ray_caster* caster)
 
 /* ---- what changed */
 
-static bool same_data(const stratus_volume* old, const stratus_volume* volume)
-{
-  return old->values == volume->values && old->type == volume->type &&
-    memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
-    old->cell_centered == volume->cell_centered && old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts &&
-    old->revision == volume->revision;
-}
-
 static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer)
 {
   struct stratus_first_hit* kept = caster->first_hit;
   stratus_transfer* copy = NULL;
-  if (same_data(&kept->volume, volume) && kept->transfer && stratus_transfer_same_opacity(kept->transfer, transfer)) {
+  if (stratus_volume_same_data(&kept->volume, volume) && kept->transfer && stratus_transfer_same_opacity(kept->transfer, transfer)) {
     return STRATUS_OK;
   }
   TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));

@@ -12,7 +12,6 @@
 #include "ray_tree.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
 /* Traversal addresses all eight octant maps with one int. */
@@ -25,10 +24,8 @@
 static bool same_data(const stratus_ray_caster* caster, const stratus_volume* volume, int block_size)
 {
   const stratus_volume* old = &caster->volume;
-  return caster->ranges && caster->ranges->block_size == block_size && old->values == volume->values && old->type == volume->type &&
-    memcmp(old->dimensions, volume->dimensions, sizeof old->dimensions) == 0 && old->value_stride == volume->value_stride &&
-    stratus_volume_components(old) == stratus_volume_components(volume) && old->cell_centered == volume->cell_centered &&
-    old->point_ghosts == volume->point_ghosts && old->cell_ghosts == volume->cell_ghosts && old->revision == volume->revision;
+  return caster->ranges && caster->ranges->block_size == block_size && stratus_volume_same_data(old, volume) &&
+    stratus_volume_components(old) == stratus_volume_components(volume);
 }
 
 static int chosen_block_size(const stratus_volume* volume, int wanted)

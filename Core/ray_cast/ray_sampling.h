@@ -9,7 +9,6 @@
 /* The choice for a scene. It depends on values and options, never on timings, so that equal input gives an equal choice. */
 typedef struct stratus_ray_choice {
   stratus_sampling sampling;
-  stratus_structure structure;
   double sample_distance;
   double bend;      /* distance of the opacity from linear over a voxel, relative to the opacity */
   double sharpness; /* mean change of opacity over a voxel, in blocks that show something */

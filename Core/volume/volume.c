@@ -251,3 +251,10 @@ float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t ind
 {
   return (float)(value_as_double(volume, index) - bias);
 }
+
+bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b)
+{
+  return a->values == b->values && a->type == b->type && memcmp(a->dimensions, b->dimensions, sizeof a->dimensions) == 0 &&
+    a->value_stride == b->value_stride && a->cell_centered == b->cell_centered && a->point_ghosts == b->point_ghosts &&
+    a->cell_ghosts == b->cell_ghosts && a->revision == b->revision;
+}

@@ -16,6 +16,8 @@ double stratus_volume_bias(const stratus_volume* volume);
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Gives the number of cells between value positions along each axis: dimensions-1, at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
+/* Returns whether two views show the same values and ghosts, wherever they lie in the world. Components are not compared. */
+bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b);
 bool stratus_type_is_wide(stratus_type type);
 /* Return the least float that is not below a number, and the greatest that is not above it. */
 static inline float stratus_float_above(double number)
