@@ -60,6 +60,9 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
   }
+  if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "tolerance %g, must be at least 0 and finite", options->tolerance);
+  }
   const int size = options->block_size;
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
@@ -171,6 +174,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   stratus_ray_counts counts = { 0 };
   char why[128] = "";
   bool empty = false;
+  report->expected_error = NAN;
+  report->tolerance_met = 1;
 
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
   TRY(stratus_ray_frame_arguments(

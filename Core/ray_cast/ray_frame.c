@@ -20,6 +20,11 @@
 #define SMALLEST_SAMPLE_DISTANCE 1e-30
 #define LARGEST_SAMPLE_DISTANCE 1e30
 #define UNBOUNDED 1e30f
+/* A ray ends where so much of the tolerance is left of its transparency: what lies behind can change no channel by more. Floats tell no
+ * transparency below TERMINATION_LEAST from none. */
+#define TERMINATION_SHARE 0.5
+#define TERMINATION_MOST 0.5
+#define TERMINATION_LEAST 0x1p-24
 
 /* Returns an upper bound of the world distance from the eye (parallel: from any point of the window) to a point of the volume. */
 static double farthest_point(const stratus_volume* volume, const stratus_camera* camera, const double m[16])
@@ -157,6 +162,11 @@ static void set_addressing(const stratus_volume* volume, stratus_ray_cast_argume
   a->values.stride = (int)stride;
 }
 
+double stratus_ray_termination(double tolerance)
+{
+  return fmax(fmin(TERMINATION_SHARE * tolerance, TERMINATION_MOST), TERMINATION_LEAST);
+}
+
 static stratus_status check_samples(
   stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume, double sample_distance)
 {
@@ -211,7 +221,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   a->picture.want_bytes = image->rgba8 != NULL;
   a->values.nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
   a->values.clamp = volume->cell_centered != 0;
-  a->termination = (float)(1.0 - options->termination);
+  a->termination = (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(options->tolerance));
   set_clip_planes(options, index_to_world, a);
   set_addressing(volume, a);
   const double bias = stratus_volume_bias(volume);

@@ -11,6 +11,8 @@
 stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,
   const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
   bool* empty);
+/* Returns the transparency at which a ray may end where only the tolerance says so. */
+double stratus_ray_termination(double tolerance);
 /* Sets the arguments of table and map, each unless NULL, and the window. */
 void stratus_ray_frame_structures(
   const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);

@@ -90,7 +90,10 @@ typedef struct stratus_ray_cast_options {
   stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */
   double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
-  double termination;     /* a ray ends when its alpha exceeds this, 0..1; default .999 */
+  double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
+  /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. Default .001: 60 dB, a quarter of
+   * an 8-bit step. 0: the finest settings. It governs what is left automatic: sampling, sample_distance, cell_error and termination. */
+  double tolerance;
   int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4, or larger where the maps would take more than 2e9 bytes */
   int crop;               /* 1: only the regions of crop_regions show. Default 0. */
   double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
@@ -144,12 +147,17 @@ typedef struct stratus_ray_cast_report {
   /* Number of builds of each since the caster was created. A camera move raises none of them. */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
   double range_ms, table_ms, occupancy_ms, structure_ms, upload_ms, cast_ms; /* times in this call; 0: the step was not needed */
+  double probe_ms;                                                            /* likewise: rays drawn to choose the sampling */
   size_t structure_bytes;
   int window[4];               /* x0, x1, y0, y1: pixels outside [x0, x1) x [y0, y1) show nothing */
   stratus_structure structure; /* the one used */
   stratus_sampling sampling;   /* the one used */
   double sample_distance;      /* the one used, world length */
-  char why[256];               /* one sentence: the reasons for structure, sampling and sample distance */
+  double expected_error;       /* measured on the probe's rays, in the tolerance's terms; NaN if no ray was probed */
+  int tolerance_met;           /* 0: the finest setting is expected to miss the tolerance; else 1 */
+  uint64_t probe_builds;       /* number of probes since the caster was created */
+  uint64_t probe_samples;      /* values interpolated by this call's probe */
+  char why[512];               /* one sentence: the reasons for structure, sampling and sample distance, and what was tried */
   int offered_tree;            /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;
 

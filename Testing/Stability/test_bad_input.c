@@ -215,6 +215,9 @@ static void spoilt_options_are_refused(void** state)
   REFUSED(f, "1.75", in.options.termination = 1.75);
   REFUSED(f, "-0.25", in.options.termination = -0.25);
   REFUSED(f, "nan", in.options.termination = NAN);
+  REFUSED(f, "-0.001", in.options.tolerance = -0.001);
+  REFUSED(f, "nan", in.options.tolerance = NAN);
+  REFUSED(f, "inf", in.options.tolerance = INFINITY);
   REFUSED(f, "1e+16", (in.options.shade = 1, in.options.shading.ambient = 1e16));
   REFUSED(f, "1e+153", (in.options.shade = 1, in.options.shading.specular_power = 1e153));
   REFUSED(f, "1e+308", (in.options.shade = in.options.shading.light_count = 1, in.options.shading.lights[0].color[2] = 1e308));
