@@ -28,10 +28,9 @@ struct stratus_ray_caster {
   uint64_t mask_revision;
   stratus_transfer* transfers; /* transfer_count copies; NULL: none yet */
   int transfer_count;
-  stratus_interpolation interpolation; /* input of `choice`, as the next three */
-  stratus_sampling wanted_sampling;
-  double wanted_distance, voxel_length;
+  stratus_ray_choice_inputs inputs; /* of `choice` */
   stratus_ray_choice choice;
+  char tried[256]; /* what the probe tried; empty: there was none */
   stratus_table* table;
   double table_distance;   /* sample distance of the table */
   stratus_ray_shown shown; /* mode and values of the table */
@@ -49,7 +48,7 @@ struct stratus_ray_caster {
 
   stratus_ray_device* device;                     /* buffers on the OpenCL device; NULL: none */
   uint64_t data_serial, table_serial, map_serial; /* incremented by each build, so that the device knows which buffers are stale */
-  uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
+  uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads, probe_builds;
 };
 
 /* ray_caster_drop.c: each function also drops everything derived from what it drops. stratus_ray_forget_offer() makes the caster check an
@@ -64,6 +63,8 @@ void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 /* ray_caster_update.c: rebuilds only what changed. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
+/* Makes the tables of caster->choice. */
+stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report);
 

@@ -9,6 +9,7 @@
 #include "ray_fetched.h"
 #include "ray_frame.h"
 #include "ray_modes_render.h"
+#include "ray_probe.h"
 #include "ray_shading_render.h"
 #include "ray_shading_table.h"
 
@@ -164,6 +165,9 @@ static void fill_report(
   report->structure = used;
   report->sampling = caster->choice.sampling;
   report->sample_distance = caster->choice.sample_distance;
+  report->expected_error = caster->choice.expected_error;
+  report->tolerance_met = caster->choice.met;
+  report->probe_builds = caster->probe_builds;
 }
 
 static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
@@ -174,13 +178,14 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   stratus_ray_counts counts = { 0 };
   char why[128] = "";
   bool empty = false;
-  report->expected_error = NAN;
-  report->tolerance_met = 1;
 
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
+  TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
+  if (caster->choice.provisional) {
+    TRY(stratus_ray_probe(caster, volume, options, report));
+  }
   TRY(stratus_ray_frame_arguments(
     caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
-  TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
   const bool covers = stratus_ray_modes_covers(options);
   const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   const double start = stratus_now_ms();
@@ -208,8 +213,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   caster->lookups_since_edit += counts.lookups;
   caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
-  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g (bend %.2g, sharpness %.2g)", why,
-    stratus_sampling_name(caster->choice.sampling), caster->choice.sample_distance, caster->choice.bend, caster->choice.sharpness);
+  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s", why, stratus_sampling_name(caster->choice.sampling),
+    caster->choice.sample_distance, *caster->tried ? ": " : "", caster->tried);
   return STRATUS_OK;
 }
 
@@ -227,6 +232,8 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   TRY(stratus_ray_shading_check_volume(caster->context, volume, transfer, options));
   TRY(check_options(caster->context, options));
   TRY(stratus_image_check(caster->context, image));
+  mine.expected_error = NAN;
+  mine.tolerance_met = 1;
   mine.window[1] = image->width;
   mine.window[3] = image->height;
   if (options->mode == STRATUS_MODE_FIRST_HIT) {

@@ -12,6 +12,7 @@
 #include "ray_tree.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
 /* Traversal addresses all eight octant maps with one int. */
@@ -108,51 +109,56 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
   return STRATUS_OK;
 }
 
-/* Updates the copied transfer functions, the sampling that follows from them, and the table. */
-static stratus_status update_table(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, double* ms)
+/* What the caster's choice follows from, besides values and transfer functions. */
+static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  const double start = stratus_now_ms();
-  const int media = stratus_ray_shading_media(volume, options);
-  const bool same = same_transfers(caster, transfer, media, options->dependent != 0);
-  if (!same) {
-    TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
-  }
-  const double voxel = stratus_ray_voxel_length(volume);
-  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
-  const bool same_mode = stratus_ray_modes_same(&caster->shown, &shown);
-  if (!same || !same_mode || !caster->table || caster->voxel_length != voxel || caster->interpolation != options->interpolation ||
-    caster->wanted_sampling != options->sampling || caster->wanted_distance != options->sample_distance) {
-    stratus_ray_choose(
-      caster->ranges, voxel, transfer, options->interpolation, options->sampling, options->sample_distance, &caster->choice);
-    stratus_ray_modes_choose(options, voxel, &caster->choice);
-    stratus_ray_shading_choose(caster, voxel, transfer, options);
-    caster->voxel_length = voxel;
-    caster->interpolation = options->interpolation;
-    caster->wanted_sampling = options->sampling;
-    caster->wanted_distance = options->sample_distance;
-  }
+  stratus_ray_choice_inputs in;
+  memset(&in, 0, sizeof in); /* padding, too: inputs are compared as bytes */
+  in.sampling = options->sampling;
+  in.sample_distance = options->sample_distance;
+  in.tolerance = options->tolerance;
+  in.interpolation = options->interpolation;
+  in.shade = options->shade != 0;
+  in.voxel = stratus_ray_voxel_length(volume);
+  return in;
+}
+
+stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
+{
   const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
   const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
-  if (same_kind && same_mode && caster->table_distance == caster->choice.sample_distance) {
-    return STRATUS_OK;
-  }
   const stratus_value_range* ranges = caster->ranges;
   const bool any = ranges->whole_lo <= ranges->whole_hi;
   stratus_table* table = NULL;
-  TRY(stratus_table_create(caster->context, caster->transfers, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
-    caster->choice.sampling, stratus_ray_modes_table_distance(options, transfer, caster->choice.sample_distance), &table));
-  stratus_ray_modes_mark(&shown, caster->transfers, ranges->bias, table);
-  caster->shown = shown;
-  if (!same_kind || !same_mode || caster->table->shown != table->shown || stratus_ray_shading_several(caster)) {
-    stratus_ray_drop_occupancy(caster);
+  if (!same_kind || caster->table_distance != caster->choice.sample_distance) {
+    TRY(stratus_table_create(caster->context, caster->transfers, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
+      caster->choice.sampling, stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
+    stratus_ray_modes_mark(&caster->shown, caster->transfers, ranges->bias, table);
+    stratus_table_destroy(caster->table);
+    caster->table = table;
+    caster->table_distance = caster->choice.sample_distance;
+    ++caster->table_builds;
+    ++caster->table_serial;
   }
-  stratus_table_destroy(caster->table);
-  caster->table = table;
-  caster->table_distance = caster->choice.sample_distance;
-  ++caster->table_builds;
-  ++caster->table_serial;
-  *ms = stratus_now_ms() - start;
+  return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
+}
+
+/* Updates the copied transfer functions and, where something changed that the sampling follows from, makes the choice provisional. */
+static stratus_status update_transfers(
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const int media = stratus_ray_shading_media(volume, options);
+  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
+  const bool same_mode = stratus_ray_modes_same(&caster->shown, &shown);
+  const bool same = caster->table && same_mode && same_transfers(caster, transfer, media, options->dependent != 0);
+  if (same && memcmp(&caster->inputs, &inputs, sizeof inputs) == 0) {
+    return STRATUS_OK;
+  }
+  TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
+  caster->shown = shown;
+  caster->inputs = inputs;
+  stratus_ray_choose(caster, options, &caster->choice);
   return STRATUS_OK;
 }
 
@@ -162,8 +168,12 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   caster->shades = stratus_ray_shading_wanted(volume, transfer, options);
   TRY(update_ranges(caster, volume, options, &report->range_ms));
   TRY(stratus_ray_shading_ranges(caster));
-  TRY(update_table(caster, volume, transfer, options, &report->table_ms));
-  return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
+  const double start = stratus_now_ms();
+  const uint64_t builds = caster->table_builds;
+  TRY(update_transfers(caster, volume, transfer, options));
+  TRY(stratus_ray_update_table(caster, options));
+  report->table_ms = caster->table_builds != builds ? stratus_now_ms() - start : 0.0;
+  return STRATUS_OK;
 }
 
 /* Chooses the cheapest structure for the scene by the share of occupied blocks and the look-ups that rays have made since the last edit of

@@ -8,9 +8,6 @@
 
 #include <string.h>
 
-/* Sample distance of maxima and minima in voxels. It misses a peak between two samples by a quarter of the field's bend over them. */
-#define EXTREME_STEP 0.5
-
 const char* stratus_mode_name(stratus_mode mode)
 {
   static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" };
@@ -95,19 +92,6 @@ bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown*
     same = a->contours[n] == b->contours[n];
   }
   return same;
-}
-
-void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice)
-{
-  if (options->mode != STRATUS_MODE_COMPOSITE) {
-    choice->sampling = STRATUS_SAMPLING_MIDPOINT;
-  }
-  if (is_extreme(options->mode) && !(options->sample_distance > 0.0)) {
-    choice->sample_distance = EXTREME_STEP * voxel;
-  }
-  if (options->mode == STRATUS_MODE_ISOSURFACE) {
-    choice->sample_distance = voxel; /* only the unit of t: these rays step from cell to cell */
-  }
 }
 
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance)

@@ -20,7 +20,6 @@ stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_r
 /* Extracts them from the options. Fields that the mode does not use are 0. */
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options);
 bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown* b);
-void stratus_ray_modes_choose(const stratus_ray_cast_options* options, double voxel, stratus_ray_choice* choice);
 /* Returns the distance over which the table's opacity accumulates: the sample distance in mode COMPOSITE. Other modes use alpha as given,
  * so theirs is the unit distance. */
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);

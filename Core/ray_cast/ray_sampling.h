@@ -1,21 +1,34 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Chooses the sampling rule and sample distance of a scene. */
+ * Chooses how the rays of a scene sample: rule and step. */
 #ifndef STRATUS_RAY_SAMPLING_H
 #define STRATUS_RAY_SAMPLING_H
 
 #include "stratus/ray_cast.h"
 #include "volume.h"
 
-/* The choice for a scene. It depends on values and options, never on timings, so that equal input gives an equal choice. */
+/* How rays sample. It depends on values and options, never on timings, so that equal input gives an equal choice. */
 typedef struct stratus_ray_choice {
   stratus_sampling sampling;
   double sample_distance;
-  double bend;      /* distance of the opacity from linear over a voxel, relative to the opacity */
-  double sharpness; /* mean change of opacity over a voxel, in blocks that show something */
+  bool provisional; /* not measured yet: stratus_ray_probe() is to replace it */
+  /* What the probe found; NaN and true where there was none. */
+  double expected_error;
+  bool met;
 } stratus_ray_choice;
 
-void stratus_ray_choose(const stratus_value_range* ranges, double voxel, const stratus_transfer* transfer,
-  stratus_interpolation interpolation, stratus_sampling sampling, double sample_distance, stratus_ray_choice* choice);
+/* What a choice follows from, besides values and transfer functions. */
+typedef struct stratus_ray_choice_inputs {
+  double sample_distance, tolerance, voxel;
+  stratus_sampling sampling;
+  stratus_interpolation interpolation;
+  int shade;
+} stratus_ray_choice_inputs;
+
+/* Makes the choice that holds where the user sets rule and step, or where every step gives the same picture. Else the choice is
+ * provisional. */
+void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice);
+/* Whether a rule can draw the scene at all. */
+bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling);
 double stratus_ray_voxel_length(
   const stratus_volume* volume); /* world length of a voxel's shortest edge, among the axes along which the volume extends */
 

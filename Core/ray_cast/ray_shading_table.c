@@ -69,7 +69,7 @@ stratus_status stratus_ray_shading_check_volume(
   return STRATUS_OK;
 }
 
-/* ---- ranges and choice */
+/* ---- ranges */
 
 static void drop_label_tables(stratus_ray_caster* caster)
 {
@@ -121,29 +121,9 @@ stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
   return STRATUS_OK;
 }
 
-static const stratus_value_range* range_of(const stratus_ray_caster* caster, int c)
+const stratus_value_range* stratus_ray_shading_range_of(const stratus_ray_caster* caster, int c)
 {
   return c == 0 ? caster->ranges : caster->shading_tables.ranges[c];
-}
-
-void stratus_ray_shading_choose(
-  stratus_ray_caster* caster, double voxel, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
-{
-  const int components = stratus_volume_components(&caster->volume), media = stratus_ray_shading_media(&caster->volume, options);
-  if (components == 1 && media == 1) {
-    return;
-  }
-  for (int m = 0; m < media; ++m) {
-    stratus_ray_choice choice;
-    stratus_ray_choose(range_of(caster,
-                         components == 1 ? 0
-                           : media == 1  ? components - 1
-                                         : m),
-      voxel, transfer + m, options->interpolation, STRATUS_SAMPLING_MIDPOINT, options->sample_distance, &choice);
-    if (m == 0 || choice.sample_distance < caster->choice.sample_distance) {
-      caster->choice = choice;
-    }
-  }
 }
 
 /* ---- tables */
@@ -163,7 +143,7 @@ static void thicken(const stratus_table* table, float* out)
 
 static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
 {
-  const stratus_value_range* ranges = range_of(caster, c);
+  const stratus_value_range* ranges = stratus_ray_shading_range_of(caster, c);
   const bool any = ranges->whole_lo <= ranges->whole_hi;
   return stratus_table_create(caster->context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
     STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
@@ -346,7 +326,7 @@ stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster)
   for (int c = first; c < count; ++c) {
     stratus_occupancy* part = NULL;
     TRY_CLEANUP(stratus_occupancy_build(
-      caster->context, range_of(caster, labels ? 0 : c), labels ? shading->label_tables[c] : shading->tables[c], &part));
+      caster->context, stratus_ray_shading_range_of(caster, labels ? 0 : c), labels ? shading->label_tables[c] : shading->tables[c], &part));
     if (whole) {
       stratus_occupancy_add(whole, part);
       stratus_occupancy_destroy(part);

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Measures which sampling a scene needs. */
+#ifndef STRATUS_RAY_PROBE_H
+#define STRATUS_RAY_PROBE_H
+
+#include "ray_caster.h"
+
+/* Draws a thousand or so rays with the settings that the options leave open and with a finer one, and makes the cheapest setting that keeps
+ * the tolerance the caster's choice. Needs value ranges, transfer functions, occupancy and map. Deterministic: counts and errors decide,
+ * not timings. If memory runs out, the caster's choice stays as it was. */
+stratus_status stratus_ray_probe(
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_report* report);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Rays that stand for all pictures of a volume: where they go, and how much each counts. */
+#ifndef STRATUS_RAY_PROBE_RAYS_H
+#define STRATUS_RAY_PROBE_RAYS_H
+
+#include "ray_caster.h"
+
+/* Rays go in patches of parallel rays. A patch is a picture of its own. */
+#define STRATUS_PROBE_WIDTH 8
+#define STRATUS_PROBE_HEIGHT 4
+#define STRATUS_PROBE_PATCHES 48
+
+typedef struct stratus_probe_patch {
+  stratus_camera camera;
+  double weight; /* of each of its rays */
+} stratus_probe_patch;
+
+/* Makes patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer
+ * functions change over their values, so that a small rough part of a large smooth volume is met, too. A patch weighs the inverse of the
+ * density of rays where it lies, so that weighted sums over the rays stand for sums over pictures. *count: 0 if no block is occupied. */
+stratus_status stratus_ray_probe_rays(const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count);
+
+#endif
