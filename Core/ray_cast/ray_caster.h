@@ -30,7 +30,8 @@ struct stratus_ray_caster {
   int transfer_count;
   stratus_ray_choice_inputs inputs; /* of `choice` */
   stratus_ray_choice choice;
-  char tried[256]; /* what the probe tried; empty: there was none */
+  stratus_ray_choice measured; /* the last that the probe made; its sample distance is 0 before the first */
+  char tried[256];             /* what the probe tried; empty: there was none */
   stratus_table* table;
   double table_distance;   /* sample distance of the table */
   stratus_ray_shown shown; /* mode and values of the table */

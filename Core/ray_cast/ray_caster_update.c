@@ -244,12 +244,7 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
   size_t capacity, stratus_ray_cast_report* report)
 {
   bool offered = false;
-  if (wanted == STRATUS_STRUCTURE_NONE) {
-    *used = wanted;
-    snprintf(why, capacity, "none as asked");
-    return STRATUS_OK;
-  }
-  if (!caster->occupancy) {
+  if (!caster->occupancy && (wanted != STRATUS_STRUCTURE_NONE || caster->choice.provisional)) {
     const double start = stratus_now_ms();
     if (stratus_ray_shading_several(caster)) {
       TRY(stratus_ray_shading_occupancy(caster));
@@ -258,6 +253,11 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
     }
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
+  }
+  if (wanted == STRATUS_STRUCTURE_NONE) {
+    *used = wanted;
+    snprintf(why, capacity, "none as asked");
+    return STRATUS_OK;
   }
   if (wanted == STRATUS_STRUCTURE_HYBRID || wanted == STRATUS_STRUCTURE_AUTO) {
     TRY(stratus_ray_tree_serves(caster, &offered));

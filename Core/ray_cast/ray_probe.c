@@ -41,6 +41,7 @@ typedef struct probe {
   stratus_ray_caster* caster;
   const stratus_volume* volume;
   const stratus_ray_cast_options* options;
+  stratus_ray_cast_options whole; /* the same without what hides parts: a setting serves whatever part is shown */
   stratus_probe_patch patches[STRATUS_PROBE_PATCHES];
   int count;
   double voxel;
@@ -69,26 +70,32 @@ typedef struct patch_job {
   int type;
 } patch_job;
 
+/* Sets the arguments of a patch as far as they can be wrong. *rgba: where its picture lies. */
+static stratus_status begin_patch(const patch_job* job, int number, stratus_ray_cast_arguments* a, float** rgba, bool* empty)
+{
+  *rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number;
+  const stratus_image image = { .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = *rgba };
+  return stratus_ray_frame_arguments(
+    job->p->caster->context, &job->p->caster->traversed, &job->p->patches[number].camera, &job->p->whole, &image, job->distance, a, empty);
+}
+
 static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TILE_COUNTS])
 {
   const patch_job* job = data;
   const stratus_ray_caster* caster = job->p->caster;
   const stratus_camera* camera = &job->p->patches[number].camera;
-  float* rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number;
-  stratus_image image = { .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = rgba };
-  stratus_ray_cast_options options = *job->p->options;
+  const stratus_ray_cast_options* options = &job->p->whole;
   stratus_ray_cast_arguments a;
   stratus_ray_counts mine = { 0 };
+  float* rgba;
   bool empty = false;
-  options.crop = options.clip_plane_count = options.jitter = 0; /* a setting serves whatever part is shown */
-  if (stratus_ray_frame_arguments(caster->context, &caster->traversed, camera, &options, &image, job->distance, &a, &empty) != STRATUS_OK ||
-    empty) {
+  if (begin_patch(job, number, &a, &rgba, &empty) != STRATUS_OK || empty) {
     memset(rgba, 0, 4 * PATCH * sizeof *rgba);
     return;
   }
   a.values.has_hidden = caster->hides;
-  stratus_ray_modes_arguments(caster, &options, &a);
-  stratus_ray_shading_arguments(caster, job->p->volume, camera, &options, &a);
+  stratus_ray_modes_arguments(caster, options, &a);
+  stratus_ray_shading_arguments(caster, job->p->volume, camera, options, &a);
   stratus_ray_frame_structures(caster->table, caster->occupancy, caster->map, &a);
   const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
   const stratus_ray_cast_frame frame = { .arguments = &a,
@@ -115,6 +122,10 @@ static stratus_status draw_patches(probe* p, const setting* s, float* pictures, 
     .distance = caster->choice.sample_distance,
     .variant = caster->shades ? light : stratus_ray_modes_variant(caster),
     .type = stratus_ray_fetch_type(&caster->traversed) };
+  stratus_ray_cast_arguments unused;
+  float* picture;
+  bool empty;
+  TRY(begin_patch(&job, 0, &unused, &picture, &empty)); /* what fails for one patch, a step too short, fails for all */
   TRY(stratus_each_tile(caster->context, "sampling", p->count, draw_patch, &job, sums));
   *samples = (double)sums[1];
   p->samples += sums[1];
@@ -236,31 +247,51 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice)
   return STRATUS_OK;
 }
 
+/* Draws the picture of this frame with the setting that was measured last, where there is one that can draw it. The next frame measures. */
+static void keep_last(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
+{
+  if (caster->measured.sample_distance > 0.0 && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
+    caster->choice = caster->measured;
+  }
+  caster->choice.expected_error = NAN;
+  caster->choice.met = false;
+  caster->choice.provisional = true;
+  snprintf(caster->tried, sizeof caster->tried, "no memory to measure what the tolerance needs, the last setting stays");
+  stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to measure what the tolerance needs: the last setting stays");
+}
+
 stratus_status stratus_ray_probe(
   stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
 {
   const double start = stratus_now_ms();
-  probe p = { .caster = caster, .volume = volume, .options = options, .voxel = stratus_ray_voxel_length(volume) };
-  stratus_ray_choice choice = caster->choice;
+  probe p = { .caster = caster, .volume = volume, .options = options, .whole = *options, .voxel = stratus_ray_voxel_length(volume) };
+  const stratus_ray_choice provisional = caster->choice;
+  stratus_ray_choice choice = provisional;
   void* memory = NULL;
-  stratus_status status = STRATUS_OK;
+  p.whole.crop = p.whole.clip_plane_count = p.whole.jitter = 0;
   caster->tried[0] = '\0';
-  TRY_CLEANUP(stratus_ray_probe_rays(caster, p.patches, &p.count));
+  stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count);
+  if (status == STRATUS_OK && p.count > 0) {
+    status = stratus_allocate(caster->context, 2 * 4 * (size_t)PATCH * (size_t)p.count, sizeof(float), &memory);
+  }
+  if (status == STRATUS_OUT_OF_MEMORY) {
+    keep_last(caster, options);
+    return stratus_ray_update_table(caster, options);
+  }
+  TRY(status);
   if (p.count > 0) {
-    TRY_CLEANUP(stratus_allocate(caster->context, 2 * 4 * (size_t)PATCH * (size_t)p.count, sizeof(float), &memory));
     p.fine = memory;
     p.coarse = p.fine + 4 * (size_t)PATCH * (size_t)p.count;
-    TRY_CLEANUP(choose(&p, &choice));
-    ++caster->probe_builds;
+    status = choose(&p, &choice);
+    stratus_release(caster->context, memory);
   }
-  choice.provisional = false;
-  report->probe_samples = p.samples;
-
-cleanup:
-  caster->choice = choice;
-  stratus_release(caster->context, memory);
+  caster->choice = status == STRATUS_OK ? choice : provisional;
   TRY(status);
+  caster->choice.provisional = false;
+  caster->probe_builds += p.count > 0;
+  caster->measured = caster->choice;
   TRY(stratus_ray_update_table(caster, options));
+  report->probe_samples = p.samples;
   report->probe_ms = stratus_now_ms() - start;
   return STRATUS_OK;
 }

@@ -170,6 +170,9 @@ static stratus_status classify(const stratus_ray_caster* caster, double voxel, c
   }
 cleanup:
   stratus_release(caster->context, variations);
+  if (status != STRATUS_OK) {
+    stratus_release(caster->context, k->of);
+  }
   return status;
 }
 

@@ -325,8 +325,8 @@ stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster)
             count = labels ? shading->label_tables_count : shading->components;
   for (int c = first; c < count; ++c) {
     stratus_occupancy* part = NULL;
-    TRY_CLEANUP(stratus_occupancy_build(
-      caster->context, stratus_ray_shading_range_of(caster, labels ? 0 : c), labels ? shading->label_tables[c] : shading->tables[c], &part));
+    TRY_CLEANUP(stratus_occupancy_build(caster->context, stratus_ray_shading_range_of(caster, labels ? 0 : c),
+      labels ? shading->label_tables[c] : shading->tables[c], &part));
     if (whole) {
       stratus_occupancy_add(whole, part);
       stratus_occupancy_destroy(part);

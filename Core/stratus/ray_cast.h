@@ -94,9 +94,9 @@ typedef struct stratus_ray_cast_options {
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. Default .001: 60 dB, a quarter of
    * an 8-bit step. 0: the finest settings. It governs what is left automatic: sampling, sample_distance, cell_error and termination. */
   double tolerance;
-  int block_size;         /* 2, 4, 8, 16, 32; 0 (default): 4, or larger where the maps would take more than 2e9 bytes */
-  int crop;               /* 1: only the regions of crop_regions show. Default 0. */
-  double crop_bounds[6];  /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
+  int block_size;        /* 2, 4, 8, 16, 32; 0 (default): 4, or larger where the maps would take more than 2e9 bytes */
+  int crop;              /* 1: only the regions of crop_regions show. Default 0. */
+  double crop_bounds[6]; /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
   /* Regions that show, of the 27 into which the bounds' six planes divide space. Bit x + 3 y + 9 z stands for region (x, y, z), where each
    * coordinate is 0 (below the lower plane), 1 (between the planes) or 2 (above the upper plane). Default STRATUS_CROP_INSIDE: between all
    * planes. First hits support no other value. */
@@ -147,7 +147,7 @@ typedef struct stratus_ray_cast_report {
   /* Number of builds of each since the caster was created. A camera move raises none of them. */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
   double range_ms, table_ms, occupancy_ms, structure_ms, upload_ms, cast_ms; /* times in this call; 0: the step was not needed */
-  double probe_ms;                                                            /* likewise: rays drawn to choose the sampling */
+  double probe_ms;                                                           /* likewise: rays drawn to choose the sampling */
   size_t structure_bytes;
   int window[4];               /* x0, x1, y0, y1: pixels outside [x0, x1) x [y0, y1) show nothing */
   stratus_structure structure; /* the one used */

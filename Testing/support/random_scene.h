@@ -150,11 +150,11 @@ static inline void random_scene_create(stratus_context* context, uint32_t seed, 
   const stratus_type types[] = { STRATUS_UINT8, STRATUS_UINT16, STRATUS_INT16, STRATUS_FLOAT32, STRATUS_FLOAT32, STRATUS_FLOAT64 };
   const stratus_type type = types[case_random(&state) % 6];
   const double lo = type == STRATUS_INT16 ? -1000.0 : 0.0,
-               hi = type == STRATUS_UINT8   ? 255.0
-                 : type == STRATUS_UINT16   ? 65535.0
-                 : type == STRATUS_INT16    ? 3000.0
-                 : case_random(&state) % 2  ? 1.0
-                                            : 68.0;
+               hi = type == STRATUS_UINT8 ? 255.0
+    : type == STRATUS_UINT16              ? 65535.0
+    : type == STRATUS_INT16               ? 3000.0
+    : case_random(&state) % 2             ? 1.0
+                                          : 68.0;
   double n[3], shape[8];
   s->volume = stratus_volume_default();
   s->volume.type = type;
