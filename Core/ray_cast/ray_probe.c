@@ -14,11 +14,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Rungs of the step: rung r is a step of 2^(COARSEST - r/2) voxels. */
+/* Rungs of the step: rung r is a step of 2^(COARSEST - r/4) voxels. */
 #define COARSEST 2.0
-#define RUNGS 13
+#define RUNGS 25
 /* The rung of the finer setting that candidates are compared with, and how much finer it must be than a candidate. */
-#define RUNG_ONE_VOXEL 4
+#define RUNG_ONE_VOXEL 8
 /* The error on the probe's rays may be at most this share of the tolerance: other rays err by more. */
 #define SHARE 0.6
 /* Rays as many as one patch has. */
@@ -52,7 +52,7 @@ typedef struct probe {
 
 static double step_of(int rung)
 {
-  return exp2(COARSEST - 0.5 * rung);
+  return exp2(COARSEST - 0.25 * rung);
 }
 
 static double distance_of(const probe* p, int rung)
@@ -173,7 +173,7 @@ static stratus_status search(probe* p, family* f, double most, int start, int* b
   *best = -1;
   while (low <= high) {
     TRY(measure(p, f, rung));
-    const double error = f->error[rung], excess = error > 0.0 ? log2(error / most) : -RUNGS;
+    const double error = f->error[rung], excess = error > 0.0 ? 2.0 * log2(error / most) : -RUNGS; /* in rungs */
     if (error <= most) {
       *best = rung;
       high = rung - 1;

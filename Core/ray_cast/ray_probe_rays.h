@@ -6,9 +6,9 @@
 #include "ray_caster.h"
 
 /* Rays go in patches of parallel rays. A patch is a picture of its own. */
-#define STRATUS_PROBE_WIDTH 8
+#define STRATUS_PROBE_WIDTH 4
 #define STRATUS_PROBE_HEIGHT 4
-#define STRATUS_PROBE_PATCHES 48
+#define STRATUS_PROBE_PATCHES 40
 
 typedef struct stratus_probe_patch {
   stratus_camera camera;
