@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The double-precision reference renderer: rays, steps, and the error between two pictures. It is slow and plain so that it is easy to
- * verify. */
+ * The double-precision reference renderer: rays, their way through the cells, and the error between two pictures. */
 #include "reference.h"
 
 #include "reference_field.h"
+#include "reference_pieces.h"
 #include "reference_shading.h"
 
 #include <math.h>
@@ -69,16 +69,15 @@ static ray make_ray(const reference_scene* scene, const reference_field* f, doub
   return r;
 }
 
-/* Returns the first step from number i on, at p, that may lie outside the transparent block around p. If the block shows something, it is
- * i. */
-static int64_t past_block(const reference_field* f, const ray* r, const double p[3], int64_t i, double step)
+/* Returns where the ray leaves the block around p, or a negative number if the block shows something. */
+static double leave_block(const reference_field* f, const ray* r, const double p[3])
 {
   int64_t b[3];
   for (int a = 0; a < 3; ++a) {
     b[a] = reference_clamp((int64_t)floor(p[a] / REFERENCE_BLOCK), f->blocks[a]);
   }
   if (f->shown[(b[2] * f->blocks[1] + b[1]) * f->blocks[0] + b[0]]) {
-    return i;
+    return -1.0;
   }
   double leave = r->end;
   for (int a = 0; a < 3; ++a) {
@@ -88,8 +87,16 @@ static int64_t past_block(const reference_field* f, const ray* r, const double p
       leave = fmin(leave, fmax((wall - r->index_origin[a]) / d, r->begin));
     }
   }
-  const int64_t next = (int64_t)floor((leave - r->begin) / step - 0.5);
-  return next > i ? next : i + 1;
+  return leave;
+}
+
+/* Returns the first step from number i on, at p, that may lie outside the transparent block around p. If the block shows something, it is
+ * i. */
+static int64_t past_block(const reference_field* f, const ray* r, const double p[3], int64_t i, double step)
+{
+  const double leave = leave_block(f, r, p);
+  const int64_t next = leave < 0.0 ? i : (int64_t)floor((leave - r->begin) / step - 0.5);
+  return leave < 0.0 || next > i ? next : i + 1;
 }
 
 /* Returns the opacity of a step, and finds its colour, with shading or several components. parts, c: one field and one cell per component.
@@ -116,13 +123,63 @@ static double look(const reference_scene* scene, const reference_field* parts, c
   return -expm1(-tau * step);
 }
 
+/* Finds where the ray crosses the next grid plane beyond s. With half, planes between the voxels count, too: there the nearest value
+ * changes. */
+static double next_plane(const ray* r, double s, bool half)
+{
+  const double planes = half ? 2.0 : 1.0;
+  double next = r->end;
+  for (int a = 0; a < 3; ++a) {
+    const double d = r->index_direction[a];
+    if (d != 0.0) {
+      /* The plane behind s may be met again by rounding; s itself must not. */
+      const double at = planes * (r->index_origin[a] + s * d);
+      double wall = d > 0.0 ? floor(at) + 1.0 : ceil(at) - 1.0;
+      double crossed = (wall / planes - r->index_origin[a]) / d;
+      if (crossed <= s) {
+        wall += d > 0.0 ? 1.0 : -1.0;
+        crossed = (wall / planes - r->index_origin[a]) / d;
+      }
+      next = fmin(next, crossed);
+    }
+  }
+  return next;
+}
+
+/* Composites from grid plane to grid plane. */
+static double trace_cells(
+  const reference_scene* scene, const reference_field* f, const reference_breaks* breaks, const ray* r, double longest, float pixel[4])
+{
+  const bool half = !f->linear || (f->volume->cell_ghosts && f->volume->cell_centered);
+  reference_light light = { .left = 1.0, .first = (double)INFINITY };
+  reference_cell cell = { .at = { -1, -1, -1 } };
+  for (double s = r->begin; s < r->end && light.left > 1e-12;) {
+    double next = next_plane(r, s, half), p[3];
+    for (int a = 0; a < 3; ++a) {
+      p[a] = r->index_origin[a] + 0.5 * (s + next) * r->index_direction[a];
+    }
+    const double leave = leave_block(f, r, p);
+    if (leave >= 0.0) {
+      next = fmax(next, leave);
+    } else {
+      const reference_line line = { r->index_origin, r->index_direction, s, next };
+      reference_add_line(f, scene->transfer, breaks, &line, longest, &cell, &light);
+    }
+    s = next;
+  }
+  for (int a = 0; a < 3; ++a) {
+    pixel[a] = (float)light.rgb[a];
+  }
+  pixel[3] = (float)(1.0 - light.left);
+  return light.first;
+}
+
+/* Composites in midpoint steps, with shading or several components. */
 static double trace(const reference_scene* scene, const reference_field* f, const ray* r, double longest_step, float pixel[4])
 {
   const double length = r->end - r->begin;
   const int64_t count = (int64_t)ceil(length / longest_step);
   const double step = length / (double)count;
-  const double share = step / scene->transfer->unit_distance;
-  const bool shading = reference_has_shading(scene);
   reference_cell c[REFERENCE_COMPONENTS_MAX];
   reference_field parts[REFERENCE_COMPONENTS_MAX];
   stratus_volume views[REFERENCE_COMPONENTS_MAX];
@@ -130,7 +187,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
     c[i] = (reference_cell){ .at = { -1, -1, -1 } };
     parts[i] = *f;
     views[i] = reference_component(scene->volume, i);
-    parts[i].volume = shading ? views + i : f->volume;
+    parts[i].volume = views + i;
   }
   double left = 1.0;
   double sum[3] = { 0.0, 0.0, 0.0 };
@@ -147,16 +204,8 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
       continue;
     }
     ++i;
-    double kept = 0.0, rgb[3] = { 0.0, 0.0, 0.0 };
-    if (shading) {
-      kept = look(scene, parts, r, s, p, c, step, rgb);
-    } else {
-      const double value = reference_field_sample(f, p, c), opacity = isnan(value) ? 0.0 : reference_opacity(scene->transfer, value);
-      kept = opacity < 1.0 ? -expm1(share * log1p(-opacity)) : 1.0;
-      if (opacity > 0.0) {
-        reference_color(scene->transfer, value, rgb);
-      }
-    }
+    double rgb[3];
+    const double kept = look(scene, parts, r, s, p, c, step, rgb);
     if (kept > 0.0) {
       for (int a = 0; a < 3; ++a) {
         sum[a] += left * kept * rgb[a];
@@ -175,9 +224,15 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
 int reference_render(const reference_scene* scene, int width, int height, double step, float* rgba, float* depth)
 {
   reference_field f;
+  reference_breaks breaks;
   if (reference_field_create(scene, &f) != 0) {
     return -1;
   }
+  if (reference_breaks_create(scene->transfer, &breaks) != 0) {
+    reference_field_release(&f);
+    return -1;
+  }
+  const bool shading = reference_has_shading(scene);
   const double length = step * f.edge;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int y = 0; y < height; ++y) {
@@ -188,13 +243,14 @@ int reference_render(const reference_scene* scene, int width, int height, double
       double first = (double)INFINITY;
       memset(rgba + 4 * at, 0, 4 * sizeof *rgba);
       if (r.end > r.begin) {
-        first = trace(scene, &f, &r, length, rgba + 4 * at);
+        first = shading ? trace(scene, &f, &r, length, rgba + 4 * at) : trace_cells(scene, &f, &breaks, &r, length, rgba + 4 * at);
       }
       if (depth) {
         depth[at] = (float)first;
       }
     }
   }
+  reference_breaks_release(&breaks);
   reference_field_release(&f);
   return 0;
 }
@@ -204,9 +260,10 @@ int reference_converged(
 {
   const size_t pixels = (size_t)width * (size_t)height;
   float* coarse = malloc(4 * pixels * sizeof *coarse);
-  int result = coarse ? reference_render(scene, width, height, 0.125, rgba, depth) : -1;
+  const double coarsest = reference_has_shading(scene) ? 0.125 : 1.0;
+  int result = coarse ? reference_render(scene, width, height, coarsest, rgba, depth) : -1;
   double agreement = -(double)INFINITY;
-  for (double step = 0.0625; result == 0 && step >= 1.0 / 1024.0 && agreement < wanted_db + 10.0; step *= 0.5) {
+  for (double step = 0.5 * coarsest; result == 0 && step >= 1.0 / 1024.0 && agreement < wanted_db + 10.0; step *= 0.5) {
     memcpy(coarse, rgba, 4 * pixels * sizeof *coarse);
     result = reference_render(scene, width, height, step, rgba, depth);
     agreement = reference_psnr(coarse, rgba, pixels);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  *
- * The reference renderer, against which tests compare all others. It works in plain double precision, one ray at a time, in small midpoint
- * steps, and evaluates the transfer function at each point. It shares the public structs with the core, but none of its code. */
+ * The reference renderer, against which tests compare all others. It works in plain double precision, one ray at a time. In a cell the
+ * field along a ray is a cubic, which is cut where it crosses a point of the transfer function, so that vertical steps cost no accuracy.
+ * With shading or several components it takes small midpoint steps instead. It shares the public structs with the core, but none of its
+ * code. */
 #ifndef STRATUS_TESTING_REFERENCE_H
 #define STRATUS_TESTING_REFERENCE_H
 
@@ -31,13 +33,14 @@ typedef struct reference_scene {
 double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k);
 double reference_value_at(const stratus_volume* volume, int64_t number);
 
-/* Draws into rgba (width*height*4 floats, premultiplied, bottom row first). step > 0: length of a step in units of a voxel's shortest edge
- * in the world. depth may be NULL: world distance from the eye (parallel: from its plane) to the first sample with opacity, INFINITY where
- * there is none. A ray stops when its transparency falls below 1e-12. Returns 0, or -1 if memory runs out. */
+/* Draws into rgba (width*height*4 floats, premultiplied, bottom row first). step > 0: largest length of a step, or of a piece of
+ * quadrature, in units of a voxel's shortest edge in the world. depth may be NULL: world distance from the eye (parallel: from its plane)
+ * to the first opacity, INFINITY where there is none. A ray stops when its transparency falls below 1e-12. Returns 0, or -1 if memory runs
+ * out. */
 int reference_render(const reference_scene* scene, int width, int height, double step, float* rgba, float* depth);
 
-/* Halves the step, from 1/8, until two successive pictures agree to at least wanted_db + 10 or the step is 1/1024, and returns the finer
- * one. *reference_db: the agreement of these two. */
+/* Halves the step, from 1 (with shading: 1/8), until two successive pictures agree to at least wanted_db + 10 or the step is 1/1024, and
+ * returns the finer one. *reference_db: the agreement of these two. */
 int reference_converged(
   const reference_scene* scene, int width, int height, double wanted_db, float* rgba, float* depth, double* reference_db);
 

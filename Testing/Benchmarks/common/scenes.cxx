@@ -6,6 +6,7 @@
 #include <vtkFloatArray.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkUnsignedShortArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,10 @@ vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
     auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
     bytes->SetArray(static_cast<unsigned char*>(values), count, 1);
     array = bytes;
+  } else if (v.type == STRATUS_UINT16) {
+    auto shorts = vtkSmartPointer<vtkUnsignedShortArray>::New();
+    shorts->SetArray(static_cast<unsigned short*>(values), count, 1);
+    array = shorts;
   } else if (v.type == STRATUS_FLOAT32) {
     auto floats = vtkSmartPointer<vtkFloatArray>::New();
     floats->SetArray(static_cast<float*>(values), count, 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures the errors of all pictures of a scene against the double-precision reference, and counts the pixels that a structure changed.
-// The reference's step is halved until two pictures agree by 10 dB more than the best figure printed.
+// The reference's step is halved until two pictures agree by 10 dB more than the best figure printed, and to 70 dB at least where a
+// transfer function jumps: there, plain steps converge slowly.
 #include "bench.h"
 #include "reference.h"
 
@@ -16,6 +17,7 @@ namespace bench {
 namespace {
 
 constexpr double finest = 1.0 / 256.0;
+constexpr double least_of_jumps = 70.0; // dB
 
 uint64_t mix(uint64_t hash, const void* data, size_t bytes)
 {
@@ -32,12 +34,13 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
   return hash;
 }
 
-// Hashes everything that determines the reference's picture, except view, size and step.
+// Hashes everything that determines the reference's picture, except view, size and step. The number counts the reference's ways to
+// integrate, so that a cache holds no picture of an earlier one.
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
   const int64_t values = v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride;
-  uint64_t hash = mix(1, v.values, static_cast<size_t>(values) * stratus_type_size(v.type));
+  uint64_t hash = mix(2, v.values, static_cast<size_t>(values) * stratus_type_size(v.type));
   hash = mix(hash, v.dimensions, sizeof v.dimensions);
   hash = mix(hash, v.spacing, sizeof v.spacing);
   hash = mix(hash, v.origin, sizeof v.origin);
@@ -48,6 +51,17 @@ uint64_t hash_of(const scene& s)
     hash = mix(hash, &t.unit_distance, sizeof(double));
   }
   return hash;
+}
+
+// Whether a function has two points of the same value.
+bool jumps(const std::vector<double>& points, size_t width)
+{
+  for (size_t i = width; i < points.size(); i += width) {
+    if (points[i] == points[i - width]) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Shows on a terminal which reference is being drawn.
@@ -189,10 +203,14 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
   std::vector<std::vector<float>> fine(views);
   double agreement = 0.0;
   double best = 0.0;
+  const double least = jumps(s.first.opacity, 2) || jumps(s.first.color, 4) ? least_of_jumps : 0.0;
+  // Without light and other components, steps end at cells and at the function's points, so that long ones suffice.
+  const double coarsest = s.shaded || s.volume.components > 1 ? 0.125 : 1.0;
   for (int view = 0; view < views; ++view) {
-    fine[static_cast<size_t>(view)] = source.make(view, 0.125);
+    progress(s, coarsest, view);
+    fine[static_cast<size_t>(view)] = source.make(view, coarsest);
   }
-  for (double step = 0.0625; step >= finest; step *= 0.5) {
+  for (double step = 0.5 * coarsest; step >= finest; step *= 0.5) {
     error self;
     for (int view = 0; view < views; ++view) {
       progress(s, step, view);
@@ -208,11 +226,11 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
       measure(fine, r);
       best = std::max({ best, r.psnr_db, r.psnr8_db });
     }
-    if (agreement >= best + 10.0) {
+    if (agreement >= std::max(best + 10.0, least)) {
       break;
     }
   }
-  if (agreement < best + 10.0) {
+  if (agreement < std::max(best + 10.0, least)) {
     std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n", s.name.c_str(),
       agreement, best);
   }

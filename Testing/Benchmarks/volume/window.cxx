@@ -49,6 +49,8 @@ void window::set(int component, const transfer& t)
 {
   vtkNew<vtkPiecewiseFunction> opacity;
   vtkNew<vtkColorTransferFunction> color;
+  opacity->AllowDuplicateScalarsOn(); // two points of the same value make a vertical step
+  color->AllowDuplicateScalarsOn();
   for (size_t i = 0; i < t.opacity.size(); i += 2) {
     opacity->AddPoint(t.opacity[i], t.opacity[i + 1]);
   }
