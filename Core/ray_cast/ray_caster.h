@@ -28,14 +28,16 @@ struct stratus_ray_caster {
   uint64_t mask_revision;
   stratus_transfer* transfers; /* transfer_count copies; NULL: none yet */
   int transfer_count;
+  stratus_ray_shown shown; /* mode and values of `values`, as the next */
+  stratus_interpolation interpolation;
   stratus_ray_choice_inputs inputs; /* of `choice` */
   stratus_ray_choice choice;
   stratus_ray_choice measured; /* the last that the probe made; its sample distance is 0 before the first */
   char tried[256];             /* what the probe tried; empty: there was none */
   stratus_table* table;
-  double table_distance;   /* sample distance of the table */
-  stratus_ray_shown shown; /* mode and values of the table */
-  bool shades, dependent;  /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
+  double table_distance;  /* sample distance of the table */
+  stratus_shown values;   /* the fetched values that matter; of NULL: not known yet */
+  bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
@@ -57,6 +59,7 @@ struct stratus_ray_caster {
  * tree's. */
 void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells);
 void stratus_ray_drop_transfer(stratus_ray_caster* caster);
+void stratus_ray_drop_values(stratus_ray_caster* caster);
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
 void stratus_ray_drop_map(stratus_ray_caster* caster);
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster);

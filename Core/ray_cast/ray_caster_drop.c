@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Drops stale structures with everything derived from them: data -> transfer function -> occupancy -> map. */
+ * Drops stale structures with everything derived from them: data -> transfer function -> values that show, table -> occupancy -> map. */
 #include "ray_caster.h"
 #include "tree.h"
 
@@ -33,11 +33,18 @@ void stratus_ray_drop_occupancy(stratus_ray_caster* caster)
   caster->occupancy = NULL;
 }
 
-void stratus_ray_drop_transfer(stratus_ray_caster* caster)
+void stratus_ray_drop_values(stratus_ray_caster* caster)
 {
   stratus_ray_drop_occupancy(caster);
+  stratus_release(caster->context, caster->values.of);
   stratus_table_destroy(caster->table);
-  stratus_release(caster->context, caster->transfers);
+  caster->values = (stratus_shown){ .of = NULL };
   caster->table = NULL;
+}
+
+void stratus_ray_drop_transfer(stratus_ray_caster* caster)
+{
+  stratus_ray_drop_values(caster);
+  stratus_release(caster->context, caster->transfers);
   caster->transfers = NULL;
 }

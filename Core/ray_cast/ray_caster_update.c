@@ -74,6 +74,7 @@ static stratus_status update_ranges(
     caster->mask = options->mask;
     caster->mask_revision = options->mask_revision;
     stratus_ray_drop_offer_map(caster);
+    caster->inputs.tolerance = -1.0; /* equals none: the choice is made anew */
     ++caster->data_serial;
     if (!same) {
       stratus_ray_drop_transfer(caster);
@@ -123,17 +124,37 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   return in;
 }
 
+/* Updates the copied transfer functions and the values that they show in this mode. Occupancy hangs on nothing else: neither on the
+ * sampling nor on a table. */
+static stratus_status update_function(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, bool* changed)
+{
+  const int media = stratus_ray_shading_media(volume, options);
+  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  if (!same_transfers(caster, transfer, media, options->dependent != 0)) {
+    TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
+    *changed = true;
+  }
+  if (!caster->values.of || !stratus_ray_modes_same(&caster->shown, &shown) || caster->interpolation != options->interpolation) {
+    const stratus_fetching fetching = stratus_value_range_fetching(caster->ranges);
+    stratus_ray_drop_values(caster);
+    *changed = true;
+    TRY(stratus_ray_modes_values(caster->context, &shown, caster->transfers, &fetching, &caster->values));
+    caster->shown = shown;
+    caster->interpolation = options->interpolation;
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
   const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
-  const stratus_value_range* ranges = caster->ranges;
-  const bool any = ranges->whole_lo <= ranges->whole_hi;
-  stratus_table* table = NULL;
   if (!same_kind || caster->table_distance != caster->choice.sample_distance) {
-    TRY(stratus_table_create(caster->context, caster->transfers, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
-      caster->choice.sampling, stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
-    stratus_ray_modes_mark(&caster->shown, caster->transfers, ranges->bias, table);
+    const stratus_table_values values = stratus_table_values_of(caster->ranges);
+    stratus_table* table = NULL;
+    TRY(stratus_table_create(caster->context, caster->transfers, &values, caster->choice.sampling,
+      stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
     stratus_table_destroy(caster->table);
     caster->table = table;
     caster->table_distance = caster->choice.sample_distance;
@@ -143,23 +164,15 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
-/* Updates the copied transfer functions and, where something changed that the sampling follows from, makes the choice provisional. */
-static stratus_status update_transfers(
-  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+/* Makes the choice anew where something changed that it follows from. */
+static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
-  const int media = stratus_ray_shading_media(volume, options);
-  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
   const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
-  const bool same_mode = stratus_ray_modes_same(&caster->shown, &shown);
-  const bool same = caster->table && same_mode && same_transfers(caster, transfer, media, options->dependent != 0);
-  if (same && memcmp(&caster->inputs, &inputs, sizeof inputs) == 0) {
-    return STRATUS_OK;
+  if (changed || memcmp(&caster->inputs, &inputs, sizeof inputs) != 0) {
+    caster->inputs = inputs;
+    caster->tried[0] = '\0';
+    stratus_ray_choose(caster, options, &caster->choice);
   }
-  TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
-  caster->shown = shown;
-  caster->inputs = inputs;
-  stratus_ray_choose(caster, options, &caster->choice);
-  return STRATUS_OK;
 }
 
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
@@ -170,8 +183,12 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   TRY(stratus_ray_shading_ranges(caster));
   const double start = stratus_now_ms();
   const uint64_t builds = caster->table_builds;
-  TRY(update_transfers(caster, volume, transfer, options));
-  TRY(stratus_ray_update_table(caster, options));
+  bool changed = !caster->table;
+  TRY(update_function(caster, volume, transfer, options, &changed));
+  update_choice(caster, volume, options, changed);
+  if (!caster->choice.provisional) { /* the probe makes the tables of its own choice */
+    TRY(stratus_ray_update_table(caster, options));
+  }
   report->table_ms = caster->table_builds != builds ? stratus_now_ms() - start : 0.0;
   return STRATUS_OK;
 }
@@ -249,7 +266,8 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
     if (stratus_ray_shading_several(caster)) {
       TRY(stratus_ray_shading_occupancy(caster));
     } else {
-      TRY(stratus_occupancy_build(caster->context, caster->ranges, caster->table, &caster->occupancy));
+      const bool gaps = caster->shown.mode == STRATUS_MODE_COMPOSITE && caster->interpolation == STRATUS_INTERPOLATION_LINEAR;
+      TRY(stratus_occupancy_build(caster->context, caster->ranges, &caster->values, gaps, &caster->occupancy));
     }
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;

@@ -99,47 +99,67 @@ double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options,
   return options->mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
 }
 
-/* Makes first..last the only entries that show. */
-static void show_only(stratus_table* table, int first, int last)
+/* The contour as rays see it. */
+static float fetched_contour(double contour, double bias)
 {
-  table->shown = last >= first ? last - first + 1 : 0;
-  table->last_shown = last >= first ? last : -1;
-  for (int e = 0; e <= table->size; ++e) {
-    table->next_shown[e] = e > last ? table->size : e < first ? first : e;
-  }
+  return (float)(contour - bias);
 }
 
-/* Makes the entries of visible contours the only ones that show. A block whose value range holds a contour also holds its entry between the
- * entries of the range's ends. */
-static void show_contours(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table)
+/* The ends of the average's range as rays see them, rounded outward so that no value of the range is left out. */
+static void fetched_range(const double range[2], double bias, float fetched[2])
 {
-  show_only(table, table->size, -1);
-  for (int n = shown->contour_count - 1; n >= 0; --n) {
-    const int entry = stratus_table_entry(table, (float)(shown->contours[n] - bias));
-    double rgba[4];
-    stratus_transfer_at(transfer, shown->contours[n], rgba);
-    if (rgba[3] > 0.0) {
-      for (int e = entry; e >= 0; --e) {
-        table->next_shown[e] = entry;
-      }
-      table->last_shown = table->last_shown < entry ? entry : table->last_shown;
-      ++table->shown;
+  fetched[0] = stratus_float_below(range[0] - bias);
+  fetched[1] = stratus_float_above(range[1] - bias);
+}
+
+/* Adds the contours of opacity above 0, which are in ascending order. */
+static void show_contours(const stratus_ray_shown* shown, const stratus_pieces* pieces, double bias, stratus_shown* values)
+{
+  values->count = 0;
+  for (int n = 0; n < shown->contour_count; ++n) {
+    const float contour = fetched_contour(shown->contours[n], bias);
+    if (stratus_curve_at(&pieces->opacity, shown->contours[n]) > 0.0 &&
+      (values->count == 0 || values->of[values->count - 1][0] < contour)) {
+      values->of[values->count][0] = values->of[values->count][1] = contour;
+      ++values->count;
     }
   }
 }
 
-void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table)
+static stratus_status contour_values(stratus_context* context, const stratus_ray_shown* shown, const stratus_transfer* transfer,
+  const stratus_fetching* fetching, stratus_shown* values)
 {
-  const double* range = shown->average_range;
-  if (shown->mode == STRATUS_MODE_ISOSURFACE) {
-    show_contours(shown, transfer, bias, table);
-  } else if (shown->mode == STRATUS_MODE_MAXIMUM) { /* a maximum below the lowest visible value shows nothing */
-    show_only(table, table->next_shown[0], table->size - 1);
-  } else if (shown->mode == STRATUS_MODE_MINIMUM) {
-    show_only(table, 0, table->last_shown);
-  } else if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count, too */
-    show_only(table, stratus_table_entry(table, (float)(range[0] - bias)), stratus_table_entry(table, (float)(range[1] - bias)));
+  void* memory;
+  stratus_pieces* pieces = NULL;
+  TRY(stratus_pieces_create(context, transfer, &pieces));
+  const stratus_status status = stratus_allocate(context, STRATUS_CONTOURS_MAX, sizeof *values->of, &memory);
+  if (status == STRATUS_OK) {
+    *values = (stratus_shown){ .of = memory };
+    show_contours(shown, pieces, fetching->bias, values);
   }
+  stratus_pieces_destroy(pieces);
+  return status;
+}
+
+stratus_status stratus_ray_modes_values(stratus_context* context, const stratus_ray_shown* shown, const stratus_transfer* transfer,
+  const stratus_fetching* fetching, stratus_shown* values)
+{
+  if (shown->mode == STRATUS_MODE_ISOSURFACE) {
+    return contour_values(context, shown, transfer, fetching, values);
+  }
+  TRY(stratus_shown_of_transfer(context, fetching, transfer, values));
+  if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count, too; the array holds at least one interval */
+    values->count = 1;
+    fetched_range(shown->average_range, fetching->bias, values->of[0]);
+  } else if (shown->mode == STRATUS_MODE_MAXIMUM && values->count > 0) { /* a maximum below the lowest visible value shows nothing */
+    values->count = 1;
+    values->of[0][1] = INFINITY;
+  } else if (shown->mode == STRATUS_MODE_MINIMUM && values->count > 0) {
+    values->of[0][0] = -INFINITY;
+    values->of[0][1] = values->of[values->count - 1][1];
+    values->count = 1;
+  }
+  return STRATUS_OK;
 }
 
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map)
@@ -176,9 +196,12 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
   a->mode.sum = is_sum(options->mode);
-  /* rounded outward, so that no value of the range is left out */
-  a->mode.counted_first = additive ? -INFINITY : stratus_float_below(options->average_range[0] - ranges->bias);
-  a->mode.counted_last = additive ? INFINITY : stratus_float_above(options->average_range[1] - ranges->bias);
+  float counted[2] = { -INFINITY, INFINITY };
+  if (!additive) {
+    fetched_range(options->average_range, ranges->bias, counted);
+  }
+  a->mode.counted_first = counted[0];
+  a->mode.counted_last = counted[1];
   a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
@@ -188,7 +211,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
     stratus_transfer_at(caster->transfers, caster->shown.contours[n], rgba);
     if (rgba[3] > 0.0) { /* transparent contours are left out */
       float* contour = a->mode.contour[a->mode.contour_count++];
-      contour[0] = (float)(caster->shown.contours[n] - ranges->bias);
+      contour[0] = fetched_contour(caster->shown.contours[n], ranges->bias);
       contour[4] = (float)rgba[3];
       for (int c = 0; c < 3; ++c) {
         contour[1 + c] = (float)(rgba[c] * rgba[3]);

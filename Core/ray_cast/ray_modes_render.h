@@ -23,8 +23,9 @@ bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown*
 /* Returns the distance over which the table's opacity accumulates: the sample distance in mode COMPOSITE. Other modes use alpha as given,
  * so theirs is the unit distance. */
 double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
-/* Marks the table entries that matter to the mode as those that show. */
-void stratus_ray_modes_mark(const stratus_ray_shown* shown, const stratus_transfer* transfer, double bias, stratus_table* table);
+/* Finds the fetched values that matter to the mode, as those that show. The caller releases values->of. */
+stratus_status stratus_ray_modes_values(stratus_context* context, const stratus_ray_shown* shown, const stratus_transfer* transfer,
+  const stratus_fetching* fetching, stratus_shown* values);
 /* Appends an upper bound of each block's values (MINIMUM: of their negatives) to the map's bytes. Other modes than extremes need none. */
 stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratus_distance_map* map);
 void stratus_ray_modes_arguments(

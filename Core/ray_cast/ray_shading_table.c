@@ -143,10 +143,8 @@ static void thicken(const stratus_table* table, float* out)
 
 static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
 {
-  const stratus_value_range* ranges = stratus_ray_shading_range_of(caster, c);
-  const bool any = ranges->whole_lo <= ranges->whole_hi;
-  return stratus_table_create(caster->context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f,
-    STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
+  const stratus_table_values values = stratus_table_values_of(stratus_ray_shading_range_of(caster, c));
+  return stratus_table_create(caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
 }
 
 static stratus_status create_label_tables(stratus_ray_caster* caster)
@@ -303,7 +301,7 @@ bool stratus_ray_shading_show(const stratus_ray_caster* caster)
     }
   }
   if (shading->components <= 1) {
-    return caster->table->shown > 0;
+    return stratus_shown_meets(&caster->values, caster->ranges->whole_lo, caster->ranges->whole_hi);
   }
   for (int c = 0; c < shading->components; ++c) {
     if (shading->tables[c] && (!caster->dependent || c + 1 == shading->components) && shading->tables[c]->shown > 0) {
@@ -315,6 +313,17 @@ bool stratus_ray_shading_show(const stratus_ray_caster* caster)
 
 /* ---- occupancy */
 
+static stratus_status medium_occupancy(
+  stratus_ray_caster* caster, const stratus_value_range* ranges, const stratus_transfer* transfer, stratus_occupancy** occupancy)
+{
+  const stratus_fetching fetching = stratus_value_range_fetching(ranges);
+  stratus_shown shown;
+  TRY(stratus_shown_of_transfer(caster->context, &fetching, transfer, &shown));
+  const stratus_status status = stratus_occupancy_build(caster->context, ranges, &shown, false, occupancy);
+  stratus_release(caster->context, shown.of);
+  return status;
+}
+
 stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster)
 {
   const stratus_ray_shading_tables* shading = &caster->shading_tables;
@@ -322,11 +331,11 @@ stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster)
   stratus_status status = STRATUS_OK;
   const bool labels = has_labels(caster);
   const int first = caster->dependent && !labels ? shading->components - 1 : 0,
-            count = labels ? shading->label_tables_count : shading->components;
+            count = labels ? caster->transfer_count : shading->components;
   for (int c = first; c < count; ++c) {
     stratus_occupancy* part = NULL;
-    TRY_CLEANUP(stratus_occupancy_build(caster->context, stratus_ray_shading_range_of(caster, labels ? 0 : c),
-      labels ? shading->label_tables[c] : shading->tables[c], &part));
+    TRY_CLEANUP(medium_occupancy(
+      caster, stratus_ray_shading_range_of(caster, labels ? 0 : c), caster->transfers + (caster->dependent && !labels ? 0 : c), &part));
     if (whole) {
       stratus_occupancy_add(whole, part);
       stratus_occupancy_destroy(part);

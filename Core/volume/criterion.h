@@ -5,12 +5,6 @@
 
 #include "volume.h"
 
-/* Values that show: intervals in ascending order, disjoint, ends included. Each holds at least one double. */
-typedef struct stratus_intervals {
-  int64_t count;
-  double (*of)[2];
-} stratus_intervals;
-
 #define STRATUS_BRICK 4 /* side of a brick of voxels, and of the blocks of cells that an origin is computed over */
 #define STRATUS_INTERVALS_MAX 64
 
@@ -31,12 +25,11 @@ stratus_status stratus_intervals_create(stratus_context* context, const stratus_
 /* Keeps the intervals of a criterion on voxels. If they do not fit, one interval from INFINITY to -INFINITY, which equals no other
  * origin's, replaces them. */
 void stratus_origin_take(stratus_origin* origin, const stratus_intervals* intervals);
-/* Keeps the intervals of a criterion on cells: the values that the tables of both samplings show over the ranges' values, rounded outward,
- * or the criterion's own interval if it has no transfer function. An end beyond the ranges' values becomes infinite. */
+/* Keeps those intervals of a criterion on cells that meet the ranges' values. An end beyond these values becomes infinite. */
 stratus_status stratus_origin_take_cells(
   stratus_context* context, const stratus_value_range* ranges, const stratus_criterion* criterion, stratus_origin* origin);
 
-/* Finds the intervals of values that a criterion shows. cells: reads the whole volume, since tables span its values. */
+/* Finds the intervals of values that a criterion shows. cells: reads the whole volume, whose values decide which intervals count. */
 stratus_status stratus_criterion_intervals(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin);
 /* Returns 1 if a structure made for `tree` may replace one made for `wanted`: both have the same use and hash, and the intervals cover. For

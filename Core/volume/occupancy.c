@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Occupancy: the blocks that the transfer function shows, by the range test of Deakin & Knackstedt 2019 on value ranges that include the
  * halo. */
-#include "clones.h"
 #include "volume.h"
 #include "volume_device.h"
 #include "criterion.h"
@@ -9,49 +8,27 @@
 
 #include <string.h>
 
-#define RUN 256 /* blocks tested at once: their entries stay in the first cache */
+#define RUN 256 /* blocks tested at once: their ranges stay in the first cache */
+/* Up to so many intervals, comparing with all of them is faster than a search, for it vectorises. */
+#define INTERVALS_COMPARED 16
 
-/* Does what stratus_table_shows() does, for a run of blocks. Two loops keep the arithmetic apart, which then vectorises. */
-static ALWAYS_INLINE void test_run(
-  const stratus_table* table, const float* restrict lo, const float* restrict hi, int64_t count, uint8_t* restrict occupied)
+/* Tests a run of blocks. A block without finite values, whose range is INFINITY..-INFINITY, meets no interval. */
+static void test_run(
+  const stratus_shown* shown, const float* restrict lo, const float* restrict hi, int64_t count, uint8_t* restrict occupied)
 {
-  int first[RUN], last[RUN];
-  for (int64_t b = 0; b < count; ++b) {
-    const float from = lo[b] <= hi[b] ? lo[b] : 0.0f, to = lo[b] <= hi[b] ? hi[b] : 0.0f;
-    /* Not fmaxf(), which remains a call because of its rule for NaN. */
-    const float slack = STRATUS_HULL_SLACK * (fabsf(from) > fabsf(to) ? fabsf(from) : fabsf(to));
-    first[b] = stratus_table_entry(table, from - slack);
-    last[b] = stratus_table_entry(table, to + slack);
+  if (shown->count > INTERVALS_COMPARED) {
+    for (int64_t b = 0; b < count; ++b) {
+      occupied[b] = stratus_shown_meets(shown, lo[b], hi[b]);
+    }
+    return;
   }
-  for (int64_t b = 0; b < count; ++b) {
-    occupied[b] = (lo[b] <= hi[b]) & (table->next_shown[first[b]] <= last[b]);
+  memset(occupied, 0, (size_t)count);
+  for (int64_t i = 0; i < shown->count; ++i) {
+    const float first = shown->of[i][0], last = shown->of[i][1];
+    for (int64_t b = 0; b < count; ++b) {
+      occupied[b] |= (lo[b] <= last) & (hi[b] >= first) & (lo[b] <= hi[b]);
+    }
   }
-}
-
-typedef void (*test_function)(const stratus_table*, const float*, const float*, int64_t, uint8_t*);
-
-static void test_run_portable(const stratus_table* table, const float* lo, const float* hi, int64_t count, uint8_t* occupied)
-{
-  test_run(table, lo, hi, count, occupied);
-}
-
-#if HAVE_CLONES
-/* stratus_table_entry() is a fused multiply-add, which compiles to a library call without this instruction set. */
-__attribute__((target("avx2,fma"))) static void test_run_fused(
-  const stratus_table* table, const float* lo, const float* hi, int64_t count, uint8_t* occupied)
-{
-  test_run(table, lo, hi, count, occupied);
-}
-#endif
-
-static test_function choose_test(void)
-{
-#if HAVE_CLONES
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    return test_run_fused;
-  }
-#endif
-  return test_run_portable;
 }
 
 /* Number and bounds [lo, hi) of occupied blocks. widen_extent() adds one row of blocks. */
@@ -82,14 +59,11 @@ static void widen_extent(extent* whole, const uint8_t* row, int64_t n, int64_t j
   }
 }
 
-/* ranges and table may be NULL: occupied[] is then set already and only counted. With pre-integration, a block with gaps (values that are
- * not finite, or hidden cells) counts as occupied if the table shows anything: stratus_occupancy_build() tells why. */
+/* ranges and shown may be NULL: occupied[] is then set already and only counted. gaps: blocks with gaps are occupied. */
 static void test_rows(
-  const stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy)
+  const stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps, stratus_occupancy* occupancy)
 {
-  const test_function test = choose_test();
   const int64_t n = occupancy->blocks[0], rows = occupancy->blocks[1] * occupancy->blocks[2];
-  const int gaps_show = table && table->sums && table->shown > 0;
   extent whole = { 0, { INT64_MAX, INT64_MAX, INT64_MAX }, { 0, 0, 0 } };
 #pragma omp parallel num_threads(context->threads)
   {
@@ -99,9 +73,9 @@ static void test_rows(
       const int64_t block = row * n;
       uint8_t* occupied = occupancy->occupied + block;
       for (int64_t i = 0; ranges && i < n; i += RUN) {
-        test(table, ranges->lo + block + i, ranges->hi + block + i, n - i < RUN ? n - i : RUN, occupied + i);
+        test_run(shown, ranges->lo + block + i, ranges->hi + block + i, n - i < RUN ? n - i : RUN, occupied + i);
       }
-      for (int64_t i = 0; gaps_show && i < n; ++i) {
+      for (int64_t i = 0; gaps && i < n; ++i) {
         occupied[i] |= ranges->gaps[block + i];
       }
       widen_extent(&mine, occupied, n, row % occupancy->blocks[1], row / occupancy->blocks[1]);
@@ -141,18 +115,19 @@ static stratus_status create_empty(stratus_context* context, const stratus_value
 }
 
 stratus_status stratus_occupancy_build(
-  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy** out)
+  stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps, stratus_occupancy** out)
 {
   stratus_status status = STRATUS_OK;
   stratus_occupancy* occupancy = NULL;
 
+  gaps = gaps && stratus_shown_meets(shown, ranges->whole_lo, ranges->whole_hi);
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges, &occupancy));
   if (stratus_device_builds(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
-    TRY_CLEANUP(stratus_device_occupancy(context, ranges, table, occupancy));
-    test_rows(context, NULL, NULL, occupancy);
+    TRY_CLEANUP(stratus_device_occupancy(context, ranges, shown, gaps, occupancy));
+    test_rows(context, NULL, NULL, false, occupancy);
   } else {
-    test_rows(context, ranges, table, occupancy);
+    test_rows(context, ranges, shown, gaps, occupancy);
   }
   TRY_CLEANUP(stratus_progress(context, "occupancy", 1.0));
   *out = occupancy;
@@ -169,7 +144,7 @@ void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy
   for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] |= other->occupied[b];
   }
-  test_rows(occupancy->context, NULL, NULL, occupancy); /* updates the count and the bounds */
+  test_rows(occupancy->context, NULL, NULL, false, occupancy); /* updates the count and the bounds */
 }
 
 stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges, const stratus_transfer* transfer,
@@ -186,14 +161,12 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
       STRATUS_SAMPLING_PREINTEGRATED);
   }
   TRY(stratus_transfer_check(context, transfer));
-  /* Pre-integration shows all that single samples show, so that it serves both samplings. */
-  const stratus_sampling used = sampling == STRATUS_SAMPLING_AUTO ? STRATUS_SAMPLING_PREINTEGRATED : sampling;
-  const int any = ranges->whole_lo <= ranges->whole_hi;
-  stratus_table* table = NULL;
-  TRY(
-    stratus_table_create(context, transfer, ranges->bias, any ? ranges->whole_lo : 0.0f, any ? ranges->whole_hi : 0.0f, used, 1.0, &table));
-  const stratus_status status = stratus_occupancy_build(context, ranges, table, out);
-  stratus_table_destroy(table);
+  const stratus_fetching fetching = stratus_value_range_fetching(ranges);
+  stratus_shown shown;
+  TRY(stratus_shown_of_transfer(context, &fetching, transfer, &shown));
+  /* Segments show all that single samples show, so that they serve every sampling. */
+  const stratus_status status = stratus_occupancy_build(context, ranges, &shown, sampling != STRATUS_SAMPLING_MIDPOINT, out);
+  stratus_release(context, shown.of);
   return status;
 }
 
@@ -226,7 +199,7 @@ stratus_status stratus_occupancy_create_between(
   for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
   }
-  test_rows(context, NULL, NULL, occupancy); /* updates the count and the bounds */
+  test_rows(context, NULL, NULL, false, occupancy); /* updates the count and the bounds */
   const stratus_status status = stratus_progress(context, "occupancy", 1.0);
   if (status != STRATUS_OK) {
     stratus_occupancy_destroy(occupancy);

@@ -150,13 +150,29 @@ static int table_size(const stratus_transfer* transfer, double range, int least)
   return size;
 }
 
-static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer, double lo, double width, double sample_distance)
+/* Marks the entries of which all floats show. */
+static void find_whole(const stratus_table* table, const stratus_table_values* values, const stratus_shown* shown, uint8_t* whole)
+{
+  memset(whole, 0, (size_t)table->size);
+  for (int64_t i = stratus_shown_below(shown, values->lo); i < shown->count && shown->of[i][0] <= values->hi; ++i) {
+    const float lo = fmaxf(shown->of[i][0], values->lo), hi = fminf(shown->of[i][1], values->hi);
+    int first = stratus_table_entry(table, lo), last = stratus_table_entry(table, hi);
+    first += lo > values->lo && stratus_table_entry(table, nextafterf(lo, -INFINITY)) == first;
+    last -= hi < values->hi && stratus_table_entry(table, nextafterf(hi, INFINITY)) == last;
+    for (int e = first; e <= last; ++e) {
+      whole[e] = 1;
+    }
+  }
+}
+
+static void fill_midpoint(
+  stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, double sample_distance)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
   for (int e = 0; e < table->size; ++e) {
     const double x = lo + e * width;
     double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    opacity = outside(transfer, x) ? 0.0 : opacity;
+    opacity = !whole[e] || outside(transfer, x) ? 0.0 : opacity;
     const double alpha = opacity > 0.0 ? -expm1(log1p(-opacity) * sample_distance / transfer->unit_distance) : 0.0;
     float* entry = table->rgba + 4 * (size_t)e;
     for (size_t c = 0; c < 3; ++c) {
@@ -171,7 +187,7 @@ static void fill_midpoint(stratus_table* table, const stratus_transfer* transfer
 
 /* Writes the four running sums in doubles. Returns the largest change of a colour between neighbouring entries of which one shows. An entry
  * is the function at its middle, not the mean over its width: a transparent value must stay transparent beside one that shows. */
-static double fill_sums(const stratus_transfer* transfer, double lo, double width, int size, double* sums)
+static double fill_sums(const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, int size, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
   double before[3] = { 0 }, steepest = 0.0, tau_before = 0.0;
@@ -179,7 +195,7 @@ static double fill_sums(const stratus_transfer* transfer, double lo, double widt
   for (int e = 0; e < size; ++e) {
     double* sum = sums + 4 * (size_t)e;
     const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    const double tau = outside(transfer, x) ? 0.0 : tau_of(transfer, opacity);
+    const double tau = !whole[e] || outside(transfer, x) ? 0.0 : tau_of(transfer, opacity);
     for (size_t c = 0; c < 3; ++c) {
       const double color = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
       steepest = e > 0 && tau + tau_before > 0.0 ? fmax(steepest, fabs(color - before[c])) : steepest;
@@ -213,7 +229,7 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
  * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray on its way to other entries stops at the first where the
  * function stays 1. Where the function only touches 1, the optical depth is also infinite, but only logarithmically: it adds little to rays
  * that pass, and everything to rays that stay. */
-static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, double lo, double width)
+static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width)
 {
   const int size = table->size;
   int32_t *up = table->sums + 4 * ((size_t)size + 1), *down = up + size;
@@ -221,7 +237,7 @@ static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, 
   size_t below = 0;
   for (int e = 0, last = -1; e < size; ++e) {
     const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    const bool opaque = opacity >= 1.0 && !outside(transfer, x), stays = opaque && stays_opaque(transfer, x, &below);
+    const bool opaque = opacity >= 1.0 && whole[e] && !outside(transfer, x), stays = opaque && stays_opaque(transfer, x, &below);
     last = stays ? e : last;
     down[e] = opaque ? e : last;
     up[e] = stays ? e : size;
@@ -234,13 +250,13 @@ static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, 
 }
 
 static stratus_status fill_preintegrated(
-  stratus_table* table, const stratus_transfer* transfer, double lo, double width, double sample_distance)
+  stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, double sample_distance)
 {
   const size_t words = 4 * ((size_t)table->size + 1);
   void* memory = NULL;
   TRY(stratus_allocate(table->context, words, sizeof(double), &memory));
   double* sums = memory;
-  table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, lo, width, table->size, sums));
+  table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, whole, lo, width, table->size, sums));
   const size_t row = words / 4;
   const double total = sums[words - 1], scale = total > 0.0 ? (SUM_MOST - table->size) / total : 0.0;
   const bool any = total > 0.0 && isfinite(scale);
@@ -256,7 +272,7 @@ static stratus_status fill_preintegrated(
     table->sums[3 * row + e] = (int32_t)tau;
   }
   table->sum_scale = any ? (float)fmin(sample_distance / scale, (double)OPAQUE_DEPTH) : 0.0f;
-  fill_opaque(table, transfer, lo, width);
+  fill_opaque(table, transfer, whole, lo, width);
   stratus_release(table->context, sums);
   return STRATUS_OK;
 }
@@ -280,20 +296,31 @@ static void fill_next_shown(stratus_table* table)
   }
 }
 
-stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+stratus_table_values stratus_table_values_of(const stratus_value_range* ranges)
+{
+  const bool any = ranges->whole_lo <= ranges->whole_hi;
+  return (stratus_table_values){
+    .fetching = stratus_value_range_fetching(ranges), .lo = any ? ranges->whole_lo : 0.0f, .hi = any ? ranges->whole_hi : 0.0f
+  };
+}
+
+stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, stratus_table** out)
 {
   const int entries = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
-  return stratus_table_create_fine(context, transfer, bias, lo, hi, sampling, sample_distance, entries, out);
+  return stratus_table_create_fine(context, transfer, values, sampling, sample_distance, entries, out);
 }
 
-stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, int entries, stratus_table** out)
 {
   stratus_status status = STRATUS_OK;
   stratus_table* table = NULL;
   void* memory = NULL;
-  double from = (double)lo + bias, to = (double)hi + bias;
+  uint8_t* whole = NULL;
+  stratus_shown shown = { .of = NULL };
+  const double bias = values->fetching.bias;
+  double from = stratus_fetching_value(&values->fetching, values->lo), to = stratus_fetching_value(&values->fetching, values->hi);
   table_span(transfer, &from, &to);
   const int size = table_size(transfer, to - from, entries);
   const double width = (to - from) / (size - 1);
@@ -309,22 +336,28 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
       "values from %g to %g lie too close together: floats can't tell %d steps between them", from, to, size);
     goto cleanup;
   }
+  TRY_CLEANUP(stratus_shown_of_transfer(context, &values->fetching, transfer, &shown));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)size, sizeof *whole, &memory));
+  whole = memory;
+  find_whole(table, values, &shown, whole);
   TRY_CLEANUP(stratus_allocate(context, (size_t)size + 1, sizeof *table->next_shown, &memory));
   table->next_shown = memory;
   if (sampling == STRATUS_SAMPLING_PREINTEGRATED) {
     TRY_CLEANUP(stratus_allocate(context, 6 * (size_t)size + 4, sizeof *table->sums, &memory));
     table->sums = memory;
-    TRY_CLEANUP(fill_preintegrated(table, transfer, from, width, sample_distance));
+    TRY_CLEANUP(fill_preintegrated(table, transfer, whole, from, width, sample_distance));
   } else {
     TRY_CLEANUP(stratus_allocate(context, 8 * (size_t)size, sizeof *table->rgba, &memory));
     table->rgba = memory;
-    fill_midpoint(table, transfer, from, width, sample_distance);
+    fill_midpoint(table, transfer, whole, from, width, sample_distance);
   }
   fill_next_shown(table);
   *out = table;
-  return STRATUS_OK;
+  table = NULL;
 
 cleanup:
+  stratus_release(context, shown.of);
+  stratus_release(context, whole);
   stratus_table_destroy(table);
   return status;
 }

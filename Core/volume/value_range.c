@@ -346,6 +346,7 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   ranges->block_size = block_size;
   ranges->bias = stratus_volume_bias(volume);
   ranges->wide = stratus_type_is_wide(volume->type);
+  ranges->integer = stratus_type_is_integer(volume->type);
 
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));

@@ -38,6 +38,11 @@ bool stratus_type_is_wide(stratus_type type)
   return type == STRATUS_INT32 || type == STRATUS_UINT32 || type == STRATUS_INT64 || type == STRATUS_UINT64 || type == STRATUS_FLOAT64;
 }
 
+bool stratus_type_is_integer(stratus_type type)
+{
+  return type != STRATUS_FLOAT32 && type != STRATUS_FLOAT64;
+}
+
 stratus_volume stratus_volume_default(void)
 {
   stratus_volume volume = {

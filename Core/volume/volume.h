@@ -6,6 +6,7 @@
 #include "stratus/skipping.h"
 #include "base.h"
 #include "matrix.h"
+#include "transfer_pieces.h"
 
 /* ---- volume.c
  * Traversal, ranges and tables see a value as the float that stratus_volume_fetch() makes of it, its fetched value. Types of at most 24
@@ -19,6 +20,7 @@ void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
 /* Returns whether two views show the same values and ghosts, wherever they lie in the world. Components are not compared. */
 bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b);
 bool stratus_type_is_wide(stratus_type type);
+bool stratus_type_is_integer(stratus_type type);
 /* Return the least float that is not below a number, and the greatest that is not above it. */
 static inline float stratus_float_above(double number)
 {
@@ -44,23 +46,34 @@ struct stratus_value_range {
   stratus_context* context;
   int64_t blocks[3]; /* each >= 1 */
   int block_size;
-  double bias; /* bias of the fetched values */
-  bool wide;   /* several values may have the same fetched value */
-  float* lo;   /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
+  double bias;  /* bias of the fetched values */
+  bool wide;    /* several values may have the same fetched value */
+  bool integer; /* values are whole numbers */
+  float* lo;    /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
   float* hi;
   uint8_t* gaps;  /* 1 where some voxel of the block is not finite, or some cell is hidden */
   float whole_lo; /* range of all finite values */
   float whole_hi;
 };
 
-/* Bound on the rounding of interpolation beyond the range of its values, relative to the largest magnitude among them. */
+static inline stratus_fetching stratus_value_range_fetching(const stratus_value_range* ranges)
+{
+  return (stratus_fetching){ .bias = ranges->bias, .wide = ranges->wide, .integer = ranges->integer };
+}
+
+/* Bound on the rounding of a tetrahedron's interpolation beyond the range of its values, relative to the largest magnitude among them.
+ *
+ * The trilinear interpolation of volumes needs none: it never leaves the hull of its corners. v_lerp() is fma(t, d, a), where d is b - a
+ * rounded and t a float in 0 <= t < 1, because it is a position less its whole part, which is exact. Then t <= 1 - 2^-24, and rounding has
+ * made |d| greater than |b - a| by at most |d| 2^-24. So a + t d lies between a and b, and so does the float that it is rounded to. */
 #define STRATUS_HULL_SLACK 1e-6f
 
 /* ---- transfer_table.c */
 
 /* The transfer function as traversal samples it. stratus_table_entry() gives the entry e of a fetched value. Midpoint sampling reads
  * colour times alpha, and alpha, from rgba[4*e] on, for one whole sample distance. Pre-integrated sampling reads the inclusive range of
- * entries between two values: sums[last+1] - sums[first] of each of the four rows. An entry with zero opacity is exactly 0 in both. */
+ * entries between two values: sums[last+1] - sums[first] of each of the four rows. An entry with zero opacity is exactly 0 in both. An
+ * entry has opacity only if the function shows on all floats that have that entry: where the function is transparent the table is, too. */
 typedef struct stratus_table {
   stratus_context* context;
   int size;            /* number of entries */
@@ -80,10 +93,18 @@ typedef struct stratus_table {
   int last_shown; /* the last of them, -1 if none */
 } stratus_table;
 
-stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+/* The values that a table serves: the finite fetched ones from lo to hi. */
+typedef struct stratus_table_values {
+  stratus_fetching fetching;
+  float lo, hi;
+} stratus_table_values;
+
+/* The values of a volume. One without finite values has a table of the value 0. */
+stratus_table_values stratus_table_values_of(const stratus_value_range* ranges);
+stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, stratus_table** table);
 /* Makes a table of at least `entries` entries, 1..65536. */
-stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, double bias, float lo, float hi,
+stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, int entries, stratus_table** table);
 void stratus_table_destroy(stratus_table* table);
 /* Returns the size, in words of four bytes, of rgba or sums with all that follows them. */
@@ -128,11 +149,11 @@ struct stratus_occupancy {
 
 /* Adds the occupied blocks of `other`, which has the same blocks. */
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other);
-/* Marks the blocks that the table shows. With pre-integration, a block with gaps counts as occupied if the table shows anything at all:
- * two blocks whose shared layer is not finite may lie on both sides of a peak. Blocks without gaps share finite voxels, so that a cube
- * of empty blocks has one connected, transparent hull. */
+/* Marks the blocks whose range meets an interval of fetched values that show. gaps: a block with gaps counts as occupied if anything shows
+ * at all, which segments between two samples need: two blocks whose shared layer is not finite may lie on both sides of a peak. Blocks
+ * without gaps share finite voxels, so that a cube of empty blocks has one connected, transparent hull. */
 stratus_status stratus_occupancy_build(
-  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy** occupancy);
+  stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps, stratus_occupancy** occupancy);
 
 /* ---- distance_map.c
  * Traversal reads one byte for each block. Of an empty block it is the distance, 1..127. Of an occupied block it is 128 plus the distance

@@ -101,26 +101,28 @@ cleanup:
 /* ---- occupancy */
 
 stratus_status stratus_device_occupancy(
-  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy)
+  stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps_show, stratus_occupancy* occupancy)
 {
+  static const float none[2] = { INFINITY, -INFINITY }; /* a buffer is never empty */
   stratus_status status = STRATUS_OK;
-  cl_mem lo = NULL, hi = NULL, gaps = NULL, next_shown = NULL, occupied = NULL;
+  cl_mem lo = NULL, hi = NULL, gaps = NULL, intervals = NULL, occupied = NULL;
   const cl_ulong count = (cl_ulong)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]);
-  const cl_int gaps_show = table->sums && table->shown > 0, size = table->size;
+  const cl_int gaps_count = gaps_show, interval_count = (cl_int)shown->count;
+  const size_t interval_bytes = shown->count > 0 ? (size_t)shown->count * sizeof *shown->of : sizeof none;
 
   TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
   TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
   TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
-  TRY_CLEANUP(make_input(context, ((size_t)table->size + 1) * sizeof(int), table->next_shown, &next_shown));
+  TRY_CLEANUP(make_input(context, interval_bytes, shown->count > 0 ? (const void*)shown->of : none, &intervals));
   TRY_CLEANUP(make_buffer(context, count, &occupied));
-  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(next_shown), ARGUMENT(size),
-    ARGUMENT(table->scale), ARGUMENT(table->offset), ARGUMENT(gaps_show), ARGUMENT(count), ARGUMENT(occupied) };
+  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(intervals), ARGUMENT(interval_count),
+    ARGUMENT(gaps_count), ARGUMENT(count), ARGUMENT(occupied) };
   TRY_CLEANUP(stratus_device_launch(
     context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:
-  release_buffers((cl_mem[]){ lo, hi, gaps, next_shown, occupied }, 5);
+  release_buffers((cl_mem[]){ lo, hi, gaps, intervals, occupied }, 5);
   return status;
 }
 

@@ -17,7 +17,7 @@ stratus_status stratus_device_value_range(stratus_context* context, const stratu
 
 /* Fills occupied[]. */
 stratus_status stratus_device_occupancy(
-  stratus_context* context, const stratus_value_range* ranges, const stratus_table* table, stratus_occupancy* occupancy);
+  stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps_show, stratus_occupancy* occupancy);
 
 /* True if the running sums, by which the device counts, fit one of its allocations. */
 bool stratus_device_takes_blocks(const stratus_context* context, const int64_t blocks[3]);

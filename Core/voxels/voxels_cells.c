@@ -8,32 +8,21 @@
 
 #include <string.h>
 
-/* True if a block's range, widened as occupancy widens it, meets an interval. */
-static bool shows(float lo, float hi, double bias, const stratus_origin* origin)
-{
-  const float slack = STRATUS_HULL_SLACK * fmaxf(fabsf(lo), fabsf(hi));
-  const double from = (double)(lo - slack), to = (double)(hi + slack);
-  for (int32_t i = 0; lo <= hi && i < origin->intervals; ++i) {
-    if (origin->interval[i][0] - bias <= to && origin->interval[i][1] - bias >= from) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /* A block with gaps counts if anything shows at all, as in stratus_occupancy_build(). */
-static void mark_blocks(const stratus_voxels* voxels, const stratus_value_range* ranges, uint64_t* masks)
+static stratus_status mark_blocks(const stratus_voxels* voxels, const stratus_value_range* ranges, uint64_t* masks)
 {
   const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
-  const stratus_origin* origin = &voxels->origin;
-  bool any = false;
-  if (ranges->whole_lo <= ranges->whole_hi) {
-    any = shows(ranges->whole_lo, ranges->whole_hi, ranges->bias, origin);
-  }
+  const stratus_fetching fetching = stratus_value_range_fetching(ranges);
+  stratus_origin origin = voxels->origin;
+  stratus_shown shown;
+  TRY(stratus_shown_create(voxels->context, &fetching, &(stratus_intervals){ origin.intervals, origin.interval }, &shown));
+  const bool any = stratus_shown_meets(&shown, ranges->whole_lo, ranges->whole_hi);
 #pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
   for (int64_t b = 0; b < count; ++b) {
-    masks[b] = (any && ranges->gaps[b]) || shows(ranges->lo[b], ranges->hi[b], ranges->bias, origin) ? ~UINT64_C(0) : 0;
+    masks[b] = (any && ranges->gaps[b]) || stratus_shown_meets(&shown, ranges->lo[b], ranges->hi[b]) ? ~UINT64_C(0) : 0;
   }
+  stratus_release(voxels->context, shown.of);
+  return STRATUS_OK;
 }
 
 /* Voxel (i,j,k) is cell (i,j,k), whose middle lies half a step beyond value (i,j,k). */
@@ -64,7 +53,7 @@ static stratus_status create_from_ranges(stratus_context* context, const stratus
   TRY_CLEANUP(stratus_origin_take_cells(context, ranges, criterion, &voxels->origin));
   voxels->origin.hash = hash;
   TRY_CLEANUP(stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), sizeof(uint64_t), &masks));
-  mark_blocks(voxels, ranges, masks);
+  TRY_CLEANUP(mark_blocks(voxels, ranges, masks));
   TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
   *out = voxels;
   voxels = NULL;

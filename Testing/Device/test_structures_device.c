@@ -69,25 +69,26 @@ static void value_ranges_of_every_type_equal_the_hosts(void** state)
   }
 }
 
-static void compare_occupancy(const stratus_value_range* ranges, const stratus_transfer* transfer, stratus_sampling sampling)
+static void compare_occupancy(const stratus_value_range* ranges, const stratus_transfer* transfer, bool gaps)
 {
-  stratus_table* table = NULL;
+  const stratus_fetching fetching = stratus_value_range_fetching(ranges);
+  stratus_shown shown;
   stratus_occupancy *host = NULL, filled;
   const size_t count = (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]);
-  assert_int_equal(
-    stratus_table_create(host_context, transfer, 0.0, ranges->whole_lo, ranges->whole_hi, sampling, 1.0, &table), STRATUS_OK);
-  assert_int_equal(stratus_occupancy_build(host_context, ranges, table, &host), STRATUS_OK);
+  assert_int_equal(stratus_shown_of_transfer(host_context, &fetching, transfer, &shown), STRATUS_OK);
+  assert_int_equal(stratus_occupancy_build(host_context, ranges, &shown, gaps, &host), STRATUS_OK);
   filled = *host;
   filled.occupied = malloc(count);
   assert_non_null(filled.occupied);
   memset(filled.occupied, 0x55, count);
-  if (stratus_device_occupancy(device, ranges, table, &filled) != STRATUS_OK) {
+  const bool any = stratus_shown_meets(&shown, ranges->whole_lo, ranges->whole_hi);
+  if (stratus_device_occupancy(device, ranges, &shown, gaps && any, &filled) != STRATUS_OK) {
     fail_msg("%s", stratus_context_message(device));
   }
   assert_memory_equal(filled.occupied, host->occupied, count);
   free(filled.occupied);
   stratus_occupancy_destroy(host);
-  stratus_table_destroy(table);
+  stratus_release(host_context, shown.of);
 }
 
 static void occupancy_equals_the_hosts(void** state)
@@ -113,8 +114,8 @@ static void occupancy_equals_the_hosts(void** state)
       transfer.opacity_count = 4;
       transfer.color = white;
       transfer.color_count = 1;
-      compare_occupancy(ranges, &transfer, STRATUS_SAMPLING_MIDPOINT);
-      compare_occupancy(ranges, &transfer, STRATUS_SAMPLING_PREINTEGRATED);
+      compare_occupancy(ranges, &transfer, false);
+      compare_occupancy(ranges, &transfer, true);
     }
     stratus_value_range_destroy(ranges);
     free_volume(&v);

@@ -253,9 +253,16 @@ static void jitter_moves_samples_and_nothing_else(void** state)
   c.options.jitter = 0;
   case_render(*state, &c, &other);
   assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 65.0);
+  int near = 0, far = 0;
   for (int i = 0; i < CASE_PIXELS; ++i) { /* depths are told from the eye, not from the moved lattice's begin */
-    assert_true(!isfinite(drawn.depth[i]) || !isfinite(other.depth[i]) || fabsf(drawn.depth[i] - other.depth[i]) < 0.5f);
+    if (isfinite(drawn.depth[i]) && isfinite(other.depth[i])) {
+      const bool same = fabsf(drawn.depth[i] - other.depth[i]) < 0.5f;
+      near += same;
+      far += !same;
+    }
   }
+  /* A ray that only grazes a faint part may meet it on one lattice, and what lies behind on the other. */
+  assert_true(near > 100 && far * 100 <= near);
   case_destroy(&c);
 }
 

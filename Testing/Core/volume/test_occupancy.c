@@ -41,31 +41,53 @@ static void free_ranges(stratus_value_range* r)
   free(r->gaps);
 }
 
-/* Ends half of the ranges within a few ULP of the first value that the table shows, where the slack decides. */
-static void approach_threshold(const stratus_table* table, stratus_value_range* r, uint32_t* random)
+/* Ends half of the ranges within a few ULP of the first float that shows. */
+static void approach_threshold(const stratus_shown* shown, stratus_value_range* r, uint32_t* random)
 {
-  const float threshold = ((float)table->next_shown[0] - table->offset) / table->scale;
   for (int64_t b = 0; b < r->blocks[0] * r->blocks[1] * r->blocks[2]; ++b) {
     if (random_below(random, 2)) {
       r->lo[b] = 0.0f;
-      r->hi[b] = threshold * (1.0f + (float)(random_below(random, 41) - 20) * 1.5e-7f);
+      r->hi[b] = fmaxf(shown->of[0][0] + (float)(random_below(random, 9) - 4) * 0x1p-25f, 0.0f);
     }
   }
 }
 
-static void check_build(stratus_context* context, const stratus_value_range* r, const stratus_table* table)
+/* True if the opacity is above 0 somewhere in lo..hi: at its ends, at a point between them, or beside a point towards smaller values. */
+static bool function_shows(const stratus_transfer* t, double lo, double hi)
+{
+  const double(*point)[2] = (const double(*)[2])t->opacity;
+  const size_t last = t->opacity_count - 1;
+  double ends[2] = { lo, hi }, rgba[4];
+  for (int e = 0; lo <= hi && e < 2; ++e) {
+    stratus_transfer_at(t, ends[e], rgba);
+    if (rgba[3] > 0.0) {
+      return true;
+    }
+  }
+  for (size_t i = 0; lo <= hi && i <= last; ++i) {
+    const bool first_of = i == 0 || point[i - 1][0] < point[i][0], last_of = i == last || point[i + 1][0] > point[i][0];
+    const bool below = point[i][0] > lo && point[i][0] <= hi && (i > 0 || t->clamp); /* some value below the point is in the interval */
+    if (point[i][1] > 0.0 && ((first_of && below) || (last_of && point[i][0] >= lo && point[i][0] <= hi))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static void check_build(stratus_context* context, const stratus_value_range* r, const stratus_transfer* transfer, bool gaps)
 {
   stratus_occupancy* o = NULL;
   int64_t blocks[3], lo[3], hi[3], count = 0, low[3] = { 0, 0, 0 }, high[3] = { 0, 0, 0 };
   int size;
-  assert_int_equal(stratus_occupancy_build(context, r, table, &o), STRATUS_OK);
+  const bool any = function_shows(transfer, (double)r->whole_lo, (double)r->whole_hi);
+  assert_int_equal(
+    stratus_occupancy_create(context, r, transfer, gaps ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT, &o), STRATUS_OK);
   stratus_occupancy_blocks(o, blocks, &size);
   assert_memory_equal(blocks, r->blocks, sizeof blocks);
   assert_int_equal(size, r->block_size);
   for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
     const int64_t at[3] = { b % blocks[0], b / blocks[0] % blocks[1], b / blocks[0] / blocks[1] };
-    const int gap = table->sums && table->shown && r->gaps[b];
-    const int expected = gap || (r->lo[b] <= r->hi[b] && stratus_table_shows(table, r->lo[b], r->hi[b]));
+    const int expected = (gaps && any && r->gaps[b]) || function_shows(transfer, (double)r->lo[b], (double)r->hi[b]);
     assert_int_equal(o->occupied[b], expected);
     assert_int_equal(stratus_occupancy_get(o, at[0], at[1], at[2]), expected);
     for (int a = 0; expected && a < 3; ++a) {
@@ -81,7 +103,7 @@ static void check_build(stratus_context* context, const stratus_value_range* r, 
   stratus_occupancy_destroy(o);
 }
 
-static void blocks_are_occupied_exactly_where_the_table_shows(void** state)
+static void blocks_are_occupied_exactly_where_the_function_shows(void** state)
 {
   static const double opacities[][8] = { { 0, 0, 0.5, 0, 0.8, 0.4, 1, 1 }, { 0, 0.5, 0.3, 0, 0.7, 0, 1, 0 },
     { 0, 0, 0.41, 0, 0.42, 0.9, 0.43, 0 }, { 0, 0, 0.2, 0, 0.4, 0, 1, 0 }, { 0, 1, 0.2, 1, 0.4, 1, 1, 1 } };
@@ -92,20 +114,21 @@ static void blocks_are_occupied_exactly_where_the_table_shows(void** state)
     stratus_context* context = make_context("host", threads);
     for (size_t f = 0; f < sizeof opacities / sizeof *opacities; ++f) {
       const stratus_transfer transfer = transfer_of(opacities[f], 4);
-      for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
-        stratus_table* table = NULL;
-        assert_int_equal(stratus_table_create(context, &transfer, 0.0, 0.0f, 1.0f, (stratus_sampling)sampling, 1.0, &table), STRATUS_OK);
+      const stratus_fetching fetching = { 0 };
+      stratus_shown shown;
+      assert_int_equal(stratus_shown_of_transfer(context, &fetching, &transfer, &shown), STRATUS_OK);
+      for (int gaps = 0; gaps < 2; ++gaps) {
         for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
           stratus_value_range r;
           random_ranges(context, sizes[s], &r, &random);
-          if (table->shown) {
-            approach_threshold(table, &r, &random);
+          if (shown.count > 0) {
+            approach_threshold(&shown, &r, &random);
           }
-          check_build(context, &r, table);
+          check_build(context, &r, &transfer, gaps);
           free_ranges(&r);
         }
-        stratus_table_destroy(table);
       }
+      stratus_release(context, shown.of);
     }
     stratus_context_destroy(context);
   }
@@ -373,7 +396,7 @@ static void reversed_and_unknown_ends_are_refused(void** state)
 int test_occupancy(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(blocks_are_occupied_exactly_where_the_table_shows),
+    cmocka_unit_test(blocks_are_occupied_exactly_where_the_function_shows),
     cmocka_unit_test(a_peak_between_two_voxel_values_is_occupied),
     cmocka_unit_test(a_volume_without_values_is_empty),
     cmocka_unit_test(wrong_arguments_are_refused_with_a_reason),
