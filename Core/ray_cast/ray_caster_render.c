@@ -47,16 +47,19 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
       STRATUS_MODE_ISOSURFACE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
-  if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_PREINTEGRATED ||
+  if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_CELLS ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
-      STRATUS_STRUCTURE_HYBRID, (int)options->sampling, STRATUS_SAMPLING_PREINTEGRATED, (int)options->interpolation,
-      STRATUS_INTERPOLATION_NEAREST);
+      STRATUS_STRUCTURE_HYBRID, (int)options->sampling, STRATUS_SAMPLING_CELLS, (int)options->interpolation, STRATUS_INTERPOLATION_NEAREST);
   }
   if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
+  }
+  if (!(options->cell_error >= 0.0) || !isfinite(options->cell_error)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "cell error %g, must be positive and finite, or 0 for automatic", options->cell_error);
   }
   if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);

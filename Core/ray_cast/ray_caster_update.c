@@ -117,6 +117,7 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   memset(&in, 0, sizeof in); /* padding, too: inputs are compared as bytes */
   in.sampling = options->sampling;
   in.sample_distance = options->sample_distance;
+  in.cell_error = options->cell_error;
   in.tolerance = options->tolerance;
   in.interpolation = options->interpolation;
   in.shade = options->shade != 0;
@@ -148,12 +149,12 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
 
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  const bool preintegrated = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
   const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
   if (!same_kind || caster->table_distance != caster->choice.sample_distance) {
     const stratus_table_values values = stratus_table_values_of(caster->ranges);
     stratus_table* table = NULL;
-    TRY(stratus_table_create(caster->context, caster->transfers, &values, caster->choice.sampling,
+    TRY(stratus_table_create(caster->context, caster->transfers, &values, preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
       stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
     stratus_table_destroy(caster->table);
     caster->table = table;

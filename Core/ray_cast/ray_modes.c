@@ -205,6 +205,11 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
+  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS) {
+    const double error = caster->choice.cell_error;
+    a->lattice.pieces_per_bend = extent > 0.0 ? (float)fmin(1.0 / (8.0 * error * extent), 1e30) : 0.0f;
+    a->lattice.jitter = 0; /* rays pass from cell to cell, whatever their lattice */
+  }
   a->mode.contour_count = 0;
   for (int n = 0; n < caster->shown.contour_count; ++n) {
     double rgba[4];
@@ -229,7 +234,9 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
   if (is_extreme(mode) || is_sum(mode)) {
     return is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;
   }
-  return caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED ? STRATUS_VARIANT_PREINTEGRATED : STRATUS_VARIANT_MIDPOINT;
+  return caster->choice.sampling == STRATUS_SAMPLING_CELLS      ? STRATUS_VARIANT_CELLS
+    : caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED ? STRATUS_VARIANT_PREINTEGRATED
+                                                                : STRATUS_VARIANT_MIDPOINT;
 }
 
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options)

@@ -50,5 +50,6 @@ stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_modes_tile)(int type, stratu
       tile_sums_any, tile_sums_float32, tile_sums_any },
   };
   return variant == STRATUS_VARIANT_ISOSURFACE ? STRATUS_ISA_NAME(stratus_ray_isosurface_tile)(type)
+    : variant == STRATUS_VARIANT_CELLS         ? STRATUS_ISA_NAME(stratus_ray_cells_tile)(type)
                                                : tiles[variant == STRATUS_VARIANT_SUMS][type + 1];
 }

@@ -20,24 +20,32 @@ double stratus_ray_voxel_length(const stratus_volume* volume)
   return fmin(shortest, FLAT_SHORTER * flat);
 }
 
+/* Rule cells knows a value's colour and opacity alone. The rules that pre-integrate take the field for linear between two values of one
+ * medium. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)
 {
-  return sampling == STRATUS_SAMPLING_MIDPOINT ||
-    (options->mode == STRATUS_MODE_COMPOSITE && options->interpolation != STRATUS_INTERPOLATION_NEAREST &&
-      !stratus_ray_shading_several(caster));
+  const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !stratus_ray_shading_several(caster);
+  switch (sampling) {
+    case STRATUS_SAMPLING_CELLS:
+      return one_medium && !caster->shades && !options->mask;
+    case STRATUS_SAMPLING_PREINTEGRATED:
+      return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST;
+    default:
+      return true;
+  }
 }
 
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice)
 {
-  const bool composite = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
-  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE; /* these rays step from cell to cell: a voxel is only their unit */
-  *choice = (stratus_ray_choice){ .sampling = options->sampling, .expected_error = NAN, .met = true };
-  if (!composite) {
-    choice->sampling = STRATUS_SAMPLING_MIDPOINT;
-  } else if (options->sampling == STRATUS_SAMPLING_AUTO) {
-    choice->sampling = STRATUS_SAMPLING_PREINTEGRATED;
-  }
-  const bool open_rule = composite && options->sampling == STRATUS_SAMPLING_AUTO, open_step = !(options->sample_distance > 0.0);
-  choice->sample_distance = open_step || surfaces ? caster->inputs.voxel : options->sample_distance;
+  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE;
+  const bool by_hand = options->sampling != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling);
+  *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling : STRATUS_SAMPLING_MIDPOINT,
+    .cell_error = options->cell_error,
+    .expected_error = NAN,
+    .met = true };
+  const bool cells = choice->sampling == STRATUS_SAMPLING_CELLS; /* such rays, and those to surfaces, pass from cell to cell */
+  const bool open_rule = options->sampling == STRATUS_SAMPLING_AUTO && options->mode == STRATUS_MODE_COMPOSITE;
+  const bool open_step = cells ? !(options->cell_error > 0.0) : !(options->sample_distance > 0.0);
+  choice->sample_distance = cells || surfaces || open_step ? caster->inputs.voxel : options->sample_distance;
   choice->provisional = !surfaces && (open_rule || open_step);
 }

@@ -9,7 +9,8 @@
 /* How rays sample. It depends on values and options, never on timings, so that equal input gives an equal choice. */
 typedef struct stratus_ray_choice {
   stratus_sampling sampling;
-  double sample_distance;
+  double sample_distance; /* cells: a voxel, which is only their unit of length */
+  double cell_error;      /* cells: as in stratus_ray_cast_options */
   bool provisional; /* not measured yet: stratus_ray_probe() is to replace it */
   /* What the probe found; NaN and true where there was none. */
   double expected_error;
@@ -18,7 +19,7 @@ typedef struct stratus_ray_choice {
 
 /* What a choice follows from, besides values and transfer functions. */
 typedef struct stratus_ray_choice_inputs {
-  double sample_distance, tolerance, voxel;
+  double sample_distance, cell_error, tolerance, voxel;
   stratus_sampling sampling;
   stratus_interpolation interpolation;
   int shade;

@@ -32,6 +32,21 @@ int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_ca
 
 /* ---- checks */
 
+/* Sampling by cells knows a value's colour and opacity alone. */
+static stratus_status check_cells(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  const char* what = stratus_volume_components(volume) > 1 ? "of several components"
+    : options->mask                                        ? "with a mask"
+    : options->shade                                       ? "with light"
+    : transfer->gradient_count > 0                         ? "with a gradient opacity"
+                                                           : NULL;
+  if (options->sampling == STRATUS_SAMPLING_CELLS && options->mode == STRATUS_MODE_COMPOSITE && what) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "sampling by cells of a volume %s is not supported", what);
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
@@ -66,7 +81,7 @@ stratus_status stratus_ray_shading_check_volume(
         context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
     }
   }
-  return STRATUS_OK;
+  return check_cells(context, volume, transfer, options);
 }
 
 /* ---- ranges */

@@ -89,6 +89,9 @@ typedef struct stratus_ray_cast_options {
   /* Default auto: by how much the transfer function bends over the data. Nearest interpolation is never pre-integrated. */
   stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */
+  /* Sampling by cells: the farthest that the field may depart from a straight line within a piece, as a fraction of the range of the
+   * volume's finite values. At least 0 and finite; 0 (default): 1/1024. A cell has at most 32 pieces. */
+  double cell_error;
   double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
   double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. Default .001: 60 dB, a quarter of

@@ -32,7 +32,11 @@ typedef enum stratus_sampling {
   STRATUS_SAMPLING_MIDPOINT, /* one value in the middle of each segment */
   /* The transfer function is integrated between the values at a segment's ends (Engel, Kraus & Ertl 2001), from cumulative tables. A
    * segment of high optical depth is cut into pieces where its colour changes. */
-  STRATUS_SAMPLING_PREINTEGRATED
+  STRATUS_SAMPLING_PREINTEGRATED,
+  /* Pictures of volumes, composite. Rays pass from cell to cell. The way through a cell, where the field along the ray is a cubic, is cut
+   * into pieces that are nearly straight, and each is pre-integrated. With nearest interpolation the cells are the boxes about the values,
+   * so that the picture is exact. */
+  STRATUS_SAMPLING_CELLS
 } stratus_sampling;
 
 typedef struct stratus_occupancy stratus_occupancy;

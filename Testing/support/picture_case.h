@@ -173,7 +173,7 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
   const stratus_type type = (stratus_type)(case_random(&s) % 10);
   const int64_t nx = 1 + case_random(&s) % 40, ny = 1 + case_random(&s) % 40, nz = 2 + case_random(&s) % 40;
   case_create(context, c, type, nx, ny, nz, seed);
-  c->options.sampling = case_random(&s) % 2 ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED;
+  c->options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&s) % 3); /* or pre-integrated, or cells */
   c->options.interpolation = case_random(&s) % 3 ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
   c->options.sample_distance = case_uniform(&s, 0.2, 1.9);
   c->options.termination = case_random(&s) % 2 ? 0.999 : 0.9;

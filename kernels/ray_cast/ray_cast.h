@@ -134,10 +134,16 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "gradient.h"
 #include "lighting.h"
 #endif
+#if STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS
+#include "cell_cubic.h"
+#include "cell_walk.h"
+#endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING
 #include "ray_shading.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
 #include "ray_isosurface.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_CELLS
+#include "ray_cells.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
 #include "ray_modes.h"
 #else
@@ -162,7 +168,7 @@ INLINE void RAY_NAME(ray_shade)(
 }
 #endif
 
-#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE
+#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS
 /* Asks the structure once enough rays need it. Returns 0 if no ray is left. */
 INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {

@@ -26,6 +26,7 @@
 /* Composite, too, but a sample is more than its value's colour and opacity: lit, thinned by the gradient, of several components, or
  * labelled. */
 #define STRATUS_RAY_SHADING 4
+#define STRATUS_RAY_CELLS 5 /* light behind light, cell by cell */
 
 /* The rays: ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward. */
 typedef struct stratus_ray_camera {
@@ -44,6 +45,7 @@ typedef struct stratus_ray_lattice {
   stratus_pair reach;    /* as many samples as reach beyond the volume's farthest corner */
   stratus_pair per_step; /* 1 / sample distance, in the world */
   float step;            /* the sample distance as a float, for depth */
+  float pieces_per_bend; /* cells: the square of the number of pieces of a way, over the field's largest second derivative on it */
   int jitter, seed;      /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
 } stratus_ray_lattice;
 

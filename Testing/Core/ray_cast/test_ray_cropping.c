@@ -202,6 +202,9 @@ static void structures_and_threads_change_no_bit(void** state)
       mask = make_mask(&c.volume, seed);
       c.options.mask = mask;
     }
+    if (mask && c.options.sampling == STRATUS_SAMPLING_CELLS) { /* which takes no mask */
+      c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+    }
     c.options.jitter = seed % 5 < 2;
     c.options.jitter_seed = seed;
     c.options.structure = STRATUS_STRUCTURE_NONE;

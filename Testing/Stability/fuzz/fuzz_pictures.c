@@ -78,7 +78,7 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   const fuzz_field* field = &c->field;
   o.mode = (stratus_mode)(c->components > 1 && !fuzz_odd(f) ? 0 : fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_ISOSURFACE + 1));
   o.structure = (stratus_structure)fuzz_choice(f, STRATUS_STRUCTURE_HYBRID + 1);
-  o.sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_PREINTEGRATED + 1);
+  o.sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_CELLS + 1);
   o.interpolation = (stratus_interpolation)(o.mode == STRATUS_MODE_ISOSURFACE && !fuzz_odd(f) ? 0 : fuzz_choice(f, 2));
   o.sample_distance = fuzz_chance(f, 0.4) ? 0.0 : fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
   o.termination = fuzz_chance(f, 0.5) ? o.termination : fuzz_real(f, 0.0, 1.0);
@@ -141,7 +141,7 @@ static void check_report(fuzz* f, const picture_case* c, const stratus_image* im
   EXPECT(w[0] >= 0 && w[0] <= w[1] && w[1] <= image->width && w[2] >= 0 && w[2] <= w[3] && w[3] <= image->height, "window %d %d %d %d",
     w[0], w[1], w[2], w[3]);
   EXPECT(memchr(r->why, '\0', sizeof r->why), "why does not end");
-  EXPECT((unsigned)r->structure <= STRATUS_STRUCTURE_HYBRID && (unsigned)r->sampling <= STRATUS_SAMPLING_PREINTEGRATED, "structure %d",
+  EXPECT((unsigned)r->structure <= STRATUS_STRUCTURE_HYBRID && (unsigned)r->sampling <= STRATUS_SAMPLING_CELLS, "structure %d",
     (int)r->structure);
   EXPECT(c->options.mode == STRATUS_MODE_FIRST_HIT || (r->sample_distance > 0.0 && isfinite(r->sample_distance)), "sample distance %g",
     r->sample_distance);

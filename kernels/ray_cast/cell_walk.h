@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The walk of a packet of rays from cell to cell.
+ *
+ * A ray meets plane n of an axis at (n - p) / d, rounded once, and passes from cell to cell at these numbers only. A leap ends at such a
+ * number, too. So the cells behind a leap are those to which a walk without leaps would have come, and the bits do not depend on the
+ * structure. */
+#ifndef STRATUS_CELL_WALK_H
+#define STRATUS_CELL_WALK_H
+
+#include "ray_segment.h"
+#include "tree_map.h"
+
+/* Where the ray is: s, the cell, and the planes by which it enters and leaves the cell. */
+typedef struct cell_walk {
+  vfloat s, leave, end;
+  vfloat enter_at[3], leave_at[3];
+  vint cell[3];
+  vfloat run; /* up to this s the structure need not be asked */
+  int halves; /* 1: the planes are half a cell apart, so that cell c of the volume is 2 c and 2 c + 1; else 0 */
+} cell_walk;
+
+INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane) { return (v_from_int(plane) - k->p[axis]) * k->inverse[axis]; }
+
+/* The cell that each ray enters at its point s. */
+INLINE void cell_enter(const stratus_packet* k, cell_walk* w)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  const vint step = vi_set(1), none = vi_set(0);
+  w->leave = w->end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const vmask forward = v_lt(zero, k->inverse[axis]);
+    vint cell = v_to_int(v_fma(w->s, k->d[axis], k->p[axis]) + one) - step; /* never below -1 */
+    /* the product is rounded, so that the cell may be one off */
+    const vfloat before = plane_met(k, axis, vi_select(forward, cell, cell + step));
+    cell = cell - vi_select(v_lt(w->s, before), vi_select(forward, step, none - step), none);
+    const vfloat after = plane_met(k, axis, vi_select(forward, cell + step, cell));
+    cell = cell + vi_select(v_le(after, w->s), vi_select(forward, step, none - step), none);
+    w->cell[axis] = cell;
+    w->enter_at[axis] = plane_met(k, axis, vi_select(forward, cell, cell + step));
+    w->leave_at[axis] = plane_met(k, axis, vi_select(forward, cell + step, cell));
+    w->leave = v_min(w->leave_at[axis], w->leave);
+  }
+}
+
+/* Puts the rays at their begin. Returns 0 if none is live. */
+INLINE int cell_begin(stratus_packet* k, int halves, cell_walk* w)
+{
+  w->s = v_max(v_from_int(k->i), k->begin);
+  w->end = v_min(v_from_int(k->last), k->end);
+  w->run = v_select(v_lt(v_from_int(k->run), v_set(1.0f)), v_set(-1.0f), v_set(LARGEST_FLOAT));
+  w->halves = halves;
+  k->live = k->live & v_lt(w->s, w->end);
+  w->s = v_select(k->live, w->s, v_set(0.0f)); /* lanes that are not live stay at a harmless place */
+  w->end = v_select(k->live, w->end, v_set(0.0f));
+  return m_any(k->live);
+}
+
+/* Moves the rays to where they leave their cells. A ray always advances, even where two planes are too near for floats to tell apart. */
+INLINE void cell_leave(stratus_packet* k, cell_walk* w)
+{
+  w->s = v_select(k->live, v_select(v_lt(w->s, w->leave), w->leave, v_fma(w->s, v_set(1e-6f), w->s + v_set(1e-6f))), w->s);
+  k->live = k->live & v_lt(w->s, w->end);
+}
+
+/* The cell whose values are read. Where positions are clamped that is the border's cell. */
+INLINE vint cell_inside(CONSTANT stratus_ray_cast_arguments* a, const cell_walk* w, int axis)
+{
+  return vi_max(vi_min(w->cell[axis] >> vi_set(w->halves), vi_set(a->values.dimensions[axis] - 2)), vi_set(0));
+}
+
+/* The fraction of the cell along an axis at point s of the ray: exactly 0 or 1 where the ray meets the plane at s. */
+INLINE vfloat cell_fraction(const stratus_packet* k, int axis, vint inside, vfloat s, vfloat met, vint plane)
+{
+  const vfloat base = v_from_int(inside), at = v_fma(s, k->d[axis], k->p[axis]) - base, exact = v_from_int(plane) - base;
+  const vmask there = v_le(met, s) & v_le(s, met);
+  return v_clamp(v_select(there, exact, at), 0.0f, 1.0f);
+}
+
+/* Leaps over cubes of blocks that hold nothing that shows. */
+INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, cell_walk* w)
+{
+  vmask need = k->live & v_le(w->run, w->s);
+  while (m_any(need)) {
+    vint block[3], byte;
+    for (int axis = 0; axis < 3; ++axis) {
+      block[axis] = cell_inside(a, w, axis) >> vi_set(a->map.block_log2);
+    }
+    if (a->map.tree) {
+      byte = tree_bytes(a, map, block, need);
+    } else {
+      byte = gather_map(map, block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant, need);
+    }
+    k->lookups -= mask_int(need);
+    const vmask occupied = need & vi_ge(byte, vi_set(128));
+    const vint distance = byte & vi_set(127);
+    vfloat leave = w->end;
+    for (int axis = 0; axis < 3; ++axis) {
+      const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
+      const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
+      leave = v_min(plane_met(k, axis, face << vi_set(a->map.block_log2 + w->halves)), leave);
+    }
+    const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* in the volume's rim, where values are clamped, there is no leap */
+    w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
+    leave = v_select(leap, leave, w->s); /* in other lanes a plane may be farther than an int can hold */
+    k->skipped = k->skipped + (v_to_int(leave) - v_to_int(w->s));
+    w->s = leave;
+    k->live = m_andnot(k->live, leap & v_le(w->end, w->s));
+    need = leap & k->live;
+    if (m_any(need)) {
+      cell_enter(k, w);
+    }
+  }
+}
+
+#endif
