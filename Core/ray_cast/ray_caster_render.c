@@ -117,7 +117,7 @@ static stratus_status audit(
   double upload_ms = 0.0;
   stratus_status status;
 
-  stratus_ray_frame_structures(NULL, NULL, NULL, &plain);
+  stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
   plain.picture.want_samples = plain.picture.want_bytes = 0;
   march.samples = NULL;
   march.rgba8 = NULL;
@@ -200,7 +200,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     arguments.values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
-    stratus_ray_frame_structures(caster->table, caster->occupancy, with_map ? caster->map : NULL, &arguments);
+    stratus_ray_frame_structures(caster->table, options->tolerance, caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
       report_window(arguments.camera.window, report->window);

@@ -11,15 +11,15 @@
 
 /* Floats cannot tell more samples than this apart on one ray. */
 #define SAMPLES_MOST 4e6
-/* Bounds shrink by this fraction of a voxel, or by FLOAT_COARSENESS times the dimension if that is more, so that no rounding takes a sample
- * outside. */
-#define BOUNDS_MARGIN 0x1p-10
+/* Bounds shrink by FLOAT_COARSENESS times the sum of the dimension and the length of a sample in voxels, so that no rounding takes a sample
+ * outside: a ray's position is a float, and segment 0 begins up to one sample before the bounds. */
 #define FLOAT_COARSENESS 0x1p-21
-/* The margin suffices only if no sample is longer than this many voxels. */
 #define VOXELS_A_SAMPLE_MOST 4096.0
 #define SMALLEST_SAMPLE_DISTANCE 1e-30
 #define LARGEST_SAMPLE_DISTANCE 1e30
 #define UNBOUNDED 1e30f
+/* The error for which stratus_table.color_slope cuts segments: a twelfth of the change of colour that it allows in a piece, 1/48. */
+#define TABLE_COLOR_ERROR (1.0 / 576.0)
 /* A ray ends where so much of the tolerance is left of its transparency: what lies behind can change no channel by more. Floats tell no
  * transparency below TERMINATION_LEAST from none. */
 #define TERMINATION_SHARE 0.5
@@ -72,12 +72,22 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
   a->camera.parallel = camera->parallel != 0;
 }
 
-/* Sets the bounds, cropped, in index coordinates. Returns false if they are empty. */
-static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
+/* Returns the length of a sample in voxels, along the axis where it is longest. */
+static double voxels_a_sample(const double world_to_index[16], double sample_distance)
+{
+  double voxels = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    voxels = fmax(voxels, sample_distance * sqrt(stratus_vector_dot(world_to_index + 4 * axis, world_to_index + 4 * axis)));
+  }
+  return voxels;
+}
+
+/* Sets the bounds, cropped, in index coordinates. voxels: the length of a sample. Returns false if they are empty. */
+static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, double voxels, stratus_ray_cast_arguments* a)
 {
   const double half = volume->cell_centered ? 0.5 : 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double last = (double)(volume->dimensions[axis] - 1), margin = fmax(BOUNDS_MARGIN, last * FLOAT_COARSENESS);
+    const double last = (double)(volume->dimensions[axis] - 1), margin = (last + 1.0 + voxels) * FLOAT_COARSENESS;
     double lo = volume->cell_centered ? -0.5 : margin, hi = volume->cell_centered ? last + 0.5 : last - margin;
     if (options->crop && options->crop_regions == STRATUS_CROP_INSIDE) {
       const double* bounds = options->crop_bounds + 2 * axis;
@@ -184,10 +194,7 @@ static stratus_status check_samples(
       "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g", sample_distance,
       diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
   }
-  double voxels = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    voxels = fmax(voxels, sample_distance * sqrt(stratus_vector_dot(inverse + 4 * axis, inverse + 4 * axis)));
-  }
+  const double voxels = voxels_a_sample(inverse, sample_distance);
   if (!(voxels <= VOXELS_A_SAMPLE_MOST) || !(sample_distance >= SMALLEST_SAMPLE_DISTANCE && sample_distance <= LARGEST_SAMPLE_DISTANCE)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "sample distance %g is too long or out of range: %g voxels a sample, at most %g; distances %g..%g", sample_distance, voxels,
@@ -231,7 +238,8 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   a->values.bias_high = (int)(uint32_t)(bits >> 32);
   a->lattice.jitter = options->jitter != 0;
   a->lattice.seed = (int)options->jitter_seed;
-  *empty = !set_box(volume, options, a) || !set_piece(volume, a) || !set_regions(volume, options, a);
+  *empty = !set_box(volume, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(volume, a) ||
+    !set_regions(volume, options, a);
   return STRATUS_OK;
 }
 
@@ -267,11 +275,12 @@ static void pair_values(const stratus_pair pairs[3], double values[3])
   }
 }
 
-void stratus_ray_frame_structures(
-  const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+void stratus_ray_frame_structures(const stratus_table* table, double tolerance, const stratus_occupancy* occupancy,
+  const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
   if (table) {
     a->table = stratus_table_arguments_of(table);
+    a->table.color_slope *= (float)(TABLE_COLOR_ERROR / fmax(tolerance, TERMINATION_LEAST));
   }
   a->map.structure = map != NULL;
   double lo[3], hi[3];

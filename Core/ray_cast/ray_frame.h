@@ -13,8 +13,8 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   bool* empty);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */
 double stratus_ray_termination(double tolerance);
-/* Sets the arguments of table and map, each unless NULL, and the window. */
-void stratus_ray_frame_structures(
-  const stratus_table* table, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
+/* Sets the arguments of table and map, each unless NULL, and the window. tolerance: decides into how many pieces a deep segment is cut. */
+void stratus_ray_frame_structures(const stratus_table* table, double tolerance, const stratus_occupancy* occupancy,
+  const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
 
 #endif

@@ -11,17 +11,24 @@
 #include "ray_shading_render.h"
 #include "tiles.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Rungs of the step: rung r is a step of 2^(COARSEST - r/4) voxels. */
-#define COARSEST 2.0
-#define RUNGS 25
-/* The rung of the finer setting that candidates are compared with, and how much finer it must be than a candidate. */
-#define RUNG_ONE_VOXEL 8
+/* Rung r of a lattice is a step of 2^(2 - r/4) voxels, rung r of cells an error of 2^(-2 - r/2): rungs 0..24 and 0..28. By either, two
+ * rungs halve the error where it falls with the square of the step, or with the cell's error. */
+#define LATTICE_RUNGS 25
+#define CELL_RUNGS 29
+#define ONE_VOXEL 8
+/* The finer setting that candidates are compared with. On a lattice it has steps of this rung at first; FINER_BY rungs lie between it and
+ * the setting that is taken, or it is made finer by as many. Of cells, its error is the tolerance times CELL_SHARE. */
+#define LATTICE_FINE 14
+#define FINER_BY 6
+#define CELL_SHARE 0.25
 /* The error on the probe's rays may be at most this share of the tolerance: other rays err by more. */
 #define SHARE 0.6
-/* Rays as many as one patch has. */
+/* An error that rises by less over rungs of cells has come to rest. */
+#define SETTLED 1.1
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
 typedef struct setting {
@@ -29,12 +36,13 @@ typedef struct setting {
   int rung;
 } setting;
 
-/* What a family of settings has shown so far: one sampling rule at all its rungs. */
+/* What one sampling rule has shown so far, at all its rungs. */
 typedef struct family {
   stratus_sampling sampling;
-  double cost;         /* of a sample, in those of the midpoint rule */
-  double error[RUNGS]; /* root mean square on the probe's rays; -1: not measured */
-  double samples[RUNGS];
+  int rungs;                /* 1 where the user has set the step */
+  double cost;              /* of a sample, in those of the midpoint rule */
+  double error[CELL_RUNGS]; /* root mean square on the probe's rays; -1: not measured */
+  double samples[CELL_RUNGS];
 } family;
 
 typedef struct probe {
@@ -47,17 +55,18 @@ typedef struct probe {
   double voxel;
   float *fine, *coarse; /* pictures of all patches: of the finer setting, and of the candidate */
   uint64_t samples;     /* of all settings together */
-  int tried;
 } probe;
 
-static double step_of(int rung)
+/* Sets what a setting stands for, with what the user has set in its place. */
+static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
 {
-  return exp2(COARSEST - 0.25 * rung);
-}
-
-static double distance_of(const probe* p, int rung)
-{
-  return p->options->sample_distance > 0.0 ? p->options->sample_distance : step_of(rung) * p->voxel;
+  const stratus_ray_cast_options* options = p->options;
+  const bool cells = s->sampling == STRATUS_SAMPLING_CELLS;
+  choice->sampling = s->sampling;
+  choice->cell_error = options->cell_error > 0.0 ? options->cell_error : exp2(-2.0 - 0.5 * s->rung);
+  choice->sample_distance = cells    ? p->voxel
+    : options->sample_distance > 0.0 ? options->sample_distance
+                                     : exp2(2.0 - 0.25 * s->rung) * p->voxel;
 }
 
 /* ---- drawing */
@@ -65,7 +74,7 @@ static double distance_of(const probe* p, int rung)
 typedef struct patch_job {
   const probe* p;
   float* pictures;
-  double distance;
+  double distance, tolerance;
   stratus_ray_variant variant;
   int type;
 } patch_job;
@@ -96,7 +105,7 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   a.values.has_hidden = caster->hides;
   stratus_ray_modes_arguments(caster, options, &a);
   stratus_ray_shading_arguments(caster, job->p->volume, camera, options, &a);
-  stratus_ray_frame_structures(caster->table, caster->occupancy, caster->map, &a);
+  stratus_ray_frame_structures(caster->table, job->tolerance, caster->occupancy, caster->map, &a);
   const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
   const stratus_ray_cast_frame frame = { .arguments = &a,
     .values = caster->traversed.values,
@@ -109,17 +118,17 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
 }
 
 /* Draws all patches with a setting. *samples: the values that were interpolated. */
-static stratus_status draw_patches(probe* p, const setting* s, float* pictures, double* samples)
+static stratus_status draw_patches(probe* p, const setting* s, double tolerance, float* pictures, double* samples)
 {
   stratus_ray_caster* caster = p->caster;
   uint64_t sums[STRATUS_TILE_COUNTS];
-  caster->choice.sampling = s->sampling;
-  caster->choice.sample_distance = distance_of(p, s->rung);
+  take(p, s, &caster->choice);
   TRY(stratus_ray_update_table(caster, p->options));
   const stratus_ray_variant light = caster->table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   const patch_job job = { .p = p,
     .pictures = pictures,
     .distance = caster->choice.sample_distance,
+    .tolerance = tolerance,
     .variant = caster->shades ? light : stratus_ray_modes_variant(caster),
     .type = stratus_ray_fetch_type(&caster->traversed) };
   stratus_ray_cast_arguments unused;
@@ -129,7 +138,6 @@ static stratus_status draw_patches(probe* p, const setting* s, float* pictures, 
   TRY(stratus_each_tile(caster->context, "sampling", p->count, draw_patch, &job, sums));
   *samples = (double)sums[1];
   p->samples += sums[1];
-  ++p->tried;
   return STRATUS_OK;
 }
 
@@ -154,97 +162,152 @@ static double error_of(const probe* p)
   return lit > 0.0 ? sqrt(squares / (4.0 * lit)) : 0.0;
 }
 
+static void note(probe* p, const char* format, ...)
+{
+  char* tried = p->caster->tried;
+  const size_t length = strlen(tried);
+  va_list list;
+  va_start(list, format);
+  vsnprintf(tried + length, sizeof p->caster->tried - length, format, list);
+  va_end(list);
+}
+
 static stratus_status measure(probe* p, family* f, int rung)
 {
+  const setting s = { f->sampling, rung };
   if (f->error[rung] < 0.0) {
-    const setting s = { f->sampling, rung };
-    TRY(draw_patches(p, &s, p->coarse, &f->samples[rung]));
+    TRY(draw_patches(p, &s, p->options->tolerance, p->coarse, &f->samples[rung]));
     f->error[rung] = error_of(p);
+    const stratus_ray_choice* c = &p->caster->choice;
+    note(p, "%s%s %.3g: %.2g", *p->caster->tried ? ", " : "tried ", stratus_sampling_name(s.sampling),
+      s.sampling == STRATUS_SAMPLING_CELLS ? c->cell_error : c->sample_distance / p->voxel, f->error[rung]);
   }
   return STRATUS_OK;
 }
 
-/* Finds the coarsest rung of a family that keeps `most`, by steps of as many rungs as the error asks for. Errors are taken to fall with the
- * square of the step. *best: -1 if none does. */
-static stratus_status search(probe* p, family* f, double most, int start, int* best)
+/* Finds the coarsest rung of a family that keeps `most`, by as many rungs at a time as the error asks for. Gives up once the next rung to
+ * be measured would cost more than `dear`. *best: -1 if no rung was found. */
+static stratus_status search(probe* p, family* f, int start, double most, double dear, int* best)
 {
-  int low = 0, high = RUNGS - 1; /* the rung is in low..high, if there is one */
-  int rung = start;
+  int low = 0, high = f->rungs - 1; /* the rung lies in low..high, if there is one */
+  int rung = start < high ? start : high;
+  const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
   *best = -1;
   while (low <= high) {
     TRY(measure(p, f, rung));
-    const double error = f->error[rung], excess = error > 0.0 ? 2.0 * log2(error / most) : -RUNGS; /* in rungs */
+    const double error = f->error[rung], excess = error > 0.0 ? 2.0 * log2(error / most) : -CELL_RUNGS; /* in rungs */
+    const int before = rung;
     if (error <= most) {
+      const bool settled = cells && *best >= 0 && error < SETTLED * f->error[*best];
       *best = rung;
       high = rung - 1;
-      const int by = (int)floor(-excess);
-      if (by < 1) {
-        break; /* the next coarser rung would miss */
+      if (excess > -1.0 || settled) {
+        break; /* the next coarser rung would miss, or save nothing: the ways through cells are whole */
       }
-      rung -= by;
+      rung -= (int)floor(-excess);
     } else {
       low = rung + 1;
-      rung += (int)ceil(fmin(excess, RUNGS));
+      rung += (int)ceil(fmin(excess, CELL_RUNGS));
     }
     rung = rung < low ? low : rung > high ? high : rung;
+    if (rung > before && !cells && f->cost * f->samples[before] * exp2(0.25 * (rung - before)) > dear) {
+      break;
+    }
   }
   return STRATUS_OK;
 }
 
-/* Measures a family at the step that the user set, or finds its coarsest rung that keeps `most`. *best: -1 if none does. */
-static stratus_status search_family(probe* p, family* f, double most, int* best)
+/* The families that are open, and the finer setting that they are compared with. */
+typedef struct candidates {
+  family of[3];
+  int count;
+  setting fine;
+  double fine_samples;
+} candidates;
+
+/* Compares the candidates with one finer setting. *best, *found: the cheapest setting that keeps `most`; found NULL if none does. */
+static stratus_status compare(probe* p, candidates* k, double most, int* best, family** found)
 {
-  for (int r = 0; r < RUNGS; ++r) {
-    f->error[r] = -1.0;
+  double least = INFINITY, cells_cost = INFINITY; /* cells are the same in number at every rung */
+  *found = NULL;
+  p->caster->tried[0] = '\0';
+  TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->tolerance, p->fine, &k->fine_samples));
+  for (int i = 0; i < k->count; ++i) {
+    cells_cost = k->of[i].sampling == STRATUS_SAMPLING_CELLS ? k->of[i].cost * k->fine_samples : cells_cost;
   }
-  if (p->options->sample_distance > 0.0) {
-    TRY(measure(p, f, 0));
-    *best = f->error[0] <= most ? 0 : -1;
-    return STRATUS_OK;
+  for (int i = 0; i < k->count; ++i) {
+    family* f = &k->of[i];
+    const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
+    int start = cells ? k->fine.rung - FINER_BY : ONE_VOXEL, rung;
+    for (int r = 0; r < CELL_RUNGS; ++r) {
+      f->error[r] = -1.0;
+    }
+    if (cells ? cells_cost > least : least < INFINITY && k->of[0].error[ONE_VOXEL] <= most && k->of[0].rungs > 1) {
+      continue; /* where one sample a voxel is enough, the function hardly bends, and two reads a sample gain nothing */
+    }
+    TRY(search(p, f, start > 0 ? start : 0, most, fmin(least, cells_cost), &rung));
+    if (rung >= 0 && f->cost * f->samples[rung] < least) {
+      least = f->cost * f->samples[rung];
+      *best = rung;
+      *found = f;
+    }
   }
-  return search(p, f, most, RUNG_ONE_VOXEL, best);
+  return STRATUS_OK;
+}
+
+static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
+{
+  /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums; a cell takes pieces of two entries. */
+  static const double costs[] = {
+    [STRATUS_SAMPLING_MIDPOINT] = 1.0, [STRATUS_SAMPLING_PREINTEGRATED] = 1.8, [STRATUS_SAMPLING_CELLS] = 2.5
+  };
+  const stratus_ray_cast_options* options = p->options;
+  const bool cells = sampling == STRATUS_SAMPLING_CELLS;
+  if (stratus_ray_can_sample(p->caster, options, sampling) &&
+    (options->sampling == STRATUS_SAMPLING_AUTO || options->sampling == sampling ||
+      !stratus_ray_can_sample(p->caster, options, options->sampling))) {
+    family* f = &k->of[k->count++];
+    *f = (family){ .sampling = sampling, .cost = costs[sampling], .rungs = cells ? CELL_RUNGS : LATTICE_RUNGS };
+    f->rungs = (cells ? options->cell_error : options->sample_distance) > 0.0 ? 1 : f->rungs;
+  }
 }
 
 /* Takes the cheapest of the settings that keep the tolerance, else the finest. */
 static stratus_status choose(probe* p, stratus_ray_choice* choice)
 {
-  static const double costs[] = { [STRATUS_SAMPLING_MIDPOINT] = 1.0, [STRATUS_SAMPLING_PREINTEGRATED] = 1.8 };
-  stratus_ray_caster* caster = p->caster;
+  const stratus_ray_caster* caster = p->caster;
   const stratus_ray_cast_options* options = p->options;
+  const bool cells = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_CELLS);
   const bool preintegrates = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
-  const setting fine = { preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT, RUNGS - 1 };
   const double most = SHARE * options->tolerance;
-  double least = INFINITY, unused;
-  int at = 0;
-  TRY(draw_patches(p, &fine, p->fine, &unused));
-  choice->sampling = fine.sampling;
-  choice->sample_distance = distance_of(p, fine.rung);
-  choice->met = false;
-  choice->expected_error = NAN;
-  for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_PREINTEGRATED; ++rule) {
-    family f = { .sampling = rule, .cost = costs[rule] };
-    int best;
-    if (!stratus_ray_can_sample(caster, options, rule) ||
-      (preintegrates && options->sampling != STRATUS_SAMPLING_AUTO && options->sampling != rule)) {
-      continue;
-    }
-    TRY(search_family(p, &f, most, &best));
-    for (int r = 0; r < RUNGS; ++r) {
-      if (f.error[r] >= 0.0) {
-        at += snprintf(caster->tried + at, sizeof caster->tried - (size_t)at, "%s%s %.3g voxels %.2g", at ? ", " : "tried ",
-          stratus_sampling_name(rule), distance_of(p, r) / p->voxel, f.error[r]);
-        at = at < (int)sizeof caster->tried ? at : (int)sizeof caster->tried - 1;
-      }
-    }
-    if (best >= 0 && f.cost * f.samples[best] < least) {
-      least = f.cost * f.samples[best];
-      choice->sampling = rule;
-      choice->sample_distance = distance_of(p, best);
-      choice->expected_error = f.error[best];
-      choice->met = true;
-    }
+  const int last = (cells ? CELL_RUNGS : LATTICE_RUNGS) - 1;
+  candidates k = { .count = 0 };
+  for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
+    add_family(&k, p, rule);
   }
-  return STRATUS_OK;
+  k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  if (!(options->tolerance > 0.0)) {
+    const bool open = options->sampling == STRATUS_SAMPLING_AUTO;
+    const setting finest = { open ? k.fine.sampling : choice->sampling, last };
+    take(p, &finest, choice);
+    return STRATUS_OK;
+  }
+  const double wanted = cells ? -2.0 * (log2(CELL_SHARE * options->tolerance) + 2.0) : LATTICE_FINE;
+  k.fine.rung = wanted < FINER_BY ? FINER_BY : wanted < last ? (int)ceil(wanted) : last;
+  for (;;) {
+    family* found = NULL;
+    int best = 0;
+    TRY(compare(p, &k, most, &best, &found));
+    const bool same = found && found->sampling == k.fine.sampling;
+    if (k.fine.rung == last || (found && !(same && found->rungs > 1 && best > k.fine.rung - FINER_BY))) {
+      const setting s = { found ? found->sampling : k.fine.sampling, found ? best : k.fine.rung };
+      take(p, &s, choice);
+      choice->met = found != NULL;
+      choice->expected_error = found ? found->error[best] : NAN;
+      return STRATUS_OK;
+    }
+    k.fine.rung = k.fine.rung + FINER_BY < last ? k.fine.rung + FINER_BY : last;
+  }
 }
 
 /* Draws the picture of this frame with the setting that was measured last, where there is one that can draw it. The next frame measures. */

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The tolerance keeps its word: random scenes, drawn with the settings that the probe takes, err by no more than was asked for, against the
+ * double-precision reference. And the probe is asked only when it must be. */
+#include "random_scene.h"
+#include "testing.h"
+
+#define SIDE 64
+#define PIXELS (SIDE * SIDE)
+/* A tenth of the scenes that the project was judged by: seeds 0..1999. */
+#define SCENES 200
+
+static const double tolerances[] = { 0.01, 0.001, 0.0001 };
+
+typedef struct tally {
+  int cases, beyond, far_beyond, unmet;
+  double ratios[SCENES];
+} tally;
+
+static int compare_numbers(const void* a, const void* b)
+{
+  const double left = *(const double*)a, right = *(const double*)b;
+  return left < right ? -1 : left > right;
+}
+
+static double error_between(const float* a, const float* b)
+{
+  double squares = 0.0, count = 0.0, largest = 0.0;
+  reference_error(a, b, PIXELS, &squares, &count, &largest);
+  return count > 0.0 ? sqrt(squares / count) : 0.0;
+}
+
+static void draw(stratus_context* context, stratus_ray_caster* caster, const random_scene* s, const stratus_ray_cast_options* options,
+  float* rgba, stratus_ray_cast_report* report)
+{
+  const stratus_image image = { .width = SIDE, .height = SIDE, .rgba = rgba };
+  const stratus_status status = stratus_ray_caster_render(caster, &s->volume, &s->transfer, &s->camera, options, &image, report);
+  if (status != STRATUS_OK) {
+    fail_msg("%s", stratus_context_message(context));
+  }
+}
+
+/* Draws each scene at each tolerance, and adds up what was kept. */
+static void judge_scene(stratus_context* context, uint32_t seed, tally tallies[3])
+{
+  static float rgba[4 * PIXELS], truth[4 * PIXELS];
+  random_scene s;
+  random_scene_create(context, seed, 1.0, &s);
+  const reference_scene reference = { .volume = &s.volume, .transfer = &s.transfer, .camera = &s.camera, .interpolation = s.interpolation };
+  assert_int_equal(reference_render(&reference, SIDE, SIDE, 0.25, truth, NULL), 0);
+  for (int t = 0; t < 3; ++t) {
+    tally* sum = &tallies[t];
+    stratus_ray_caster* caster = NULL;
+    stratus_ray_cast_report report;
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    options.tolerance = tolerances[t];
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    draw(context, caster, &s, &options, rgba, &report);
+    const double ratio = error_between(rgba, truth) / options.tolerance;
+    sum->unmet += !report.tolerance_met;
+    if (report.tolerance_met) {
+      sum->ratios[sum->cases++] = ratio;
+      sum->beyond += ratio > 1.0;
+      sum->far_beyond += ratio > 2.0;
+      if (ratio > 1.0) {
+        print_message("seed %u, %s, tolerance %g: error %.2f tolerances; expected %g; %s\n", seed, s.kind, options.tolerance, ratio,
+          report.expected_error, report.why);
+      }
+    }
+    stratus_ray_caster_destroy(caster);
+  }
+  random_scene_destroy(&s);
+}
+
+static void random_scenes_keep_the_tolerance(void** state)
+{
+  (void)state;
+  static tally tallies[3];
+  stratus_context* context = NULL;
+  assert_int_equal(stratus_context_create(NULL, &context, NULL, 0), STRATUS_OK);
+  memset(tallies, 0, sizeof tallies);
+  for (uint32_t seed = 0; seed < SCENES; ++seed) {
+    judge_scene(context, seed, tallies);
+  }
+  int cases = 0, beyond = 0, far_beyond = 0, unmet = 0;
+  for (int t = 0; t < 3; ++t) {
+    tally* sum = &tallies[t];
+    qsort(sum->ratios, (size_t)sum->cases, sizeof *sum->ratios, compare_numbers);
+    const double median = sum->cases ? sum->ratios[sum->cases / 2] : 0.0;
+    print_message("tolerance %g: %d met, %d beyond it, %d beyond twice, %d not met; median error %.2f tolerances\n", tolerances[t],
+      sum->cases, sum->beyond, sum->far_beyond, sum->unmet, median);
+    cases += sum->cases;
+    beyond += sum->beyond;
+    far_beyond += sum->far_beyond;
+    unmet += sum->unmet;
+  }
+  assert_true(beyond * 100 <= cases);
+  assert_int_equal(far_beyond, 0);
+  assert_true(unmet * 20 <= cases + unmet);
+  assert_true(tallies[1].ratios[tallies[1].cases / 2] > 0.25);
+  stratus_context_destroy(context);
+}
+
+/* A probe costs: it is asked where the sampling may change, and nowhere else. */
+static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
+{
+  (void)state;
+  static float rgba[4 * PIXELS], again[4 * PIXELS];
+  stratus_context* context = NULL;
+  stratus_ray_caster* caster = NULL;
+  stratus_ray_cast_report report;
+  random_scene s;
+  assert_int_equal(stratus_context_create(NULL, &context, NULL, 0), STRATUS_OK);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  random_scene_create(context, 4, 1.0, &s);
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 1);
+  assert_true(report.probe_samples > 0);
+  assert_true(report.expected_error <= options.tolerance);
+  const stratus_ray_cast_report first = report;
+
+  const stratus_camera camera = s.camera;
+  for (int a = 0; a < 3; ++a) { /* nearer, and from another side */
+    s.camera.eye[a] += 0.2 * (a + 1) * s.volume.spacing[a] * (double)s.volume.dimensions[a];
+  }
+  options.crop = 1;
+  options.crop_bounds[1] = options.crop_bounds[3] = options.crop_bounds[5] = 1e9;
+  options.structure = STRATUS_STRUCTURE_BLOCK;
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 1);
+  assert_int_equal(report.probe_samples, 0);
+  assert_int_equal(report.sampling, first.sampling);
+  assert_true(report.sample_distance == first.sample_distance && report.expected_error == first.expected_error);
+
+  options = stratus_ray_cast_options_default();
+  s.camera = camera;
+  s.opacity[3] *= 0.5;
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 2);
+  options.tolerance = 0.05;
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 3);
+  ++s.volume.revision;
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 4);
+
+  options.sampling = STRATUS_SAMPLING_MIDPOINT; /* what is set by hand needs none */
+  options.sample_distance = s.volume.spacing[0];
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 4);
+  assert_true(isnan(report.expected_error) && report.tolerance_met);
+  assert_true(report.sample_distance == options.sample_distance);
+
+  /* equal input gives an equal choice, whatever was drawn before */
+  stratus_ray_caster* other = NULL;
+  options = stratus_ray_cast_options_default();
+  options.tolerance = 0.05;
+  draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(stratus_ray_caster_create(context, &other), STRATUS_OK);
+  draw(context, other, &s, &options, again, &report);
+  assert_memory_equal(rgba, again, sizeof rgba);
+  stratus_ray_caster_destroy(other);
+  stratus_ray_caster_destroy(caster);
+  stratus_context_destroy(context);
+  random_scene_destroy(&s);
+}
+
+int test_ray_tolerance(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(random_scenes_keep_the_tolerance),
+    cmocka_unit_test(a_probe_comes_with_data_function_and_tolerance_alone),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
