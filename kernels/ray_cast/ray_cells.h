@@ -6,7 +6,6 @@
 #ifndef STRATUS_RAY_CELLS_H
 #define STRATUS_RAY_CELLS_H
 
-
 /* Most pieces of a cell. */
 #define CELL_PIECES 32.0f
 

@@ -4,7 +4,6 @@
 #ifndef STRATUS_RAY_ISOSURFACE_H
 #define STRATUS_RAY_ISOSURFACE_H
 
-
 /* Not inlined: few cells come this far, and the code is long. */
 #ifdef STRATUS_DEVICE
 #define SURFACE_OUTLINE static
