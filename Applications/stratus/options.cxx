@@ -30,8 +30,8 @@ std::string help()
   stratus --help
 
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel; to be drawn, told of or sorted also an unstructured grid (.vtu .pvtu .vtk, TetGen's
-.node .ele), whose cells are divided into tetrahedra.
+or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels; to be drawn, told of or sorted also an
+unstructured grid (.vtu .pvtu .vtk, TetGen's .node .ele), whose cells are divided into tetrahedra.
 
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits)

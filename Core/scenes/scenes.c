@@ -5,13 +5,14 @@
 #include "stratus/scenes.h"
 #include "volume.h"
 #include "scenes_fields.h"
+#include "scenes_media.h"
+#include "scenes_transfers.h"
 
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
 #define SLABS 16
-#define POINTS_MAX 5
 
 typedef struct recipe {
   const char* name;
@@ -30,9 +31,7 @@ typedef struct recipe {
 typedef struct scene_storage {
   stratus_scene scene; /* first member, so that stratus_scene_destroy() can cast the caller's pointer */
   void* values;
-  double opacity[POINTS_MAX][2], edited_opacity[POINTS_MAX][2];
-  double color[3][4], edited_color[3][4];
-  double second_color[2][4];
+  scene_functions functions;
   stratus_transfer transfers[2];
 } scene_storage;
 
@@ -45,6 +44,12 @@ static const recipe recipes[] = {
   { "peak",  1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .20, 1.0,   0.03,  fog_field,   fog_shade },
   { "voxel", 1, { 256, 256, 256 }, STRATUS_UINT8,   1, 0.0, 255.0, 0.9,   NULL,        NULL },
   { "plume2", 2, { 512, 512, 256 }, STRATUS_UINT8, 2, .99, 255.0, 0.35, plume_field, plume_shade },
+  { "bone",    1, { 256, 256, 256 }, STRATUS_UINT16,  1, 0.0, 4095.0, 0.0, ct_field,      ct_shade },
+  { "skin",    1, { 256, 256, 256 }, STRATUS_UINT16,  1, 0.0, 4095.0, 0.0, ct_field,      ct_shade },
+  { "stripes", 1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, 0.0, 1.0,    0.0, stripes_field, stripes_shade },
+  { "shell",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .05, 1.0,    0.0, fog_field,     shell_shade },
+  { "plate",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .05, 1.0,    0.0, fog_field,     plate_shade },
+  { "labels",  1, { LABEL_SIDE, LABEL_SIDE, LABEL_SIDE }, STRATUS_UINT8, 1, 0.0, 10.0, 0.0, labels_field, labels_shade },
 };
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
@@ -172,6 +177,7 @@ static void measure(stratus_scene* scene, int threads)
     for (int64_t q = k * per_slice * row; q < (k + 1) * per_slice * row; ++q) {
       const int64_t at = q * scene->volume.value_stride;
       const double value = scene->volume.type == STRATUS_UINT8 ? (double)((const uint8_t*)scene->volume.values)[at]
+        : scene->volume.type == STRATUS_UINT16                 ? (double)((const uint16_t*)scene->volume.values)[at]
                                                                : (double)((const float*)scene->volume.values)[at];
       occupied += value > 0.0;
       slices[k] += value;
@@ -187,33 +193,11 @@ static void measure(stratus_scene* scene, int threads)
 
 static void set_transfer(scene_storage* storage, const recipe* recipe)
 {
-  const double top = recipe->top, most = recipe->opacity;
-  const double opacity[][2] = { { 0, 0 }, { top, most } };
-  const double edited[][2] = { { 0, 0 }, { .15 * top, 0 }, { .6 * top, .8 * most }, { top, .5 * most } };
-  const double peak[][2] = { { 0, 0 }, { .40, 0 }, { .41, .9 }, { .42, 0 }, { 1, 0 } };
-  const double edited_peak[][2] = { { 0, 0 }, { .50, 0 }, { .51, .9 }, { .52, 0 }, { 1, 0 } };
-  const double color[][4] = { { 0, .35, .45, .75 }, { .5 * top, .85, .9, .95 }, { top, 1, .95, .85 } };
-  const double edited_color[][4] = { { 0, .7, .3, .2 }, { .5 * top, .95, .8, .4 }, { top, 1, 1, .9 } };
-  const bool is_peak = strcmp(recipe->name, "peak") == 0;
-  memcpy(storage->opacity, is_peak ? peak : opacity, is_peak ? sizeof peak : sizeof opacity);
-  memcpy(storage->edited_opacity, is_peak ? edited_peak : edited, is_peak ? sizeof edited_peak : sizeof edited);
-  memcpy(storage->color, color, sizeof color);
-  memcpy(storage->edited_color, edited_color, sizeof edited_color);
-
-  storage->scene.transfer = stratus_transfer_default();
-  storage->scene.transfer.opacity = storage->opacity[0];
-  storage->scene.transfer.opacity_count = is_peak ? 5 : 2;
-  storage->scene.transfer.color = storage->color[0];
-  storage->scene.transfer.color_count = 3;
-  storage->scene.edited = storage->scene.transfer;
-  storage->scene.edited.opacity = storage->edited_opacity[0];
-  storage->scene.edited.opacity_count = is_peak ? 5 : 4;
-  storage->scene.edited.color = storage->edited_color[0];
-
-  const double second_color[][4] = { { 0, .95, .75, .25 }, { top, .8, .2, .1 } };
-  memcpy(storage->second_color, second_color, sizeof second_color);
+  set_functions(recipe->name, recipe->top, recipe->opacity, &storage->functions, &storage->scene.transfer, &storage->scene.edited);
+  const double second_color[][4] = { { 0, .95, .75, .25 }, { recipe->top, .8, .2, .1 } };
+  memcpy(storage->functions.second_color, second_color, sizeof second_color);
   storage->transfers[0] = storage->transfers[1] = storage->scene.transfer;
-  storage->transfers[1].color = storage->second_color[0];
+  storage->transfers[1].color = storage->functions.second_color[0];
   storage->transfers[1].color_count = 2;
   storage->scene.transfers = storage->transfers;
 }

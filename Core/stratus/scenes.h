@@ -24,8 +24,13 @@ typedef struct stratus_scene {
   double mean;                       /* mean of the values */
 } stratus_scene;
 
-/* Names: cloud, plume, fog, haze, peak, voxel and plume2. plume2 is the plume as two pollutants; the first turns into the second on the
- * way. */
+/* Names:
+ * - cloud, plume, fog, haze, peak and voxel;
+ * - plume2, the plume as two pollutants, of which the first turns into the second on the way;
+ * - bone and skin, a head of computed tomography (uint16): thin tissue and dense bone; a narrow window at the skin, between vertical steps;
+ * - stripes, a constant opacity and 20 colours that meet in vertical steps;
+ * - shell and plate, thin fog in 95 % of the voxels, and in it a thin opaque sphere, or a plate in .1 % of the blocks of 4^3 cells;
+ * - labels 0 to 10 (uint8), each with an opacity and colour of its own in a window of width 1 between vertical steps. */
 STRATUS_EXPERIMENTAL int stratus_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_scene_name(int index); /* NULL for other indices */
 STRATUS_EXPERIMENTAL stratus_status stratus_scene_create(stratus_context* context, const char* name, stratus_scene** scene);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -62,7 +63,9 @@ static void assert_figures(
   int64_t count = 0;
   double sum = 0.0;
   for (int64_t q = 0; q < values(scene); ++q) {
-    const double value = type == STRATUS_UINT8 ? ((const uint8_t*)volume->values)[q] : (double)((const float*)volume->values)[q];
+    const double value = type == STRATUS_UINT8 ? ((const uint8_t*)volume->values)[q]
+      : type == STRATUS_UINT16                 ? ((const uint16_t*)volume->values)[q]
+                                               : (double)((const float*)volume->values)[q];
     count += value > 0.0;
     sum += value;
   }
@@ -116,6 +119,89 @@ static void fog_haze_and_peak_are_one_field_to_the_last_bit(void** state)
     stratus_scene_destroy(context, scene);
     stratus_context_destroy(context);
   }
+}
+
+/* A head, stripes, solids in fog and labels need no function of the C library but the square root, which is rounded correctly. */
+static void bone_to_labels_have_the_figures_of_record_and_their_bits(void** state)
+{
+  (void)state;
+  assert_figures("bone", 256, 256, 256, STRATUS_UINT16, 9881550, 203.346105, 1e-6);
+  assert_figures("skin", 256, 256, 256, STRATUS_UINT16, 9881550, 203.346105, 1e-6);
+  assert_figures("stripes", 256, 256, 256, STRATUS_FLOAT32, 16777215, .490922981, 1e-9);
+  assert_figures("shell", 256, 256, 256, STRATUS_FLOAT32, 15943891, .200320314, 1e-9);
+  assert_figures("plate", 256, 256, 256, STRATUS_FLOAT32, 15938355, .190433428, 1e-9);
+  assert_figures("labels", 192, 192, 192, STRATUS_UINT8, 2058299, 1.6502776, 1e-7);
+  static const struct {
+    const char* name;
+    uint64_t hash;
+  } bits[] = { { "bone", 0xe9b7355f3fd1bd5eu }, { "skin", 0xe9b7355f3fd1bd5eu }, { "stripes", 0x8597b5345ae652c2u },
+    { "shell", 0x5b264dd2aecb19c3u }, { "plate", 0xe5a30de5c433fafau }, { "labels", 0x64f726ce0c26f375u } };
+  for (int i = 0; i < 6; ++i) {
+    stratus_context* context = open_context(1 + i % 3);
+    stratus_scene* scene = make(context, bits[i].name);
+    assert_int_equal(hash(scene), bits[i].hash);
+    stratus_scene_destroy(context, scene);
+    stratus_context_destroy(context);
+  }
+}
+
+/* Counts the blocks of 4^3 cells, their far faces included, in which a value exceeds a limit. */
+static int64_t blocks_above(const stratus_scene* scene, float limit)
+{
+  const int64_t n = scene->volume.dimensions[0], side = (n + 3) / 4;
+  const float* all = scene->volume.values;
+  int64_t count = 0;
+  for (int64_t b = 0; b < side * side * side; ++b) {
+    const int64_t at[3] = { b % side * 4, b / side % side * 4, b / side / side * 4 };
+    bool above = false;
+    for (int64_t c = 0; c < 125; ++c) {
+      const int64_t i = at[0] + c % 5, j = at[1] + c / 5 % 5, k = at[2] + c / 25;
+      above = above || (i < n && j < n && k < n && all[(k * n + j) * n + i] > limit);
+    }
+    count += above;
+  }
+  return count;
+}
+
+static void plate_takes_a_thousandth_of_the_blocks_and_fog_most_of_the_rest(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(2);
+  stratus_scene* scene = make(context, "plate");
+  const double share = (double)blocks_above(scene, .7f) / (64.0 * 64.0 * 64.0);
+  assert_true(share > .0008 && share < .0012);
+  assert_true(fabs(scene->occupied - .95) < .001);
+  stratus_scene_destroy(context, scene);
+  stratus_context_destroy(context);
+}
+
+/* Returns how many pairs of neighbouring points have the same value but another opacity or colour. */
+static int vertical_steps(const double* points, size_t count, size_t width)
+{
+  int steps = 0;
+  for (size_t i = 1; i < count; ++i) {
+    const double *a = points + (i - 1) * width, *b = points + i * width;
+    steps += a[0] == b[0] && memcmp(a + 1, b + 1, (width - 1) * sizeof *a) != 0;
+  }
+  return steps;
+}
+
+static void functions_of_skin_stripes_and_labels_jump(void** state)
+{
+  (void)state;
+  static const struct {
+    const char* name;
+    int opacity, color;
+  } jumps[] = { { "bone", 0, 0 }, { "skin", 2, 0 }, { "stripes", 0, 19 }, { "labels", 10, 10 } };
+  stratus_context* context = open_context(2);
+  for (int i = 0; i < 4; ++i) {
+    stratus_scene* scene = make(context, jumps[i].name);
+    assert_int_equal(vertical_steps(scene->transfer.opacity, scene->transfer.opacity_count, 2), jumps[i].opacity);
+    assert_int_equal(vertical_steps(scene->transfer.color, scene->transfer.color_count, 4), jumps[i].color);
+    assert_int_equal(vertical_steps(scene->edited.opacity, scene->edited.opacity_count, 2) > 0, jumps[i].opacity > 0);
+    stratus_scene_destroy(context, scene);
+  }
+  stratus_context_destroy(context);
 }
 
 static void assert_points(const double* points, size_t count, size_t width, const double* expected, size_t expected_count)
@@ -194,9 +280,9 @@ static void names_are_listed_and_an_unknown_one_is_told(void** state)
   (void)state;
   stratus_context* context = open_context(1);
   stratus_scene* scene = NULL;
-  assert_int_equal(stratus_scene_count(), 7);
+  assert_int_equal(stratus_scene_count(), 13);
   assert_null(stratus_scene_name(-1));
-  assert_null(stratus_scene_name(7));
+  assert_null(stratus_scene_name(13));
   assert_int_equal(stratus_scene_create(context, "clowd", &scene), STRATUS_INVALID_ARGUMENT);
   assert_null(scene);
   assert_non_null(strstr(stratus_context_message(context), "clowd"));
@@ -284,6 +370,9 @@ int test_scenes(void)
     cmocka_unit_test(fog_has_the_figures_of_record),
     cmocka_unit_test(voxel_is_one_voxel_at_its_place),
     cmocka_unit_test(fog_haze_and_peak_are_one_field_to_the_last_bit),
+    cmocka_unit_test(bone_to_labels_have_the_figures_of_record_and_their_bits),
+    cmocka_unit_test(plate_takes_a_thousandth_of_the_blocks_and_fog_most_of_the_rest),
+    cmocka_unit_test(functions_of_skin_stripes_and_labels_jump),
     cmocka_unit_test(transfer_functions_are_those_of_record),
     cmocka_unit_test(plume2_is_the_plume_in_two_parts),
     cmocka_unit_test(names_are_listed_and_an_unknown_one_is_told),
