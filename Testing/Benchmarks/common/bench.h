@@ -72,6 +72,7 @@ struct result {
   std::string scene, method;
   timing time;
   std::vector<picture> pictures; // one per view
+  bool judged = true;            // false: the window shows more than the volume, so that only times are compared
   double psnr_db = 0.0, psnr8_db = 0.0, max_error = 0.0, reference_db = 0.0;
   double differing_pixels = -1.0; // -1: not compared
 };

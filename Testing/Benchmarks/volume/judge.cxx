@@ -169,12 +169,12 @@ void compare(stratus_context* context, const scene& s, int size, std::vector<res
 {
   std::map<std::string, std::vector<picture>> none; // by device
   for (const result& r : results) {
-    if (r.method.rfind("stratus:none", 0) == 0) {
+    if (r.method.rfind("stratus:none", 0) == 0 && r.judged) {
       none[where(r.method)] = r.pictures;
     }
   }
   for (result& r : results) {
-    if (r.method.rfind("stratus:", 0) != 0) {
+    if (r.method.rfind("stratus:", 0) != 0 || !r.judged) {
       continue;
     }
     std::vector<picture>& plain = none[where(r.method)];
@@ -195,7 +195,7 @@ void compare(stratus_context* context, const scene& s, int size, std::vector<res
 
 void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results)
 {
-  if (results.empty()) {
+  if (std::none_of(results.begin(), results.end(), [](const result& r) { return r.judged; })) {
     return;
   }
   const references source(context, s, size, cache);
@@ -223,6 +223,9 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
     agreement = self.psnr();
     best = 0.0;
     for (result& r : results) {
+      if (!r.judged) {
+        continue;
+      }
       measure(fine, r);
       best = std::max({ best, r.psnr_db, r.psnr8_db });
     }
@@ -235,7 +238,7 @@ void judge(stratus_context* context, const scene& s, int size, const std::string
       agreement, best);
   }
   for (result& r : results) {
-    r.reference_db = agreement;
+    r.reference_db = r.judged ? agreement : 0.0;
   }
   compare(context, s, size, results);
 }

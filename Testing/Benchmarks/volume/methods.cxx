@@ -20,6 +20,24 @@ namespace {
 
 const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
+// Splits NAME+WINDOW, and tells what the window shows besides the volume. Returns false for other windows.
+bool parse_dress(const std::string& whole, std::string& name, dress& d)
+{
+  const size_t plus = whole.find('+');
+  name = whole.substr(0, plus);
+  d = dress();
+  if (plus == std::string::npos) {
+    return true;
+  }
+  const std::string word = whole.substr(plus + 1);
+  const bool all = word == "ordinary";
+  d.gradient = all || word == "gradient";
+  d.samples = all || word == "samples";
+  d.axes = all || word == "axes";
+  d.outline = all || word == "outline";
+  return d.gradient || d.samples || d.axes || d.outline;
+}
+
 // Parses stratus:STRUCTURE[@host|@device]. Returns false for other names.
 bool parse_stratus(const std::string& name, int& structure, std::string& device)
 {
@@ -129,29 +147,35 @@ bool draws(const std::vector<uint8_t>& bytes)
 std::vector<std::string> all_methods()
 {
   return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:hybrid", "stratus:auto", "stratus:none@device",
-    "stratus:auto@device", "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
+    "stratus:auto@device", "stratus:auto+ordinary", "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb",
+    "floor" };
 }
 
-void check_method(const std::string& name)
+void check_method(const std::string& whole)
 {
   int structure = 0;
-  std::string device;
+  std::string device, name;
+  dress d;
   static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
-  if (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others)) {
-    throw failure("unknown method '" + name +
+  const bool dressed = parse_dress(whole, name, d) && (name == whole || name != "floor");
+  if (!dressed || (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others))) {
+    throw failure("unknown method '" + whole +
       "'; known: stratus:none|block|distance|octant|hybrid|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, "
-      "vtk:gpu, "
-      "openvdb, floor");
+      "vtk:gpu, openvdb, floor; all but floor with +ordinary, +gradient, +samples, +axes or +outline");
   }
 }
 
-result run_method(stratus_context* context, const scene& s, const std::string& method, int size)
+result run_method(stratus_context* context, const scene& s, const std::string& whole, int size)
 {
   result r;
+  dress d;
+  std::string method;
+  parse_dress(whole, method, d);
   r.scene = s.name;
-  r.method = method;
+  r.method = whole;
+  r.judged = whole == method;
   const vtkSmartPointer<vtkVolumeMapper> mapper = make_mapper(s, method);
-  window w(context, s, mapper, size);
+  window w(context, s, mapper, size, d);
   r.time.first_ms = w.first();
   std::vector<double> frames;
   std::vector<double> samples;

@@ -8,17 +8,21 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <unistd.h>
 
 namespace {
 
 const char* const help = R"(stratus-bench volume [options]
 
-  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), cloud-N (resampled to N x N/2
-                            x N), or an image file; each with +shade behind it: lit by a headlight; default:
-                            cloud,plume,fog,voxel,peak,plume2,cloud+shade and ../shared/data/isabel_02.vti, plain and lit, where it is
+  --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), bone, skin, stripes, shell,
+                            plate, labels, cloud-N (resampled to N x N/2 x N), or an image file; each with +shade behind it: lit by a
+                            headlight; default: all of these but haze and cloud-N, cloud+shade, and ../shared/data/isabel_02.vti, plain and
+                            lit, where it is
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
-                            vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor (default: all)
+                            vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; each but floor with a window behind it: +gradient
+                            (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four (default: all methods,
+                            stratus:auto and vtk:fixedpoint in ordinary windows, too)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `#
                             name,value`: processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
   --chart FILE.png          frame time against error
@@ -26,7 +30,8 @@ const char* const help = R"(stratus-bench volume [options]
   --no-error                times and differing pixels only
 
 Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of 3.
-update_ms: from a change of the transfer function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the
+A window is black, without multisampling, unless
+told otherwise. update_ms: from a change of the transfer function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
@@ -90,7 +95,7 @@ options parse(int argc, char* argv[])
     throw bench::failure("--size must be within 16..4096");
   }
   if (o.scenes.empty()) {
-    o.scenes = { "cloud", "plume", "fog", "voxel", "peak", "plume2", "cloud+shade" };
+    o.scenes = { "cloud", "plume", "fog", "voxel", "peak", "plume2", "bone", "skin", "stripes", "shell", "plate", "labels", "cloud+shade" };
     const char* isabel = "../shared/data/isabel_02.vti";
     if (std::ifstream(isabel)) {
       o.scenes.push_back(isabel);
@@ -108,6 +113,14 @@ options parse(int argc, char* argv[])
   return o;
 }
 
+// Shows on a terminal what is being measured.
+void working_on(const std::string& scene, const std::string& method)
+{
+  if (isatty(STDERR_FILENO)) {
+    std::fprintf(stderr, "\r\033[K%s%s%s", method.empty() ? "" : "  ", scene.c_str(), method.empty() ? "" : (", " + method).c_str());
+  }
+}
+
 void run_scene(stratus_context* context, const std::string& source, const options& o, std::vector<bench::row>& rows)
 {
   std::fprintf(stderr, "%s\n", source.c_str());
@@ -119,14 +132,17 @@ void run_scene(stratus_context* context, const std::string& source, const option
       std::fprintf(stderr, "  %s has no light and takes one component: left out\n", method.c_str());
       continue;
     }
+    working_on(scene.name, method);
     if (method == "floor") {
       const bench::floor_result f = bench::run_floor(context, scene, o.size);
+      working_on("", "");
       std::fprintf(stderr, "  floor (estimate): %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples,
         1e-6 * f.rate, bench_sample_loop(), f.ms);
       bench::add_rows(scene.name, f, rows);
       continue;
     }
     results.push_back(bench::run_method(context, scene, method, o.size));
+    working_on("", "");
     const bench::timing& t = results.back().time;
     std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms,
       t.device.c_str());

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window.h"
 
+#include <vtkActor.h>
+#include <vtkAxesActor.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkLight.h>
+#include <vtkOutlineSource.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkTransform.h>
 #include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
 
 namespace bench {
 
-window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size) : Context(context), Scene(s), Size(size)
+window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size, const dress& d)
+    : Context(context), Scene(s), Size(size)
 {
   this->Window->SetOffScreenRendering(1);
-  this->Window->SetMultiSamples(0);
+  this->Window->SetMultiSamples(d.samples ? 8 : 0);
   this->Window->SetAlphaBitPlanes(1);
   this->Window->SetSize(size, size);
   this->Window->AddRenderer(this->Renderer);
@@ -35,6 +43,35 @@ window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper
   this->Volume->SetMapper(mapper);
   mapper->SetInputDataObject(0, s.image);
   this->use(s.first);
+  this->put_on(d);
+}
+
+void window::put_on(const dress& d)
+{
+  const double* b = this->Scene.bounds;
+  if (d.gradient) {
+    this->Renderer->GradientBackgroundOn();
+    this->Renderer->SetBackground(.1, .1, .2);
+    this->Renderer->SetBackground2(.4, .5, .7);
+  }
+  if (d.axes) {
+    const double length = .25 * std::max({ b[1] - b[0], b[3] - b[2], b[5] - b[4] });
+    vtkNew<vtkAxesActor> axes;
+    vtkNew<vtkTransform> corner;
+    corner->Translate(b[0], b[2], b[4]);
+    axes->SetUserTransform(corner);
+    axes->SetTotalLength(length, length, length);
+    this->Renderer->AddActor(axes);
+  }
+  if (d.outline) {
+    vtkNew<vtkOutlineSource> outline;
+    vtkNew<vtkPolyDataMapper> lines;
+    vtkNew<vtkActor> actor;
+    outline->SetBounds(b);
+    lines->SetInputConnection(outline->GetOutputPort());
+    actor->SetMapper(lines);
+    this->Renderer->AddActor(actor);
+  }
 }
 
 void window::use(const transfer& t)
@@ -85,7 +122,8 @@ double window::render()
 
 double window::first()
 {
-  this->Renderer->RemoveAllViewProps();
+  this->Renderer->RemoveViewProp(this->Volume);
+  this->show(0);
   this->render(); // the window's set-up does not count as the method's
   this->Renderer->AddVolume(this->Volume);
   this->show(0);

@@ -13,10 +13,18 @@
 
 namespace bench {
 
+// What a window shows besides the volume. A bare one is black, without multisampling or another prop.
+struct dress {
+  bool gradient = false; // background
+  bool samples = false;  // 8 a pixel, VTK's default
+  bool axes = false;     // at the volume's corner, a quarter of its longest edge
+  bool outline = false;  // of the volume's bounds
+};
+
 class window
 {
 public:
-  window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size);
+  window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper, int size, const dress& d = dress());
 
   void show(int view);               // moves the camera, draws nothing
   void use(const transfer& t);       // changes the transfer function, draws nothing
@@ -26,6 +34,7 @@ public:
 
 private:
   void set(int component, const transfer& t);
+  void put_on(const dress& d);
 
   stratus_context* Context;
   const scene& Scene;
