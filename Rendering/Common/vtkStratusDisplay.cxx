@@ -12,6 +12,7 @@
 
 #include "vtk_glew.h"
 
+#include <algorithm>
 #include <string>
 
 namespace {
@@ -19,15 +20,23 @@ const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
 uniform sampler2D source;
-uniform sampler2D behind;
-uniform int blends; // 1: the frame buffer does it
 uniform vec2 scaleBias; // final colour window and level
+#ifdef FETCHES
+uniform ivec2 origin; // of the picture's part in the window
+#endif
+#ifdef BLENDS
+uniform sampler2D behind;
+#endif
 #ifdef WRITES_DEPTH
 uniform sampler2D depths;
 #endif
 void main()
 {
+#ifdef FETCHES
+  vec4 color = texelFetch(source, ivec2(gl_FragCoord.xy) - origin, 0);
+#else
   vec4 color = texture(source, texCoord);
+#endif
 #ifdef WRITES_DEPTH
   if (color.a == 0.0)
   {
@@ -36,7 +45,10 @@ void main()
   gl_FragDepth = texture(depths, texCoord).r;
 #endif
   color.rgb = clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0);
-  gl_FragData[0] = blends == 1 ? color : color + (1.0 - color.a) * texture(behind, texCoord);
+#ifdef BLENDS
+  color += (1.0 - color.a) * texture(behind, texCoord);
+#endif
+  gl_FragData[0] = color;
 }
 )";
 const char* const Unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
@@ -50,8 +62,7 @@ void vtkStratusDisplay::ReleaseGraphicsResources(vtkWindow* window)
   this->Texture->ReleaseGraphicsResources(window);
   this->Behind->ReleaseGraphicsResources(window);
   this->Depth->ReleaseGraphicsResources(window);
-  this->Quad.reset();
-  this->DepthQuad.reset();
+  this->Quads.clear();
   this->Peels.ReleaseGraphicsResources(window);
   this->Peeled = vtkStratusPeels::Picture();
   this->Window = nullptr;
@@ -84,13 +95,42 @@ void vtkStratusDisplay::CopyPixels(
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-// Copies the picture's bytes to the frame buffer where nothing is behind the picture. Software OpenGL takes about as long to draw them as
-// the core takes to cast the rays of a small scene; a copy costs a tenth. Returns false where it copied nothing.
+// Blends the picture's floats over the bytes behind it, and rounds once.
+void vtkStratusDisplay::BlendOver(const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
+{
+  const size_t width = 4 * static_cast<size_t>(part.Size[0]);
+  for (int j = 0; j < part.Size[1]; ++j) {
+    const float* from = pixels.Rgba + 4 * (static_cast<size_t>(part.From[1] + j) * picture.Size[0] + part.From[0]);
+    unsigned char* to = this->Blended.data() + j * width;
+    for (size_t at = 0; at < width; at += 4) {
+      const float alpha = from[at + 3], left = 1.0f - alpha;
+      const float shift = 255.0f * alpha * pixels.Bias;
+      for (size_t c = 0; c < 3; ++c) {
+        const float color = std::min(std::max(255.0f * pixels.Scale * from[at + c] + shift, 0.0f), 255.0f);
+        to[at + c] = static_cast<unsigned char>(std::min(color + left * to[at + c], 255.0f) + 0.5f);
+      }
+      to[at + 3] = static_cast<unsigned char>(std::min(255.0f * alpha + left * to[at + 3], 255.0f) + 0.5f);
+    }
+  }
+}
+
+// Whether OpenGL runs on the processor, where reading pixels waits for no other device.
+bool vtkStratusDisplay::IsSoftware()
+{
+  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string name = renderer ? renderer : "";
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos || name.find("SWR") != std::string::npos;
+}
+
+// Writes to the frame buffer's texture without drawing. Software OpenGL takes about as long to draw the picture as the core takes to cast
+// the rays of a small scene; a copy costs a tenth. Where nothing is behind the picture, its bytes are copied. Else the pixels behind are
+// read, blended here and copied back, in software OpenGL only. Returns false where it copied nothing.
 bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
-  if (!pixels.Bytes || !pixels.Alone || !this->WindowDepth.empty() || renderer->GetPass() || frame->GetMultiSamples() > 0 ||
+  const bool copies = pixels.Bytes && pixels.Alone;
+  if ((!copies && !IsSoftware()) || !this->WindowDepth.empty() || renderer->GetPass() || frame->GetMultiSamples() > 0 ||
     window->GetUsingSRGBColorSpace() || part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1]) {
     return false;
   }
@@ -105,8 +145,24 @@ bool vtkStratusDisplay::WriteInPlace(
   if (static_cast<unsigned int>(bound) != frame->GetFBOIndex()) {
     return false;
   }
+  vtkOpenGLState* state = window->GetState();
+  if (!copies) {
+    this->Blended.resize(4 * static_cast<size_t>(part.Size[0]) * part.Size[1]);
+    state->PushReadFramebufferBinding();
+    frame->Bind(GL_READ_FRAMEBUFFER);
+    frame->ActivateReadBuffer(0);
+    state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(part.To[0], part.To[1], part.Size[0], part.Size[1], GL_RGBA, GL_UNSIGNED_BYTE, this->Blended.data());
+    state->PopReadFramebufferBinding();
+    this->BlendOver(picture, pixels, part);
+  }
   target->Activate();
-  CopyPixels(window, picture, pixels, part, part.To[0], part.To[1]);
+  if (copies) {
+    CopyPixels(window, picture, pixels, part, part.To[0], part.To[1]);
+  } else {
+    state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, part.To[0], part.To[1], part.Size[0], part.Size[1], GL_RGBA, GL_UNSIGNED_BYTE, this->Blended.data());
+  }
   target->Deactivate();
   return true;
 }
@@ -155,18 +211,23 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   return this->WindowDepth.empty() || this->UploadDepth(window, picture, part);
 }
 
-bool vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth)
+// Returns nullptr where the shader does not compile.
+vtkOpenGLQuadHelper* vtkStratusDisplay::PrepareQuad(vtkOpenGLRenderWindow* window, const QuadKind& kind)
 {
-  std::unique_ptr<vtkOpenGLQuadHelper>& quad = writesDepth ? this->DepthQuad : this->Quad;
+  const int number = (kind.WritesDepth ? 1 : 0) + (kind.Fetches ? 2 : 0) + (kind.Blends ? 4 : 0);
+  std::unique_ptr<vtkOpenGLQuadHelper>& quad = this->Quads[number];
   if (!quad) {
     const std::string shader = FragmentShader;
-    const size_t first = shader.find('\n') + 1; // the #version replaces the first line, and the #define must follow it
-    const std::string writer = shader.substr(0, first) + "#define WRITES_DEPTH\n" + shader.substr(first);
-    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, writesDepth ? writer.c_str() : FragmentShader, ""));
+    const size_t first = shader.find('\n') + 1; // the #version replaces the first line, and a #define must follow it
+    std::string defines;
+    defines += kind.WritesDepth ? "#define WRITES_DEPTH\n" : "";
+    defines += kind.Fetches ? "#define FETCHES\n" : "";
+    defines += kind.Blends ? "#define BLENDS\n" : "";
+    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, (shader.substr(0, first) + defines + shader.substr(first)).c_str(), ""));
   } else {
     window->GetShaderCache()->ReadyShaderProgram(quad->Program);
   }
-  return quad->Program && quad->Program->GetCompiled();
+  return quad->Program && quad->Program->GetCompiled() ? quad.get() : nullptr;
 }
 
 bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Part& part)
@@ -190,7 +251,7 @@ bool vtkStratusDisplay::UploadDepth(vtkOpenGLRenderWindow* window, const vtkStra
   return true;
 }
 
-void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part)
+bool vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part)
 {
   vtkOpenGLState* state = window->GetState();
   const bool writesDepth = !this->WindowDepth.empty();
@@ -210,29 +271,39 @@ void vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
     state->vtkglDisable(GL_DEPTH_TEST);
   }
   state->vtkglDepthMask(writesDepth ? GL_TRUE : GL_FALSE);
-  const bool blends = pixels.Bytes || !this->CopyBehind(renderer, window, part);
-  if (blends) {
+  QuadKind kind;
+  kind.WritesDepth = writesDepth;
+  kind.Fetches = part.Size[0] == part.ToSize[0] && part.Size[1] == part.ToSize[1];
+  kind.Blends = !pixels.Bytes && this->CopyBehind(renderer, window, part);
+  vtkOpenGLQuadHelper* quad = this->PrepareQuad(window, kind);
+  if (!kind.Blends) {
     state->vtkglEnable(GL_BLEND);
     state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   } else {
     state->vtkglDisable(GL_BLEND);
   }
-  vtkOpenGLQuadHelper* quad = writesDepth ? this->DepthQuad.get() : this->Quad.get();
-  quad->Program->SetUniformi("blends", blends ? 1 : 0);
-  quad->Program->SetUniformi("behind", (blends ? this->Texture : this->Behind)->GetTextureUnit());
-  const float scaleBias[2] = { pixels.Scale, pixels.Bias };
-  quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
-  quad->Program->SetUniform2f("scaleBias", scaleBias);
-  if (writesDepth) {
-    quad->Program->SetUniformi("depths", this->Depth->GetTextureUnit());
+  if (quad) {
+    const float scaleBias[2] = { pixels.Scale, pixels.Bias };
+    quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
+    quad->Program->SetUniform2f("scaleBias", scaleBias);
+    if (kind.Fetches) {
+      quad->Program->SetUniform2i("origin", part.To);
+    }
+    if (kind.Blends) {
+      quad->Program->SetUniformi("behind", this->Behind->GetTextureUnit());
+    }
+    if (writesDepth) {
+      quad->Program->SetUniformi("depths", this->Depth->GetTextureUnit());
+    }
+    quad->Render();
   }
-  quad->Render();
   if (writesDepth) {
     state->vtkglDepthFunc(GL_LEQUAL); // VTK's default
   }
-  if (!blends) {
+  if (kind.Blends) {
     this->Behind->Deactivate();
   }
+  return quad != nullptr;
 }
 
 vtkStratusPeels::Draw vtkStratusDisplay::ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper)
@@ -276,12 +347,10 @@ bool vtkStratusDisplay::DrawPixels(vtkRenderer* renderer, const vtkStratusPictur
     this->Peeled.Scale = pixels.Scale;
     this->Peeled.Bias = pixels.Bias;
     drawn = this->DrawPeeled();
-  } else if (drawn && this->PrepareQuad(window, !this->WindowDepth.empty())) {
+  } else if (drawn) {
     const std::unique_ptr<vtkStratusPeels::Outside> frame(
       this->Stage == vtkStratusPeels::OUTSIDE ? new vtkStratusPeels::Outside(window) : nullptr);
-    this->Blend(renderer, window, pixels, part);
-  } else {
-    drawn = false;
+    drawn = this->Blend(renderer, window, pixels, part);
   }
   if (!this->WindowDepth.empty()) {
     this->Depth->Deactivate();

@@ -11,6 +11,7 @@
 
 #include "vtkNew.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,8 +27,10 @@ public:
   // The picture.Size pixels to draw, premultiplied. The window shows rgb * Scale + alpha * Bias.
   struct Pixels {
     const float* Rgba = nullptr;
-    const unsigned char* Bytes = nullptr; // the same rounded, used if given; then Scale is 1, Bias is 0 and the background is black
-    int Window[4] = { 0, 0, 0, 0 };       // x0, x1, y0, y1: pixels outside are empty
+    // The same rounded, drawn if given; then Scale is 1, Bias is 0. They are precise enough over black, and where the frame buffer blends,
+    // which rounds its source to bytes first.
+    const unsigned char* Bytes = nullptr;
+    int Window[4] = { 0, 0, 0, 0 }; // x0, x1, y0, y1: pixels outside are empty
     float Scale = 1.0f;
     float Bias = 0.0f;
     const std::vector<float>* Depth = nullptr; // along each ray, as the core gives it
@@ -57,26 +60,36 @@ private:
     int ToSize[2];
   };
 
+  // A variant of the shader.
+  struct QuadKind {
+    bool WritesDepth = false;
+    bool Fetches = false; // one texel a pixel, without a filter
+    bool Blends = false;  // over a copy of what is behind; else the frame buffer blends
+  };
+
   vtkStratusPeels::Draw ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);
   bool DrawPixels(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels);
   bool DrawPeeled();
   static Part ChoosePart(const vtkStratusPicture& picture, const Pixels& pixels);
   static void CopyPixels(
     vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part, int x, int y);
+  static bool IsSoftware();
+  void BlendOver(const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool WriteInPlace(
     vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool Upload(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
-  bool PrepareQuad(vtkOpenGLRenderWindow* window, bool writesDepth);
+  vtkOpenGLQuadHelper* PrepareQuad(vtkOpenGLRenderWindow* window, const QuadKind& kind);
   bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Part& part);
-  void Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
+  bool Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
 
   std::vector<float> WindowDepth; // of this draw; empty: it shows no depth
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;
   vtkNew<vtkTextureObject> Depth;
-  std::unique_ptr<vtkOpenGLQuadHelper> Quad, DepthQuad; // DepthQuad writes depth, too
-  vtkOpenGLRenderWindow* Window = nullptr;              // owner of the textures
+  std::map<int, std::unique_ptr<vtkOpenGLQuadHelper>> Quads; // one per kind
+  std::vector<unsigned char> Blended;                        // pixels that WriteInPlace() writes back
+  vtkOpenGLRenderWindow* Window = nullptr;                   // owner of the textures
   vtkStratusPeels Peels;
   vtkStratusPeels::Draw Stage = vtkStratusPeels::NONE;
   vtkStratusPeels::Picture Peeled;     // drawn between peels in this frame; without textures, nothing is drawn

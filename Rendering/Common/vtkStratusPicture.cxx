@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusPicture.h"
 
+#include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkMapper.h"
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPropCollection.h"
+#include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkShaderProperty.h"
 #include "vtkTypeUInt32Array.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace {
@@ -108,17 +114,14 @@ void CornerToWorld(const stratus_volume& volume, const double box[6], int corner
   }
   vtkMatrix4x4::MultiplyPoint(volume.matrix, local, world);
 }
-} // namespace
 
-void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop, double margin)
+// Finds the pixels of a viewport that the hull of eight points may cover, and `margin` more on each side: x0, x1, y0, y1.
+void ProjectCorners(const double worldToClip[16], const double corners[8][4], const int viewport[2], double margin, int part[4])
 {
-  double box[6];
-  LocalBox(volume, crop, margin, box);
   double low[2] = { 1, 1 }, high[2] = { -1, -1 };
   for (int corner = 0; corner < 8; ++corner) {
-    double world[4], clip[4];
-    CornerToWorld(volume, box, corner, world);
-    vtkMatrix4x4::MultiplyPoint(worldToClip, world, clip);
+    double clip[4];
+    vtkMatrix4x4::MultiplyPoint(worldToClip, corners[corner], clip);
     if (!(clip[3] > 0.0) || clip[2] < -clip[3]) { // a box that reaches the near plane may cover any pixel
       low[0] = low[1] = -1;
       high[0] = high[1] = 1;
@@ -130,13 +133,42 @@ void vtkStratusPicture::SetRectangle(const double worldToClip[16], const stratus
     }
   }
   for (int a = 0; a < 2; ++a) {
-    const int pixels = this->Viewport[2 + a];
-    const double first = std::floor((low[a] + 1) * 0.5 * pixels) - 1; // one pixel more, for rounding
-    const double last = std::ceil((high[a] + 1) * 0.5 * pixels) + 1;
-    const int begin = static_cast<int>(std::min<double>(std::max(first, 0.0), pixels));
-    const int end = static_cast<int>(std::min<double>(std::max(last, 0.0), pixels));
-    this->Rectangle[a] = begin;
-    this->Rectangle[2 + a] = std::max(0, end - begin);
+    const int pixels = viewport[a];
+    const double first = std::floor((low[a] + 1) * 0.5 * pixels) - margin;
+    const double last = std::ceil((high[a] + 1) * 0.5 * pixels) + margin;
+    part[2 * a] = static_cast<int>(std::min<double>(std::max(first, 0.0), pixels));
+    part[2 * a + 1] = static_cast<int>(std::min<double>(std::max(last, 0.0), pixels));
+  }
+}
+
+// Whether a prop draws nothing outside its bounds, but for the width of lines and points. Of subclasses, and of other mappers, whose
+// shaders may widen what they draw, this is not known.
+bool KeepsToBounds(vtkProp* prop)
+{
+  static const char* const mappers[] = { "vtkOpenGLPolyDataMapper", "vtkCompositePolyDataMapper2", "vtkDataSetMapper" };
+  vtkActor* actor = vtkActor::SafeDownCast(prop);
+  if (!actor || std::strcmp(actor->GetClassName(), "vtkOpenGLActor") != 0 || !actor->GetMapper() ||
+    actor->GetShaderProperty()->HasVertexShaderCode() || actor->GetShaderProperty()->HasGeometryShaderCode() ||
+    actor->GetShaderProperty()->GetNumberOfShaderReplacements() > 0) {
+    return false;
+  }
+  return std::any_of(std::begin(mappers), std::end(mappers),
+    [actor](const char* name) { return std::strcmp(actor->GetMapper()->GetClassName(), name) == 0; });
+}
+} // namespace
+
+void vtkStratusPicture::SetRectangle(const stratus_volume& volume, const double* crop, double margin)
+{
+  double box[6], corners[8][4];
+  int part[4];
+  LocalBox(volume, crop, margin, box);
+  for (int corner = 0; corner < 8; ++corner) {
+    CornerToWorld(volume, box, corner, corners[corner]);
+  }
+  ProjectCorners(this->WorldToClip, corners, this->Viewport + 2, 1, part); // one pixel more, for rounding
+  for (int a = 0; a < 2; ++a) {
+    this->Rectangle[a] = part[2 * a];
+    this->Rectangle[2 + a] = std::max(0, part[2 * a + 1] - part[2 * a]);
   }
 }
 
@@ -146,9 +178,8 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4* view = camera->GetModelViewTransformMatrix();
   vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
-  double worldToClip[16];
-  vtkMatrix4x4::Multiply4x4(&projection->Element[0][0], &view->Element[0][0], worldToClip);
-  this->SetRectangle(worldToClip, volume, crop, solid && !volume.cell_centered ? 0.5 : 0.0);
+  vtkMatrix4x4::Multiply4x4(&projection->Element[0][0], &view->Element[0][0], this->WorldToClip);
+  this->SetRectangle(volume, crop, solid && !volume.cell_centered ? 0.5 : 0.0);
   double center[2], half[2];
   for (int a = 0; a < 2; ++a) {
     const double pixels = this->Viewport[2 + a];
@@ -169,29 +200,93 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
 
 // ---------------------------------------------------------------- values per ray
 
+// Adds the pixels to a part that a prop may write depth to. An axes actor's own bounds are those of axes that also point backwards from the
+// origin, wherever it is, so its parts are asked.
+void vtkStratusPicture::FindPart(vtkProp* prop, int part[4]) const
+{
+  int found[4] = { 0, this->Viewport[2], 0, this->Viewport[3] };
+  if (std::strcmp(prop->GetClassName(), "vtkAxesActor") == 0) {
+    vtkNew<vtkPropCollection> parts;
+    prop->GetActors(parts);
+    vtkCollectionSimpleIterator iterator;
+    parts->InitTraversal(iterator);
+    while (vtkProp* one = parts->GetNextProp(iterator)) {
+      this->FindPart(one, part);
+    }
+    return;
+  }
+  if (KeepsToBounds(prop)) {
+    const double* bounds = prop->GetBounds();
+    if (!bounds || bounds[0] > bounds[1]) { // no points
+      return;
+    }
+    double corners[8][4];
+    for (int corner = 0; corner < 8; ++corner) {
+      for (int a = 0; a < 3; ++a) {
+        corners[corner][a] = bounds[2 * a + (corner >> a & 1)];
+      }
+      corners[corner][3] = 1.0;
+    }
+    vtkProperty* property = vtkActor::SafeDownCast(prop)->GetProperty();
+    const double width = std::max(property->GetLineWidth(), property->GetPointSize());
+    ProjectCorners(this->WorldToClip, corners, this->Viewport + 2, 2.0 + width, found);
+  }
+  if (found[0] < found[1] && found[2] < found[3]) {
+    const bool none = part[0] == part[1];
+    for (int a = 0; a < 4; a += 2) {
+      part[a] = none ? found[a] : std::min(part[a], found[a]);
+      part[a + 1] = none ? found[a + 1] : std::max(part[a + 1], found[a + 1]);
+    }
+  }
+}
+
 vtkStratusPicture::Others vtkStratusPicture::FindOthers(
-  vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay)
+  vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay) const
 {
   Others others;
   others.Geometry = renderer->GetPreserveDepthBuffer() || !renderer->GetErase() || renderer->GetPass() || renderer->GetUseDepthPeeling();
+  if (others.Geometry) {
+    others.Part[1] = this->Viewport[2];
+    others.Part[3] = this->Viewport[3];
+  }
   vtkPropCollection* props = renderer->GetViewProps();
   vtkCollectionSimpleIterator iterator;
   props->InitTraversal(iterator);
   while (vtkProp* other = props->GetNextProp(iterator)) {
     if (other != prop && other->GetVisibility()) {
-      others.Geometry = others.Geometry || (!other->IsA("vtkActor2D") && !endsNoRay(other));
+      if (!other->IsA("vtkActor2D") && !endsNoRay(other)) {
+        others.Geometry = true;
+        this->FindPart(other, others.Part);
+      }
       others.Any = true;
     }
   }
   return others;
 }
 
-const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer)
+const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Others& others)
 {
   const int* rectangle = this->Rectangle;
-  const int x = this->Viewport[0] + rectangle[0], y = this->Viewport[1] + rectangle[1];
-  this->WindowDepth.resize(static_cast<size_t>(rectangle[2]) * rectangle[3]);
-  renderer->GetRenderWindow()->GetZbufferData(x, y, x + rectangle[2] - 1, y + rectangle[3] - 1, this->WindowDepth.data());
+  int from[2], size[2];
+  for (int a = 0; a < 2; ++a) {
+    from[a] = std::max(others.Part[2 * a], rectangle[a]);
+    size[a] = std::min(others.Part[2 * a + 1], rectangle[a] + rectangle[2 + a]) - from[a];
+  }
+  if (!others.Geometry || size[0] <= 0 || size[1] <= 0) {
+    return nullptr;
+  }
+  const int x = this->Viewport[0] + from[0], y = this->Viewport[1] + from[1];
+  this->PartDepth.resize(static_cast<size_t>(size[0]) * size[1]);
+  renderer->GetRenderWindow()->GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, this->PartDepth.data());
+  if (size[0] == rectangle[2] && size[1] == rectangle[3]) {
+    this->WindowDepth.swap(this->PartDepth);
+  } else {
+    this->WindowDepth.assign(static_cast<size_t>(rectangle[2]) * rectangle[3], 1.0f);
+    for (int j = 0; j < size[1]; ++j) {
+      const size_t to = static_cast<size_t>(from[1] - rectangle[1] + j) * rectangle[2] + (from[0] - rectangle[0]);
+      std::copy_n(this->PartDepth.data() + static_cast<size_t>(j) * size[0], size[0], this->WindowDepth.data() + to);
+    }
+  }
   if (this->Size[0] == rectangle[2] && this->Size[1] == rectangle[3]) {
     return this->WindowDepth.data();
   }

@@ -29,16 +29,17 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // degenerate.
   bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
-  // What else the renderer draws. Geometry: something may have written depth before. Any: another prop is visible. endsNoRay() tells
-  // whether another prop writes no depth.
+  // What else the renderer draws. Geometry: something may have written depth before. Any: another prop is visible.
   struct Others {
     bool Geometry = false;
     bool Any = false;
+    int Part[4] = { 0, 0, 0, 0 }; // of the viewport, in which depth may have been written: x0, x1, y0, y1
   };
-  static Others FindOthers(vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay);
-  // Returns the opaque depth at each ray, valid until the next call. Reading it costs as much as a simple scene, so it is not worth it
-  // where nothing can have been drawn before.
-  const float* ReadOpaqueDepth(vtkRenderer* renderer);
+  // Must follow Set(). endsNoRay() tells whether another prop writes no depth.
+  Others FindOthers(vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay) const;
+  // Returns the opaque depth at each ray, valid until the next call; nullptr where nothing can have been drawn before. Reading it costs as
+  // much as a simple scene, so only the part of the others is read.
+  const float* ReadOpaqueDepth(vtkRenderer* renderer, const Others& others);
   // Converts distances along the rays to window depths, 0..1; 1 where nothing is.
   void ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const;
   // Makes an image of the whole viewport from values per ray: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
@@ -46,9 +47,11 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;
 
 private:
-  void SetRectangle(const double worldToClip[16], const stratus_volume& volume, const double* crop, double margin);
+  void SetRectangle(const stratus_volume& volume, const double* crop, double margin);
+  void FindPart(vtkProp* prop, int part[4]) const;
 
-  std::vector<float> WindowDepth, OpaqueDepth;
+  double WorldToClip[16];
+  std::vector<float> WindowDepth, OpaqueDepth, PartDepth;
 };
 
 #endif

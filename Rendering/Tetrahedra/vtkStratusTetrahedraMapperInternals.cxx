@@ -158,8 +158,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   if (this->HasPicture) {
     return true;
   }
-  const bool geometry = vtkStratusPicture::FindOthers(renderer, prop, [](vtkProp*) { return false; }).Geometry;
-  const float* opaqueDepth = geometry ? this->Picture.ReadOpaqueDepth(renderer) : nullptr;
+  const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp*) { return false; });
+  const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
   if (!this->Cast(renderer, opaqueDepth, error)) {
     return false;
   }

@@ -4,6 +4,8 @@
 
 #include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
+#include "vtkOpenGLFramebufferObject.h"
+#include "vtkOpenGLRenderWindow.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -73,7 +75,7 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
 {
-  return vtkStratusPicture::FindOthers(renderer, prop, [](vtkProp* other) {
+  return this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
     // Other volumes of this class end no rays, except those that write depth.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
@@ -81,8 +83,8 @@ vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRende
   });
 }
 
-// Chooses how the picture is displayed. Bytes are precise enough on a black background, because no blend rounds after them. Render() fills
-// in the rest.
+// Chooses how the picture is displayed. Bytes are precise enough on a black background, because no blend rounds after them, and in a window
+// with multisampling, whose frame buffer rounds to bytes before it blends. Render() fills in the rest.
 vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
   vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
 {
@@ -92,7 +94,9 @@ vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
   const double* background = renderer->GetBackground();
   const bool onBlack = !others.Geometry && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() &&
     background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
-  if (onBlack && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  const bool blends = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0 && !renderer->GetPass();
+  if ((onBlack || blends) && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
     pixels.Bytes = this->Bytes.data();
   }
   pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;
@@ -176,7 +180,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   }
   const double start = Now();
   const vtkStratusPicture::Others others = this->FindOthers(renderer, prop);
-  const float* opaqueDepth = others.Geometry ? this->Picture.ReadOpaqueDepth(renderer) : nullptr;
+  const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
