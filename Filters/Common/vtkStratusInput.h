@@ -5,6 +5,7 @@
 
 #include "stratus.h"
 
+#include "vtkStratusFunction.h"
 #include "vtkStratusPrivate.h"
 
 #include "vtkSmartPointer.h"
@@ -45,23 +46,27 @@ private:
   vtkMTimeType PlainTime = 0;
 };
 
-// A transfer function and the arrays it points to.
+// A transfer function and the arrays it points to. A function is translated when it was modified or replaced, not with every picture.
 class VTK_STRATUS_PRIVATE vtkStratusTransferView
 {
 public:
   // Reads the functions of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
-  // Reads the functions of a label. Component 0's function replaces one that the property lacks for the label. Labels have no gradient
-  // opacity.
-  bool SetLabel(vtkVolumeProperty* property, int label, std::string& error);
+  // Reads the functions of a label. Those of `component0` replace one that the property lacks for the label; it must outlive the use of
+  // this view. Labels have no gradient opacity.
+  bool SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
+  // Returns how many functions were translated since the view was made.
+  uint64_t GetBuilds() const { return this->Opacity.GetBuilds() + this->Color.GetBuilds() + this->Gradient.GetBuilds(); }
 
 private:
+  void PointToOpacity();
+  void PointToColor();
+  bool SetGradient(vtkVolumeProperty* property, int index);
+
   stratus_transfer Transfer;
-  std::vector<double> Opacity;
-  std::vector<double> Color;
-  std::vector<double> Gradient;
+  vtkStratusFunction Opacity, Color, Gradient;
 };
 
 // Lists the image's arrays, for the message that the wanted one is missing.

@@ -150,6 +150,11 @@ vtkIdType vtkStratusTetrahedraMapper::GetNumberOfIgnoredCells()
   return this->Internal->GetNumberOfIgnoredCells();
 }
 
+vtkTypeUInt64 vtkStratusTetrahedraMapper::GetFunctionBuilds()
+{
+  return this->Internal->GetFunctionBuilds();
+}
+
 vtkImageData* vtkStratusTetrahedraMapper::GetLastImage()
 {
   return this->Internal->GetLastImage();

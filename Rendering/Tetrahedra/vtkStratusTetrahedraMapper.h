@@ -128,6 +128,12 @@ public:
   vtkIdType GetNumberOfLeaves();
 
   /**
+   * Get how many functions of the property were translated since this mapper was made. A function is translated again when it was modified,
+   * or another one takes its place.
+   */
+  vtkTypeUInt64 GetFunctionBuilds();
+
+  /**
    * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
    * along the ray from the eye, infinity where nothing is). nullptr before the first picture. Each call makes a new image.
    */

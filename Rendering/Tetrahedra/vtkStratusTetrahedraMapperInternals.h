@@ -27,6 +27,7 @@ public:
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
   vtkImageData* GetLastImage();
+  vtkTypeUInt64 GetFunctionBuilds() const { return this->Transfer.GetBuilds(); }
   vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
 
   vtkStratusTetrahedraMapper* Mapper;

@@ -132,6 +132,11 @@ const char* vtkStratusVolumeMapper::GetReason()
   return this->Internal->Report.why;
 }
 
+vtkTypeUInt64 vtkStratusVolumeMapper::GetFunctionBuilds()
+{
+  return this->Internal->GetFunctionBuilds();
+}
+
 double vtkStratusVolumeMapper::GetUsedImageSampleDistance()
 {
   return this->Internal->UsedCoarseness;

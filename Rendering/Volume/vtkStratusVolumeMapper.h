@@ -279,6 +279,11 @@ public:
   vtkTypeUInt64 GetStructureBuilds();
   vtkTypeUInt64 GetUploads();
   /**
+   * Get how many functions of the property were translated since this mapper was made. A function is translated again when it was modified,
+   * or another one takes its place.
+   */
+  vtkTypeUInt64 GetFunctionBuilds();
+  /**
    * Get whether the last picture was drawn by the tree that the input carries, so that none had to be built.
    */
   bool GetCarriedTreeUsed();

@@ -124,6 +124,15 @@ bool vtkStratusVolumeMapper::Internals::HasLabels() const
   return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType;
 }
 
+vtkTypeUInt64 vtkStratusVolumeMapper::Internals::GetFunctionBuilds() const
+{
+  vtkTypeUInt64 builds = 0;
+  for (const vtkStratusTransferView& view : this->Transfers) {
+    builds += view.GetBuilds();
+  }
+  return builds;
+}
+
 // Sets one transfer function, or one for each independent component, or one for each label.
 bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
 {
@@ -131,8 +140,8 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const bool composite = this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND && !this->IsFirstHit();
   const int media = property->GetIndependentComponents() ? components : 1;
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
-  this->Transfers.resize(static_cast<size_t>(std::max(media, 1 + labels)));
-  this->Functions.resize(this->Transfers.size());
+  this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
+  this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
   if (components > 1 && !composite) {
     error =
       "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
@@ -158,7 +167,7 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
     }
   }
   for (int l = 1; l <= labels; ++l) {
-    if (!this->Transfers[l].SetLabel(property, l, error)) {
+    if (!this->Transfers[l].SetLabel(property, l, this->Transfers[0], error)) {
       return false;
     }
     this->Functions[l] = this->Transfers[l].GetTransfer();

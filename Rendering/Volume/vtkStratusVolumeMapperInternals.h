@@ -32,6 +32,7 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   vtkImageData* GetLastImage();
+  vtkTypeUInt64 GetFunctionBuilds() const;
   // Extends the bounds by half a voxel on all sides, in first hits of point data.
   void WidenBounds(double bounds[6]) const;
 
@@ -40,8 +41,8 @@ public:
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkStratusImageView Image;
-  std::vector<vtkStratusTransferView> Transfers; // one per independent component, or per label
-  std::vector<stratus_transfer> Functions;       // the same in the core's terms
+  std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
+  std::vector<stratus_transfer> Functions;       // those of this picture, in the core's terms
   vtkStratusDisplay Display;
   std::string LastError; // of the last picture, reported already; empty: none
   double DrawMilliseconds = 0.0;
