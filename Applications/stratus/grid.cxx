@@ -57,6 +57,7 @@ void render_grid(const options& o)
   core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
   stratus_tetra_options how = stratus_tetra_options_default();
   how.method = o.tetra_method;
+  how.tolerance = o.tolerance;
   const stratus_status status = stratus_tetra_caster_render(caster, &m.view(), &view, &camera, &how, &image, &report);
   stratus_tetra_caster_destroy(caster);
   core.check(status, "render");

@@ -43,6 +43,11 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
     row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
   }
   row("why", r.why);
+  if (!std::isnan(r.expected_error)) {
+    row("error",
+      cli::format("%.2g expected, tolerance %g%s", r.expected_error, o.tolerance,
+        r.tolerance_met ? "" : ", which the finest setting is expected to miss"));
+  }
   row("build",
     cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
       r.occupancy_ms, r.structure_ms, r.upload_ms));
@@ -113,6 +118,7 @@ void render(const cli::options& o)
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   cast.sample_distance = o.sample_distance;
+  cast.tolerance = o.tolerance;
   cast.shade = o.shade;
   cast.audit = o.audit;
   stratus_ray_cast_report report = {};

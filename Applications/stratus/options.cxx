@@ -58,6 +58,8 @@ From where
   --up x|y|z              which axis points upward (default z; a scene has its own)
 
 How
+  --tolerance E           root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause: 0.001 is 60 dB, a
+                          quarter of an 8-bit step (default); 0: the finest
   --sample-distance D     world length between samples (default: from the data and the opacity)
   --sampling S            auto, midpoint, preintegrated (default auto)
   --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
@@ -110,6 +112,15 @@ double within(const std::string& text, const std::string& what, double low, doub
   const double value = number(text, what);
   if (value < low || value > high) {
     throw usage(what + ": " + text + " is outside " + format("%g..%g", low, high));
+  }
+  return value;
+}
+
+double not_negative(const std::string& text, const std::string& what)
+{
+  const double value = number(text, what);
+  if (value < 0.0) {
+    throw usage(what + ": " + text + " is below 0");
   }
   return value;
 }
@@ -218,6 +229,11 @@ template <double options::*Number> void keep_positive(options& o, const std::str
   o.*Number = positive(value, word);
 }
 
+template <double options::*Number> void keep_not_negative(options& o, const std::string& word, const std::string& value)
+{
+  o.*Number = not_negative(value, word);
+}
+
 template <double options::*Bound> void keep_bound(options& o, const std::string& word, const std::string& value)
 {
   o.*Bound = number(value, word);
@@ -272,6 +288,7 @@ constexpr struct {
   { "--zoom", [](options& o, text word, text value) { o.zoom = within(value, word, 0.15, 1e6); } },
   { "--up", set_up },
   { "--sample-distance", keep_positive<&options::sample_distance> },
+  { "--tolerance", keep_not_negative<&options::tolerance> },
   { "--sampling", [](options& o, text, text value) { o.sampling = sampling_named(value); } },
   { "--jitter", [](options& o, text word, text value) { o.jitter = whole_number(value, word, 0, std::numeric_limits<int>::max()); } },
   { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },

@@ -38,8 +38,12 @@ STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
 
 typedef struct stratus_tetra_options {
   stratus_tetra_mode mode; /* default composite */
-  /* Composite: a ray ends when its alpha exceeds this, 0..1; default .9999: the rest is a fortieth of an 8-bit step. */
+  /* Composite: a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance, .9999 at the default one. */
   double termination;
+  /* Composite: the root mean square error of RGBA in 0..1 over the lit pixels that the division of cells into pieces and an automatic
+   * termination may cause. A piece's colours are averaged, so that a cell in which light falls and colour changes is divided. Default .001:
+   * 60 dB, a quarter of an 8-bit step. 0: the finest division. Not among it: the rounding of values to the entries of a table. */
+  double tolerance;
   stratus_tetra_method method; /* default auto */
   /* Leaves of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster draws with others or
    * is released. Default NULL: one leaf. */

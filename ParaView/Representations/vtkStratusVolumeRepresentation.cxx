@@ -55,6 +55,13 @@ void vtkStratusVolumeRepresentation::SetSampleDistance(double distance)
   }
 }
 
+void vtkStratusVolumeRepresentation::SetImageErrorTolerance(double tolerance)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetImageErrorTolerance(tolerance);
+  }
+}
+
 void vtkStratusVolumeRepresentation::SetTermination(double opacity)
 {
   if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {

@@ -11,6 +11,7 @@
 #include "vtkVolume.h"
 
 #include <chrono>
+#include <cmath>
 
 vtkStandardNewMacro(vtkStratusTetrahedraMapper);
 
@@ -56,6 +57,16 @@ void vtkStratusTetrahedraMapper::SetDevice(const char* device)
     this->Modified();
   } else {
     vtkErrorMacro(<< error);
+  }
+}
+
+void vtkStratusTetrahedraMapper::SetImageErrorTolerance(double tolerance)
+{
+  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
+    vtkErrorMacro(<< "ImageErrorTolerance " << tolerance << " must be at least 0 and finite; " << this->ImageErrorTolerance << " stays");
+  } else if (this->ImageErrorTolerance != tolerance) {
+    this->ImageErrorTolerance = tolerance;
+    this->Modified();
   }
 }
 
@@ -164,6 +175,7 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const stratus_tetra_report& report = this->Internal->Report;
+  os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";

@@ -114,6 +114,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   image.opaque_depth = opaqueDepth;
   stratus_tetra_options options = stratus_tetra_options_default();
   options.termination = this->Mapper->Termination;
+  options.tolerance = this->Mapper->ImageErrorTolerance;
   options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
   options.mode = this->Mapper->BlendMode == MAXIMUM_INTENSITY_BLEND ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
   options.leaves = this->Mesh.GetLeaves();

@@ -12,6 +12,7 @@
 #include "vtkVolume.h"
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
@@ -74,6 +75,16 @@ void vtkStratusVolumeMapper::SetMaskInput(vtkImageData* mask)
   }
 }
 
+void vtkStratusVolumeMapper::SetImageErrorTolerance(double tolerance)
+{
+  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
+    vtkErrorMacro(<< "ImageErrorTolerance " << tolerance << " must be at least 0 and finite; " << this->ImageErrorTolerance << " stays");
+  } else if (this->ImageErrorTolerance != tolerance) {
+    this->ImageErrorTolerance = tolerance;
+    this->Modified();
+  }
+}
+
 const char* vtkStratusVolumeMapper::GetDevice()
 {
   return this->Internal->Context.GetDevice().c_str();
@@ -93,6 +104,11 @@ const char* vtkStratusVolumeMapper::GetStructureAsString()
 const char* vtkStratusVolumeMapper::GetRenderModeAsString()
 {
   return stratus_mode_name(static_cast<stratus_mode>(this->RenderMode));
+}
+
+bool vtkStratusVolumeMapper::GetToleranceMet()
+{
+  return this->Internal->Report.tolerance_met != 0;
 }
 
 bool vtkStratusVolumeMapper::GetCarriedTreeUsed()
@@ -176,6 +192,7 @@ REPORT(double, GetStructureTime, structure_ms)
 REPORT(double, GetUploadTime, upload_ms)
 REPORT(double, GetCastTime, cast_ms)
 REPORT(double, GetUsedSampleDistance, sample_distance)
+REPORT(double, GetExpectedError, expected_error)
 
 void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
@@ -192,6 +209,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "gradient" : "faces") << "\n";
   os << indent << "Structure: " << this->GetStructureAsString() << "\n";
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
+  os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";

@@ -33,6 +33,8 @@ int HighestLabel(vtkVolumeProperty* property)
 vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
 {
+  this->Report.expected_error = std::nan("");
+  this->Report.tolerance_met = 1;
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
     this->Caster = nullptr;
@@ -297,6 +299,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
   options.termination = mapper->Termination;
+  options.tolerance = mapper->ImageErrorTolerance;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.block_size = mapper->BlockSize;
   options.audit = mapper->Audit ? 1 : 0;

@@ -33,12 +33,13 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 18> learnedFor;
+  std::array<double, 19> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
   learnedFor[16] = static_cast<double>(prop->GetProperty()->GetMTime());
   learnedFor[17] = mapper->RenderMode + 100.0 * mapper->BlendMode;
+  learnedFor[18] = mapper->ImageErrorTolerance;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;

@@ -363,10 +363,29 @@ void NextToNothing()
   CHECK(
     bare.GridPicture().empty() && bare.GridErrors->Has("no cell with a volume: 1"), "no tetrahedron: '%s'", bare.GridErrors->Text.c_str());
 }
+
+// A tolerance that is none is refused by name, value and range, and the last one stays.
+void TolerancesThatAreNone()
+{
+  vtkNew<vtkStratusTetrahedraMapper> mapper;
+  vtkNew<ErrorObserver> errors;
+  mapper->AddObserver(vtkCommand::ErrorEvent, errors);
+  CHECK(mapper->GetImageErrorTolerance() == 0.001 && mapper->GetTermination() == 0.0, "other defaults");
+  mapper->SetImageErrorTolerance(0.02);
+  for (double tolerance : { -0.5, std::nan(""), HUGE_VAL }) {
+    const int count = errors->Count;
+    mapper->SetImageErrorTolerance(tolerance);
+    CHECK(errors->Count == count + 1 && errors->Has("ImageErrorTolerance") && errors->Has("at least 0"), "%g: %s", tolerance,
+      errors->Text.c_str());
+    CHECK(errors->Has(tolerance == -0.5 ? "-0.5" : std::isnan(tolerance) ? "nan" : "inf"), "%g: %s", tolerance, errors->Text.c_str());
+    CHECK(mapper->GetImageErrorTolerance() == 0.02, "the last tolerance does not stay");
+  }
+}
 } // namespace
 
 int main()
 {
+  TolerancesThatAreNone();
   ThreeCellsInARing();
   PartsAndGaps();
   PartsThatInterleave();

@@ -158,10 +158,51 @@ void Ranges()
       mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::PREINTEGRATED_SAMPLING), "sampling %d", mapper->GetSampling());
   }
 }
+
+// A tolerance that is none is refused by name, value and range, and the last one stays. Where sampling, step and termination are set by
+// hand the tolerance changes nothing; where they are not, a looser one takes fewer samples.
+void Tolerances()
+{
+  Scene scene(80, 60);
+  Mapper* mapper = scene.Mapper;
+  CHECK(mapper->GetImageErrorTolerance() == 0.001 && mapper->GetTermination() == 0.0, "defaults %g and %g",
+    mapper->GetImageErrorTolerance(), mapper->GetTermination());
+  mapper->SetImageErrorTolerance(0.02);
+  const vtkMTimeType before = mapper->GetMTime();
+  const double none[] = { -0.5, std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity() };
+  for (double tolerance : none) {
+    const int count = scene.Errors->Count;
+    mapper->SetImageErrorTolerance(tolerance);
+    CHECK(scene.Errors->Count == count + 1 && scene.Errors->Has("ImageErrorTolerance") && scene.Errors->Has("at least 0"), "%g: %s",
+      tolerance, scene.Errors->Text.c_str());
+    CHECK(scene.Errors->Has(tolerance == -0.5 ? "-0.5"
+              : std::isnan(tolerance)         ? "nan"
+                                              : "inf"),
+      "%g: %s", tolerance, scene.Errors->Text.c_str());
+    CHECK(mapper->GetImageErrorTolerance() == 0.02 && mapper->GetMTime() == before, "the last tolerance does not stay");
+  }
+  mapper->SetImageErrorTolerance(0.02);
+  CHECK(mapper->GetMTime() == before, "the same tolerance is a modification");
+  mapper->CountSamplesOn();
+  vtkTypeUInt64 samples = 0;
+  for (double tolerance : { 0.1, 0.001, 0.0 }) {
+    mapper->SetImageErrorTolerance(tolerance);
+    scene.Render();
+    CHECK(scene.Mapper->GetSamplesTaken() >= samples, "tolerance %g takes fewer samples than a looser one", tolerance);
+    samples = scene.Mapper->GetSamplesTaken();
+  }
+  mapper->SetSamplingToMidpoint();
+  mapper->SetSampleDistance(0.05);
+  mapper->SetTermination(0.99);
+  const std::vector<float> fine = scene.Picture();
+  mapper->SetImageErrorTolerance(0.1);
+  CHECK(scene.Picture() == fine, "a tolerance changes a picture whose settings are set by hand");
+}
 } // namespace
 
 int main()
 {
+  Tolerances();
   Structures();
   Samplings();
   RenderModesAndNormals();

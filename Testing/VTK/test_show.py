@@ -241,13 +241,18 @@ def refusals():
     mapper.SetBlockSize(0)
     show(field, mapper=mapper)
     refuse(RuntimeError, "camera", show, field, mapper=mapper, camera=away)
+    show(field, mapper=mapper, tolerance=0.01)
+    check(mapper.GetImageErrorTolerance() == 0.01, "the tolerance is the mapper's")
+    show(field, mapper=mapper)
+    check(mapper.GetImageErrorTolerance() == 0.01, "the mapper's tolerance stays")
     image = vtk.vtkImageData()
     image.SetDimensions(4, 4, 4)
     refuse(ValueError, "no scalars", show, image)
     for options in dict(opacity=1j), dict(opacity="x"), dict(color=3), dict(color="red"), dict(camera=3), dict(camera=dict(zoom="x")), \
-            dict(unit_distance="x"), dict(mapper=3), dict(background=3), dict(size=5), dict(origin=None):
+            dict(unit_distance="x"), dict(tolerance="x"), dict(mapper=3), dict(background=3), dict(size=5), dict(origin=None):
         refuse(TypeError, next(iter(options)), show, field, **options)
     for options in dict(size=(10.5, 9)), dict(background=(2, 0, 0)), dict(unit_distance=0), dict(unit_distance=numpy.nan), dict(axes=3), \
+            dict(tolerance=-1), dict(tolerance=numpy.nan), \
             dict(camera=dict(zoom=0)), dict(camera=dict(azimuth=numpy.inf)), dict(opacity=numpy.nan), dict(origin=(1, 2)):
         refuse(ValueError, next(iter(options)), show, field, **options)
     for dtype in numpy.longdouble, object, "M8[s]", "V4":

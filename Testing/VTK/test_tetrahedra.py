@@ -99,14 +99,14 @@ check(mapper.GetNumberOfSegments() > mapper.GetNumberOfEntries() >= 0, "segments
 check(mapper.GetBuildMilliseconds() > 0 and mapper.GetMarchMilliseconds() >= 0, "times")
 
 # ---- setters
-check(mapper.GetTermination() == 0.9999, "default termination")
+check(mapper.GetTermination() == 0 and mapper.GetImageErrorTolerance() == 0.001, "default termination and tolerance")
 mapper.SetTermination(0.5)
 early = picture()
 lit = whole[..., 3] > 0.8
 check((early[lit, 3] < whole[lit, 3] - 0.01).any() and (early[lit, 3] >= 0.5).all(), "rays end early where alpha passes .5")
 mapper.SetTermination(7)
 check(mapper.GetTermination() == 1, "termination is clamped")
-mapper.SetTermination(0.9999)
+mapper.SetTermination(0)
 mapper.SetNumberOfThreads(1)
 check((picture() == whole).all(), "one thread draws the same bits")
 mapper.SetNumberOfThreads(-3)

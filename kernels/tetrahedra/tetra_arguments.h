@@ -25,6 +25,7 @@ typedef struct stratus_tetra_arguments {
   stratus_picture_arguments picture;
   stratus_table_arguments table;
   float termination; /* of transparency: 1 - alpha */
+  float pieces;      /* the square of the number of pieces of a stretch of optical depth 1 over which a colour changes by 1 */
   float middle;      /* w where z is 0 */
   float shear;       /* dw/dz: 1, parallel 0 */
   float begin, end;  /* the part that is seen, in z, of the ray through the window's middle */

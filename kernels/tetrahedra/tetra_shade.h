@@ -10,8 +10,10 @@
 #include "transfer_table.h"
 
 /* The most that a stretch's weight is, so that long stretches do not overflow. At this weight a stretch that shows is opaque in any case:
- * the least sum, 1, spread over 2^16 entries and 16 pieces, is an optical depth of 2^20. */
+ * the least sum, 1, spread over 2^16 entries and 256 pieces, is an optical depth of 2^16. */
 #define OPAQUE_WEIGHT 0x1p40f
+/* What lies behind so little transparency changes no float. */
+#define OPAQUE_TRANSPARENCY 0x1p-24f
 
 /* The light that a ray has gathered. */
 typedef struct stratus_tetra_light {
@@ -100,6 +102,19 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
 }
 
+/* Into how many pieces a stretch is cut. depth: its optical depth times the entries that it spans, of which there are `entries`. A colour
+ * changes by the table's steepest change an entry, and by no more than 1. */
+INLINE vfloat tetra_pieces(CONSTANT stratus_tetra_arguments* a, vfloat depth, vfloat entries)
+{
+  const vfloat most = depth * v_reciprocal(v_max(entries, v_set(1.0f))) * v_set(a->pieces), zero = v_set(0.0f);
+  const vfloat q = v_min(depth * v_set(a->table.color_slope), most);
+  vfloat pieces = v_set(1.0f) + v_select(v_lt(v_set(1.0f), q), v_set(1.0f), zero) + v_select(v_lt(v_set(4.0f), q), v_set(1.0f), zero);
+  pieces = pieces + v_select(v_lt(v_set(9.0f), q), v_set(2.0f), zero) + v_select(v_lt(v_set(25.0f), q), v_set(3.0f), zero);
+  pieces = pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero) + v_select(v_lt(v_set(256.0f), q), v_set(16.0f), zero);
+  pieces = pieces + v_select(v_lt(v_set(1024.0f), q), v_set(32.0f), zero) + v_select(v_lt(v_set(4096.0f), q), v_set(64.0f), zero);
+  return pieces + v_select(v_lt(v_set(16384.0f), q), v_set(128.0f), zero);
+}
+
 /* A stretch that meets nothing opaque, from value `first` at place `from` to `last` at place `to`, cut into pieces where averaging its
  * colours would show. */
 INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
@@ -112,7 +127,8 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
     tetra_composite(a, sums, light, mask, from, to, weight, near);
     return;
   }
-  const vfloat pieces = v_select(several, segment_pieces(&a->table, depth, one), one), share = v_select(several, v_reciprocal(pieces), one);
+  const vfloat entries = v_abs(v_from_int(to->entry - from->entry));
+  const vfloat pieces = v_select(several, tetra_pieces(a, depth, entries), one), share = v_select(several, v_reciprocal(pieces), one);
   vfloat piece = v_set(0.0f);
   stratus_tetra_place begin = *from;
   do {
@@ -125,7 +141,7 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
     }
     tetra_composite(a, sums, light, mask, &begin, &end, weight * share, near);
     begin = end;
-    mask = more;
+    mask = more & v_lt(v_set(OPAQUE_TRANSPARENCY), light->transparency);
   } while (m_any(mask));
 }
 

@@ -323,6 +323,77 @@ static void depths_beyond_doubles_are_refused(void** state)
   tetra_destroy(&c);
 }
 
+/* Root mean square error of RGBA in 0..1 over the pixels in which the reference shows anything. */
+static double error_of(stratus_context* context, const tetra_case* c)
+{
+  double sum = 0.0;
+  int lit = 0;
+  tetra_draw(context, c, &picture);
+  for (int i = 0; i < TETRA_PIXELS; ++i) {
+    lit += reference[4 * i + 3] > 0.0;
+    for (int k = 0; k < 4 && reference[4 * i + 3] > 0.0; ++k) {
+      sum += pow((double)picture.rgba[4 * i + k] - reference[4 * i + k], 2.0);
+    }
+  }
+  assert_true(lit > TETRA_PIXELS / 10);
+  return sqrt(sum / (4.0 * lit));
+}
+
+/* Few large cells in which colours change and light falls at once, so that only their division keeps the error down. */
+static void errors_stay_within_the_tolerance(void** state)
+{
+  static const double tolerances[] = { 0.01, 0.001, 0.0001 }, units[] = { 1.0, 0.2, 0.04 };
+  double coarse = 0.0, fine = 0.0;
+  for (int scene = 0; scene < 9; ++scene) {
+    double errors[3];
+    tetra_case c;
+    tetra_create(&c, 1 + scene % 3, 0.1, 0.0, (uint32_t)scene);
+    const double opacity[8] = { 0.0, 0.1, 0.3, 0.3, 0.6, 0.2, 1.0, 0.4 };
+    const double color[12] = { 0.2, 1.0, 0.1, 0.0, 0.5, 0.0, 1.0, 0.2, 0.8, 0.9, 0.0, 1.0 };
+    memcpy(c.opacity, opacity, sizeof opacity);
+    memcpy(c.color, color, sizeof color);
+    c.transfer.unit_distance = units[scene / 3];
+    c.options.termination = 0.0;
+    tetra_camera(*state, &c, 1 + scene % 3, scene % 8, scene & 1);
+    tetra_reference(&c, reference, reference_depth);
+    for (int t = 0; t < 3; ++t) {
+      c.options.tolerance = tolerances[t];
+      errors[t] = error_of(*state, &c);
+      if (!(errors[t] <= tolerances[t])) {
+        print_error("scene %d, tolerance %g: the error is %g\n", scene, tolerances[t], errors[t]);
+      }
+      assert_true(errors[t] <= tolerances[t]);
+    }
+    c.options.tolerance = 0.0;
+    assert_true(error_of(*state, &c) <= errors[2] + 1e-6);
+    coarse += errors[0];
+    fine += errors[2];
+    tetra_destroy(&c);
+  }
+  assert_true(coarse > 10.0 * fine); /* a looser tolerance takes fewer pieces */
+}
+
+static void tolerances_that_are_none_are_refused(void** state)
+{
+  static const double bad[] = { -0.001, NAN, INFINITY };
+  static const char* const words[] = { "-0.001", "nan", "inf" };
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
+  stratus_tetra_caster* caster = NULL;
+  tetra_case c;
+  tetra_create(&c, 1, 0.0, 0.0, 1);
+  tetra_camera(*state, &c, 1, 0, 0);
+  assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+  for (int i = 0; i < 3; ++i) {
+    c.options.tolerance = bad[i];
+    assert_int_equal(
+      stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(*state), words[i]));
+    assert_non_null(strstr(stratus_context_message(*state), "at least 0"));
+  }
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+}
+
 int test_tetra_march(void)
 {
   const struct CMUnitTest tests[] = {
@@ -339,6 +410,8 @@ int test_tetra_march(void)
     cmocka_unit_test(lengths_of_any_size_are_drawn_or_refused),
     cmocka_unit_test(windows_narrower_than_floats_are_refused),
     cmocka_unit_test(depths_beyond_doubles_are_refused),
+    cmocka_unit_test(errors_stay_within_the_tolerance),
+    cmocka_unit_test(tolerances_that_are_none_are_refused),
   };
   int failed = 0;
   for (tetra_method = STRATUS_TETRA_METHOD_MARCH; tetra_method <= STRATUS_TETRA_METHOD_PROJECT; ++tetra_method) {

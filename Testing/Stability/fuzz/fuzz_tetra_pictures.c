@@ -24,6 +24,7 @@ static void choose_view(fuzz* f, tetra_case* c)
   o.mode = (stratus_tetra_mode)(fuzz_chance(f, 0.7) ? 0 : fuzz_choice(f, 2));
   o.method = (stratus_tetra_method)fuzz_choice(f, STRATUS_TETRA_METHOD_PROJECT + 1);
   o.termination = fuzz_chance(f, 0.6) ? o.termination : fuzz_real(f, 0.0, 1.0);
+  o.tolerance = fuzz_chance(f, 0.6) ? o.tolerance : fuzz_real(f, 0.0, 0.1);
   o.leaves = c->partition ? &c->leaves : NULL;
   c->no_options = fuzz_chance(f, 0.02);
   c->options = c->no_options ? stratus_tetra_options_default() : o;
