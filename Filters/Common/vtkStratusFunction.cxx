@@ -424,12 +424,6 @@ bool vtkStratusFunction::IsCurrent(vtkObject* function, int width)
   return false;
 }
 
-void vtkStratusFunction::Clear()
-{
-  this->Points.clear();
-  this->Source = nullptr;
-}
-
 bool vtkStratusFunction::Set(vtkPiecewiseFunction* function, int width)
 {
   if (!this->IsCurrent(function, width)) {

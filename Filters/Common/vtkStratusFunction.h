@@ -31,7 +31,6 @@ public:
   // Returns false where the function has no node. `width` is the number of equal numbers after the value.
   bool Set(vtkPiecewiseFunction* function, int width);
   bool Set(vtkColorTransferFunction* function);
-  void Clear();
 
   const double* GetPoints() const { return this->Points.data(); }
   size_t GetCount() const { return this->Points.size() / static_cast<size_t>(this->Width + 1); }
