@@ -21,9 +21,6 @@ const char* const FragmentShader = R"(//VTK::System::Dec
 in vec2 texCoord;
 uniform sampler2D source;
 uniform vec2 scaleBias; // final colour window and level
-#ifdef FETCHES
-uniform ivec2 origin; // of the picture's part in the window
-#endif
 #ifdef BLENDS
 uniform sampler2D behind;
 #endif
@@ -33,7 +30,7 @@ uniform sampler2D depths;
 void main()
 {
 #ifdef FETCHES
-  vec4 color = texelFetch(source, ivec2(gl_FragCoord.xy) - origin, 0);
+  vec4 color = texelFetch(source, ivec2(texCoord * vec2(textureSize(source, 0))), 0);
 #else
   vec4 color = texture(source, texCoord);
 #endif
@@ -95,21 +92,31 @@ void vtkStratusDisplay::CopyPixels(
   state->vtkglPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-// Blends the picture's floats over the bytes behind it, and rounds once.
+// Blends the picture's floats over the bytes behind it, and rounds once. Each loop does the same to all four channels, so that compilers
+// make vectors of it.
 void vtkStratusDisplay::BlendOver(const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
   const size_t width = 4 * static_cast<size_t>(part.Size[0]);
+  const float scale[4] = { 255.0f * pixels.Scale, 255.0f * pixels.Scale, 255.0f * pixels.Scale, 255.0f };
+  const float shift[4] = { 255.0f * pixels.Bias, 255.0f * pixels.Bias, 255.0f * pixels.Bias, 0.0f };
+  std::vector<float> row(width);
   for (int j = 0; j < part.Size[1]; ++j) {
     const float* from = pixels.Rgba + 4 * (static_cast<size_t>(part.From[1] + j) * picture.Size[0] + part.From[0]);
     unsigned char* to = this->Blended.data() + j * width;
+    float* sum = row.data();
+    for (size_t at = 0; at < width; ++at) {
+      sum[at] = to[at];
+    }
     for (size_t at = 0; at < width; at += 4) {
       const float alpha = from[at + 3], left = 1.0f - alpha;
-      const float shift = 255.0f * alpha * pixels.Bias;
-      for (size_t c = 0; c < 3; ++c) {
-        const float color = std::min(std::max(255.0f * pixels.Scale * from[at + c] + shift, 0.0f), 255.0f);
-        to[at + c] = static_cast<unsigned char>(std::min(color + left * to[at + c], 255.0f) + 0.5f);
+      for (size_t c = 0; c < 4; ++c) {
+        const float color = scale[c] * from[at + c] + alpha * shift[c];
+        sum[at + c] = left * sum[at + c] + (color < 0.0f ? 0.0f : color > 255.0f ? 255.0f : color);
       }
-      to[at + 3] = static_cast<unsigned char>(std::min(255.0f * alpha + left * to[at + 3], 255.0f) + 0.5f);
+    }
+    for (size_t at = 0; at < width; ++at) {
+      const float rounded = sum[at] + 0.5f;
+      to[at] = static_cast<unsigned char>(static_cast<int>(rounded > 255.0f ? 255.0f : rounded));
     }
   }
 }
@@ -286,9 +293,6 @@ bool vtkStratusDisplay::Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* wind
     const float scaleBias[2] = { pixels.Scale, pixels.Bias };
     quad->Program->SetUniformi("source", this->Texture->GetTextureUnit());
     quad->Program->SetUniform2f("scaleBias", scaleBias);
-    if (kind.Fetches) {
-      quad->Program->SetUniform2i("origin", part.To);
-    }
     if (kind.Blends) {
       quad->Program->SetUniformi("behind", this->Behind->GetTextureUnit());
     }

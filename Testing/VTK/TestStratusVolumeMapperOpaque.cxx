@@ -3,6 +3,9 @@
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
+#include "vtkFollower.h"
+#include "vtkLineSource.h"
+#include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkSphereSource.h"
@@ -103,10 +106,58 @@ void Coarse()
   const double coarse = scene.Light();
   CHECK(std::fabs(coarse / fine - 1.0) < 0.1, "light of %g fine and %g coarse", fine, coarse);
 }
+
+// Depth is read only near props whose bounds tell where they draw. A follower's bounds do not, so that one which draws nothing makes the
+// whole depth be read: the same picture must come out, and over a gradient the window must show it.
+void Near(int samples)
+{
+  Scene scene;
+  scene.Window->SetMultiSamples(samples);
+  scene.Renderer->GradientBackgroundOn();
+  scene.Renderer->SetBackground(.1, .2, .3);
+  scene.Renderer->SetBackground2(.8, .6, .5);
+  const std::vector<float> alone = scene.Picture();
+  Opaque small(scene, 8, 20, 20, 3);
+  vtkNew<vtkLineSource> line;
+  vtkNew<vtkPolyDataMapper> mapper;
+  vtkNew<vtkActor> wide;
+  line->SetPoint1(20, 4, 24);
+  line->SetPoint2(24, 9, 24);
+  mapper->SetInputConnection(line->GetOutputPort());
+  wide->SetMapper(mapper);
+  wide->GetProperty()->SetLineWidth(7);
+  scene.Renderer->AddActor(wide);
+  const std::vector<float> part = scene.Picture();
+  const std::vector<unsigned char> shown = scene.Bytes();
+  vtkNew<vtkFollower> nothing;
+  vtkNew<vtkPolyDataMapper> empty;
+  vtkNew<vtkPolyData> noCells;
+  empty->SetInputData(noCells);
+  nothing->SetMapper(empty);
+  scene.Renderer->AddActor(nothing);
+  CHECK(part != alone, "the actors hide nothing with %d samples", samples);
+  CHECK(scene.Picture() == part, "a part of the depth gives another picture than all of it with %d samples", samples);
+  CHECK(scene.Bytes() == shown, "a part of the depth shows something else than all of it with %d samples", samples);
+
+  scene.Volume->VisibilityOff();
+  scene.Render();
+  const std::vector<unsigned char> behind = scene.Bytes();
+  double worst = 0.0;
+  for (size_t p = 0; p < scene.Pixels(); ++p) {
+    for (size_t c = 0; c < 3; ++c) {
+      const double meant = 255.0 * part[4 * p + c] + (1.0 - part[4 * p + 3]) * behind[4 * p + c];
+      worst = std::max(worst, std::fabs(meant - shown[4 * p + c]));
+    }
+  }
+  // One rounding here; with samples the frame buffer rounds what it blends, and the window's resolve rounds once more.
+  CHECK(worst <= (samples > 0 ? 2.5 : .51), "the window with %d samples shows up to %.2f of 255 wrong", samples, worst);
+}
 } // namespace
 
 int main()
 {
+  Near(0);
+  Near(8);
   Inside(false);
   Inside(true);
   AroundIt();
