@@ -6,7 +6,8 @@ include(CheckLanguage)
 set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore IOCore RenderingCore
   RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
-  IOImage IOLegacy IOXML RenderingContext2D RenderingContextOpenGL2 RenderingFreeType TestingRendering ViewsContext2D)
+  IOImage IOLegacy IOXML RenderingAnnotation RenderingContext2D RenderingContextOpenGL2 RenderingFreeType TestingRendering
+  ViewsContext2D)
 
 check_language(CXX)
 if (CMAKE_CXX_COMPILER)

@@ -3,12 +3,14 @@
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
+#include "vtkAxesActor.h"
 #include "vtkFollower.h"
 #include "vtkLineSource.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkSphereSource.h"
+#include "vtkTransform.h"
 
 #include <numeric>
 
@@ -96,6 +98,31 @@ void AroundIt()
   CHECK(scene.Picture() == alone, "a hidden actor changes the picture");
 }
 
+// An axes actor's own bounds are those of axes that point to both sides of the origin. Moved away, they say nothing of where it draws.
+void Axes()
+{
+  Scene scene;
+  scene.Image->SetOrigin(-80, -80, -80);
+  scene.Renderer->ResetCamera();
+  const std::vector<float> alone = scene.Picture();
+  vtkNew<vtkAxesActor> axes;
+  vtkNew<vtkTransform> away;
+  away->Translate(-84, -68, -53);
+  axes->SetUserTransform(away);
+  axes->SetTotalLength(30, 16, 16);
+  axes->AxisLabelsOff();
+  scene.Renderer->AddActor(axes);
+  const std::vector<float> part = scene.Picture();
+  vtkNew<vtkFollower> nothing;
+  vtkNew<vtkPolyDataMapper> empty;
+  vtkNew<vtkPolyData> noCells;
+  empty->SetInputData(noCells);
+  nothing->SetMapper(empty);
+  scene.Renderer->AddActor(nothing);
+  CHECK(part != alone, "the axes hide nothing");
+  CHECK(scene.Picture() == part, "the axes hide more when all of the depth is read");
+}
+
 // Coarse pictures end at the geometry too.
 void Coarse()
 {
@@ -158,6 +185,7 @@ int main()
 {
   Near(0);
   Near(8);
+  Axes();
   Inside(false);
   Inside(true);
   AroundIt();
