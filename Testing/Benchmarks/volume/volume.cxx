@@ -31,7 +31,8 @@ const char* const help = R"(stratus-bench volume [options]
 
 Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of 3.
 A window is black, without multisampling, unless
-told otherwise. update_ms: from a change of the transfer function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the
+told otherwise. update_ms: from a change of the transfer function to the next picture, median over the views.
+psnr_db is of float pixels, psnr8_db of the
 window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
 itself under xvfb-run.
 
