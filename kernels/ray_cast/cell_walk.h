@@ -76,10 +76,25 @@ INLINE vfloat cell_fraction(const stratus_packet* k, int axis, vint inside, vflo
   return v_clamp(v_select(there, exact, at), 0.0f, 1.0f);
 }
 
-/* Leaps over cubes of blocks that hold nothing that shows. */
-INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, cell_walk* w)
+/* The structure is asked once all live lanes need it, or one lane has waited for CELL_PATIENCE voxels. A lane that waits visits cells,
+ * which add nothing. */
+#define CELL_PATIENCE 8.0f
+
+INLINE vmask cell_lanes_to_skip(const stratus_packet* k, const cell_walk* w)
 {
-  vmask need = k->live & v_le(w->run, w->s);
+  const vmask need = k->live & v_le(w->run, w->s);
+#if STRATUS_WIDTH > 1
+  const int count = m_count(need);
+  if (count && count < m_count(k->live) && !m_any(k->live & v_le(w->run + v_set(CELL_PATIENCE), w->s))) {
+    return m_none();
+  }
+#endif
+  return need;
+}
+
+/* Moves the rays of `need` over cubes of blocks that hold nothing that shows. */
+INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need, cell_walk* w)
+{
   while (m_any(need)) {
     vint block[3], byte;
     for (int axis = 0; axis < 3; ++axis) {

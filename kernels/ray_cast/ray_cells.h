@@ -153,7 +153,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   do {
     cell_enter(k, &w);
     if (a->map.structure) {
-      cell_skip(a, map, k, &w);
+      cell_skip(a, map, k, cell_lanes_to_skip(k, &w), &w);
     }
     if (nearest) {
       RAY_NAME(cell_visit_nearest)(a, values, hidden, sums, k, &w);

@@ -127,7 +127,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   do {
     cell_enter(k, &w);
     if (a->map.structure) {
-      cell_skip(a, map, k, &w);
+      cell_skip(a, map, k, k->live & v_le(w.run, w.s), &w);
     }
     RAY_NAME(surface_visit)(a, values, hidden, k, &w);
     cell_leave(k, &w);
