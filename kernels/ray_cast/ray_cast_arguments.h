@@ -46,7 +46,7 @@ typedef struct stratus_ray_lattice {
   stratus_pair per_step; /* 1 / sample distance, in the world */
   float step;            /* the sample distance as a float, for depth */
   float pieces_per_bend; /* cells: the square of the number of pieces of a way, over the field's largest second derivative on it */
-  int jitter, seed; /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
+  int jitter, seed;      /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
 } stratus_ray_lattice;
 
 /* What bounds leave of a ray. */
