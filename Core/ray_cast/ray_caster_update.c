@@ -152,9 +152,10 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   const bool preintegrated = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
   const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
   if (!same_kind || caster->table_distance != caster->choice.sample_distance) {
-    const stratus_table_values values = stratus_table_values_of(caster->ranges);
+    const stratus_table_values values = stratus_table_values_of(caster->ranges, caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
     stratus_table* table = NULL;
-    TRY(stratus_table_create(caster->context, caster->transfers, &values, preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
+    TRY(stratus_table_create(caster->context, caster->transfers, &values,
+      preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
       stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
     stratus_table_destroy(caster->table);
     caster->table = table;

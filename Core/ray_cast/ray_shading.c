@@ -75,6 +75,7 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
   a->media.components = shading->components;
   a->media.dependent = caster->dependent;
   a->media.label_first = shading->label_first;
+  a->media.label_steps = shading->label_tables ? shading->label_steps : 0;
   a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
   a->media.component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
   for (int c = 0; c < 4; ++c) {
@@ -86,7 +87,10 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
     a->media.first[c] = shading->first[c];
     a->media.scale[c] = table ? table->scale : 0.0f;
     a->media.offset[c] = table ? table->offset : 0.0f;
-    a->media.last[c] = table ? (float)(table->size - 1) : 0.0f;
+    a->media.last[c] = table ? (float)(table->cells - 1) : 0.0f;
+    a->media.search_steps[c] = table ? table->search_steps : 0;
+    a->media.first_at[c] = shading->first_at[c];
+    a->media.bound_at[c] = shading->bound_at[c];
     a->media.weight[c] =
       c < shading->components && c < caster->transfer_count && !caster->dependent ? (float)caster->transfers[c].weight : 1.0f;
   }

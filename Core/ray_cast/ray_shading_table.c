@@ -158,7 +158,7 @@ static void thicken(const stratus_table* table, float* out)
 
 static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
 {
-  const stratus_table_values values = stratus_table_values_of(stratus_ray_shading_range_of(caster, c));
+  const stratus_table_values values = stratus_table_values_of(stratus_ray_shading_range_of(caster, c), caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
   return stratus_table_create(caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
 }
 
@@ -233,21 +233,47 @@ static void fill_factors(const stratus_transfer* transfer, float* out)
   }
 }
 
-/* Appends a record for each label (scale, offset, last entry, first entry), then the labels' tables. Returns the end. */
+/* Appends what finds an entry in a table of several entries a cell, unless out is NULL. Returns the end. */
+static size_t lay_out_search(const stratus_table* table, size_t at, float* out, int* first_at, int* bound_at)
+{
+  if (table->search_steps == 0) {
+    *first_at = *bound_at = 0;
+    return at;
+  }
+  *first_at = (int)at;
+  *bound_at = (int)(at + (size_t)table->cells + 1);
+  if (out) {
+    memcpy(out + *first_at, table->first, ((size_t)table->cells + 1) * sizeof *table->first);
+    memcpy(out + *bound_at, table->bound, (size_t)table->size * sizeof *table->bound);
+  }
+  return at + (size_t)table->cells + 1 + (size_t)table->size;
+}
+
+static size_t rounded_to_four(size_t at)
+{
+  return (at + 3) / 4 * 4;
+}
+
+/* Appends a record for each label, see stratus_ray_media, then the labels' tables. Returns the end. */
 static size_t lay_out_labels(stratus_ray_shading_tables* shading, size_t at, float* out)
 {
   const size_t labels = (size_t)shading->label_tables_count;
   shading->label_first = (int)at;
-  float* header = out ? out + at : NULL;
-  at += 4 * labels;
+  shading->label_steps = 0;
+  float* record = out ? out + at : NULL;
+  at += 8 * labels;
   for (size_t l = 0; l < labels; ++l) {
     const stratus_table* table = shading->label_tables[l];
+    const size_t begin = at, words = 8 * (size_t)table->size;
+    int32_t numbers[4] = { (int32_t)(begin / 4), table->size };
+    at = rounded_to_four(lay_out_search(table, begin + words, out, &numbers[2], &numbers[3]));
+    shading->label_steps = table->search_steps > shading->label_steps ? table->search_steps : shading->label_steps;
     if (out) {
-      const float place[4] = { table->scale, table->offset, (float)(table->size - 1), (float)(at / 4) };
-      memcpy(header + 4 * l, place, sizeof place);
-      memcpy(out + at, table->rgba, stratus_table_words(table) * sizeof *out);
+      const float place[4] = { table->scale, table->offset, (float)(table->cells - 1), 0.0f };
+      memcpy(record + 8 * l, place, sizeof place);
+      memcpy(record + 8 * l + 4, numbers, sizeof numbers);
+      memcpy(out + begin, table->rgba, words * sizeof *out);
     }
-    at += stratus_table_words(table);
   }
   return at;
 }
@@ -271,7 +297,9 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     } else if (table && out) {
       thicken(table, out + at);
     }
-    at += table ? 4 * (size_t)table->size : 0;
+    if (table) {
+      at = lay_out_search(table, at + 4 * (size_t)table->size, out, &shading->first_at[c], &shading->bound_at[c]);
+    }
   }
   for (int c = 0; c < shading->components; ++c) { /* all labels share the first function's gradient opacity */
     const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
@@ -284,7 +312,7 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
     }
     at += has ? STRATUS_SHADING_FACTORS + 2 : 0;
   }
-  return lay_out_labels(shading, (at + 3) / 4 * 4, out);
+  return lay_out_labels(shading, rounded_to_four(at), out);
 }
 
 stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent)

@@ -16,9 +16,10 @@ typedef struct stratus_ray_shading_tables {
   void* memory;                   /* all tables and gradient opacities, as rays read them */
   size_t bytes;
   int first[4], factor_first[4]; /* where each component's table and gradient opacity begin, in floats; factor_first -1: none */
+  int first_at[4], bound_at[4];  /* where what finds a component's entries begins, of tables whose entries are not cells */
   float factor_scale[4];         /* entries of the gradient opacity per unit of magnitude */
   stratus_table** label_tables;  /* of labels 0, 1, 2 and so on; NULL: no labels */
-  int label_tables_count, label_first;
+  int label_tables_count, label_first, label_steps;
   uint64_t range_builds, table_builds; /* the caster's counts when ranges and tables were made */
 } stratus_ray_shading_tables;
 

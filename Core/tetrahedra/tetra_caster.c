@@ -146,7 +146,8 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   const stratus_volume view = stratus_mesh_values(&caster->view);
   const stratus_table_values values = { .fetching = { mesh->bias, stratus_type_is_wide(view.type), stratus_type_is_integer(view.type) },
     .lo = any ? mesh->low : 0.0f,
-    .hi = any ? mesh->high : 0.0f };
+    .hi = any ? mesh->high : 0.0f,
+    .uniform = true };
   stratus_status status = stratus_table_create_fine(caster->context, transfer, &values,
     mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
     mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, ENTRIES, &table);

@@ -17,7 +17,7 @@ static vmask transparent(const stratus_tetra_projection* projection, vmask mask,
   const stratus_table_arguments* a = &projection->frame->arguments.table;
   /* exceeds the rounding of interpolation, as in stratus_table_shows() */
   const vfloat slack = v_set(1e-6f) * v_max(v_abs(lo), v_abs(hi));
-  const vint first = table_entry(a, lo - slack), last = table_entry(a, hi + slack);
+  const vint first = table_entry(a, table->next_shown, lo - slack), last = table_entry(a, table->next_shown, hi + slack);
   return mask & vi_lt(last, v_gather_ints(table->next_shown, first, mask));
 }
 

@@ -10,11 +10,17 @@ static inline stratus_table_arguments stratus_table_arguments_of(const stratus_t
 {
   return (stratus_table_arguments){ .scale = table->scale,
     .offset = table->offset,
-    .last = (float)(table->size - 1),
+    .last = (float)(table->cells - 1),
+    .entries = table->size,
+    .search_steps = table->search_steps,
+    .first_at = (int)stratus_table_first_at(table),
+    .bound_at = (int)stratus_table_bound_at(table),
+    .widths_at = (int)stratus_table_widths_at(table),
     .shown_first = (float)table->next_shown[0],
     .shown_beyond = (float)(table->last_shown + 1),
     .tau_scale = table->sum_scale,
     .color_slope = table->color_slope,
+    .color_most = table->color_most,
     .has_opaque = table->has_opaque };
 }
 

@@ -225,15 +225,14 @@ stratus_fetching stratus_volume_fetching(const stratus_volume* volume)
   };
 }
 
-/* Numbers floats in their order: -INFINITY is the least. */
-static int64_t rank_of(float number)
+int64_t stratus_float_rank(float number)
 {
   int32_t bits;
   memcpy(&bits, &number, sizeof bits);
   return bits < 0 ? INT64_C(-2147483648) - bits : bits;
 }
 
-static float float_of(int64_t rank)
+float stratus_float_of_rank(int64_t rank)
 {
   const int32_t bits = (int32_t)(rank < 0 ? INT64_C(-2147483648) - rank : rank);
   float number;
@@ -247,16 +246,16 @@ float stratus_fetching_above(const stratus_fetching* fetching, double value)
     return stratus_float_above(value);
   }
   /* The sum with the bias is rounded, and may be the same for very many floats. */
-  int64_t lo = rank_of(-INFINITY), hi = rank_of(INFINITY);
+  int64_t lo = stratus_float_rank(-INFINITY), hi = stratus_float_rank(INFINITY);
   while (lo < hi) {
     const int64_t middle = lo + (hi - lo) / 2;
-    if (stratus_fetching_value(fetching, float_of(middle)) >= value) {
+    if (stratus_fetching_value(fetching, stratus_float_of_rank(middle)) >= value) {
       hi = middle;
     } else {
       lo = middle + 1;
     }
   }
-  return float_of(lo);
+  return stratus_float_of_rank(lo);
 }
 
 /* Appends lo..hi if lo <= hi, or lengthens the last interval if no float lies between. */

@@ -58,6 +58,9 @@ static inline double stratus_fetching_value(const stratus_fetching* fetching, fl
 {
   return (double)fetched + fetching->bias;
 }
+/* Number floats in their order, and back. */
+int64_t stratus_float_rank(float number);
+float stratus_float_of_rank(int64_t rank);
 /* Returns the least float whose value is at least `value`; INFINITY if there is none. */
 float stratus_fetching_above(const stratus_fetching* fetching, double value);
 

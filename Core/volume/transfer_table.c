@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The transfer function as traversal samples it: a table over the data's values. An entry holds the function at the entry's middle
  * (midpoint sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
-#include "volume.h"
+#include "table_entries.h"
 
 #include <string.h>
 
-/* Number of entries by sampling, most entries, and number of entries over the function's narrowest feature. */
+/* Least number of the grid's cells by sampling. */
 #define MIDPOINT_ENTRIES 4096
 #define PREINTEGRATED_ENTRIES 16384
-#define MOST_ENTRIES 65536
-#define ENTRIES_A_FEATURE 32
+/* Units of width over all values: so narrow may a feature be beside them that running sums hold. */
+#define WIDTH_UNITS 0x1p29
 /* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as
  * floats tell it from 0. */
 #define OPAQUE_DEPTH 1e30f
@@ -111,68 +111,14 @@ static double tau_of(const stratus_transfer* transfer, double opacity)
   return fmin((opacity >= 1.0 ? OPAQUE_TAU : opacity > 0.0 ? -log1p(-opacity) : 0.0) / transfer->unit_distance, TAU_MOST);
 }
 
-/* Returns the width of the narrowest interval between points where the opacity changes or is 1, at most `range`. */
-static double narrowest_feature(const stratus_transfer* transfer, double range)
-{
-  double narrowest = range;
-  for (size_t i = 0; i + 1 < transfer->opacity_count; ++i) {
-    const double* p = transfer->opacity + 2 * i;
-    if (p[2] > p[0] && (p[3] != p[1] || p[1] >= 1.0) && p[2] - p[0] < narrowest) {
-      narrowest = p[2] - p[0];
-    }
-  }
-  return narrowest;
-}
-
-/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. */
-static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
-{
-  const double* first = transfer->opacity;
-  const double* last = transfer->opacity + 2 * (transfer->opacity_count - 1);
-  const double* first_color = transfer->color;
-  const double* last_color = transfer->color + 4 * (transfer->color_count - 1);
-  const double from = fmin(first[0], first_color[0]), to = fmax(last[0], last_color[0]), margin = (to - from) / 64.0;
-  if (to > from && from - margin > *lo && from - margin < *hi) {
-    *lo = from - margin;
-  }
-  if (to > from && to + margin < *hi && to + margin > *lo) {
-    *hi = to + margin;
-  }
-}
-
-static int table_size(const stratus_transfer* transfer, double range, int least)
-{
-  int size = least;
-  const double wanted = range > 0.0 ? ENTRIES_A_FEATURE * range / narrowest_feature(transfer, range) : 0.0;
-  while (size < MOST_ENTRIES && size < wanted) {
-    size *= 2;
-  }
-  return size;
-}
-
-/* Marks the entries of which all floats show. */
-static void find_whole(const stratus_table* table, const stratus_table_values* values, const stratus_shown* shown, uint8_t* whole)
-{
-  memset(whole, 0, (size_t)table->size);
-  for (int64_t i = stratus_shown_below(shown, values->lo); i < shown->count && shown->of[i][0] <= values->hi; ++i) {
-    const float lo = fmaxf(shown->of[i][0], values->lo), hi = fminf(shown->of[i][1], values->hi);
-    int first = stratus_table_entry(table, lo), last = stratus_table_entry(table, hi);
-    first += lo > values->lo && stratus_table_entry(table, nextafterf(lo, -INFINITY)) == first;
-    last -= hi < values->hi && stratus_table_entry(table, nextafterf(hi, INFINITY)) == last;
-    for (int e = first; e <= last; ++e) {
-      whole[e] = 1;
-    }
-  }
-}
-
 static void fill_midpoint(
-  stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, double sample_distance)
+  stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double sample_distance)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
   for (int e = 0; e < table->size; ++e) {
-    const double x = lo + e * width;
+    const double x = entries->value[e];
     double opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    opacity = !whole[e] || outside(transfer, x) ? 0.0 : opacity;
+    opacity = !entries->shows[e] || outside(transfer, x) ? 0.0 : opacity;
     const double alpha = opacity > 0.0 ? -expm1(log1p(-opacity) * sample_distance / transfer->unit_distance) : 0.0;
     float* entry = table->rgba + 4 * (size_t)e;
     for (size_t c = 0; c < 3; ++c) {
@@ -185,27 +131,54 @@ static void fill_midpoint(
   }
 }
 
-/* Writes the four running sums in doubles. Returns the largest change of a colour between neighbouring entries of which one shows. An entry
- * is the function at its middle, not the mean over its width: a transparent value must stay transparent beside one that shows. */
-static double fill_sums(const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, int size, double* sums)
+/* Fills the row of widths: running sums of whole units, at least 1 an entry. */
+static void fill_widths(stratus_table* table, const stratus_table_entries* entries)
+{
+  int32_t* widths = table->sums + stratus_table_widths_at(table);
+  double total = 0.0;
+  for (int e = 0; e < table->size; ++e) {
+    total += entries->wide[e];
+  }
+  widths[0] = 0;
+  for (int e = 0; e < table->size; ++e) {
+    widths[e + 1] = widths[e] + (int32_t)fmax(floor(entries->wide[e] / total * WIDTH_UNITS), 1.0);
+  }
+}
+
+static double width_of(const stratus_table* table, int e)
+{
+  const int32_t* widths = table->search_steps ? table->sums + stratus_table_widths_at(table) : NULL;
+  return widths ? (double)(widths[e + 1] - widths[e]) : 1.0;
+}
+
+/* Writes the four running sums in doubles, and the table's color_slope and color_most. An entry is the function at one value, not the mean
+ * over its width: a transparent value must stay transparent beside one that shows. */
+static void fill_sums(stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double* sums)
 {
   ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
-  double before[3] = { 0 }, steepest = 0.0, tau_before = 0.0;
+  double before[3] = { 0 }, least[3] = { 1.0, 1.0, 1.0 }, most[3] = { 0 }, steepest = 0.0, tau_before = 0.0, width_before = 0.0;
   memset(sums, 0, 4 * sizeof *sums);
-  for (int e = 0; e < size; ++e) {
+  for (int e = 0; e < table->size; ++e) {
     double* sum = sums + 4 * (size_t)e;
-    const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    const double tau = !whole[e] || outside(transfer, x) ? 0.0 : tau_of(transfer, opacity);
+    const double x = entries->value[e], opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+    const double tau = !entries->shows[e] || outside(transfer, x) ? 0.0 : tau_of(transfer, opacity), width = width_of(table, e);
     for (size_t c = 0; c < 3; ++c) {
       const double color = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
-      steepest = e > 0 && tau + tau_before > 0.0 ? fmax(steepest, fabs(color - before[c])) : steepest;
+      if (e > 0 && tau + tau_before > 0.0) {
+        steepest = fmax(steepest, fabs(color - before[c]) / (0.5 * (width + width_before)));
+        least[c] = fmin(least[c], fmin(color, before[c]));
+        most[c] = fmax(most[c], fmax(color, before[c]));
+      }
       before[c] = color;
-      sum[4 + c] = sum[c] + tau * color;
+      sum[4 + c] = sum[c] + tau * color * width;
     }
-    sum[7] = sum[3] + tau;
+    sum[7] = sum[3] + tau * width;
     tau_before = tau;
+    width_before = width;
   }
-  return steepest;
+  const double change = fmax(fmax(most[0] - least[0], most[1] - least[1]), most[2] - least[2]);
+  table->color_slope = (float)(COLOR_ERROR_INVERSE * steepest);
+  table->color_most = table->search_steps ? (float)(COLOR_ERROR_INVERSE * fmax(change, 0.0)) : OPAQUE_DEPTH;
 }
 
 /* True if the function is 1 not only at `value`, where it is known to be 1, but over an interval. *at: a point below the value, kept
@@ -229,15 +202,15 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
  * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray on its way to other entries stops at the first where the
  * function stays 1. Where the function only touches 1, the optical depth is also infinite, but only logarithmically: it adds little to rays
  * that pass, and everything to rays that stay. */
-static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width)
+static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries)
 {
   const int size = table->size;
   int32_t *up = table->sums + 4 * ((size_t)size + 1), *down = up + size;
   ptrdiff_t at = -1;
   size_t below = 0;
   for (int e = 0, last = -1; e < size; ++e) {
-    const double x = lo + e * width, opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
-    const bool opaque = opacity >= 1.0 && whole[e] && !outside(transfer, x), stays = opaque && stays_opaque(transfer, x, &below);
+    const double x = entries->value[e], opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
+    const bool opaque = opacity >= 1.0 && entries->shows[e] && !outside(transfer, x), stays = opaque && stays_opaque(transfer, x, &below);
     last = stays ? e : last;
     down[e] = opaque ? e : last;
     up[e] = stays ? e : size;
@@ -250,13 +223,16 @@ static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, 
 }
 
 static stratus_status fill_preintegrated(
-  stratus_table* table, const stratus_transfer* transfer, const uint8_t* whole, double lo, double width, double sample_distance)
+  stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double sample_distance)
 {
   const size_t words = 4 * ((size_t)table->size + 1);
   void* memory = NULL;
   TRY(stratus_allocate(table->context, words, sizeof(double), &memory));
   double* sums = memory;
-  table->color_slope = (float)(COLOR_ERROR_INVERSE * fill_sums(transfer, whole, lo, width, table->size, sums));
+  if (table->search_steps) {
+    fill_widths(table, entries);
+  }
+  fill_sums(table, transfer, entries, sums);
   const size_t row = words / 4;
   const double total = sums[words - 1], scale = total > 0.0 ? (SUM_MOST - table->size) / total : 0.0;
   const bool any = total > 0.0 && isfinite(scale);
@@ -272,7 +248,7 @@ static stratus_status fill_preintegrated(
     table->sums[3 * row + e] = (int32_t)tau;
   }
   table->sum_scale = any ? (float)fmin(sample_distance / scale, (double)OPAQUE_DEPTH) : 0.0f;
-  fill_opaque(table, transfer, whole, lo, width);
+  fill_opaque(table, transfer, entries);
   stratus_release(table->context, sums);
   return STRATUS_OK;
 }
@@ -296,12 +272,13 @@ static void fill_next_shown(stratus_table* table)
   }
 }
 
-stratus_table_values stratus_table_values_of(const stratus_value_range* ranges)
+stratus_table_values stratus_table_values_of(const stratus_value_range* ranges, bool nearest)
 {
   const bool any = ranges->whole_lo <= ranges->whole_hi;
-  return (stratus_table_values){
-    .fetching = stratus_value_range_fetching(ranges), .lo = any ? ranges->whole_lo : 0.0f, .hi = any ? ranges->whole_hi : 0.0f
-  };
+  return (stratus_table_values){ .fetching = stratus_value_range_fetching(ranges),
+    .lo = any ? ranges->whole_lo : 0.0f,
+    .hi = any ? ranges->whole_hi : 0.0f,
+    .nearest = nearest };
 }
 
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
@@ -311,60 +288,80 @@ stratus_status stratus_table_create(stratus_context* context, const stratus_tran
   return stratus_table_create_fine(context, transfer, values, sampling, sample_distance, entries, out);
 }
 
+/* Allocates the table's arrays, and copies what finds an entry. */
+static stratus_status allocate_table(stratus_table* table, const stratus_table_entries* entries, bool preintegrated)
+{
+  void* memory = NULL;
+  TRY(stratus_allocate(table->context, (size_t)table->size + 1, sizeof *table->next_shown, &memory));
+  table->next_shown = memory;
+  table->preintegrated = preintegrated;
+  TRY(stratus_allocate(table->context, stratus_table_words(table), sizeof *table->sums, &memory));
+  table->sums = preintegrated ? memory : NULL;
+  table->rgba = preintegrated ? NULL : memory;
+  if (table->search_steps) {
+    int32_t* words = memory;
+    memcpy(words + stratus_table_first_at(table), entries->first, ((size_t)table->cells + 1) * sizeof *words);
+    memcpy(words + stratus_table_bound_at(table), entries->bound, (size_t)table->size * sizeof *entries->bound);
+    table->first = words + stratus_table_first_at(table);
+    table->bound = (const float*)(words + stratus_table_bound_at(table));
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
-  stratus_sampling sampling, double sample_distance, int entries, stratus_table** out)
+  stratus_sampling sampling, double sample_distance, int least, stratus_table** out)
 {
   stratus_status status = STRATUS_OK;
   stratus_table* table = NULL;
+  stratus_pieces* pieces = NULL;
+  stratus_table_entries entries = { .cells = 0 };
   void* memory = NULL;
-  uint8_t* whole = NULL;
-  stratus_shown shown = { .of = NULL };
-  const double bias = values->fetching.bias;
-  double from = stratus_fetching_value(&values->fetching, values->lo), to = stratus_fetching_value(&values->fetching, values->hi);
-  table_span(transfer, &from, &to);
-  const int size = table_size(transfer, to - from, entries);
-  const double width = (to - from) / (size - 1);
 
+  TRY_CLEANUP(stratus_pieces_create(context, transfer, &pieces));
+  TRY_CLEANUP(stratus_table_entries_create(context, transfer, pieces, values, least, &entries));
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *table, &memory));
   table = memory;
   table->context = context;
-  table->size = size;
-  table->scale = width > 0.0 ? (float)(1.0 / width) : 0.0f;
-  table->offset = (float)(0.5 - (from - bias) * (double)table->scale);
-  if (!isfinite(table->scale) || !isfinite(table->offset)) {
-    status = stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "values from %g to %g lie too close together: floats can't tell %d steps between them", from, to, size);
-    goto cleanup;
-  }
-  TRY_CLEANUP(stratus_shown_of_transfer(context, &values->fetching, transfer, &shown));
-  TRY_CLEANUP(stratus_allocate(context, (size_t)size, sizeof *whole, &memory));
-  whole = memory;
-  find_whole(table, values, &shown, whole);
-  TRY_CLEANUP(stratus_allocate(context, (size_t)size + 1, sizeof *table->next_shown, &memory));
-  table->next_shown = memory;
-  if (sampling == STRATUS_SAMPLING_PREINTEGRATED) {
-    TRY_CLEANUP(stratus_allocate(context, 6 * (size_t)size + 4, sizeof *table->sums, &memory));
-    table->sums = memory;
-    TRY_CLEANUP(fill_preintegrated(table, transfer, whole, from, width, sample_distance));
+  table->size = entries.size;
+  table->cells = entries.cells;
+  table->scale = entries.scale;
+  table->offset = entries.offset;
+  table->search_steps = entries.steps;
+  TRY_CLEANUP(allocate_table(table, &entries, sampling == STRATUS_SAMPLING_PREINTEGRATED));
+  if (table->sums) {
+    TRY_CLEANUP(fill_preintegrated(table, transfer, &entries, sample_distance));
   } else {
-    TRY_CLEANUP(stratus_allocate(context, 8 * (size_t)size, sizeof *table->rgba, &memory));
-    table->rgba = memory;
-    fill_midpoint(table, transfer, whole, from, width, sample_distance);
+    fill_midpoint(table, transfer, &entries, sample_distance);
   }
   fill_next_shown(table);
   *out = table;
   table = NULL;
 
 cleanup:
-  stratus_release(context, shown.of);
-  stratus_release(context, whole);
+  stratus_table_entries_release(context, &entries);
+  stratus_pieces_destroy(pieces);
   stratus_table_destroy(table);
   return status;
 }
 
+size_t stratus_table_widths_at(const stratus_table* table)
+{
+  return table->preintegrated ? 6 * (size_t)table->size + 4 : 8 * (size_t)table->size;
+}
+
+size_t stratus_table_first_at(const stratus_table* table)
+{
+  return stratus_table_widths_at(table) + (table->preintegrated ? (size_t)table->size + 1 : 0);
+}
+
+size_t stratus_table_bound_at(const stratus_table* table)
+{
+  return stratus_table_first_at(table) + (size_t)table->cells + 1;
+}
+
 size_t stratus_table_words(const stratus_table* table)
 {
-  return table->rgba ? 8 * (size_t)table->size : 6 * (size_t)table->size + 4;
+  return table->search_steps ? stratus_table_bound_at(table) + (size_t)table->size : stratus_table_widths_at(table);
 }
 
 void stratus_table_destroy(stratus_table* table)

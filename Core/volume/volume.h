@@ -70,6 +70,30 @@ static inline stratus_fetching stratus_value_range_fetching(const stratus_value_
 
 /* ---- transfer_table.c */
 
+/* Most entries of a table: rays hold entries in floats, which are exact that far. */
+#define STRATUS_TABLE_MOST 8000000
+
+/* The cell of a value in a table's uniform grid. NaN gives 0. */
+static inline int stratus_grid_cell(float scale, float offset, int cells, float value)
+{
+  const float place = fmaf(value, scale, offset), last = (float)(cells - 1);
+  return (int)(!(place > 0.0f) ? 0.0f : place > last ? last : place);
+}
+
+/* Returns the last of the entries first..beyond-1 that is the first, or whose bound is at most `value`. */
+static inline int stratus_entry_within(const float* bound, int first, int beyond, float value)
+{
+  while (beyond - first > 1) {
+    const int middle = first + (beyond - first) / 2;
+    if (bound[middle] <= value) {
+      first = middle;
+    } else {
+      beyond = middle;
+    }
+  }
+  return first;
+}
+
 /* The transfer function as traversal samples it. stratus_table_entry() gives the entry e of a fetched value. Midpoint sampling reads
  * colour times alpha, and alpha, from rgba[4*e] on, for one whole sample distance. Pre-integrated sampling reads the inclusive range of
  * entries between two values: sums[last+1] - sums[first] of each of the four rows. An entry with zero opacity is exactly 0 in both. An
@@ -77,18 +101,27 @@ static inline stratus_fetching stratus_value_range_fetching(const stratus_value_
 typedef struct stratus_table {
   stratus_context* context;
   int size;            /* number of entries */
-  float scale, offset; /* entry = (int) clamp(fma(s, scale, offset), 0, size-1) */
+  int cells;           /* of the uniform grid: cell = (int) clamp(fma(s, scale, offset), 0, cells-1) */
+  float scale, offset; /* of the grid */
+  int search_steps;    /* 0: entries are cells. Else cells have several: so many bisections find one */
+  bool preintegrated;  /* it has sums, else rgba */
   int* next_shown;     /* size+1 numbers: the smallest entry >= i with any opacity, `size` if there is none */
   /* NULL if pre-integrated. Behind the size*4 floats follow 4 more for each entry: the optical depth of a whole sample distance, 0, 0,
    * 0. */
   float* rgba;
   /* NULL if midpoint. Four rows of size+1 running sums, of r tau, g tau, b tau and tau, in units of sum_scale. Then two rows of `size`
-   * entry numbers, see fill_opaque(). */
+   * entry numbers, see fill_opaque(). If entries are not cells, then a row of size+1 running sums of widths, which the other rows' terms
+   * are multiplied by. */
   int32_t* sums;
-  float sum_scale; /* optical depth per entry and per sample distance */
+  /* If entries are not cells: the first entry of each cell, and `size`; the bound at which each entry begins that is not its cell's first.
+   * Both are behind rgba or sums, in the same allocation. */
+  const int32_t* first;
+  const float* bound;
+  float sum_scale; /* optical depth per entry (or width) and per sample distance */
   int has_opaque;  /* pre-integrated: 1 if any entry has opacity 1 */
-  /* Pre-integrated: the largest change of colour between neighbouring entries with opacity, divided by the error allowed. */
-  float color_slope;
+  /* Pre-integrated: the largest change of colour between neighbouring entries with opacity, per entry (or width), and that over all entries
+   * with opacity, divided by the error allowed. */
+  float color_slope, color_most;
   int shown;      /* number of entries with opacity */
   int last_shown; /* the last of them, -1 if none */
 } stratus_table;
@@ -97,26 +130,31 @@ typedef struct stratus_table {
 typedef struct stratus_table_values {
   stratus_fetching fetching;
   float lo, hi;
+  bool nearest; /* values are not interpolated */
+  bool uniform; /* entries are the cells of the grid, and each is the function at its middle, whatever else it mixes */
 } stratus_table_values;
 
 /* The values of a volume. One without finite values has a table of the value 0. */
-stratus_table_values stratus_table_values_of(const stratus_value_range* ranges);
+stratus_table_values stratus_table_values_of(const stratus_value_range* ranges, bool nearest);
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, stratus_table** table);
-/* Makes a table of at least `entries` entries, 1..65536. */
+/* Makes a table of at least `entries` entries, 1..65536, or about as many where values are whole numbers. */
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, int entries, stratus_table** table);
 void stratus_table_destroy(stratus_table* table);
 /* Returns the size, in words of four bytes, of rgba or sums with all that follows them. */
 size_t stratus_table_words(const stratus_table* table);
+/* Return where in these words the widths, first[] and bound[] begin; meant for tables whose entries are not cells. */
+size_t stratus_table_widths_at(const stratus_table* table);
+size_t stratus_table_first_at(const stratus_table* table);
+size_t stratus_table_bound_at(const stratus_table* table);
 /* Gives the function at one value: colour, not multiplied by opacity, and opacity. */
 void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4]);
 
 static inline int stratus_table_entry(const stratus_table* table, float value)
 {
-  const float entry = fmaf(value, table->scale, table->offset);
-  const float last = (float)(table->size - 1);
-  return (int)(!(entry > 0.0f) ? 0.0f : entry > last ? last : entry); /* NaN gives 0 */
+  const int cell = stratus_grid_cell(table->scale, table->offset, table->cells, value);
+  return table->first ? stratus_entry_within(table->bound, table->first[cell], table->first[cell + 1], value) : cell;
 }
 
 /* Returns 1 if the table shows anything for any value interpolated within [lo, hi]. The range is widened by more than interpolation can

@@ -60,9 +60,15 @@ INLINE vfloat v_power(vfloat a, float power)
 }
 
 /* The entry of a value in component c's table. */
-INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, int c, vfloat value)
+INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, vfloat value)
 {
-  return v_to_int(v_clamp(v_fma(value, v_set(a->media.scale[c]), v_set(a->media.offset[c])), 0.0f, a->media.last[c]));
+  const vint cell = v_to_int(v_clamp(v_fma(value, v_set(a->media.scale[c]), v_set(a->media.offset[c])), 0.0f, a->media.last[c]));
+  if (a->media.search_steps[c]) {
+    GLOBAL const int* words = (GLOBAL const int*)table;
+    return search_entry(
+      words + a->media.first_at[c], words + a->media.bound_at[c], a->media.search_steps[c], cell, value, vi_ge(cell, vi_set(0)));
+  }
+  return cell;
 }
 
 /* What component c's gradient opacity multiplies its optical depth by, where its index gradient is g; 1 without such a function. */

@@ -112,12 +112,15 @@ typedef struct stratus_ray_media {
   int component_bytes;                /* from a value to the next component's */
   float gradient_length[3];           /* takes a value's index gradient to value per mean spacing */
   int first[4];                       /* where each component's table begins */
-  float scale[4], offset[4], last[4]; /* a component's table: as in stratus_table_arguments */
-  int factor_first[4];                /* where each component's gradient opacity begins; -1: it has none */
+  float scale[4], offset[4], last[4]; /* a component's table: as in stratus_table_arguments, as the next row */
+  int search_steps[4], first_at[4], bound_at[4];
+  int factor_first[4]; /* where each component's gradient opacity begins; -1: it has none */
   float factor_scale[4], factor_last[4];
   float weight[4];
-  int label_first, label_count; /* label_first: where the records of labels 0..label_count begin: scale, offset, last entry, and first entry
-                                   / 4. label_count 0: there are no labels */
+  /* label_first: where the records of labels 0..label_count begin. Four floats: scale, offset and last cell of a label's grid, 0. Four
+   * ints: its table's first entry / 4; the number of its entries; where the first entries of its cells begin, 0 if entries are cells; where
+   * the entries' bounds begin. label_count 0: there are no labels. label_steps: the most bisections of a label's table. */
+  int label_first, label_count, label_steps;
 } stratus_ray_media;
 
 typedef struct stratus_ray_cast_arguments {

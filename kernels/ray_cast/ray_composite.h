@@ -28,7 +28,7 @@ INLINE void shorten_layer(
   const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
   if (m_any(part)) { /* only the segments at a ray's ends are shorter than a sample distance */
     vfloat last[4];
-    gather_four(table + 4 * ((int)a->table.last + 1), entry, part, last);
+    gather_four(table + 4 * a->table.entries, entry, part, last);
     const vfloat alpha = v_absorbed(last[0] * weight),
                  ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
     for (int c = 0; c < 4; ++c) {
@@ -54,7 +54,7 @@ INLINE void light_layer(const stratus_lit_sample* lighting, vfloat layer[4])
 INLINE void shade_sample(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k, vmask mask, vfloat value, vfloat weight, vfloat lo)
 {
-  const vint entry = table_entry(&a->table, value);
+  const vint entry = table_entry(&a->table, table, value);
   vfloat layer[4];
   gather_four(table, entry, mask, layer);
   shorten_layer(a, table, entry, mask, weight, layer);
@@ -65,7 +65,7 @@ INLINE void shade_sample(
 INLINE vmask segment_shows(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
 {
-  const vint entry = table_entry(&a->table, value), front = table_entry(&a->table, k->front);
+  const vint entry = table_entry(&a->table, sums, value), front = table_entry(&a->table, sums, k->front);
   return mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
 }
 
@@ -75,7 +75,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const vfloat place = table_place(&a->table, value), front_place = table_place(&a->table, k->front);
+  const vfloat place = table_place(&a->table, sums, value), front_place = table_place(&a->table, sums, k->front);
   /* most segments, even in occupied blocks, miss all that shows, and need not read the sums */
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
@@ -89,13 +89,17 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vint opaque_entry = front;
   vmask opaque = m_none();
   if (a->table.has_opaque) {
-    opaque = opaque_on_the_way(&a->table, sums + 4 * ((int)a->table.last + 2), front, entry, mask & v_lt(zero, weight), &opaque_entry);
+    opaque = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), front, entry, mask & v_lt(zero, weight), &opaque_entry);
     if (m_any(opaque)) { /* the segment is cut before the opaque entry, which is composited behind it */
       const vint before = vi_max(opaque_entry, front) - vi_min(opaque_entry, front);
-      const vfloat part = v_from_int(before) * v_reciprocal(v_from_int(beyond - low));
+      const vmask rises = vi_ge(opaque_entry, front);
+      const vint one_more = vi_set(1);
+      const vfloat way = width_between(&a->table, sums, vi_select(rises, front, opaque_entry + one_more),
+        vi_select(rises, opaque_entry, front + one_more), opaque & vi_lt(vi_set(0), before));
+      const vfloat part = way * v_reciprocal(v_max(width_between(&a->table, sums, low, beyond, opaque), one));
       depth_scale = v_select(opaque, depth_scale * part, depth_scale);
       rise = v_select(opaque, rise * part, rise);
-      entry = vi_select(opaque, vi_select(vi_ge(opaque_entry, front), opaque_entry - vi_set(1), opaque_entry + vi_set(1)), entry);
+      entry = vi_select(opaque, vi_select(rises, opaque_entry - vi_set(1), opaque_entry + vi_set(1)), entry);
       mask = m_andnot(mask, opaque & vi_ge(vi_set(0), before));
       low = vi_select(mask, vi_min(entry, front), low);
       beyond = vi_select(mask, vi_max(entry, front) + vi_set(1), beyond);
@@ -106,8 +110,8 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   if (!m_any(mask | opaque)) {
     return;
   }
-  vfloat entries = v_from_int(beyond - low);
-  const vfloat pieces = segment_pieces(&a->table, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
+  vfloat entries = width_between(&a->table, sums, low, beyond, mask);
+  const vfloat pieces = segment_pieces_within(&a->table, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
   const vmask several = mask & v_lt(one, pieces);
   vfloat share = one, piece = zero;
   vint from = front;
@@ -118,10 +122,10 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
     vint to = entry;
     if (m_any(several)) { /* the next piece; the last piece ends where the segment does */
       piece = piece + one;
-      to = vi_select(v_lt(piece, pieces), table_entry(&a->table, v_fma(rise, piece * share, k->front)), entry);
+      to = vi_select(v_lt(piece, pieces), table_entry(&a->table, sums, v_fma(rise, piece * share, k->front)), entry);
       low = vi_min(from, to);
       beyond = vi_max(from, to) + vi_set(1);
-      entries = v_from_int(beyond - low);
+      entries = width_between(&a->table, sums, low, beyond, mask);
       tau = sum_between(&a->table, sums, 3, low, beyond, mask);
       from = to;
     }

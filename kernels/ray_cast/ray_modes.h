@@ -28,7 +28,7 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 {
   const vmask found = k->hits & v_lt(v_set(-LARGEST_FLOAT), k->front);
   vfloat layer[4];
-  gather_four((GLOBAL const float*)table, table_entry(&a->table, v_set(a->mode.sign) * k->front), found, layer);
+  gather_four((GLOBAL const float*)table, table_entry(&a->table, table, v_set(a->mode.sign) * k->front), found, layer);
   k->red = layer[0];
   k->green = layer[1];
   k->blue = layer[2];
@@ -44,7 +44,7 @@ INLINE void RAY_NAME(ray_shade)(
   const vfloat value = sample->value;
   const vmask counts = k->live & v_finite(value) & v_le(v_set(a->mode.counted_first), value) & v_le(value, v_set(a->mode.counted_last));
   vfloat layer[4];
-  gather_four((GLOBAL const float*)table, table_entry(&a->table, value), counts, layer);
+  gather_four((GLOBAL const float*)table, table_entry(&a->table, table, value), counts, layer);
   const vfloat grey = v_fma(value, v_set(a->mode.grey_scale), v_set(a->mode.grey_offset)) * layer[3];
   k->samples -= mask_int(k->live);
   k->front = v_select(counts, v_fma(grey, sample->weight, k->front), k->front);

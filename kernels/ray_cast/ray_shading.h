@@ -67,7 +67,7 @@ INLINE void RAY_NAME(add_independent)(
   for (int c = 0; c < a->media.components; ++c) {
     const vfloat value = RAY_NAME(component_value)(a, k, sample, c, k->live);
     vfloat layer[4];
-    gather_four((GLOBAL const float*)table + a->media.first[c], shading_entry(a, c, value), k->live & v_finite(value), layer);
+    gather_four((GLOBAL const float*)table + a->media.first[c], shading_entry(a, table, c, value), k->live & v_finite(value), layer);
     RAY_NAME(ray_add_medium)(a, table, c, k, sample, k->live, layer, sum);
   }
 }
@@ -79,7 +79,7 @@ INLINE void RAY_NAME(add_dependent)(
   const int last = a->media.components - 1;
   vfloat value = RAY_NAME(component_value)(a, k, sample, last, k->live), layer[4], color[4];
   vmask valid = k->live & v_finite(value);
-  gather_four((GLOBAL const float*)table + a->media.first[last], shading_entry(a, last, value), valid, layer);
+  gather_four((GLOBAL const float*)table + a->media.first[last], shading_entry(a, table, last, value), valid, layer);
   valid = valid & v_lt(v_set(0.0f), layer[3]);
   if (!m_any(valid)) {
     return;
@@ -87,7 +87,7 @@ INLINE void RAY_NAME(add_dependent)(
   if (last == 1) {
     value = RAY_NAME(component_value)(a, k, sample, 0, valid);
     valid = valid & v_finite(value);
-    gather_four((GLOBAL const float*)table + a->media.first[0], shading_entry(a, 0, value), valid, color);
+    gather_four((GLOBAL const float*)table + a->media.first[0], shading_entry(a, table, 0, value), valid, color);
   } else {
     for (int c = 0; c < 3; ++c) {
       color[c] = RAY_NAME(component_value)(a, k, sample, c, valid) * v_set(1.0f / 255.0f);
@@ -149,9 +149,27 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
+  GLOBAL const int* ints = (GLOBAL const int*)table;
+  const vint label = RAY_NAME(label_at)(a, sample->hidden, x, valid), record = label + label, numbers = record + vi_set(1);
   vfloat of[4], layer[4];
-  gather_four(floats + a->media.label_first, RAY_NAME(label_at)(a, sample->hidden, x, valid), valid, of);
-  const vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2])) + v_to_int(of[3]);
+  vint place[4];
+  gather_four(floats + a->media.label_first, record, valid, of);
+  for (int i = 0; i < 4; ++i) {
+    place[i] = v_gather_ints(ints + a->media.label_first + i, numbers << vi_set(2), valid);
+  }
+  vint entry = v_to_int(v_min(v_max(v_fma(sample->value, of[0], of[1]), zero), of[2]));
+  if (a->media.label_steps) { /* a label whose entries are cells has none to search in */
+    const vmask divided = valid & vi_lt(vi_set(0), place[2]);
+    const vint cell = entry + place[2];
+    entry = vi_select(divided, v_gather_ints(ints, cell, divided), entry);
+    const vint beyond = v_gather_ints(ints + 1, cell, divided);
+    for (int ahead = 1 << (a->media.label_steps - 1); ahead > 0; ahead >>= 1) {
+      const vint next = entry + vi_set(ahead);
+      const vmask inside = divided & vi_lt(next, beyond);
+      entry = vi_select(inside & v_le(v_from_bits(v_gather_ints(ints, next + place[3], inside)), sample->value), next, entry);
+    }
+  }
+  entry = entry + place[0];
   gather_four(floats, entry, valid, layer);
   const vmask shows = valid & v_lt(zero, layer[3]);
   if (m_any(shows)) {
@@ -161,7 +179,7 @@ OUTLINE void RAY_NAME(shade_labels)(
     const vmask part = shows & v_lt(thick, v_set(1.0f));
     if (m_any(part)) { /* as shorten_layer() */
       vfloat depth[4];
-      gather_four(floats, entry + v_to_int(of[2]) + vi_set(1), part, depth);
+      gather_four(floats, entry + place[1], part, depth);
       const vfloat alpha = v_absorbed(depth[0] * thick),
                    ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
       for (int c = 0; c < 4; ++c) {
@@ -197,7 +215,7 @@ OUTLINE void RAY_NAME(ray_shade)(
   } else if (a->media.label_count > 0) {
     RAY_NAME(shade_labels)(a, table, k, sample);
   } else {
-    const vint entry = table_entry(&a->table, value);
+    const vint entry = table_entry(&a->table, table, value);
     vfloat layer[4];
     gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
     const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);

@@ -30,7 +30,7 @@ typedef struct stratus_tetra_place {
 INLINE stratus_tetra_place tetra_place(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, vfloat value, vmask mask)
 {
   stratus_tetra_place place;
-  place.entry = table_entry(&a->table, value);
+  place.entry = table_entry(&a->table, sums, value);
   gather_four_ints(sums, place.entry, mask, place.sum);
   return place;
 }

@@ -144,7 +144,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));
   vi_store(segments, k->segments);
   if (t->arguments->maximum) {
-    vi_store(entry, table_entry(&t->arguments->table, k->light.most));
+    vi_store(entry, table_entry(&t->arguments->table, t->view->colors, k->light.most));
   }
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     float rgba[4];

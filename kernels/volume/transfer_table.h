@@ -6,20 +6,54 @@
 #include "gather.h"
 #include "table_arguments.h"
 
-/* A value's place in the table: the whole part is its entry. */
-INLINE vfloat table_place(CONSTANT stratus_table_arguments* t, vfloat value)
+/* The entries of values within cells of several entries. first: the first entry of each cell; bound: where entries begin that are not their
+ * cell's first. */
+INLINE vint search_entry(GLOBAL const int* first, GLOBAL const int* bound, int steps, vint cell, vfloat value, vmask mask)
 {
-  return v_clamp(v_fma(value, v_set(t->scale), v_set(t->offset)), 0.0f, t->last);
+  vint entry = v_gather_ints(first, cell, mask);
+  const vint beyond = v_gather_ints(first, cell + vi_set(1), mask);
+  for (int ahead = 1 << (steps - 1); ahead > 0; ahead >>= 1) {
+    const vint next = entry + vi_set(ahead);
+    const vmask inside = mask & vi_lt(next, beyond);
+    entry = vi_select(inside & v_le(v_from_bits(v_gather_ints(bound, next, inside)), value), next, entry);
+  }
+  return entry;
 }
 
-INLINE vint table_entry(CONSTANT stratus_table_arguments* t, vfloat value) { return v_to_int(table_place(t, value)); }
+/* A value's place in the table: the whole part is its entry. */
+INLINE vfloat table_place(CONSTANT stratus_table_arguments* t, GLOBAL const void* table, vfloat value)
+{
+  vfloat place = v_clamp(v_fma(value, v_set(t->scale), v_set(t->offset)), 0.0f, t->last);
+  if (t->search_steps) {
+    GLOBAL const int* words = (GLOBAL const int*)table;
+    const vint cell = v_to_int(place);
+    place = v_from_int(search_entry(words + t->first_at, words + t->bound_at, t->search_steps, cell, value, vi_ge(cell, vi_set(0))));
+  }
+  return place;
+}
+
+INLINE vint table_entry(CONSTANT stratus_table_arguments* t, GLOBAL const void* table, vfloat value)
+{
+  return v_to_int(table_place(t, table, value));
+}
 
 /* The sum over entries low..beyond-1 of row `which`: 0..2 red, green, blue times tau; 3 tau. Running sums are integers, so that their
  * difference is exact, and exactly zero over a transparent stretch. */
 INLINE vfloat sum_between(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, int which, vint low, vint beyond, vmask mask)
 {
-  GLOBAL const int* sum = sums + which * ((int)t->last + 2);
+  GLOBAL const int* sum = sums + which * (t->entries + 1);
   return v_from_int(gather_int32(sum, beyond, mask) - gather_int32(sum, low, mask));
+}
+
+/* What the sums over entries low..beyond-1 are divided by to get a mean: the number of entries, or their widths. */
+INLINE vfloat width_between(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vint low, vint beyond, vmask mask)
+{
+  vint width = beyond - low;
+  if (t->search_steps) {
+    GLOBAL const int* widths = sums + t->widths_at;
+    width = gather_int32(widths, beyond, mask) - gather_int32(widths, low, mask);
+  }
+  return v_from_int(width);
 }
 
 /* Lanes whose way from one entry to another meets an entry of opacity 1; *first is the first such entry of each. rows: the two rows of
@@ -27,18 +61,33 @@ INLINE vfloat sum_between(CONSTANT stratus_table_arguments* t, GLOBAL const int*
 INLINE vmask opaque_on_the_way(CONSTANT stratus_table_arguments* t, GLOBAL const int* rows, vint from, vint to, vmask mask, vint* first)
 {
   const vmask rises = vi_ge(to, from);
-  *first = gather_int32(rows, from + vi_select(rises, vi_set(0), vi_set((int)t->last + 1)), mask);
+  *first = gather_int32(rows, from + vi_select(rises, vi_set(0), vi_set(t->entries)), mask);
   return mask & ((rises & vi_ge(to, *first)) | m_andnot(vi_ge(*first, to), rises));
+}
+
+/* The number of pieces by the error of one, relative to that allowed. */
+INLINE vfloat pieces_for(vfloat q)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  vfloat pieces = one + v_select(v_lt(one, q), one, zero) + v_select(v_lt(v_set(4.0f), q), one, zero);
+  pieces = pieces + v_select(v_lt(v_set(9.0f), q), v_set(2.0f), zero) + v_select(v_lt(v_set(25.0f), q), v_set(3.0f), zero);
+  return pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero);
 }
 
 /* Into how many pieces a segment is cut. Averaging a piece's colour is wrong by an error that grows with optical depth and with the most
  * that the colour can change over the entries, and falls with the square of the number of pieces. */
 INLINE vfloat segment_pieces(CONSTANT stratus_table_arguments* t, vfloat depth, vfloat entries)
 {
-  const vfloat q = depth * entries * v_set(t->color_slope), zero = v_set(0.0f), one = v_set(1.0f);
-  vfloat pieces = one + v_select(v_lt(one, q), one, zero) + v_select(v_lt(v_set(4.0f), q), one, zero);
-  pieces = pieces + v_select(v_lt(v_set(9.0f), q), v_set(2.0f), zero) + v_select(v_lt(v_set(25.0f), q), v_set(3.0f), zero);
-  return pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero);
+  return pieces_for(depth * entries * v_set(t->color_slope));
+}
+
+/* The same for any table: no colour changes by more than it does over the whole table. */
+INLINE vfloat segment_pieces_within(CONSTANT stratus_table_arguments* t, vfloat depth, vfloat widths)
+{
+  if (t->search_steps) {
+    return pieces_for(depth * v_min(widths * v_set(t->color_slope), v_set(t->color_most)));
+  }
+  return segment_pieces(t, depth, widths);
 }
 
 #endif
