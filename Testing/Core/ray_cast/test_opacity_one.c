@@ -114,6 +114,47 @@ static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
   }
 }
 
+/* The function reaches 1 exactly at the slab's value, wherever that lies in the table: at the foot of a plateau, at a peak, between steps.
+ */
+static void opacity_1_at_the_value_itself_is_opaque(void** state)
+{
+  static const double foot[] = { 0, 0, 100.3, 1, 200, 1 }, peak[] = { 0, 0, 100.3, 1, 200, 0 },
+                      top[] = { 0, 0, 100.3, 1, 100.3, 0.2, 200, 0.2 };
+  static const double window[] = { 99.8, 0, 99.8, 1, 100.8, 1, 100.8, 0 }, narrow[] = { 100.29, 0, 100.29, 1, 100.31, 1, 100.31, 0 };
+  const float inside = 100.3f;
+  double points[5][8];
+  const double* const shapes[] = { foot, peak, top, window, narrow };
+  static const size_t counts[] = { 3, 3, 4, 4, 4 };
+  for (int f = 0; f < 5; ++f) {
+    memcpy(points[f], shapes[f], 2 * counts[f] * sizeof(double));
+    for (size_t i = 0; i < counts[f]; ++i) { /* the slab's value is a float */
+      points[f][2 * i] = points[f][2 * i] == 100.3 ? (double)inside : points[f][2 * i];
+    }
+    const stratus_transfer transfer = function_of(points[f], counts[f]);
+    for (size_t s = 0; f != 2 && s < sizeof spacings / sizeof *spacings; ++s) { /* at `top` the last point's .2 counts */
+      for (int kind = 0; kind < 3; ++kind) {
+        stratus_ray_cast_options options = stratus_ray_cast_options_default();
+        options.sampling = kind == 1 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+        options.interpolation = kind == 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+        options.termination = 1.0;
+        fill_slab(inside, 0.0f);
+        values[0] = 255.0f;
+        options.structure = STRATUS_STRUCTURE_NONE;
+        draw(*state, spacings[s], &transfer, &options, drawn);
+        if (drawn[4 * CENTRE + 3] != 1.0f || fabsf(drawn[4 * CENTRE] - 1.0f) > 1e-6f) {
+          fail_msg("function %d, spacing %g, kind %d: alpha %.9g, red %.9g", f, spacings[s], kind, (double)drawn[4 * CENTRE + 3],
+            (double)drawn[4 * CENTRE]);
+        }
+        for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+          options.structure = (stratus_structure)structure;
+          draw(*state, spacings[s], &transfer, &options, other);
+          assert_memory_equal(drawn, other, sizeof drawn);
+        }
+      }
+    }
+  }
+}
+
 /* Between values far apart the function is 1 over less than a few entries of a table: rays that pass through it end there all the same. */
 static void a_narrow_band_of_opacity_1_is_met_on_the_way(void** state)
 {
@@ -265,6 +306,7 @@ static int run_on(const char* device)
   stratus_context* context = open_context(device);
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_prestate(a_slab_of_opacity_1_is_opaque_at_any_spacing, context),
+    cmocka_unit_test_prestate(opacity_1_at_the_value_itself_is_opaque, context),
     cmocka_unit_test_prestate(a_narrow_band_of_opacity_1_is_met_on_the_way, context),
     cmocka_unit_test_prestate(what_is_nearly_opaque_is_as_translucent_as_it_should_be, context),
     cmocka_unit_test_prestate(a_peak_that_touches_1_is_no_wall, context),
