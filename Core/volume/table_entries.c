@@ -39,7 +39,8 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. */
+/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. A table of sums spans all
+ * values: a mean over entries counts all of the way from one value to another. */
 static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
 {
   const double* first = transfer->opacity;
@@ -94,7 +95,9 @@ static stratus_status make_grid(stratus_context* context, const stratus_transfer
   stratus_table_entries* t, bool* whole)
 {
   double from = stratus_fetching_value(&values->fetching, values->lo), to = stratus_fetching_value(&values->fetching, values->hi);
-  table_span(transfer, &from, &to);
+  if (!values->sums) {
+    table_span(transfer, &from, &to);
+  }
   const int cells = table_cells(transfer, to - from, least);
   *whole = !values->uniform && place_whole_numbers(t, values, from, to, cells);
   if (*whole) {

@@ -308,17 +308,19 @@ static stratus_status allocate_table(stratus_table* table, const stratus_table_e
   return STRATUS_OK;
 }
 
-stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
+stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* given,
   stratus_sampling sampling, double sample_distance, int least, stratus_table** out)
 {
+  stratus_table_values values = *given;
   stratus_status status = STRATUS_OK;
   stratus_table* table = NULL;
   stratus_pieces* pieces = NULL;
   stratus_table_entries entries = { .cells = 0 };
   void* memory = NULL;
 
+  values.sums = sampling == STRATUS_SAMPLING_PREINTEGRATED;
   TRY_CLEANUP(stratus_pieces_create(context, transfer, &pieces));
-  TRY_CLEANUP(stratus_table_entries_create(context, transfer, pieces, values, least, &entries));
+  TRY_CLEANUP(stratus_table_entries_create(context, transfer, pieces, &values, least, &entries));
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *table, &memory));
   table = memory;
   table->context = context;

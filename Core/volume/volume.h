@@ -131,6 +131,7 @@ typedef struct stratus_table_values {
   stratus_fetching fetching;
   float lo, hi;
   bool nearest; /* values are not interpolated */
+  bool sums;    /* the table is one of running sums; set by stratus_table_create_fine() */
   bool uniform; /* entries are the cells of the grid, and each is the function at its middle, whatever else it mixes */
 } stratus_table_values;
 

@@ -44,6 +44,16 @@ double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64
   return reference_value_at(volume, (k * volume->dimensions[1] + j) * volume->dimensions[0] + i);
 }
 
+/* The number of the last point at or below the value, of which there is one: of points of equal value, the last counts at that value. */
+static size_t point_below(const double* p, size_t count, size_t width, double value)
+{
+  size_t i = 0;
+  while (i + 1 < count && p[(i + 1) * width] <= value) {
+    ++i;
+  }
+  return i;
+}
+
 double reference_opacity(const stratus_transfer* transfer, double value)
 {
   const double* p = transfer->opacity;
@@ -51,27 +61,16 @@ double reference_opacity(const stratus_transfer* transfer, double value)
   if (value < p[0] || value > p[2 * (n - 1)]) {
     return !transfer->clamp ? 0.0 : value < p[0] ? p[1] : p[2 * n - 1];
   }
-  for (size_t i = 1; i < n; ++i) {
-    if (value <= p[2 * i] && p[2 * i] > p[2 * i - 2]) {
-      return p[2 * i - 1] + (value - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]) * (p[2 * i + 1] - p[2 * i - 1]);
-    }
-  }
-  return p[2 * n - 1];
+  const double* a = p + 2 * point_below(p, n, 2, value);
+  return value > a[0] ? a[1] + (value - a[0]) / (a[2] - a[0]) * (a[3] - a[1]) : a[1];
 }
 
 void reference_color(const stratus_transfer* transfer, double value, double rgb[3])
 {
   const double* p = transfer->color;
-  const size_t n = transfer->color_count;
-  size_t i = 1;
-  while (i < n && !(value <= p[4 * i] && p[4 * i] > p[4 * i - 4])) {
-    ++i;
-  }
-  const double* b = i < n ? p + 4 * i : p + 4 * (n - 1);
-  const double* a = i < n ? b - 4 : b;
-  double t = b[0] > a[0] ? (value - a[0]) / (b[0] - a[0]) : 0.0;
-  t = value <= p[0] ? 0.0 : t;
-  a = value <= p[0] ? p : a;
+  const size_t n = transfer->color_count, i = value < p[0] ? 0 : point_below(p, n, 4, value);
+  const double *a = p + 4 * i, *b = value > a[0] && i + 1 < n ? a + 4 : a;
+  const double t = b > a ? (value - a[0]) / (b[0] - a[0]) : 0.0;
   for (int c = 0; c < 3; ++c) {
     rgb[c] = a[1 + c] + t * (b[1 + c] - a[1 + c]);
   }
