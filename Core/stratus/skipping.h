@@ -41,8 +41,9 @@ typedef enum stratus_sampling {
 
 typedef struct stratus_occupancy stratus_occupancy;
 
-/* Marks the occupied blocks: those where the transfer function, as the renderer samples it, shows anything over the hull of the block's
- * range. */
+/* Marks the occupied blocks: those where the transfer function shows anything over the hull of the block's range, exactly. Types of more
+ * than 24 bits are compared as the floats that stand for them. Unless sampling is MIDPOINT, a block with gaps counts if anything shows in
+ * the volume at all. */
 STRATUS_EXPERIMENTAL stratus_status stratus_occupancy_create(stratus_context* context, const stratus_value_range* ranges,
   const stratus_transfer* transfer, stratus_sampling sampling, stratus_occupancy** occupancy);
 /* Marks the blocks whose range meets lower..upper, ends included, lower <= upper, infinities allowed. The comparison is exact. Types of

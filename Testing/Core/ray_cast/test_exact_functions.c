@@ -161,12 +161,74 @@ static void a_plateau_of_a_millionth_is_shown(void** state)
   }
 }
 
+/* Several functions in one picture, of which one has divided cells: labels, and independent components. */
+static void each_of_several_functions_is_resolved(void** state)
+{
+  static const double white[] = { 0, 1, 1, 1 }, none[] = { 0, 0 }, some[] = { 0, 0.1 };
+  static uint8_t mask[VALUES];
+  static float pairs[2 * VALUES];
+  const double at = (double)0.3712345f, w = 1e-6;
+  const double steps[] = { at - w / 2, 0, at - w / 2, 0.3, at + w / 2, 0.3, at + w / 2, 0 };
+  const double middle = 0.5 * (SIDE - 1), eye[3] = { middle, middle, 4.0 * SIDE }, focal[3] = { middle, middle, 0.0 }, up[3] = { 0, 1, 0 };
+  const stratus_image image = { .width = WIDTH, .height = WIDTH, .rgba = drawn };
+  stratus_transfer transfer[3];
+  stratus_camera camera;
+  assert_int_equal(stratus_camera_parallel(*state, eye, focal, up, 0.6 * SIDE, 1.0, &camera), STRATUS_OK);
+  for (int f = 0; f < 3; ++f) {
+    transfer[f] = stratus_transfer_default();
+    transfer[f].opacity = f == 0 ? none : f == 1 ? steps : some;
+    transfer[f].opacity_count = f == 1 ? 4 : 1;
+    transfer[f].color = white;
+    transfer[f].color_count = 1;
+  }
+  fill_slab(STRATUS_FLOAT32, at, 0.0, 1.0);
+  for (int i = 0; i < VALUES; ++i) {
+    mask[i] = i % SIDE < SIDE / 2 ? 1 : 2;
+    pairs[2 * i] = 0.0f;
+    pairs[2 * i + 1] = values.of_float[i];
+  }
+  for (int components = 0; components < 2; ++components) {
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    stratus_volume volume = stratus_volume_default();
+    stratus_ray_caster* caster = NULL;
+    volume.values = components ? (void*)pairs : (void*)&values;
+    volume.components = 1 + components;
+    volume.value_stride = 1 + components;
+    volume.dimensions[0] = volume.dimensions[1] = volume.dimensions[2] = SIDE;
+    options.sample_distance = 0.25;
+    options.termination = 1.0;
+    options.audit = 1;
+    options.mask = components ? NULL : mask;
+    options.label_count = components ? 0 : 2;
+    assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+    for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+      stratus_ray_cast_report report;
+      options.structure = (stratus_structure)structure;
+      if (stratus_ray_caster_render(caster, &volume, transfer, &camera, &options, &image, &report) != STRATUS_OK) {
+        fail_msg("%s", stratus_context_message(*state));
+      }
+      assert_int_equal(report.differing_pixels, 0);
+      const double left = (double)drawn[4 * (CENTRE - 3) + 3], right = (double)drawn[4 * (CENTRE + 3) + 3];
+      if (components) {
+        check_slab(left, 0.3, STRATUS_INTERPOLATION_LINEAR, 1e-6, "component", 1);
+        check_slab(right, 0.3, STRATUS_INTERPOLATION_LINEAR, 1e-6, "component", 1);
+      } else {
+        const double whole = absorbed(0.1, SIDE - 1);
+        check_slab(left, 0.3, STRATUS_INTERPOLATION_LINEAR, 1e-6, "label", 1);
+        assert_true(fabs(right - whole) < 0.01);
+      }
+    }
+    stratus_ray_caster_destroy(caster);
+  }
+}
+
 static int run_on(const char* device)
 {
   stratus_context* context = open_context(device);
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_prestate(each_label_is_shown_by_its_window, context),
     cmocka_unit_test_prestate(a_plateau_of_a_millionth_is_shown, context),
+    cmocka_unit_test_prestate(each_of_several_functions_is_resolved, context),
   };
   const int failures = cmocka_run_group_tests(tests, NULL, NULL);
   stratus_context_destroy(context);
