@@ -6,6 +6,21 @@
 #include "volume.h"
 #include "table_arguments.h"
 
+/* Returns the cell of an entry, or the number of cells for `size`. */
+static inline int stratus_table_cell_of_entry(const stratus_table* table, int entry)
+{
+  int lo = 0, hi = table->cells;
+  while (table->first && lo < hi) {
+    const int middle = (lo + hi) / 2;
+    if (table->first[middle + 1] <= entry) {
+      lo = middle + 1;
+    } else {
+      hi = middle;
+    }
+  }
+  return table->first ? lo : entry;
+}
+
 static inline stratus_table_arguments stratus_table_arguments_of(const stratus_table* table)
 {
   return (stratus_table_arguments){ .scale = table->scale,
@@ -16,8 +31,8 @@ static inline stratus_table_arguments stratus_table_arguments_of(const stratus_t
     .first_at = (int)stratus_table_first_at(table),
     .bound_at = (int)stratus_table_bound_at(table),
     .widths_at = (int)stratus_table_widths_at(table),
-    .shown_first = (float)table->next_shown[0],
-    .shown_beyond = (float)(table->last_shown + 1),
+    .shown_first = (float)stratus_table_cell_of_entry(table, table->next_shown[0]),
+    .shown_beyond = table->last_shown < 0 ? 0.0f : (float)(stratus_table_cell_of_entry(table, table->last_shown) + 1),
     .tau_scale = table->sum_scale,
     .color_slope = table->color_slope,
     .color_most = table->color_most,

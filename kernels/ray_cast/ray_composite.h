@@ -75,15 +75,15 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const vfloat place = table_place(&a->table, sums, value), front_place = table_place(&a->table, sums, k->front);
+  const vfloat place = table_place(&a->table, value), front_place = table_place(&a->table, k->front);
   /* most segments, even in occupied blocks, miss all that shows, and need not read the sums */
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
   if (!m_any(mask)) {
     return;
   }
-  const vint front = v_to_int(front_place);
-  vint entry = v_to_int(place);
+  const vint front = entry_in_cell(&a->table, sums, v_to_int(front_place), k->front, mask);
+  vint entry = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
   vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front;
   vint opaque_entry = front;

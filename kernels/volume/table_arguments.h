@@ -9,7 +9,7 @@ typedef struct stratus_table_arguments {
   int search_steps;                  /* 0: entries are cells; else so many bisections find an entry of a cell */
   int first_at, bound_at, widths_at; /* where the arrays of such a table begin, in words of four bytes from the table's first */
   /* the rest is set only for a pre-integrated table */
-  float shown_first, shown_beyond; /* entries outside [shown_first, shown_beyond) are transparent */
+  float shown_first, shown_beyond; /* cells outside [shown_first, shown_beyond) are transparent */
   float tau_scale;                 /* optical depth of one unit of the running sums */
   float color_slope, color_most;   /* the most that a colour changes per entry (or width), and in all, over the error allowed */
   int has_opaque;                  /* 1: an entry has opacity 1, and rows behind the sums tell where: opaque_on_the_way() */

@@ -12,29 +12,37 @@ INLINE vint search_entry(GLOBAL const int* first, GLOBAL const int* bound, int s
 {
   vint entry = v_gather_ints(first, cell, mask);
   const vint beyond = v_gather_ints(first, cell + vi_set(1), mask);
-  for (int ahead = 1 << (steps - 1); ahead > 0; ahead >>= 1) {
-    const vint next = entry + vi_set(ahead);
-    const vmask inside = mask & vi_lt(next, beyond);
-    entry = vi_select(inside & v_le(v_from_bits(v_gather_ints(bound, next, inside)), value), next, entry);
+  mask = mask & vi_lt(entry + vi_set(1), beyond);
+  if (m_any(mask)) { /* most cells are one entry */
+    for (int ahead = 1 << (steps - 1); ahead > 0; ahead >>= 1) {
+      const vint next = entry + vi_set(ahead);
+      const vmask inside = mask & vi_lt(next, beyond);
+      entry = vi_select(inside & v_le(v_from_bits(v_gather_ints(bound, next, inside)), value), next, entry);
+    }
   }
   return entry;
 }
 
-/* A value's place in the table: the whole part is its entry. */
-INLINE vfloat table_place(CONSTANT stratus_table_arguments* t, GLOBAL const void* table, vfloat value)
+/* A value's place in the grid: the whole part is its cell. */
+INLINE vfloat table_place(CONSTANT stratus_table_arguments* t, vfloat value)
 {
-  vfloat place = v_clamp(v_fma(value, v_set(t->scale), v_set(t->offset)), 0.0f, t->last);
+  return v_clamp(v_fma(value, v_set(t->scale), v_set(t->offset)), 0.0f, t->last);
+}
+
+/* The entry of a value in a cell. */
+INLINE vint entry_in_cell(CONSTANT stratus_table_arguments* t, GLOBAL const void* table, vint cell, vfloat value, vmask mask)
+{
   if (t->search_steps) {
     GLOBAL const int* words = (GLOBAL const int*)table;
-    const vint cell = v_to_int(place);
-    place = v_from_int(search_entry(words + t->first_at, words + t->bound_at, t->search_steps, cell, value, vi_ge(cell, vi_set(0))));
+    cell = search_entry(words + t->first_at, words + t->bound_at, t->search_steps, cell, value, mask);
   }
-  return place;
+  return cell;
 }
 
 INLINE vint table_entry(CONSTANT stratus_table_arguments* t, GLOBAL const void* table, vfloat value)
 {
-  return v_to_int(table_place(t, table, value));
+  const vint cell = v_to_int(table_place(t, value));
+  return entry_in_cell(t, table, cell, value, vi_ge(cell, vi_set(0)));
 }
 
 /* The sum over entries low..beyond-1 of row `which`: 0..2 red, green, blue times tau; 3 tau. Running sums are integers, so that their
