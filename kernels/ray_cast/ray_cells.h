@@ -23,10 +23,12 @@ INLINE vfloat cell_within(const cell_way* c, vfloat value) { return v_min(v_max(
 /* Lanes in which an entry between those of lo and hi shows. */
 INLINE vmask cell_shows(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, vfloat lo, vfloat hi, vmask mask)
 {
-  const vfloat first = table_place(&a->table, sums, lo), last = table_place(&a->table, sums, hi);
+  const vfloat first = table_place(&a->table, lo), last = table_place(&a->table, hi);
   mask = mask & v_lt(first, v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), last);
   if (m_any(mask)) {
-    mask = mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, v_to_int(first), v_to_int(last) + vi_set(1), mask));
+    const vint low = entry_in_cell(&a->table, sums, v_to_int(first), lo, mask);
+    const vint high = entry_in_cell(&a->table, sums, v_to_int(last), hi, mask);
+    mask = mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, low, high + vi_set(1), mask));
   }
   return mask;
 }
