@@ -36,6 +36,7 @@ struct stratus_ray_caster {
   char tried[256];             /* what the probe tried; empty: there was none */
   stratus_table* table;
   double table_distance;  /* sample distance of the table */
+  int table_entries;      /* asked for, at least */
   stratus_shown values;   /* the fetched values that matter; of NULL: not known yet */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;

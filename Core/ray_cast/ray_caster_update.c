@@ -150,19 +150,23 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   const bool preintegrated = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
-  const bool same_kind = caster->table && (caster->table->sums != NULL) == preintegrated;
-  if (!same_kind || caster->table_distance != caster->choice.sample_distance) {
+  const stratus_sampling rule = preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
+  const int entries = stratus_table_entries_for(rule, options->tolerance);
+  if (!caster->table || (caster->table->sums != NULL) != preintegrated || caster->table_entries != entries ||
+    (!preintegrated && caster->table_distance != distance)) {
     const stratus_table_values values = stratus_table_values_of(caster->ranges, caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
     stratus_table* table = NULL;
-    TRY(stratus_table_create(caster->context, caster->transfers, &values,
-      preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
-      stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance), &table));
+    TRY(stratus_table_create_fine(caster->context, caster->transfers, &values, rule, distance, entries, &table));
     stratus_table_destroy(caster->table);
     caster->table = table;
-    caster->table_distance = caster->choice.sample_distance;
+    caster->table_entries = entries;
     ++caster->table_builds;
     ++caster->table_serial;
+  } else if (preintegrated) {
+    stratus_table_set_distance(caster->table, distance);
   }
+  caster->table_distance = distance;
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 

@@ -8,6 +8,9 @@
 /* Least number of the grid's cells by sampling. */
 #define MIDPOINT_ENTRIES 4096
 #define PREINTEGRATED_ENTRIES 16384
+#define MOST_ENTRIES 65536
+/* The tolerance for which these are enough. A value is off by up to half an entry, so that half the tolerance asks for twice as many. */
+#define ENTRIES_TOLERANCE 1e-3
 /* Units of width over all values: so narrow may a feature be beside them that running sums hold. */
 #define WIDTH_UNITS 0x1p29
 /* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as
@@ -222,6 +225,11 @@ static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, 
   }
 }
 
+void stratus_table_set_distance(stratus_table* table, double sample_distance)
+{
+  table->sum_scale = (float)fmin(sample_distance * table->tau_per_sum, (double)OPAQUE_DEPTH);
+}
+
 static stratus_status fill_preintegrated(
   stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double sample_distance)
 {
@@ -247,7 +255,8 @@ static stratus_status fill_preintegrated(
     }
     table->sums[3 * row + e] = (int32_t)tau;
   }
-  table->sum_scale = any ? (float)fmin(sample_distance / scale, (double)OPAQUE_DEPTH) : 0.0f;
+  table->tau_per_sum = any ? 1.0 / scale : 0.0;
+  stratus_table_set_distance(table, sample_distance);
   fill_opaque(table, transfer, entries);
   stratus_release(table->context, sums);
   return STRATUS_OK;
@@ -281,10 +290,19 @@ stratus_table_values stratus_table_values_of(const stratus_value_range* ranges, 
     .nearest = nearest };
 }
 
+int stratus_table_entries_for(stratus_sampling sampling, double tolerance)
+{
+  int entries = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
+  for (double allowed = ENTRIES_TOLERANCE; entries < MOST_ENTRIES && tolerance < 0.75 * allowed; allowed *= 0.5) {
+    entries *= 2;
+  }
+  return entries;
+}
+
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, stratus_table** out)
 {
-  const int entries = sampling == STRATUS_SAMPLING_PREINTEGRATED ? PREINTEGRATED_ENTRIES : MIDPOINT_ENTRIES;
+  const int entries = stratus_table_entries_for(sampling, ENTRIES_TOLERANCE);
   return stratus_table_create_fine(context, transfer, values, sampling, sample_distance, entries, out);
 }
 

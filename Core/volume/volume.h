@@ -117,8 +117,9 @@ typedef struct stratus_table {
    * Both are behind rgba or sums, in the same allocation. */
   const int32_t* first;
   const float* bound;
-  float sum_scale; /* optical depth per entry (or width) and per sample distance */
-  int has_opaque;  /* pre-integrated: 1 if any entry has opacity 1 */
+  double tau_per_sum; /* optical depth per entry (or width) and per unit of length */
+  float sum_scale;    /* the same per sample distance */
+  int has_opaque;     /* pre-integrated: 1 if any entry has opacity 1 */
   /* Pre-integrated: the largest change of colour between neighbouring entries with opacity, per entry (or width), and that over all entries
    * with opacity, divided by the error allowed. */
   float color_slope, color_most;
@@ -137,11 +138,15 @@ typedef struct stratus_table_values {
 
 /* The values of a volume. One without finite values has a table of the value 0. */
 stratus_table_values stratus_table_values_of(const stratus_value_range* ranges, bool nearest);
+/* Returns how many entries a table takes at least, so that their width errs by less than the tolerance of the picture. */
+int stratus_table_entries_for(stratus_sampling sampling, double tolerance);
 stratus_status stratus_table_create(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, stratus_table** table);
 /* Makes a table of at least `entries` entries, 1..65536, or about as many where values are whole numbers. */
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* values,
   stratus_sampling sampling, double sample_distance, int entries, stratus_table** table);
+/* Makes a pre-integrated table one for another sample distance. */
+void stratus_table_set_distance(stratus_table* table, double sample_distance);
 void stratus_table_destroy(stratus_table* table);
 /* Returns the size, in words of four bytes, of rgba or sums with all that follows them. */
 size_t stratus_table_words(const stratus_table* table);
