@@ -25,8 +25,9 @@
 #define LATTICE_FINE 14
 #define FINER_BY 6
 #define CELL_SHARE 0.25
-/* The error on the probe's rays may be at most this share of the tolerance: other rays err by more. */
-#define SHARE 0.6
+/* What the probe's rays tell of all rays' error: the mean, and so many standard errors on top, may be this share of the tolerance. */
+#define CONFIDENCE 1.5
+#define SHARE 0.7
 /* An error that rises by less over rungs of cells has come to rest. */
 #define SETTLED 1.1
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
@@ -143,11 +144,13 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
 
 /* ---- judging */
 
-/* Returns the root mean square difference between candidate and finer setting, over the rays that either lights. */
+/* Returns the root mean square difference between candidate and finer setting over the rays that either lights: its square is the mean of
+ * the patches, weighted, plus CONFIDENCE standard errors of that mean. */
 static double error_of(const probe* p)
 {
-  double squares = 0.0, lit = 0.0;
+  double squares[STRATUS_PROBE_PATCHES], lit[STRATUS_PROBE_PATCHES], all_squares = 0.0, all_lit = 0.0;
   for (int n = 0; n < p->count; ++n) {
+    squares[n] = lit[n] = 0.0;
     for (size_t ray = 0; ray < PATCH; ++ray) {
       const float* a = p->fine + 4 * ((size_t)n * PATCH + ray);
       const float* b = p->coarse + 4 * ((size_t)n * PATCH + ray);
@@ -155,11 +158,21 @@ static double error_of(const probe* p)
       for (int c = 0; c < 4; ++c) {
         square += ((double)a[c] - (double)b[c]) * ((double)a[c] - (double)b[c]);
       }
-      squares += p->patches[n].weight * square;
-      lit += p->patches[n].weight * (a[3] > 0.0f || b[3] > 0.0f);
+      squares[n] += p->patches[n].weight * square;
+      lit[n] += p->patches[n].weight * 4.0 * (a[3] > 0.0f || b[3] > 0.0f);
     }
+    all_squares += squares[n];
+    all_lit += lit[n];
   }
-  return lit > 0.0 ? sqrt(squares / (4.0 * lit)) : 0.0;
+  if (!(all_lit > 0.0)) {
+    return 0.0;
+  }
+  const double mean = all_squares / all_lit;
+  double variance = 0.0;
+  for (int n = 0; n < p->count; ++n) {
+    variance += (squares[n] - mean * lit[n]) * (squares[n] - mean * lit[n]);
+  }
+  return sqrt(mean + CONFIDENCE * sqrt(variance) / all_lit);
 }
 
 static void note(probe* p, const char* format, ...)
