@@ -68,6 +68,10 @@ void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 /* ray_caster_update.c: rebuilds only what changed. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
+/* Returns the size of blocks where the user leaves it open. */
+int stratus_ray_block_size(const stratus_volume* volume);
+/* Makes caster->occupancy of caster->ranges. */
+stratus_status stratus_ray_make_occupancy(stratus_ray_caster* caster);
 /* Makes the tables of caster->choice. */
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,

@@ -45,6 +45,11 @@ static int chosen_block_size(const stratus_volume* volume, int wanted)
   return size;
 }
 
+int stratus_ray_block_size(const stratus_volume* volume)
+{
+  return chosen_block_size(volume, 0);
+}
+
 static stratus_status update_ranges(
   stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
 {
@@ -263,18 +268,22 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
   return STRATUS_OK;
 }
 
+stratus_status stratus_ray_make_occupancy(stratus_ray_caster* caster)
+{
+  if (stratus_ray_shading_several(caster)) {
+    return stratus_ray_shading_occupancy(caster);
+  }
+  const bool gaps = caster->shown.mode == STRATUS_MODE_COMPOSITE && caster->interpolation == STRATUS_INTERPOLATION_LINEAR;
+  return stratus_occupancy_build(caster->context, caster->ranges, &caster->values, gaps, &caster->occupancy);
+}
+
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report)
 {
   bool offered = false;
   if (!caster->occupancy && (wanted != STRATUS_STRUCTURE_NONE || caster->choice.provisional)) {
     const double start = stratus_now_ms();
-    if (stratus_ray_shading_several(caster)) {
-      TRY(stratus_ray_shading_occupancy(caster));
-    } else {
-      const bool gaps = caster->shown.mode == STRATUS_MODE_COMPOSITE && caster->interpolation == STRATUS_INTERPOLATION_LINEAR;
-      TRY(stratus_occupancy_build(caster->context, caster->ranges, &caster->values, gaps, &caster->occupancy));
-    }
+    TRY(stratus_ray_make_occupancy(caster));
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }

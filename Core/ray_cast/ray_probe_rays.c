@@ -300,7 +300,7 @@ static void make_patch(const stratus_ray_caster* caster, const classes* k, const
   patch->weight = density > 0.0 ? 1.0 / density : 0.0;
 }
 
-stratus_status stratus_ray_probe_rays(const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+static stratus_status make_patches(const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
 {
   const double voxel = stratus_ray_voxel_length(&caster->volume);
   classes k = { .of = NULL };
@@ -346,4 +346,44 @@ stratus_status stratus_ray_probe_rays(const stratus_ray_caster* caster, stratus_
   *count = number;
   stratus_release(caster->context, k.of);
   return STRATUS_OK;
+}
+
+/* Makes patches by blocks of another size than the caster's: with ranges and occupancy of their own, which are dropped again. */
+static stratus_status make_patches_by(
+  stratus_ray_caster* caster, int block_size, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+{
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
+  stratus_value_range *const ranges = caster->ranges, *others[4];
+  stratus_occupancy* const occupancy = caster->occupancy;
+  stratus_status status = STRATUS_OK;
+  memcpy(others, shading->ranges, sizeof others);
+  caster->ranges = NULL;
+  caster->occupancy = NULL;
+  memset(shading->ranges, 0, sizeof shading->ranges);
+  for (int c = 0; status == STRATUS_OK && c < shading->components; ++c) {
+    const stratus_volume view = stratus_volume_component(&caster->volume, c);
+    status = stratus_value_range_create(caster->context, &view, block_size, c == 0 ? &caster->ranges : &shading->ranges[c]);
+  }
+  if (status == STRATUS_OK) {
+    status = stratus_ray_make_occupancy(caster);
+  }
+  if (status == STRATUS_OK) {
+    status = make_patches(caster, patches, count);
+  }
+  stratus_value_range_destroy(caster->ranges);
+  stratus_occupancy_destroy(caster->occupancy);
+  for (int c = 1; c < 4; ++c) {
+    stratus_value_range_destroy(shading->ranges[c]);
+  }
+  caster->ranges = ranges;
+  caster->occupancy = occupancy;
+  memcpy(shading->ranges, others, sizeof others);
+  return status;
+}
+
+stratus_status stratus_ray_probe_rays(stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+{
+  const int size = stratus_ray_block_size(&caster->volume);
+  *count = 0;
+  return caster->ranges->block_size == size ? make_patches(caster, patches, count) : make_patches_by(caster, size, patches, count);
 }

@@ -17,7 +17,8 @@ typedef struct stratus_probe_patch {
 
 /* Makes patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer
  * functions change over their values, so that a small rough part of a large smooth volume is met, too. A patch weighs the inverse of the
- * density of rays where it lies, so that weighted sums over the rays stand for sums over pictures. *count: 0 if no block is occupied. */
-stratus_status stratus_ray_probe_rays(const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count);
+ * density of rays where it lies, so that weighted sums over the rays stand for sums over pictures. The blocks are those of 4^3 voxels
+ * whatever size the user set, so that a structure decides nothing. *count: 0 if no block is occupied. */
+stratus_status stratus_ray_probe_rays(stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count);
 
 #endif

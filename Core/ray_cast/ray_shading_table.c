@@ -158,7 +158,8 @@ static void thicken(const stratus_table* table, float* out)
 
 static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
 {
-  const stratus_table_values values = stratus_table_values_of(stratus_ray_shading_range_of(caster, c), caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
+  const stratus_table_values values =
+    stratus_table_values_of(stratus_ray_shading_range_of(caster, c), caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
   return stratus_table_create(caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
 }
 

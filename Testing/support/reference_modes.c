@@ -10,9 +10,9 @@
 #include <string.h>
 
 #define PARTS 64 /* parts of a cell on a ray, each searched for an isosurface */
-/* The renderer shrinks the bounds of values on points by this fraction of a voxel. The reference must, too, to agree on surfaces at the
- * rim. */
-#define RIM 0x1p-10
+/* The renderer shrinks the bounds of values on points by this fraction of the dimension and two voxels. The reference must, too, to agree
+ * on surfaces at the rim. */
+#define RIM 0x1p-21
 #define CUTS 8
 
 typedef struct line {
@@ -170,7 +170,8 @@ static line make_line(const scene* s, const stratus_camera* camera, double u, do
   solve(s, from, l.origin);
   solve(s, along, l.direction);
   for (int a = 0; a < 3; ++a) {
-    const double half = s->volume->cell_centered ? 0.5 : -RIM, lo = -half, hi = (double)s->volume->dimensions[a] - 1.0 + half;
+    const double half = s->volume->cell_centered ? 0.5 : -RIM * ((double)s->volume->dimensions[a] + 1.0), lo = -half,
+                 hi = (double)s->volume->dimensions[a] - 1.0 + half;
     const double t0 = (lo - l.origin[a]) / l.direction[a], t1 = (hi - l.origin[a]) / l.direction[a];
     l.begin = fmax(l.begin, fmin(t0, t1));
     l.end = fmin(l.end, fmax(t0, t1));

@@ -94,8 +94,8 @@ static void nearest_is_exact(void** state)
       case_camera(*state, &c, view, view / 3);
       case_render(*state, &c, &drawn);
       assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_CELLS);
-      /* the bounds of a volume of points are drawn in by 2^-10 of a voxel */
-      const double half = c.volume.cell_centered ? 0.5 : 0.0, lo = c.volume.cell_centered ? -0.5 : 0x1p-10, hi = N - 1 - lo;
+      /* the bounds of a volume of points are drawn in by 2^-21 of the dimension and two voxels */
+      const double half = c.volume.cell_centered ? 0.5 : 0.0, lo = c.volume.cell_centered ? -0.5 : (N + 1) * 0x1p-21, hi = N - 1 - lo;
       static const double alphas[5] = { 0, .1, .5, .02, .9 }, reds[5] = { 1, 1, 0, .2, .2 };
       for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
         const double u = 2.0 * (pixel % CASE_WIDTH + 0.5) / CASE_WIDTH - 1.0, v = 2.0 * (pixel / CASE_WIDTH + 0.5) / CASE_HEIGHT - 1.0;

@@ -13,6 +13,7 @@
 
 #define MODE_DB 64.0        /* measured: 69 to 99 */
 #define DEPTH_ERROR 1e-4    /* of a surface, voxels; measured: 4.6e-5 */
+#define GRAZES_MOST 2       /* pixels of an average; measured: 1 of 1594 */
 #define GRAZING_SHARE 0.001 /* of the pixels that may see another surface; measured: 3 of 12,297 */
 
 static picture drawn, other;
@@ -44,10 +45,27 @@ static void draw_expected(const picture_case* c)
   reference_modes_render(&c->volume, &c->transfer, &c->camera, &c->options, CASE_WIDTH, CASE_HEIGHT, 0.02, expected, expected_depth);
 }
 
+/* An average jumps from nothing to opaque where a ray grazes a value that counts, which a sample meets or misses. Leaves such pixels out.
+ */
+static void leave_out_grazes(void)
+{
+  int grazes = 0;
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    if (drawn.rgba[4 * i + 3] != expected[4 * i + 3]) {
+      memcpy(drawn.rgba + 4 * i, expected + 4 * i, 4 * sizeof *expected);
+      ++grazes;
+    }
+  }
+  assert_in_range(grazes, 0, GRAZES_MOST);
+}
+
 static void expect_samples(stratus_context* context, const picture_case* c, const char* what)
 {
   case_render(context, c, &drawn);
   draw_expected(c);
+  if (c->options.mode == STRATUS_MODE_AVERAGE) {
+    leave_out_grazes();
+  }
   const double db = reference_psnr(drawn.rgba, expected, CASE_PIXELS);
   print_message("             %s, %s: %.1f dB, %d pixels\n", stratus_mode_name(c->options.mode), what, db, case_lit(&drawn));
   assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
