@@ -32,8 +32,9 @@ struct stratus_ray_caster {
   stratus_interpolation interpolation;
   stratus_ray_choice_inputs inputs; /* of `choice` */
   stratus_ray_choice choice;
-  stratus_ray_choice measured; /* the last that the probe made; its sample distance is 0 before the first */
-  char tried[256];             /* what the probe tried; empty: there was none */
+  stratus_ray_choice measured;            /* the last that the probe made; its sample distance is 0 before the first */
+  stratus_ray_choice_inputs measured_for; /* the inputs of `measured`; tolerance -1: data or function have changed since */
+  char tried[256];                        /* what the probe tried; empty: there was none */
   stratus_table* table;
   double table_distance;  /* sample distance of the table */
   int table_entries;      /* asked for, at least */

@@ -79,7 +79,7 @@ static stratus_status update_ranges(
     caster->mask = options->mask;
     caster->mask_revision = options->mask_revision;
     stratus_ray_drop_offer_map(caster);
-    caster->inputs.tolerance = -1.0; /* equals none: the choice is made anew */
+    caster->inputs.tolerance = caster->measured_for.tolerance = -1.0; /* equals none: the choice is made anew */
     ++caster->data_serial;
     if (!same) {
       stratus_ray_drop_transfer(caster);
@@ -175,14 +175,22 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
-/* Makes the choice anew where something changed that it follows from. */
+/* Makes the choice anew where something changed that it follows from. What was measured last serves again where only options changed and
+ * are as they were, as after the coarse pictures of a moving camera. */
 static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
   const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
+  if (changed) {
+    caster->measured_for.tolerance = -1.0;
+  }
   if (changed || memcmp(&caster->inputs, &inputs, sizeof inputs) != 0) {
     caster->inputs = inputs;
     caster->tried[0] = '\0';
     stratus_ray_choose(caster, options, &caster->choice);
+    if (caster->choice.provisional && memcmp(&caster->measured_for, &inputs, sizeof inputs) == 0) {
+      caster->choice = caster->measured;
+      snprintf(caster->tried, sizeof caster->tried, "as measured before");
+    }
   }
 }
 

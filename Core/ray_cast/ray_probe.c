@@ -366,6 +366,7 @@ stratus_status stratus_ray_probe(
   caster->choice.provisional = false;
   caster->probe_builds += p.count > 0;
   caster->measured = caster->choice;
+  caster->measured_for = caster->inputs;
   TRY(stratus_ray_update_table(caster, options));
   report->probe_samples = p.samples;
   report->probe_ms = stratus_now_ms() - start;

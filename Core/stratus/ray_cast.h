@@ -86,13 +86,13 @@ typedef struct stratus_shading {
 
 typedef struct stratus_ray_cast_options {
   stratus_structure structure; /* default auto: the cheapest that the scene needs; the report names it */
-  /* Default auto: by how much the transfer function bends over the data. Nearest interpolation is never pre-integrated. */
+  /* Default auto: the cheapest that keeps the tolerance, as a probe measures. Nearest interpolation is never pre-integrated. */
   stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */
   /* Sampling by cells: the farthest that the field may depart from a straight line within a piece, as a fraction of the range of the
-   * volume's finite values. At least 0 and finite; 0 (default): 1/1024. A cell has at most 32 pieces. */
+   * volume's finite values. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
-  double sample_distance; /* world length, at most 4096 voxels; 0 (default): from the data's spacing and the transfer function */
+  double sample_distance; /* world length, at most 4096 voxels; 0 (default): by the tolerance */
   double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. Default .001: 60 dB, a quarter of
    * an 8-bit step. 0: the finest settings. It governs what is left automatic: sampling, sample_distance, cell_error and termination. */
@@ -132,7 +132,7 @@ typedef struct stratus_ray_cast_options {
    * those of transfer[0]. The gradient opacity of transfer[0] counts for all labels. Samples with labels are never pre-integrated. */
   int label_count;
   /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
-   * into noise. Default 0. */
+   * into noise; rule cells has none. Default 0. */
   int jitter;
   uint32_t jitter_seed; /* default 0 */
 } stratus_ray_cast_options;

@@ -156,15 +156,15 @@ stratus_status stratus_occupancy_create(stratus_context* context, const stratus_
   if (!ranges || !out) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%s is NULL", ranges ? "occupancy" : "ranges");
   }
-  if ((int)sampling < STRATUS_SAMPLING_AUTO || sampling > STRATUS_SAMPLING_PREINTEGRATED) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "sampling %d outside %d..%d", (int)sampling, STRATUS_SAMPLING_AUTO,
-      STRATUS_SAMPLING_PREINTEGRATED);
+  if ((int)sampling < STRATUS_SAMPLING_AUTO || sampling > STRATUS_SAMPLING_CELLS) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "sampling %d outside %d..%d", (int)sampling, STRATUS_SAMPLING_AUTO, STRATUS_SAMPLING_CELLS);
   }
   TRY(stratus_transfer_check(context, transfer));
   const stratus_fetching fetching = stratus_value_range_fetching(ranges);
   stratus_shown shown;
   TRY(stratus_shown_of_transfer(context, &fetching, transfer, &shown));
-  /* Segments show all that single samples show, so that they serve every sampling. */
+  /* Segments show all that single samples show, so that they serve every sampling; so do cells. */
   const stratus_status status = stratus_occupancy_build(context, ranges, &shown, sampling != STRATUS_SAMPLING_MIDPOINT, out);
   stratus_release(context, shown.of);
   return status;

@@ -151,11 +151,13 @@ static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
   assert_true(isnan(report.expected_error) && report.tolerance_met);
   assert_true(report.sample_distance == options.sample_distance);
 
-  /* equal input gives an equal choice, whatever was drawn before */
+  /* what was measured serves again where options are as they were, and equal input gives an equal choice, whatever was drawn before */
   stratus_ray_caster* other = NULL;
   options = stratus_ray_cast_options_default();
   options.tolerance = 0.05;
   draw(context, caster, &s, &options, rgba, &report);
+  assert_int_equal(report.probe_builds, 4);
+  assert_true(report.expected_error <= options.tolerance);
   assert_int_equal(stratus_ray_caster_create(context, &other), STRATUS_OK);
   draw(context, other, &s, &options, again, &report);
   assert_memory_equal(rgba, again, sizeof rgba);

@@ -150,7 +150,7 @@ static void a_peak_between_two_voxel_values_is_occupied(void** state)
       values[i] = i % 9 >= plane ? 1.0f : 0.0f;
     }
     for (int size = 2; size <= 4; size *= 2) {
-      for (int sampling = STRATUS_SAMPLING_AUTO; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
+      for (int sampling = STRATUS_SAMPLING_AUTO; sampling <= STRATUS_SAMPLING_CELLS; ++sampling) {
         stratus_value_range* r = NULL;
         stratus_occupancy* o = NULL;
         int64_t n[3];
@@ -205,8 +205,8 @@ static void wrong_arguments_are_refused_with_a_reason(void** state)
   assert_int_equal(stratus_occupancy_create(context, &r, &bad, STRATUS_SAMPLING_AUTO, &o), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_occupancy_create(context, &r, &none, STRATUS_SAMPLING_AUTO, &o), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_occupancy_create(context, &r, &transfer, STRATUS_SAMPLING_AUTO, NULL), STRATUS_INVALID_ARGUMENT);
-  assert_int_equal(stratus_occupancy_create(context, &r, &transfer, (stratus_sampling)3, &o), STRATUS_INVALID_ARGUMENT);
-  assert_non_null(strstr(stratus_context_message(context), "sampling 3"));
+  assert_int_equal(stratus_occupancy_create(context, &r, &transfer, (stratus_sampling)4, &o), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "sampling 4"));
   assert_null(o);
   stratus_occupancy_destroy(NULL);
   free_ranges(&r);
