@@ -14,9 +14,9 @@ namespace {
 void refuse_options(const cli::options& o)
 {
   if (o.mode != STRATUS_MODE_COMPOSITE || o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest ||
-    o.shade || o.audit || o.sample_distance != 0.0 || !o.crop.empty() || !o.mask.empty() || o.jitter >= 0) {
+    o.shade || o.audit || o.sample_distance != 0.0 || o.cell_error != 0.0 || !o.crop.empty() || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +
-      "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, " +
+      "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, cell error, " +
       "crop, mask, jitter and audit are for images");
   }
 }

@@ -32,7 +32,7 @@ using cli::row;
 
 void print_report(const cli::context& core, const cli::options& o, const stratus_ray_cast_report& r, const std::string& opacity)
 {
-  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.upload_ms;
+  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.probe_ms + r.upload_ms;
   const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
   row("opacity", opacity);
   row("device", stratus_context_device(core));
@@ -40,17 +40,20 @@ void print_report(const cli::context& core, const cli::options& o, const stratus
     "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
   row("mode", stratus_mode_name(o.mode));
   if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE) {
-    row("sampling", cli::format("%s, every %.4g", stratus_sampling_name(r.sampling), r.sample_distance));
+    row("sampling",
+      stratus_sampling_name(r.sampling) +
+        (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : cli::format(", every %.4g", r.sample_distance)));
   }
   row("why", r.why);
   if (!std::isnan(r.expected_error)) {
     row("error",
       cli::format("%.2g expected, tolerance %g%s", r.expected_error, o.tolerance,
         r.tolerance_met ? "" : ", which the finest setting is expected to miss"));
+    row("probe", cli::format("%.2f ms, ", r.probe_ms) + cli::grouped(r.probe_samples) + " samples");
   }
   row("build",
-    cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, upload %.2f", build, r.range_ms, r.table_ms,
-      r.occupancy_ms, r.structure_ms, r.upload_ms));
+    cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, probe %.2f, upload %.2f", build, r.range_ms, r.table_ms,
+      r.occupancy_ms, r.structure_ms, r.probe_ms, r.upload_ms));
   row(
     "frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
   row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
@@ -118,6 +121,7 @@ void render(const cli::options& o)
   cast.sampling = o.sampling;
   cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   cast.sample_distance = o.sample_distance;
+  cast.cell_error = o.cell_error;
   cast.tolerance = o.tolerance;
   cast.shade = o.shade;
   cast.audit = o.audit;

@@ -60,8 +60,11 @@ From where
 How
   --tolerance E           root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause: 0.001 is 60 dB, a
                           quarter of an 8-bit step (default); 0: the finest
-  --sample-distance D     world length between samples (default: from the data and the opacity)
-  --sampling S            auto, midpoint, preintegrated (default auto)
+  --sample-distance D     world length between samples (default: by the tolerance)
+  --sampling S            auto, midpoint, preintegrated, cells (default auto: the cheapest that keeps the tolerance). cells goes from cell
+                          to cell; composite without --shade and --mask
+  --cell-error E          of cells: how far the field may depart from a line, as a fraction of the range of values (default: by the
+                          tolerance)
   --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
   --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
@@ -209,7 +212,10 @@ stratus_sampling sampling_named(const std::string& text)
   if (text == "preintegrated" || text == "pre-integrated") {
     return STRATUS_SAMPLING_PREINTEGRATED;
   }
-  throw usage("--sampling: '" + text + "' is none of auto, midpoint, preintegrated");
+  if (text == "cells") {
+    return STRATUS_SAMPLING_CELLS;
+  }
+  throw usage("--sampling: '" + text + "' is none of auto, midpoint, preintegrated, cells");
 }
 
 // ---- tables of options
@@ -290,6 +296,7 @@ constexpr struct {
   { "--sample-distance", keep_positive<&options::sample_distance> },
   { "--tolerance", keep_not_negative<&options::tolerance> },
   { "--sampling", [](options& o, text, text value) { o.sampling = sampling_named(value); } },
+  { "--cell-error", keep_positive<&options::cell_error> },
   { "--jitter", [](options& o, text word, text value) { o.jitter = whole_number(value, word, 0, std::numeric_limits<int>::max()); } },
   { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },
   { "--mode", [](options& o, text, text value) { o.mode = mode_named(value); } },
@@ -337,6 +344,18 @@ void check_complete(const options& o)
     }
     if (o.crop_regions != STRATUS_CROP_INSIDE && o.crop.empty()) {
       throw usage("--crop-regions: between which planes? Give --crop X,X,Y,Y,Z,Z");
+    }
+    if (o.cell_error > 0.0 && o.sampling != STRATUS_SAMPLING_AUTO && o.sampling != STRATUS_SAMPLING_CELLS) {
+      throw usage("--cell-error is for --sampling cells, or auto");
+    }
+    if (o.sampling == STRATUS_SAMPLING_CELLS) {
+      const char* what = o.mode != STRATUS_MODE_COMPOSITE ? "--mode" : o.shade ? "--shade" : o.mask.empty() ? nullptr : "--mask";
+      if (what) {
+        throw usage(std::string("--sampling cells is for composite without light and mask: leave out ") + what);
+      }
+      if (o.sample_distance > 0.0) {
+        throw usage("--sampling cells has no step: give --cell-error in place of --sample-distance");
+      }
     }
     if (o.command == "tree" && o.mode > STRATUS_MODE_FIRST_HIT) {
       throw usage(std::string("tree: --mode '") + stratus_mode_name(o.mode) + "' is none of composite, first-hit");

@@ -25,6 +25,7 @@ struct options {
   double elevation = 30.0;
   double zoom = 1.0;
   double sample_distance = 0.0;
+  double cell_error = 0.0;
   double tolerance = 0.001; // root mean square error of RGBA in 0..1
   int width = 512;
   int height = 512;

@@ -55,6 +55,13 @@ void vtkStratusVolumeRepresentation::SetSampleDistance(double distance)
   }
 }
 
+void vtkStratusVolumeRepresentation::SetCellError(double error)
+{
+  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
+    mapper->SetCellError(error);
+  }
+}
+
 void vtkStratusVolumeRepresentation::SetImageErrorTolerance(double tolerance)
 {
   if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {

@@ -32,6 +32,7 @@ public:
   void SetStructure(int structure);
   void SetSampling(int sampling);
   void SetSampleDistance(double distance);
+  void SetCellError(double error);
   void SetImageErrorTolerance(double tolerance);
   void SetTermination(double opacity);
   void SetDevice(const char* device);

@@ -193,6 +193,9 @@ REPORT(double, GetUploadTime, upload_ms)
 REPORT(double, GetCastTime, cast_ms)
 REPORT(double, GetUsedSampleDistance, sample_distance)
 REPORT(double, GetExpectedError, expected_error)
+REPORT(double, GetProbeTime, probe_ms)
+REPORT(vtkTypeUInt64, GetProbeSamples, probe_samples)
+REPORT(vtkTypeUInt64, GetProbeBuilds, probe_builds)
 
 void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
@@ -209,6 +212,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "gradient" : "faces") << "\n";
   os << indent << "Structure: " << this->GetStructureAsString() << "\n";
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
+  os << indent << "CellError: " << this->CellError << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";
@@ -222,5 +226,6 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";
   os << indent << "Last picture: structure " << this->GetStructureUsedAsString() << ", sampling " << this->GetSamplingUsedAsString()
      << ", sample distance " << this->GetUsedSampleDistance() << ", " << this->GetUsedImageSampleDistance() << " pixels a ray, "
-     << this->GetSamplesTaken() << " samples, " << this->GetSamplesSkipped() << " skipped, " << this->GetCastTime() << " ms\n";
+     << this->GetSamplesTaken() << " samples, " << this->GetSamplesSkipped() << " skipped, " << this->GetCastTime()
+     << " ms, expected error " << this->GetExpectedError() << "\n";
 }

@@ -83,8 +83,8 @@ public:
 
   //@{
   /**
-   * Set/Get the world length between two samples of a ray. 0 or less takes it from the data's spacing and the transfer function. Default
-   * -1.
+   * Set/Get the world length between two samples of a ray. 0 or less: by ImageErrorTolerance. An automatic Sampling may take cells,
+   * which have no steps. Default -1.
    */
   vtkSetMacro(SampleDistance, double);
   vtkGetMacro(SampleDistance, double);
@@ -156,19 +156,31 @@ public:
   const char* GetStructureAsString();
   //@}
 
-  enum SamplingType { AUTO_SAMPLING, MIDPOINT_SAMPLING, PREINTEGRATED_SAMPLING };
+  enum SamplingType { AUTO_SAMPLING, MIDPOINT_SAMPLING, PREINTEGRATED_SAMPLING, CELLS_SAMPLING };
   //@{
   /**
    * Set/Get the sampling of a ray's segments. MIDPOINT_SAMPLING takes one value in the middle. PREINTEGRATED_SAMPLING integrates the
-   * transfer function between the values at both ends; it is never used with nearest interpolation. AUTO_SAMPLING chooses by the transfer
-   * function's curvature against the data. Default AUTO_SAMPLING.
+   * transfer function between the values at both ends; it is never used with nearest interpolation. CELLS_SAMPLING goes from cell to cell
+   * and integrates the field between a cell's walls, as finely as CellError says; composite of one component, without shading, mask and
+   * gradient opacity, else the picture is refused. AUTO_SAMPLING takes the cheapest of them that keeps ImageErrorTolerance, as a probe of
+   * 640 rays measures. Default AUTO_SAMPLING.
    */
-  vtkSetClampMacro(Sampling, int, AUTO_SAMPLING, PREINTEGRATED_SAMPLING);
+  vtkSetClampMacro(Sampling, int, AUTO_SAMPLING, CELLS_SAMPLING);
   vtkGetMacro(Sampling, int);
   void SetSamplingToAuto() { this->SetSampling(AUTO_SAMPLING); }
   void SetSamplingToMidpoint() { this->SetSampling(MIDPOINT_SAMPLING); }
   void SetSamplingToPreintegrated() { this->SetSampling(PREINTEGRATED_SAMPLING); }
+  void SetSamplingToCells() { this->SetSampling(CELLS_SAMPLING); }
   const char* GetSamplingAsString();
+  //@}
+
+  //@{
+  /**
+   * Set/Get the farthest that the field may depart from a straight line within a piece of CELLS_SAMPLING, as a fraction of the range of the
+   * data's finite values; smaller is finer. 0 or less: by ImageErrorTolerance. Default 0.
+   */
+  vtkSetMacro(CellError, double);
+  vtkGetMacro(CellError, double);
   //@}
 
   enum { BinaryMaskType = 0, LabelMapMaskType };
@@ -190,8 +202,8 @@ public:
   //@{
   /**
    * Set/Get whether each ray's samples move along it by up to a sample distance, which turns the wood grain of long steps into noise. The
-   * noise does not depend on the number of threads and does not change from picture to picture; another seed gives other noise. Default
-   * off, seed 0.
+   * noise does not depend on the number of threads and does not change from picture to picture; another seed gives other noise. Sampling
+   * by cells has no samples to move. Default off, seed 0.
    */
   vtkSetClampMacro(UseJittering, vtkTypeBool, 0, 1);
   vtkGetMacro(UseJittering, vtkTypeBool);
@@ -204,8 +216,8 @@ public:
   /**
    * Set/Get the root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause, at least 0 and finite;
    * another is an error, and the last one stays. 0 takes the finest settings. Default 0.001: 60 dB, a quarter of an 8-bit step. It governs
-   * what is left automatic of Sampling, SampleDistance and Termination, and nothing where all three are set by hand. The report tells what
-   * error is expected, see GetExpectedError().
+   * what is left automatic of Sampling, SampleDistance (of cells: CellError) and Termination, and nothing where all are set by hand.
+   * GetExpectedError() tells what error is expected.
    */
   virtual void SetImageErrorTolerance(double tolerance);
   vtkGetMacro(ImageErrorTolerance, double);
@@ -330,6 +342,13 @@ public:
    */
   double GetExpectedError();
   bool GetToleranceMet();
+  /**
+   * Get the milliseconds of the last picture's probe, the values that it interpolated, and the number of probes since this mapper, its
+   * device or its threads were set up. New data, functions and settings are probed; a new camera is not.
+   */
+  double GetProbeTime();
+  vtkTypeUInt64 GetProbeSamples();
+  vtkTypeUInt64 GetProbeBuilds();
   const char* GetDeviceName();
   //@}
 
@@ -380,6 +399,7 @@ protected:
   int Normals = FACE_NORMALS;
   int Structure = AUTO_STRUCTURE;
   int Sampling = AUTO_SAMPLING;
+  double CellError = 0.0;
   double ImageErrorTolerance = 0.001;
   double Termination = 0.0;
   int BlockSize = 0;

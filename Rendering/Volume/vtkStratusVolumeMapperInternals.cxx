@@ -298,6 +298,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.interpolation =
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
+  options.cell_error = mapper->CellError <= 0.0 ? 0.0 : mapper->CellError;
   options.termination = mapper->Termination;
   options.tolerance = mapper->ImageErrorTolerance;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;

@@ -33,13 +33,15 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 19> learnedFor;
+  std::array<double, 21> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
   learnedFor[16] = static_cast<double>(prop->GetProperty()->GetMTime());
   learnedFor[17] = mapper->RenderMode + 100.0 * mapper->BlendMode;
   learnedFor[18] = mapper->ImageErrorTolerance;
+  learnedFor[19] = mapper->Sampling;
+  learnedFor[20] = mapper->CellError;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
@@ -53,7 +55,8 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND;
+    const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND &&
+      this->FullSampling != STRATUS_SAMPLING_CELLS; // rays from cell to cell have no step
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));
@@ -65,6 +68,7 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 {
   if (coarseness.Step == 1.0) {
     this->FullSampleDistance = this->Report.sample_distance;
+    this->FullSampling = this->Report.sampling;
   }
   const double rays = static_cast<double>(this->Picture.Size[0]) * this->Picture.Size[1];
   const double base = this->Mapper->ImageSampleDistance;
@@ -168,6 +172,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
     options.sample_distance = coarseness.Step * this->FullSampleDistance;
+    options.sampling = this->FullSampling; // rule and step by hand: nothing is probed while a camera moves
   }
   const bool boxed = options.crop && options.crop_regions == STRATUS_CROP_INSIDE;
   if (!this->Picture.Set(renderer, this->Image.GetVolume(), boxed ? options.crop_bounds : nullptr, coarseness.Pixels, this->IsFirstHit())) {

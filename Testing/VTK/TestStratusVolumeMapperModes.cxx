@@ -253,6 +253,7 @@ void FirstHits()
 void Jitter()
 {
   Scene scene;
+  scene.Mapper->SetSamplingToMidpoint(); // an automatic rule may be cells, which have no samples that jitter moves
   scene.Mapper->SetSampleDistance(1.5);
   CHECK(!scene.Mapper->GetUseJittering() && scene.Mapper->GetJitterSeed() == 0, "defaults");
   const std::vector<float> plain = scene.Picture();

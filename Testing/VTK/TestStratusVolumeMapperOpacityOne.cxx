@@ -46,8 +46,8 @@ struct Cube : Scene {
 
 using Set = void (vtkStratusVolumeMapper::*)();
 const std::pair<const char*, Set> Samplings[] = { { "automatic", &vtkStratusVolumeMapper::SetSamplingToAuto },
-  { "midpoint", &vtkStratusVolumeMapper::SetSamplingToMidpoint },
-  { "pre-integrated", &vtkStratusVolumeMapper::SetSamplingToPreintegrated } };
+  { "midpoint", &vtkStratusVolumeMapper::SetSamplingToMidpoint }, { "pre-integrated", &vtkStratusVolumeMapper::SetSamplingToPreintegrated },
+  { "cells", &vtkStratusVolumeMapper::SetSamplingToCells } };
 const double Spacings[] = { 1.0, 0.001, 1e-6 };
 
 // Value 1, and it alone, has opacity 1: the end of a ramp, a peak, and an end held beyond.
@@ -137,7 +137,7 @@ void Labels(bool peaks, bool nearest, int sampling)
 int main()
 {
   ASlab();
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 16; ++n) {
     Labels((n & 1) != 0, (n & 2) != 0, n / 4);
   }
   return Failures == 0 ? 0 : 1;

@@ -37,14 +37,46 @@ void Samplings()
   CHECK(middle != integrated && name != scene.Mapper->GetSamplingUsedAsString(), "both are sampled %s", name.c_str());
   scene.Mapper->SetSampling(Mapper::PREINTEGRATED_SAMPLING);
   CHECK(scene.Picture() == integrated, "pre-integration by its number is another");
-  scene.Mapper->SetSamplingToAuto(); // smooth functions need no integrals, a band narrower than the data's steps does
-  CHECK(scene.Picture() == middle, "a smooth function is sampled %s", scene.Mapper->GetSamplingUsedAsString());
+  scene.Mapper->SetSamplingToCells();
+  scene.Mapper->SetCellError(1e-3);
+  const std::vector<float> cells = scene.Picture();
+  CHECK(std::string(scene.Mapper->GetSamplingUsedAsString()) == "cells" && std::string(scene.Mapper->GetSamplingAsString()) == "cells",
+    "cells are sampled %s", scene.Mapper->GetSamplingUsedAsString());
+  CHECK(cells != middle && cells != integrated, "cells are as another rule");
+  scene.Mapper->SetCellError(0.5);
+  CHECK(scene.Picture() != cells, "the error of cells changes nothing");
+  scene.Mapper->SetCellError(-1.0); // as 0: by the tolerance
+  scene.Render();
+  CHECK(scene.Errors->Count == 0 && scene.Mapper->GetExpectedError() <= scene.Mapper->GetImageErrorTolerance(), "expected error %g: %s",
+    scene.Mapper->GetExpectedError(), scene.Errors->Text.c_str());
+  scene.Mapper->SetSamplingToAuto(); // a step of 1 keeps the tolerance by no rule that has steps in a band narrower than the data's own
   scene.Opacity->RemoveAllPoints();
   for (double x : { 0.0, 0.498, 0.5, 0.502, 1.0 }) {
     scene.Opacity->AddPoint(x, x == 0.5 ? 0.9 : 0.0);
   }
   scene.Render();
-  CHECK(name == scene.Mapper->GetSamplingUsedAsString(), "a narrow band is sampled %s", scene.Mapper->GetSamplingUsedAsString());
+  CHECK(std::string(scene.Mapper->GetSamplingUsedAsString()) == "cells", "a narrow band is sampled %s: %s",
+    scene.Mapper->GetSamplingUsedAsString(), scene.Mapper->GetReason());
+}
+
+// What cells cannot draw is refused by name, and drawn as soon as the rule is another.
+void CellsRefused()
+{
+  for (bool mask : { false, true }) {
+    Scene scene(64, 48);
+    vtkNew<vtkImageData> bytes;
+    bytes->CopyStructure(scene.Image);
+    bytes->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+    bytes->GetPointData()->GetScalars()->Fill(1);
+    scene.Mapper->SetMaskInput(mask ? bytes.Get() : nullptr);
+    scene.Volume->GetProperty()->SetShade(!mask);
+    scene.Mapper->SetSamplingToCells();
+    scene.Render();
+    CHECK(scene.Errors->Count == 1 && scene.Errors->Has("sampling by cells") && scene.Errors->Has(mask ? "mask" : "light"), "%s",
+      scene.Errors->Text.c_str());
+    scene.Mapper->SetSamplingToAuto();
+    CHECK(scene.Light() > 0.0 && *scene.Mapper->GetLastError() == '\0', "then %s", scene.Mapper->GetLastError());
+  }
 }
 
 void RenderModesAndNormals()
@@ -79,6 +111,7 @@ void Switches()
 {
   Scene scene(64, 48);
   const auto samples = [&] { return scene.Mapper->GetLastImage()->GetPointData()->GetArray("Samples") != nullptr; };
+  scene.Mapper->SetSamplingToMidpoint(); // an automatic rule may be cells, which have no samples that jitter moves
   scene.Mapper->SetSampleDistance(1.5);
   const std::vector<float> plain = scene.Picture();
   for (int value : { 1, 0, 7, -7 }) {
@@ -154,8 +187,7 @@ void Ranges()
     CHECK(mapper->GetNumberOfThreads() == (value < 0 ? 0 : 1024), "%d threads", mapper->GetNumberOfThreads());
     CHECK(
       mapper->GetStructure() == (value < 0 ? Mapper::AUTO_STRUCTURE : Mapper::HYBRID_STRUCTURE), "structure %d", mapper->GetStructure());
-    CHECK(
-      mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::PREINTEGRATED_SAMPLING), "sampling %d", mapper->GetSampling());
+    CHECK(mapper->GetSampling() == (value < 0 ? Mapper::AUTO_SAMPLING : Mapper::CELLS_SAMPLING), "sampling %d", mapper->GetSampling());
   }
 }
 
@@ -205,6 +237,7 @@ int main()
   Tolerances();
   Structures();
   Samplings();
+  CellsRefused();
   RenderModesAndNormals();
   Switches();
   Masks();
