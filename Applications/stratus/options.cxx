@@ -63,8 +63,8 @@ How
   --sample-distance D     world length between samples (default: by the tolerance)
   --sampling S            auto, midpoint, preintegrated, cells (default auto: the cheapest that keeps the tolerance). cells goes from cell
                           to cell; composite without --shade and --mask
-  --cell-error E          of cells: how far the field may depart from a line, as a fraction of the range of values (default: by the
-                          tolerance)
+  --cell-error E          of cells: how far the field may depart from a line, as a fraction of the values that the functions span
+                          (default: by the tolerance)
   --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
   --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a

@@ -176,8 +176,8 @@ public:
 
   //@{
   /**
-   * Set/Get the farthest that the field may depart from a straight line within a piece of CELLS_SAMPLING, as a fraction of the range of the
-   * data's finite values; smaller is finer. 0 or less: by ImageErrorTolerance. Default 0.
+   * Set/Get the farthest that the field may depart from a straight line within a piece of CELLS_SAMPLING, as a fraction of the part of the
+   * range of finite values that the functions' points span; smaller is finer. 0 or less: by ImageErrorTolerance. Default 0.
    */
   vtkSetMacro(CellError, double);
   vtkGetMacro(CellError, double);

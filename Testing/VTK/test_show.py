@@ -113,6 +113,9 @@ def masks():
         check(numpy.shares_memory(vtk_to_numpy(image.GetPointData().GetScalars()), hidden.data), f"{hidden.dtype}: masked, not copied")
         picture, whole = (stratus.show(one, **options)[..., 3] for one in (hidden, hidden.data))
         check(0 < (picture > 0).sum() < 0.8 * (whole > 0).sum(), f"{hidden.dtype}: what is masked is transparent")
+    mapper = stratus.vtkStratusVolumeMapper()  # one step for both: a probe sees the values that are masked, and not the NaN
+    mapper.SetSamplingToMidpoint(), mapper.SetSampleDistance(0.5)
+    options["mapper"] = mapper
     masked = stratus.show(numpy.ma.masked_array(field, mask), **options)
     check(numpy.array_equal(masked, stratus.show(holes, **options)), "masked is drawn as NaN is")
     turned = numpy.ma.masked_array(field, mask)[::-1, :, ::-1]
