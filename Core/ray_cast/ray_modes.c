@@ -188,6 +188,18 @@ stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratu
   return STRATUS_OK;
 }
 
+/* Returns the length of the part of lo..hi within which the function changes, or of the whole where it changes at no more than one value:
+ * what the error of rule cells is a fraction of. A fill value far from the function's points makes no piece coarser. */
+static double changing_extent(const stratus_transfer* transfer, double lo, double hi)
+{
+  const double* opacity = transfer->opacity;
+  const double* color = transfer->color;
+  const double first = fmin(opacity[0], color[0]);
+  const double last = fmax(opacity[2 * (transfer->opacity_count - 1)], color[4 * (transfer->color_count - 1)]);
+  const double extent = fmin(hi, last) - fmax(lo, first);
+  return extent > 0.0 ? extent : hi - lo;
+}
+
 void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const stratus_value_range* ranges = caster->ranges;
@@ -206,8 +218,8 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
   if (caster->choice.sampling == STRATUS_SAMPLING_CELLS) {
-    const double error = caster->choice.cell_error;
-    a->lattice.pieces_per_bend = extent > 0.0 ? (float)fmin(1.0 / (8.0 * error * extent), 1e30) : 0.0f;
+    const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + ranges->bias, hi + ranges->bias);
+    a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
     a->lattice.jitter = 0; /* rays pass from cell to cell, whatever their lattice */
   }
   a->mode.contour_count = 0;

@@ -89,8 +89,8 @@ typedef struct stratus_ray_cast_options {
   /* Default auto: the cheapest that keeps the tolerance, as a probe measures. Nearest interpolation is never pre-integrated. */
   stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */
-  /* Sampling by cells: the farthest that the field may depart from a straight line within a piece, as a fraction of the range of the
-   * volume's finite values. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
+  /* Sampling by cells: the farthest that the field may depart from a straight line within a piece, as a fraction of the values that the
+   * functions' points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
   double sample_distance; /* world length, at most 4096 voxels; 0 (default): by the tolerance */
   double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
