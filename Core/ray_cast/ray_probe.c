@@ -258,7 +258,12 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
     if (cells ? cells_cost > least : least < INFINITY && k->of[0].error[ONE_VOXEL] <= most && k->of[0].rungs > 1) {
       continue; /* where one sample a voxel is enough, the function hardly bends, and two reads a sample gain nothing */
     }
+    const int rungs = f->rungs;
+    if (f->sampling == k->fine.sampling && rungs > k->fine.rung) {
+      f->rungs = k->fine.rung; /* against itself, the finer setting would err by nothing */
+    }
     TRY(search(p, f, start > 0 ? start : 0, most, fmin(least, cells_cost), &rung));
+    f->rungs = rungs;
     if (rung >= 0 && f->cost * f->samples[rung] < least) {
       least = f->cost * f->samples[rung];
       *best = rung;
