@@ -41,9 +41,8 @@ typedef struct setting {
 typedef struct family {
   stratus_sampling sampling;
   int rungs;                /* 1 where the user has set the step */
-  double cost;              /* of a sample, in those of the midpoint rule */
+  double cost;              /* of a voxel's length, at a step of one voxel, in samples of the midpoint rule */
   double error[CELL_RUNGS]; /* root mean square on the probe's rays; -1: not measured */
-  double samples[CELL_RUNGS];
 } family;
 
 typedef struct probe {
@@ -118,8 +117,8 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   counts[1] += mine.samples;
 }
 
-/* Draws all patches with a setting. *samples: the values that were interpolated. */
-static stratus_status draw_patches(probe* p, const setting* s, double tolerance, float* pictures, double* samples)
+/* Draws all patches with a setting. */
+static stratus_status draw_patches(probe* p, const setting* s, double tolerance, float* pictures)
 {
   stratus_ray_caster* caster = p->caster;
   uint64_t sums[STRATUS_TILE_COUNTS];
@@ -137,7 +136,6 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
   bool empty;
   TRY(begin_patch(&job, 0, &unused, &picture, &empty)); /* what fails for one patch, a step too short, fails for all */
   TRY(stratus_each_tile(caster->context, "sampling", p->count, draw_patch, &job, sums));
-  *samples = (double)sums[1];
   p->samples += sums[1];
   return STRATUS_OK;
 }
@@ -189,13 +187,23 @@ static stratus_status measure(probe* p, family* f, int rung)
 {
   const setting s = { f->sampling, rung };
   if (f->error[rung] < 0.0) {
-    TRY(draw_patches(p, &s, p->options->tolerance, p->coarse, &f->samples[rung]));
+    TRY(draw_patches(p, &s, p->options->tolerance, p->coarse));
     f->error[rung] = error_of(p);
     const stratus_ray_choice* c = &p->caster->choice;
     note(p, "%s%s %.3g: %.2g", *p->caster->tried ? ", " : "tried ", stratus_sampling_name(s.sampling),
       s.sampling == STRATUS_SAMPLING_CELLS ? c->cell_error : c->sample_distance / p->voxel, f->error[rung]);
   }
   return STRATUS_OK;
+}
+
+/* What a voxel's length costs. It is reckoned, not measured: samples that were taken hang on the structure. Cells cost the same at every
+ * rung, but for their pieces. */
+static double cost_of(const probe* p, const family* f, int rung)
+{
+  const setting s = { f->sampling, rung };
+  stratus_ray_choice c;
+  take(p, &s, &c);
+  return f->sampling == STRATUS_SAMPLING_CELLS ? f->cost : f->cost * p->voxel / c.sample_distance;
 }
 
 /* Finds the coarsest rung of a family that keeps `most`, by as many rungs at a time as the error asks for. Gives up once the next rung to
@@ -223,7 +231,7 @@ static stratus_status search(probe* p, family* f, int start, double most, double
       rung += (int)ceil(fmin(excess, CELL_RUNGS));
     }
     rung = rung < low ? low : rung > high ? high : rung;
-    if (rung > before && !cells && f->cost * f->samples[before] * exp2(0.25 * (rung - before)) > dear) {
+    if (rung > before && cost_of(p, f, rung) > dear) {
       break;
     }
   }
@@ -235,7 +243,6 @@ typedef struct candidates {
   family of[3];
   int count;
   setting fine;
-  double fine_samples;
 } candidates;
 
 /* Compares the candidates with one finer setting. *best, *found: the cheapest setting that keeps `most`; found NULL if none does. */
@@ -244,9 +251,9 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
   double least = INFINITY, cells_cost = INFINITY; /* cells are the same in number at every rung */
   *found = NULL;
   p->caster->tried[0] = '\0';
-  TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->tolerance, p->fine, &k->fine_samples));
+  TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->tolerance, p->fine));
   for (int i = 0; i < k->count; ++i) {
-    cells_cost = k->of[i].sampling == STRATUS_SAMPLING_CELLS ? k->of[i].cost * k->fine_samples : cells_cost;
+    cells_cost = k->of[i].sampling == STRATUS_SAMPLING_CELLS ? k->of[i].cost : cells_cost;
   }
   for (int i = 0; i < k->count; ++i) {
     family* f = &k->of[i];
@@ -264,8 +271,8 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
     }
     TRY(search(p, f, start > 0 ? start : 0, most, fmin(least, cells_cost), &rung));
     f->rungs = rungs;
-    if (rung >= 0 && f->cost * f->samples[rung] < least) {
-      least = f->cost * f->samples[rung];
+    if (rung >= 0 && cost_of(p, f, rung) < least) {
+      least = cost_of(p, f, rung);
       *best = rung;
       *found = f;
     }
@@ -275,9 +282,10 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
 
 static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
 {
-  /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums; a cell takes pieces of two entries. */
+  /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums; a cell takes pieces of two entries each. A line
+   * crosses 1.5 cubes in the length of an edge, the mean over all directions. */
   static const double costs[] = {
-    [STRATUS_SAMPLING_MIDPOINT] = 1.0, [STRATUS_SAMPLING_PREINTEGRATED] = 1.8, [STRATUS_SAMPLING_CELLS] = 2.5
+    [STRATUS_SAMPLING_MIDPOINT] = 1.0, [STRATUS_SAMPLING_PREINTEGRATED] = 1.6, [STRATUS_SAMPLING_CELLS] = 1.5 * 2.2
   };
   const stratus_ray_cast_options* options = p->options;
   const bool cells = sampling == STRATUS_SAMPLING_CELLS;
