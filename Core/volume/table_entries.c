@@ -39,19 +39,20 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. A table of sums spans all
- * values: a mean over entries counts all of the way from one value to another. */
-static void table_span(const stratus_transfer* transfer, double* lo, double* hi)
+/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. sums: only where the
+ * function is transparent there, for a mean over entries counts all of the way from one value to another. */
+static void table_span(const stratus_transfer* transfer, bool sums, double* lo, double* hi)
 {
   const double* first = transfer->opacity;
   const double* last = transfer->opacity + 2 * (transfer->opacity_count - 1);
   const double* first_color = transfer->color;
   const double* last_color = transfer->color + 4 * (transfer->color_count - 1);
   const double from = fmin(first[0], first_color[0]), to = fmax(last[0], last_color[0]), margin = (to - from) / 64.0;
-  if (to > from && from - margin > *lo && from - margin < *hi) {
+  const bool low_clear = !transfer->clamp || first[1] <= 0.0, high_clear = !transfer->clamp || last[1] <= 0.0;
+  if (to > from && from - margin > *lo && from - margin < *hi && (!sums || low_clear)) {
     *lo = from - margin;
   }
-  if (to > from && to + margin < *hi && to + margin > *lo) {
+  if (to > from && to + margin < *hi && to + margin > *lo && (!sums || high_clear)) {
     *hi = to + margin;
   }
 }
@@ -95,9 +96,11 @@ static stratus_status make_grid(stratus_context* context, const stratus_transfer
   stratus_table_entries* t, bool* whole)
 {
   double from = stratus_fetching_value(&values->fetching, values->lo), to = stratus_fetching_value(&values->fetching, values->hi);
-  if (!values->sums) {
-    table_span(transfer, &from, &to);
+  const double whole_range[2] = { from, to };
+  if (!values->sums || !values->uniform) {
+    table_span(transfer, values->sums, &from, &to);
   }
+  t->cut = values->sums && (from > whole_range[0] || to < whole_range[1]);
   const int cells = table_cells(transfer, to - from, least);
   *whole = !values->uniform && place_whole_numbers(t, values, from, to, cells);
   if (*whole) {

@@ -11,6 +11,7 @@ typedef struct stratus_table_entries {
   double from, width; /* the value in the middle of cell 0, and the width of a cell */
   float scale, offset;
   int cells, size; /* of the grid; of entries */
+  bool cut;        /* sums: values lie beyond the grid, and are transparent there */
   int steps;       /* bisections that find an entry within a cell; 0: no cell is divided */
   int32_t* first;  /* cells+1: the first entry of each cell, and `size`. NULL if no cell is divided, as the next */
   float* bound;    /* size: an entry that is not its cell's first begins at this float */

@@ -34,6 +34,7 @@ static inline stratus_table_arguments stratus_table_arguments_of(const stratus_t
     .shown_first = (float)stratus_table_cell_of_entry(table, table->next_shown[0]),
     .shown_beyond = table->last_shown < 0 ? 0.0f : (float)(stratus_table_cell_of_entry(table, table->last_shown) + 1),
     .tau_scale = table->sum_scale,
+    .cut = table->cut,
     .color_slope = table->color_slope,
     .color_most = table->color_most,
     .has_opaque = table->has_opaque };

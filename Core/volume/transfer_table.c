@@ -347,6 +347,7 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   table->scale = entries.scale;
   table->offset = entries.offset;
   table->search_steps = entries.steps;
+  table->cut = entries.cut;
   TRY_CLEANUP(allocate_table(table, &entries, sampling == STRATUS_SAMPLING_PREINTEGRATED));
   if (table->sums) {
     TRY_CLEANUP(fill_preintegrated(table, transfer, &entries, sample_distance));

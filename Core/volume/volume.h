@@ -119,6 +119,7 @@ typedef struct stratus_table {
   const float* bound;
   double tau_per_sum; /* optical depth per entry (or width) and per unit of length */
   float sum_scale;    /* the same per sample distance */
+  bool cut;           /* pre-integrated: values lie beyond the table, and are transparent there */
   int has_opaque;     /* pre-integrated: 1 if any entry has opacity 1 */
   /* Pre-integrated: the largest change of colour between neighbouring entries with opacity, per entry (or width), and that over all entries
    * with opacity, divided by the error allowed. */

@@ -69,6 +69,16 @@ INLINE vmask segment_shows(
   return mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
 }
 
+/* Where on the way from one place in the table's grid to another lies what the table spans: the part of the way before it, and its own. */
+INLINE void part_within(CONSTANT stratus_table_arguments* t, vfloat from, vfloat to, vfloat* before, vfloat* part)
+{
+  const vfloat zero = v_set(0.0f), way = to - from, size = v_reciprocal(v_max(v_abs(way), v_set(1e-30f)));
+  const vfloat per_way = v_select(v_lt(way, zero), zero - size, size);
+  const vfloat first = (zero - from) * per_way, last = (v_set(t->last + 1.0f) - from) * per_way;
+  *before = v_clamp(v_min(first, last), 0.0f, 1.0f);
+  *part = v_clamp(v_max(first, last), 0.0f, 1.0f) - *before;
+}
+
 /* Pre-integration: the field is taken as linear between the values at a segment's ends. sums: running sums over the entries, of red, green
  * and blue times tau, and of tau. lighting: NULL where a sample is its value's colour and opacity alone. */
 INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
@@ -85,7 +95,19 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   const vint front = entry_in_cell(&a->table, sums, v_to_int(front_place), k->front, mask);
   vint entry = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
-  vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front;
+  vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front, begin = k->front;
+  if (a->table.cut) { /* what lies beyond the table is transparent, and has no part in the means */
+    const vfloat from = v_clamp(v_fma(k->front, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
+                 to = v_clamp(v_fma(value, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f);
+    const vmask beyond_table = mask & (v_lt(v_min(from, to), zero) | v_lt(v_set(a->table.last + 1.0f), v_max(from, to)));
+    if (m_any(beyond_table)) {
+      vfloat before, part;
+      part_within(&a->table, from, to, &before, &part);
+      begin = v_select(beyond_table, v_fma(rise, before, begin), begin);
+      rise = v_select(beyond_table, rise * part, rise);
+      depth_scale = v_select(beyond_table, depth_scale * part, depth_scale);
+    }
+  }
   vint opaque_entry = front;
   vmask opaque = m_none();
   if (a->table.has_opaque) {
@@ -122,7 +144,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
     vint to = entry;
     if (m_any(several)) { /* the next piece; the last piece ends where the segment does */
       piece = piece + one;
-      to = vi_select(v_lt(piece, pieces), table_entry(&a->table, sums, v_fma(rise, piece * share, k->front)), entry);
+      to = vi_select(v_lt(piece, pieces), table_entry(&a->table, sums, v_fma(rise, piece * share, begin)), entry);
       low = vi_min(from, to);
       beyond = vi_max(from, to) + vi_set(1);
       entries = width_between(&a->table, sums, low, beyond, mask);
