@@ -15,16 +15,16 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Rung r of a lattice is a step of 2^(2 - r/4) voxels, rung r of cells an error of 2^(-2 - r/2): rungs 0..24 and 0..28. By either, two
+/* Rung r of a lattice is a step of 2^(2 - r/4) voxels, rung r of cells an error of 2^(-2 - r/2): rungs 0..24 and 0..30. By either, two
  * rungs halve the error where it falls with the square of the step, or with the cell's error. */
 #define LATTICE_RUNGS 25
-#define CELL_RUNGS 29
+#define CELL_RUNGS 31
 #define ONE_VOXEL 8
 /* The finer setting that candidates are compared with. On a lattice it has steps of this rung at first; FINER_BY rungs lie between it and
  * the setting that is taken, or it is made finer by as many. Of cells, its error is the tolerance times CELL_SHARE. */
 #define LATTICE_FINE 14
 #define FINER_BY 6
-#define CELL_SHARE 0.25
+#define CELL_SHARE 0.125
 /* What the probe's rays tell of all rays' error: the mean, and so many standard errors on top, may be this share of the tolerance. */
 #define CONFIDENCE 1.5
 #define SHARE 0.7
@@ -206,13 +206,21 @@ static double cost_of(const probe* p, const family* f, int rung)
   return f->sampling == STRATUS_SAMPLING_CELLS ? f->cost : f->cost * p->voxel / c.sample_distance;
 }
 
+/* The coarsest rung of cells: values off by more than the tolerance's share of what the function spans could show in rays that graze a
+ * surface, of which the probe may have none. */
+static int coarsest_cells(const probe* p, const family* f)
+{
+  const double rung = -2.0 * (log2(p->options->tolerance) + 2.0);
+  return rung < 0.0 ? 0 : rung < f->rungs - 1 ? (int)rung : f->rungs - 1;
+}
+
 /* Finds the coarsest rung of a family that keeps `most`, by as many rungs at a time as the error asks for. Gives up once the next rung to
  * be measured would cost more than `dear`. *best: -1 if no rung was found. */
 static stratus_status search(probe* p, family* f, int start, double most, double dear, int* best)
 {
-  int low = 0, high = f->rungs - 1; /* the rung lies in low..high, if there is one */
-  int rung = start < high ? start : high;
   const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
+  int low = cells ? coarsest_cells(p, f) : 0, high = f->rungs - 1; /* the rung lies in low..high, if there is one */
+  int rung = start < low ? low : start < high ? start : high;
   *best = -1;
   while (low <= high) {
     TRY(measure(p, f, rung));
