@@ -27,7 +27,7 @@
 #define CELL_SHARE 0.125
 /* What the probe's rays tell of all rays' error: the mean, and so many standard errors on top, may be this share of the tolerance. */
 #define CONFIDENCE 1.5
-#define SHARE 0.7
+#define SHARE 0.65
 /* An error that rises by less over rungs of cells has come to rest. */
 #define SETTLED 1.1
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
