@@ -201,7 +201,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     arguments.values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
-    stratus_ray_frame_structures(caster->table, options->tolerance, caster->occupancy, with_map ? caster->map : NULL, &arguments);
+    stratus_ray_frame_structures(
+      caster->table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
       report_window(arguments.camera.window, report->window);

@@ -157,7 +157,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   const bool preintegrated = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
   const stratus_sampling rule = preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
-  const int entries = stratus_table_entries_for(rule, options->tolerance);
+  const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
   if (!caster->table || (caster->table->sums != NULL) != preintegrated || caster->table_entries != entries ||
     (!preintegrated && caster->table_distance != distance)) {
     const stratus_table_values values = stratus_table_values_of(caster->ranges, caster->interpolation == STRATUS_INTERPOLATION_NEAREST);

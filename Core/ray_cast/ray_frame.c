@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "matrix.h"
+#include "ray_sampling.h"
 #include "table_fill.h"
 #include "vector.h"
 
@@ -228,7 +229,8 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   a->picture.want_bytes = image->rgba8 != NULL;
   a->values.nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
   a->values.clamp = volume->cell_centered != 0;
-  a->termination = (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(options->tolerance));
+  a->termination =
+    (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(stratus_ray_tolerance(options)));
   set_clip_planes(options, index_to_world, a);
   set_addressing(volume, a);
   const double bias = stratus_volume_bias(volume);

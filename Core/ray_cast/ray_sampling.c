@@ -35,6 +35,13 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
   }
 }
 
+double stratus_ray_tolerance(const stratus_ray_cast_options* options)
+{
+  const bool cells = options->sampling == STRATUS_SAMPLING_CELLS;
+  const bool by_hand = options->sampling != STRATUS_SAMPLING_AUTO && (cells ? options->cell_error : options->sample_distance) > 0.0;
+  return by_hand ? stratus_ray_cast_options_default().tolerance : options->tolerance;
+}
+
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice)
 {
   const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE;

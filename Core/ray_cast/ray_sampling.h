@@ -28,6 +28,8 @@ typedef struct stratus_ray_choice_inputs {
 /* Makes the choice that holds where the user sets rule and step, or where every step gives the same picture. Else the choice is
  * provisional. */
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice);
+/* Returns the tolerance that governs: the default one where the user has set rule and step by hand. */
+double stratus_ray_tolerance(const stratus_ray_cast_options* options);
 /* Whether a rule can draw the scene at all. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling);
 double stratus_ray_voxel_length(

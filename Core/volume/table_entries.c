@@ -9,6 +9,8 @@
 #include <string.h>
 
 #define MOST_CELLS 65536
+/* How far sums reach beyond the function's points, in their span, where the function shows. */
+#define OUTSIDE_SPANS 4.0
 /* Number of cells over the function's narrowest feature, which more cells than the least are taken for. */
 #define CELLS_A_FEATURE 32
 /* A feature over so many cells is taken at their middles. */
@@ -39,21 +41,31 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. sums: only where the
- * function is transparent there, for a mean over entries counts all of the way from one value to another. */
-static void table_span(const stratus_transfer* transfer, bool sums, double* lo, double* hi)
+/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. A mean over entries counts
+ * all of the way from one value to another: sums shrink by that only where the function is transparent, which rays know (*cut). Beyond an
+ * end that shows they reach OUTSIDE_SPANS times the points' span, so that a fill value far away makes no entry coarse. */
+static void table_span(const stratus_transfer* transfer, bool sums, double* lo, double* hi, bool* cut)
 {
   const double* first = transfer->opacity;
   const double* last = transfer->opacity + 2 * (transfer->opacity_count - 1);
   const double* first_color = transfer->color;
   const double* last_color = transfer->color + 4 * (transfer->color_count - 1);
-  const double from = fmin(first[0], first_color[0]), to = fmax(last[0], last_color[0]), margin = (to - from) / 64.0;
+  const double from = fmin(first[0], first_color[0]), to = fmax(last[0], last_color[0]), span = to - from;
   const bool low_clear = !transfer->clamp || first[1] <= 0.0, high_clear = !transfer->clamp || last[1] <= 0.0;
-  if (to > from && from - margin > *lo && from - margin < *hi && (!sums || low_clear)) {
-    *lo = from - margin;
+  const double far = OUTSIDE_SPANS * span, margin = span / 64.0;
+  const bool limited = sums && ((!low_clear && *lo < from - far) || (!high_clear && *hi > to + far));
+  const double low = limited ? from - far : from - margin, high = limited ? to + far : to + margin;
+  *cut = false;
+  if (!(span > 0.0)) {
+    return;
   }
-  if (to > from && to + margin < *hi && to + margin > *lo && (!sums || high_clear)) {
-    *hi = to + margin;
+  if (low > *lo && low < *hi && (!sums || limited || low_clear)) {
+    *lo = low;
+    *cut = sums && !limited;
+  }
+  if (high < *hi && high > *lo && (!sums || limited || high_clear)) {
+    *hi = high;
+    *cut = sums && !limited;
   }
 }
 
@@ -96,11 +108,10 @@ static stratus_status make_grid(stratus_context* context, const stratus_transfer
   stratus_table_entries* t, bool* whole)
 {
   double from = stratus_fetching_value(&values->fetching, values->lo), to = stratus_fetching_value(&values->fetching, values->hi);
-  const double whole_range[2] = { from, to };
+  t->cut = false;
   if (!values->sums || !values->uniform) {
-    table_span(transfer, values->sums, &from, &to);
+    table_span(transfer, values->sums, &from, &to, &t->cut);
   }
-  t->cut = values->sums && (from > whole_range[0] || to < whole_range[1]);
   const int cells = table_cells(transfer, to - from, least);
   *whole = !values->uniform && place_whole_numbers(t, values, from, to, cells);
   if (*whole) {

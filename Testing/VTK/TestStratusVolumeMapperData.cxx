@@ -19,6 +19,8 @@ void Types()
     scene.Opacity->RemoveAllPoints();
     scene.Opacity->AddPoint(10, 0);
     scene.Opacity->AddPoint(100, 0.6);
+    scene.Mapper->SetSamplingToMidpoint(); // by hand: tables of types differ by what an entry is wide, and so may what a probe takes
+    scene.Mapper->SetSampleDistance(0.5);
     vtkDataArray* field = scene.Image->GetPointData()->GetScalars();
     auto typed = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
     typed->SetName("typed");
