@@ -78,4 +78,8 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
   size_t capacity, stratus_ray_cast_report* report);
 
+/* ray_frame.c: the arrays that a frame reads and writes. */
+stratus_ray_cast_frame stratus_ray_frame_of(
+  const stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map);
+
 #endif

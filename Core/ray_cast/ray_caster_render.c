@@ -81,19 +81,8 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
   bool with_map, stratus_ray_counts* counts, double* upload_ms)
 {
-  const stratus_ray_variant light = caster->table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
-  const stratus_ray_variant variant = caster->shades ? light : stratus_ray_modes_variant(caster);
-  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
-  const stratus_ray_cast_frame frame = { .arguments = arguments,
-    .values = caster->traversed.values,
-    .hidden = caster->hidden,
-    .map = with_map ? caster->map->bytes : NULL,
-    .table = caster->shades ? caster->shading_tables.memory : table,
-    .opaque_depth = image->opaque_depth,
-    .rgba = image->rgba,
-    .depth = image->depth,
-    .samples = image->samples,
-    .rgba8 = image->rgba8 };
+  const stratus_ray_variant variant = stratus_ray_modes_variant(caster);
+  const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, arguments, image, with_map);
   const int type = stratus_ray_fetch_type(&caster->traversed);
   if (caster->context->device) {
     bool drawn = false;

@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "matrix.h"
+#include "ray_caster.h"
 #include "ray_sampling.h"
 #include "table_fill.h"
 #include "vector.h"
@@ -304,4 +305,20 @@ void stratus_ray_frame_structures(const stratus_table* table, double tolerance, 
   pair_values(a->camera.up, up);
   pair_values(a->camera.forward, forward);
   stratus_camera_window(eye, right, up, forward, a->camera.parallel, lo, hi, sides, a->camera.window);
+}
+
+stratus_ray_cast_frame stratus_ray_frame_of(
+  const stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map)
+{
+  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
+  return (stratus_ray_cast_frame){ .arguments = arguments,
+    .values = caster->traversed.values,
+    .hidden = caster->hidden,
+    .map = with_map ? caster->map->bytes : NULL,
+    .table = caster->shades ? caster->shading_tables.memory : table,
+    .opaque_depth = image->opaque_depth,
+    .rgba = image->rgba,
+    .depth = image->depth,
+    .samples = image->samples,
+    .rgba8 = image->rgba8 };
 }

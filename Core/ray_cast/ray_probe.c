@@ -3,6 +3,7 @@
  * keeps the tolerance. No statistics are asked, so that whatever a picture shows, colour and light included, counts by itself. */
 #include "ray_probe.h"
 
+#include "picture.h"
 #include "ray_cast_host.h"
 #include "ray_fetched.h"
 #include "ray_frame.h"
@@ -79,13 +80,14 @@ typedef struct patch_job {
   int type;
 } patch_job;
 
-/* Sets the arguments of a patch as far as they can be wrong. *rgba: where its picture lies. */
-static stratus_status begin_patch(const patch_job* job, int number, stratus_ray_cast_arguments* a, float** rgba, bool* empty)
+/* Sets the arguments of a patch as far as they can be wrong, and its picture. */
+static stratus_status begin_patch(const patch_job* job, int number, stratus_ray_cast_arguments* a, stratus_image* image, bool* empty)
 {
-  *rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number;
-  const stratus_image image = { .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = *rgba };
+  *image = (stratus_image){
+    .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number
+  };
   return stratus_ray_frame_arguments(
-    job->p->caster->context, &job->p->caster->traversed, &job->p->patches[number].camera, &job->p->whole, &image, job->distance, a, empty);
+    job->p->caster->context, &job->p->caster->traversed, &job->p->patches[number].camera, &job->p->whole, image, job->distance, a, empty);
 }
 
 static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TILE_COUNTS])
@@ -96,23 +98,17 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   const stratus_ray_cast_options* options = &job->p->whole;
   stratus_ray_cast_arguments a;
   stratus_ray_counts mine = { 0 };
-  float* rgba;
+  stratus_image image;
   bool empty = false;
-  if (begin_patch(job, number, &a, &rgba, &empty) != STRATUS_OK || empty) {
-    memset(rgba, 0, 4 * PATCH * sizeof *rgba);
+  if (begin_patch(job, number, &a, &image, &empty) != STRATUS_OK || empty) {
+    stratus_image_clear(&image);
     return;
   }
   a.values.has_hidden = caster->hides;
   stratus_ray_modes_arguments(caster, options, &a);
   stratus_ray_shading_arguments(caster, job->p->volume, camera, options, &a);
   stratus_ray_frame_structures(caster->table, job->tolerance, caster->occupancy, caster->map, &a);
-  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
-  const stratus_ray_cast_frame frame = { .arguments = &a,
-    .values = caster->traversed.values,
-    .hidden = caster->hidden,
-    .map = caster->map ? caster->map->bytes : NULL,
-    .table = caster->shades ? caster->shading_tables.memory : table,
-    .rgba = rgba };
+  const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, &a, &image, caster->map != NULL);
   stratus_ray_cast_tile_for(caster->context->isa, job->type, job->variant)(&frame, 0, 0, STRATUS_PROBE_WIDTH, STRATUS_PROBE_HEIGHT, &mine);
   counts[1] += mine.samples;
 }
@@ -124,15 +120,14 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
   uint64_t sums[STRATUS_TILE_COUNTS];
   take(p, s, &caster->choice);
   TRY(stratus_ray_update_table(caster, p->options));
-  const stratus_ray_variant light = caster->table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   const patch_job job = { .p = p,
     .pictures = pictures,
     .distance = caster->choice.sample_distance,
     .tolerance = tolerance,
-    .variant = caster->shades ? light : stratus_ray_modes_variant(caster),
+    .variant = stratus_ray_modes_variant(caster),
     .type = stratus_ray_fetch_type(&caster->traversed) };
   stratus_ray_cast_arguments unused;
-  float* picture;
+  stratus_image picture;
   bool empty;
   TRY(begin_patch(&job, 0, &unused, &picture, &empty)); /* what fails for one patch, a step too short, fails for all */
   TRY(stratus_each_tile(caster->context, "sampling", p->count, draw_patch, &job, sums));

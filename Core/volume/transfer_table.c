@@ -99,11 +99,27 @@ static bool outside(const stratus_transfer* transfer, double x)
   return !transfer->clamp && (x < transfer->opacity[0] || x > transfer->opacity[2 * (transfer->opacity_count - 1)]);
 }
 
+/* Returns the last point with value <= x, or -1. */
+static ptrdiff_t last_point(const double* points, size_t count, size_t width, double x)
+{
+  size_t lo = 0, hi = count;
+  while (lo < hi) {
+    const size_t middle = (lo + hi) / 2;
+    if (points[middle * width] <= x) {
+      lo = middle + 1;
+    } else {
+      hi = middle;
+    }
+  }
+  return (ptrdiff_t)lo - 1;
+}
+
 void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4])
 {
-  ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
+  ptrdiff_t at = last_point(transfer->opacity, transfer->opacity_count, 2, value);
+  ptrdiff_t color_at = last_point(transfer->color, transfer->color_count, 4, value);
   for (size_t c = 0; c < 3; ++c) {
-    rgba[c] = walk(transfer->color, transfer->color_count, 4, c + 1, value, &color_at[c]);
+    rgba[c] = walk(transfer->color, transfer->color_count, 4, c + 1, value, &color_at);
   }
   rgba[3] = outside(transfer, value) ? 0.0 : walk(transfer->opacity, transfer->opacity_count, 2, 1, value, &at);
 }

@@ -82,6 +82,23 @@ static const struct {
   size_t count;
 } functions[] = { { step_up, 3 }, { ramp_up, 2 }, { all, 1 } };
 
+/* The slab hides what is behind it, whatever the structure. function, kind: named where it does not. */
+static void expect_opaque(
+  stratus_context* context, double spacing, const stratus_transfer* transfer, stratus_ray_cast_options* options, int function, int kind)
+{
+  options->structure = STRATUS_STRUCTURE_NONE;
+  draw(context, spacing, transfer, options, drawn);
+  if (drawn[4 * CENTRE + 3] != 1.0f || fabsf(drawn[4 * CENTRE] - 1.0f) > 1e-6f) {
+    fail_msg("function %d, spacing %g, kind %d: alpha %.9g, red %.9g", function, spacing, kind, (double)drawn[4 * CENTRE + 3],
+      (double)drawn[4 * CENTRE]);
+  }
+  for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+    options->structure = (stratus_structure)structure;
+    draw(context, spacing, transfer, options, other);
+    assert_memory_equal(drawn, other, sizeof drawn);
+  }
+}
+
 static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
 {
   static const double gradient[] = { 0.0, 0.5 };
@@ -98,17 +115,7 @@ static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
         options.clip_planes[0][2] = -1.0;
         options.clip_planes[0][3] = 12.03 * spacings[s];
         fill_slab(1.0f, 0.0f);
-        options.structure = STRATUS_STRUCTURE_NONE;
-        draw(*state, spacings[s], &transfer, &options, drawn);
-        if (drawn[4 * CENTRE + 3] != 1.0f || fabsf(drawn[4 * CENTRE] - 1.0f) > 1e-6f) {
-          fail_msg("function %d, spacing %g, kind %d: alpha %.9g, red %.9g", f, spacings[s], kind, (double)drawn[4 * CENTRE + 3],
-            (double)drawn[4 * CENTRE]);
-        }
-        for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-          options.structure = (stratus_structure)structure;
-          draw(*state, spacings[s], &transfer, &options, other);
-          assert_memory_equal(drawn, other, sizeof drawn);
-        }
+        expect_opaque(*state, spacings[s], &transfer, &options, f, kind);
       }
     }
   }
@@ -139,17 +146,7 @@ static void opacity_1_at_the_value_itself_is_opaque(void** state)
         options.termination = 1.0;
         fill_slab(inside, 0.0f);
         values[0] = 255.0f;
-        options.structure = STRATUS_STRUCTURE_NONE;
-        draw(*state, spacings[s], &transfer, &options, drawn);
-        if (drawn[4 * CENTRE + 3] != 1.0f || fabsf(drawn[4 * CENTRE] - 1.0f) > 1e-6f) {
-          fail_msg("function %d, spacing %g, kind %d: alpha %.9g, red %.9g", f, spacings[s], kind, (double)drawn[4 * CENTRE + 3],
-            (double)drawn[4 * CENTRE]);
-        }
-        for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-          options.structure = (stratus_structure)structure;
-          draw(*state, spacings[s], &transfer, &options, other);
-          assert_memory_equal(drawn, other, sizeof drawn);
-        }
+        expect_opaque(*state, spacings[s], &transfer, &options, f, kind);
       }
     }
   }
