@@ -91,7 +91,7 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
   memcpy(*sums + 8 * size, table->sums + 4 * (size + 1), 2 * size * sizeof(int32_t)); /* the rows of opaque entries */
   for (size_t entry = 0; entry < size; ++entry) {
     for (size_t which = 0; which < 4; ++which) {
-      const int64_t below = table->sums[which * (size + 1) + entry], above = table->sums[which * (size + 1) + entry + 1];
+      const int64_t below = table->sums[4 * entry + which], above = table->sums[4 * (entry + 1) + which];
       (*sums)[4 * entry + which] = (int32_t)((below + above + 1) / 2);
       (*sums)[4 * (size + entry) + which] = (int32_t)(above - below);
     }

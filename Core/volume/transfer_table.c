@@ -263,13 +263,13 @@ static stratus_status fill_preintegrated(
   int64_t tau = 0;
   for (size_t e = 0; e < row; ++e) {
     for (size_t which = 0; which < 3; ++which) {
-      table->sums[which * row + e] = any ? (int32_t)llrint(sums[4 * e + which] * scale) : 0;
+      table->sums[4 * e + which] = any ? (int32_t)llrint(sums[4 * e + which] * scale) : 0;
     }
     if (e > 0 && any) { /* an entry that shows raises the sum by at least 1, however faint it is beside the rest */
       const int64_t rounded = llrint(sums[4 * e + 3] * scale), least = tau + (sums[4 * e + 3] > sums[4 * e - 1]);
       tau = rounded > least ? rounded : least;
     }
-    table->sums[3 * row + e] = (int32_t)tau;
+    table->sums[4 * e + 3] = (int32_t)tau;
   }
   table->tau_per_sum = any ? 1.0 / scale : 0.0;
   stratus_table_set_distance(table, sample_distance);
@@ -280,8 +280,8 @@ static stratus_status fill_preintegrated(
 
 static bool entry_shows(const stratus_table* table, int e)
 {
-  const int32_t* tau = table->sums ? table->sums + 3 * ((size_t)table->size + 1) : NULL;
-  return table->rgba ? table->rgba[4 * (size_t)e + 3] > 0.0f : tau[e + 1] > tau[e];
+  const size_t at = 4 * (size_t)e + 3;
+  return table->rgba ? table->rgba[at] > 0.0f : table->sums[at + 4] > table->sums[at];
 }
 
 static void fill_next_shown(stratus_table* table)

@@ -96,7 +96,7 @@ static inline int stratus_entry_within(const float* bound, int first, int beyond
 
 /* The transfer function as traversal samples it. stratus_table_entry() gives the entry e of a fetched value. Midpoint sampling reads
  * colour times alpha, and alpha, from rgba[4*e] on, for one whole sample distance. Pre-integrated sampling reads the inclusive range of
- * entries between two values: sums[last+1] - sums[first] of each of the four rows. An entry with zero opacity is exactly 0 in both. An
+ * entries between two values: sums[4*(last+1)+c] - sums[4*first+c] for each of the four. An entry with zero opacity is exactly 0 in both. An
  * entry has opacity only if the function shows on all floats that have that entry: where the function is transparent the table is, too. */
 typedef struct stratus_table {
   stratus_context* context;
@@ -109,9 +109,9 @@ typedef struct stratus_table {
   /* NULL if pre-integrated. Behind the size*4 floats follow 4 more for each entry: the optical depth of a whole sample distance, 0, 0,
    * 0. */
   float* rgba;
-  /* NULL if midpoint. Four rows of size+1 running sums, of r tau, g tau, b tau and tau, in units of sum_scale. Then two rows of `size`
-   * entry numbers, see fill_opaque(). If entries are not cells, then a row of size+1 running sums of widths, which the other rows' terms
-   * are multiplied by. */
+  /* NULL if midpoint. The running sums of r tau, g tau, b tau and tau up to each of size+1 entries, in units of sum_scale. Then two rows of
+   * `size` entry numbers, see fill_opaque(). If entries are not cells, then a row of size+1 running sums of widths, which the other sums'
+   * terms are multiplied by. */
   int32_t* sums;
   /* If entries are not cells: the first entry of each cell, and `size`; the bound at which each entry begins that is not its cell's first.
    * Both are behind rgba or sums, in the same allocation. */

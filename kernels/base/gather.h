@@ -105,6 +105,61 @@ INLINE vmask vi_outside(vint a, vint n) { return vi_lt(a, vi_set(0)) | vi_ge(a, 
 INLINE vmask vi_zero(vint a) { return (vmask)(a == vi_set(0)); }
 #endif
 
+#if !defined(STRATUS_DEVICE) && STRATUS_ISA > 0 && STRATUS_WIDTH > 1
+#define LANES_LOAD 1
+/* Where each lane loads from. Loads one by one are ahead of the gather instructions wherever a lane wants two or more neighbours:
+ * processors carry a gather out as many loads, one gather after another, so that misses of the caches do not overlap. */
+typedef struct lane_places {
+  _Alignas(64) uint32_t at[STRATUS_WIDTH];
+} lane_places;
+
+/* Lanes outside the mask load from 0. The compiler is kept from taking the places out of the register one by one, which costs more than to
+ * load them from memory. */
+INLINE void lane_places_of(vint index, vmask mask, lane_places* places)
+{
+  vi_store((int*)places->at, vi_select(mask, index, vi_set(0)));
+#ifdef __GNUC__
+  __asm__("" : "+m"(*places));
+#endif
+}
+
+/* Joins the four values each of lanes j, j + 4, ... */
+INLINE vfloat join_quads(const __m128 quad[STRATUS_WIDTH / 4])
+{
+#if STRATUS_ISA == 2
+  const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(quad[0]), quad[1], 1),
+               high = _mm256_insertf128_ps(_mm256_castps128_ps256(quad[2]), quad[3], 1);
+  return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+#else
+  return (vfloat)_mm256_insertf128_ps(_mm256_castps128_ps256(quad[0]), quad[1], 1);
+#endif
+}
+
+#if STRATUS_ISA == 2
+#define QUAD_LOW(a, b) _mm512_unpacklo_ps(a, b)
+#define QUAD_HIGH(a, b) _mm512_unpackhi_ps(a, b)
+#define QUAD_JOIN(a, b, places) _mm512_shuffle_ps(a, b, places)
+#else
+#define QUAD_LOW(a, b) (vfloat) _mm256_unpacklo_ps((__m256)(a), (__m256)(b))
+#define QUAD_HIGH(a, b) (vfloat) _mm256_unpackhi_ps((__m256)(a), (__m256)(b))
+#define QUAD_JOIN(a, b, places) (vfloat) _mm256_shuffle_ps((__m256)(a), (__m256)(b), places)
+#endif
+
+/* joined[j] holds the four values each of lanes j, j + 4, ...; out[c] is value c of every lane. */
+INLINE void transpose_quads(const vfloat joined[4], vfloat out[4])
+{
+  const vfloat a = QUAD_LOW(joined[0], joined[1]), b = QUAD_HIGH(joined[0], joined[1]), c = QUAD_LOW(joined[2], joined[3]),
+               d = QUAD_HIGH(joined[2], joined[3]);
+  out[0] = QUAD_JOIN(a, c, 0x44);
+  out[1] = QUAD_JOIN(a, c, 0xee);
+  out[2] = QUAD_JOIN(b, d, 0x44);
+  out[3] = QUAD_JOIN(b, d, 0xee);
+}
+#undef QUAD_LOW
+#undef QUAD_HIGH
+#undef QUAD_JOIN
+#endif
+
 /* The four floats from table[4 entry] on, bit by bit as they are. */
 INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
 {
@@ -120,15 +175,20 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
     out[c] = as_float16((int16)(low.even, high.even));
     out[c + 1] = as_float16((int16)(low.odd, high.odd));
   }
-#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
-  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-  const __m512i zero = _mm512_setzero_si512(), twice = (__m512i)(entry + entry);
-  for (int c = 0; c < 4; c += 2) {
-    const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256(twice), table + c, 8);
-    const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64(twice, 1), table + c, 8);
-    out[c] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
-    out[c + 1] = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
+#elif defined(LANES_LOAD)
+  lane_places places;
+  vfloat joined[4];
+  lane_places_of(entry << vi_set(2), mask, &places);
+  for (int j = 0; j < 4; ++j) {
+    __m128 quad[STRATUS_WIDTH / 4];
+    for (int i = 0; i < STRATUS_WIDTH / 4; ++i) {
+      quad[i] = _mm_loadu_ps(table + places.at[4 * i + j]);
+    }
+    joined[j] = join_quads(quad);
+  }
+  transpose_quads(joined, out);
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_select(mask, out[c], v_set(0.0f));
   }
 #else
   int li[STRATUS_WIDTH];
@@ -143,6 +203,16 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
     out[c] = v_load(lv[c]);
   }
 #endif
+}
+
+/* The four ints from table[4 entry] on. */
+INLINE void gather_four_ints(GLOBAL const int* table, vint entry, vmask mask, vint out[4])
+{
+  vfloat bits[4];
+  gather_four((GLOBAL const float*)table, entry, mask, bits);
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_to_bits(bits[c]);
+  }
 }
 
 /* The int table[index]. */
@@ -164,17 +234,14 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 #endif
 }
 
-/* What AVX-512 has an instruction for. GATHER_DWORD loads four bytes at base + (index << scale_log2), GATHER_FLOAT a float; LOGICAL_RIGHT
+/* What AVX-512 has an instruction for. GATHER_FLOAT loads a float, GATHER_DWORD four bytes at base + (index << scale_log2); LOGICAL_RIGHT
  * shifts to the right and fills with zeros. */
 #if defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
 #define GATHER_DWORD(base, index, mask, scale_log2) STRATUS_GATHER(base, index, mask, 1 << (scale_log2))
 #define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))
 #define LOGICAL_RIGHT(a, n) as_int16(as_uint16(a) >> as_uint16(n))
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
-#define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
-  ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
 #define GATHER_FLOAT(base, index, mask) _mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (__m512i)(index), (base), 4)
-#define LOGICAL_RIGHT(a, n) ((vint)_mm512_srlv_epi32((__m512i)(a), (__m512i)(n)))
 #endif
 
 #endif

@@ -127,7 +127,51 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
 
 #define VALUES ((GLOBAL const VALUE*)values)
 
-#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE) ? defined(STRATUS_DEVICE_AVX512) : STRATUS_ISA == 2)
+#if defined(LANES_LOAD) && (STRATUS_TYPE <= 3 || STRATUS_TYPE >= 8)
+#define SQUARES 1
+/* The floats of at[0], at[1], at[row] and at[row + 1]. */
+INLINE __m128 RAY_NAME(load_square)(CONSTANT stratus_ray_cast_arguments* a, const VALUE* at, size_t row)
+{
+#if STRATUS_TYPE == 8
+  (void)a;
+  return _mm_loadh_pi(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i*)(const void*)at)), (const __m64*)(const void*)(at + row));
+#elif STRATUS_TYPE == 9
+  const __m256d square = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(at)), _mm_loadu_pd(at + row), 1);
+  return _mm256_cvtpd_ps(_mm256_sub_pd(square, _mm256_set1_pd(BIAS_OF(a))));
+#elif STRATUS_TYPE >= 2
+  int low, high;
+  memcpy(&low, at, sizeof low);
+  memcpy(&high, at + row, sizeof high);
+  const __m128i square = _mm_insert_epi32(_mm_cvtsi32_si128(low), high, 1);
+  (void)a;
+  return _mm_cvtepi32_ps(STRATUS_TYPE == 2 ? _mm_cvtepi16_epi32(square) : _mm_cvtepu16_epi32(square));
+#else
+  uint16_t low, high;
+  memcpy(&low, at, sizeof low);
+  memcpy(&high, at + row, sizeof high);
+  const __m128i square = _mm_insert_epi16(_mm_cvtsi32_si128(low), high, 1);
+  (void)a;
+  return _mm_cvtepi32_ps(STRATUS_TYPE == 0 ? _mm_cvtepi8_epi32(square) : _mm_cvtepu8_epi32(square));
+#endif
+}
+
+/* out: the four floats of load_square() at each lane's place. */
+INLINE void RAY_NAME(load_squares)(
+  CONSTANT stratus_ray_cast_arguments* a, const VALUE* values, const lane_places* places, size_t row, vfloat out[4])
+{
+  vfloat joined[4];
+  for (int lane = 0; lane < 4; ++lane) {
+    __m128 quad[STRATUS_WIDTH / 4];
+    for (int part = 0; part < STRATUS_WIDTH / 4; ++part) {
+      quad[part] = RAY_NAME(load_square)(a, values + places->at[4 * part + lane], row);
+    }
+    joined[lane] = join_quads(quad);
+  }
+  transpose_quads(joined, out);
+}
+#endif
+
+#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && defined(STRATUS_DEVICE_AVX512)
 #define FETCH_DWORD 1 /* values of one or two bytes: one gather of four bytes loads a pair */
 #endif
 
@@ -198,42 +242,19 @@ INLINE void RAY_NAME(fetch_pair)(
   const vint dword = RAY_NAME(gather_bytes)(a, values, index, mask, end);
   *v0 = v_from_int(RAY_NAME(dword_part)(dword, 0));
   *v1 = v_from_int(RAY_NAME(dword_part)(dword, 1));
-#elif STRATUS_TYPE == 8 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
-  const __m512i zero = _mm512_setzero_si512();
-  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-  const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256((__m512i)index), VALUES, 4);
-  const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64((__m512i)index, 1), VALUES, 4);
-  *v0 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high));
-  *v1 = _mm512_castsi512_ps(_mm512_permutex2var_epi32(low, odd, high));
-  (void)a;
+#elif defined(SQUARES)
+  lane_places places;
+  vfloat twice[4];
+  lane_places_of(index, mask, &places);
+  RAY_NAME(load_squares)(a, VALUES, &places, 0, twice);
+  *v0 = twice[0];
+  *v1 = twice[1];
   (void)end;
 #elif STRATUS_TYPE == 8 && defined(STRATUS_DEVICE) && defined(STRATUS_DEVICE_AVX512)
   const int16 low = STRATUS_GATHER_LONG(VALUES, index.lo, (uchar)mask, 4),
               high = STRATUS_GATHER_LONG(VALUES, index.hi, (uchar)(mask >> 8), 4);
   *v0 = as_float16((int16)(low.even, high.even));
   *v1 = as_float16((int16)(low.odd, high.odd));
-  (void)a;
-  (void)end;
-#elif STRATUS_TYPE == 8 && defined(GATHER_FLOAT)
-  *v0 = GATHER_FLOAT(VALUES, index, mask);
-  *v1 = GATHER_FLOAT(VALUES + 1, index, mask);
-  (void)a;
-  (void)end;
-#elif STRATUS_TYPE == 9 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
-  const __m512d bias = _mm512_set1_pd(BIAS_OF(a)), zero = _mm512_setzero_pd();
-  const __m256i low = _mm512_castsi512_si256((__m512i)index), high = _mm512_extracti64x4_epi64((__m512i)index, 1);
-  for (int x = 0; x < 2; ++x) {
-    const __m512d v_low = _mm512_mask_i32gather_pd(zero, (__mmask8)mask, low, VALUES + x, 8);
-    const __m512d v_high = _mm512_mask_i32gather_pd(zero, (__mmask8)(mask >> 8), high, VALUES + x, 8);
-    const __m256 f_low = _mm512_cvtpd_ps(_mm512_sub_pd(v_low, bias)), f_high = _mm512_cvtpd_ps(_mm512_sub_pd(v_high, bias));
-    *(x ? v1 : v0) = _mm512_insertf32x8(_mm512_castps256_ps512(f_low), f_high, 1);
-  }
-  (void)end;
-#elif STRATUS_TYPE == 8 && !defined(STRATUS_DEVICE) && STRATUS_ISA == 1 && STRATUS_WIDTH == 8
-  const __m256 zero = _mm256_setzero_ps();
-  *v0 = (vfloat)_mm256_mask_i32gather_ps(zero, VALUES, (__m256i)index, (__m256)mask, 4);
-  *v1 = (vfloat)_mm256_mask_i32gather_ps(zero, VALUES + 1, (__m256i)index, (__m256)mask, 4);
   (void)a;
   (void)end;
 #else
@@ -252,10 +273,17 @@ INLINE void RAY_NAME(fetch_cell)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat v[8])
 {
   const vint index = RAY_NAME(fixed_index)(a, i, j, k);
+#ifdef SQUARES
+  lane_places places;
+  lane_places_of(index, mask, &places);
+  RAY_NAME(load_squares)(a, VALUES, &places, (size_t)a->values.row, v);
+  RAY_NAME(load_squares)(a, VALUES + a->values.slice, &places, (size_t)a->values.row, v + 4);
+#else
   RAY_NAME(fetch_pair)(a, values, index, mask, 0, &v[0], &v[1]);
   RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.row), mask, 0, &v[2], &v[3]);
   RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.slice), mask, 0, &v[4], &v[5]);
   RAY_NAME(fetch_pair)(a, values, index + vi_set(a->values.row + a->values.slice), mask, 1, &v[6], &v[7]);
+#endif
 }
 
 INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask)
@@ -281,6 +309,7 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
 #undef VALUE
 #undef VALUES
 #undef VALUE_WIDE
+#undef SQUARES
 #undef FETCH_DWORD
 #undef DWORD_LOG2
 #undef DWORD_SHIFT

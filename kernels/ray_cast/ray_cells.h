@@ -28,7 +28,7 @@ INLINE vmask cell_shows(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int
   if (m_any(mask)) {
     const vint low = entry_in_cell(&a->table, sums, v_to_int(first), lo, mask);
     const vint high = entry_in_cell(&a->table, sums, v_to_int(last), hi, mask);
-    mask = mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, low, high + vi_set(1), mask));
+    mask = mask & v_lt(v_set(0.0f), tau_between(sums, low, high + vi_set(1), mask));
   }
   return mask;
 }

@@ -66,7 +66,7 @@ INLINE vmask segment_shows(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const stratus_packet* k, vmask mask, vfloat value)
 {
   const vint entry = table_entry(&a->table, sums, value), front = table_entry(&a->table, sums, k->front);
-  return mask & v_lt(v_set(0.0f), sum_between(&a->table, sums, 3, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
+  return mask & v_lt(v_set(0.0f), tau_between(sums, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
 }
 
 /* Where on the way from one place in the table's grid to another lies what the table spans: the part of the way before it, and its own. */
@@ -79,8 +79,8 @@ INLINE void part_within(CONSTANT stratus_table_arguments* t, vfloat from, vfloat
   *part = v_clamp(v_max(first, last), 0.0f, 1.0f) - *before;
 }
 
-/* Pre-integration: the field is taken as linear between the values at a segment's ends. sums: running sums over the entries, of red, green
- * and blue times tau, and of tau. lighting: NULL where a sample is its value's colour and opacity alone. */
+/* Pre-integration: the field is taken as linear between the values at a segment's ends. sums: running sums of red, green and blue times
+ * tau, and of tau, up to each entry. lighting: NULL where a sample is its value's colour and opacity alone. */
 INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
   vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
@@ -127,13 +127,14 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
       beyond = vi_select(mask, vi_max(entry, front) + vi_set(1), beyond);
     }
   }
-  vfloat tau = sum_between(&a->table, sums, 3, low, beyond, mask);
-  mask = mask & v_lt(zero, tau);
+  vfloat sum[4];
+  sums_between(sums, low, beyond, mask, sum);
+  mask = mask & v_lt(zero, sum[3]);
   if (!m_any(mask | opaque)) {
     return;
   }
   vfloat entries = width_between(&a->table, sums, low, beyond, mask);
-  const vfloat pieces = segment_pieces_within(&a->table, tau * depth_scale * v_reciprocal(v_max(entries, one)), entries);
+  const vfloat pieces = segment_pieces_within(&a->table, sum[3] * depth_scale * v_reciprocal(v_max(entries, one)), entries);
   const vmask several = mask & v_lt(one, pieces);
   vfloat share = one, piece = zero;
   vint from = front;
@@ -148,17 +149,17 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
       low = vi_min(from, to);
       beyond = vi_max(from, to) + vi_set(1);
       entries = width_between(&a->table, sums, low, beyond, mask);
-      tau = sum_between(&a->table, sums, 3, low, beyond, mask);
+      sums_between(sums, low, beyond, mask, sum);
       from = to;
     }
-    const vmask lit = mask & v_lt(zero, tau);
+    const vmask lit = mask & v_lt(zero, sum[3]);
     if (m_any(lit)) {
       vfloat layer[4];
-      const vfloat depth = tau * (depth_scale * share) * v_reciprocal(v_max(entries, one));
+      const vfloat depth = sum[3] * (depth_scale * share) * v_reciprocal(v_max(entries, one));
       layer[3] = v_select(lit, v_absorbed(v_select(lit, depth, zero)), zero);
-      const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(tau, one)), zero);
+      const vfloat per_tau = v_select(lit, layer[3] * v_reciprocal(v_max(sum[3], one)), zero);
       for (int c = 0; c < 3; ++c) {
-        layer[c] = sum_between(&a->table, sums, c, low, beyond, lit) * per_tau;
+        layer[c] = sum[c] * per_tau;
       }
       if (lighting) {
         light_layer(lighting, layer);
@@ -170,9 +171,10 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   if (m_any(opaque)) {
     vfloat layer[4];
     const vint next = opaque_entry + vi_set(1);
-    const vfloat per_tau = v_reciprocal(v_max(sum_between(&a->table, sums, 3, opaque_entry, next, opaque), one));
+    sums_between(sums, opaque_entry, next, opaque, sum);
+    const vfloat per_tau = v_reciprocal(v_max(sum[3], one));
     for (int c = 0; c < 3; ++c) {
-      layer[c] = sum_between(&a->table, sums, c, opaque_entry, next, opaque) * per_tau;
+      layer[c] = sum[c] * per_tau;
     }
     layer[3] = v_select(opaque, one, zero);
     if (lighting) {

@@ -81,35 +81,4 @@ INLINE vfloat gather_float(GLOBAL const float* base, vint at, vmask mask)
 #endif
 }
 
-/* The ints base[4 entry .. 4 entry + 3]. */
-INLINE void gather_four_ints(GLOBAL const int* base, vint entry, vmask mask, vint out[4])
-{
-  const vint at = entry << vi_set(2);
-  gather_pair(base, at, mask, out);
-  gather_pair(base + 2, at, mask, out + 2);
-}
-
-INLINE void gather_four_floats(GLOBAL const float* base, vint entry, vmask mask, vfloat out[4])
-{
-#if STRATUS_WIDTH == 16
-  vint bits[4];
-  gather_four_ints((GLOBAL const int*)base, entry, mask, bits);
-  for (int i = 0; i < 4; ++i) {
-    out[i] = v_from_bits(bits[i]);
-  }
-#else
-  float lv[4][STRATUS_WIDTH];
-  int li[STRATUS_WIDTH];
-  vi_store(li, vi_select(mask, entry, vi_set(-1)));
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    for (int i = 0; i < 4; ++i) {
-      lv[i][lane] = li[lane] >= 0 ? base[4 * li[lane] + i] : 0.0f;
-    }
-  }
-  for (int i = 0; i < 4; ++i) {
-    out[i] = v_load(lv[i]);
-  }
-#endif
-}
-
 #endif

@@ -101,7 +101,7 @@ INLINE stratus_tetra_passage tetra_pass(
 {
   const vfloat zero = v_set(0.0f);
   vfloat d[4], e[3];
-  gather_four_floats(scene->points, r->fourth, live, d);
+  gather_four(scene->points, r->fourth, live, d);
   d[0] = v_fma(-r->us, d[2], d[0] - r->uw);
   d[1] = v_fma(-r->vs, d[2], d[1] - r->vw);
   vmask negative[3], tie[3];

@@ -94,7 +94,7 @@ INLINE void lanes_enter(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mas
   gather_pair(v->faces + 4, entry[1] << vi_set(3), mask, cell);
   for (int i = 0; i < 3; ++i) {
     vfloat p[4];
-    gather_four_floats(v->scene.points, name[i], mask, p);
+    gather_four(v->scene.points, name[i], mask, p);
     r->x[i] = v_select(mask, v_fma(-r->us, p[2], p[0] - r->uw), r->x[i]);
     r->y[i] = v_select(mask, v_fma(-r->vs, p[2], p[1] - r->vw), r->y[i]);
     r->z[i] = v_select(mask, p[2], r->z[i]);

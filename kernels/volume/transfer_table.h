@@ -45,12 +45,22 @@ INLINE vint table_entry(CONSTANT stratus_table_arguments* t, GLOBAL const void* 
   return entry_in_cell(t, table, cell, value, vi_ge(cell, vi_set(0)));
 }
 
-/* The sum over entries low..beyond-1 of row `which`: 0..2 red, green, blue times tau; 3 tau. Running sums are integers, so that their
- * difference is exact, and exactly zero over a transparent stretch. */
-INLINE vfloat sum_between(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, int which, vint low, vint beyond, vmask mask)
+/* The sums over entries low..beyond-1 of red, green and blue times tau, and of tau. Running sums are integers, so that their difference is
+ * exact, and exactly zero over a transparent stretch. */
+INLINE void sums_between(GLOBAL const int* sums, vint low, vint beyond, vmask mask, vfloat out[4])
 {
-  GLOBAL const int* sum = sums + which * (t->entries + 1);
-  return v_from_int(gather_int32(sum, beyond, mask) - gather_int32(sum, low, mask));
+  vint before[4], up_to[4];
+  gather_four_ints(sums, low, mask, before);
+  gather_four_ints(sums, beyond, mask, up_to);
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_from_int(up_to[c] - before[c]);
+  }
+}
+
+/* The last of these sums alone. */
+INLINE vfloat tau_between(GLOBAL const int* sums, vint low, vint beyond, vmask mask)
+{
+  return v_from_int(gather_int32(sums + 3, beyond << vi_set(2), mask) - gather_int32(sums + 3, low << vi_set(2), mask));
 }
 
 /* What the sums over entries low..beyond-1 are divided by to get a mean: the number of entries, or their widths. */
