@@ -75,6 +75,7 @@ struct result {
   bool judged = true;            // false: the window shows more than the volume, so that only times are compared
   double psnr_db = 0.0, psnr8_db = 0.0, max_error = 0.0, reference_db = 0.0;
   double differing_pixels = -1.0; // -1: not compared
+  double tolerance = -1.0;        // that the method was given; -1: it knows none
 };
 
 struct floor_result {
@@ -91,7 +92,9 @@ double median(std::vector<double> values);
 
 std::vector<std::string> all_methods();
 void check_method(const std::string& name); // throws failure
-result run_method(stratus_context* context, const scene& s, const std::string& method, int size);
+// Whether a method's tolerance is the error of vtk:fixedpoint, which has to be measured first.
+bool needs_fixed_point(const std::string& method);
+result run_method(stratus_context* context, const scene& s, const std::string& method, int size, double fixed_point_error);
 floor_result run_floor(stratus_context* context, const scene& s, int size);
 
 // ---- cache.cxx
@@ -103,8 +106,21 @@ void make_folder(const std::string& folder);
 bool load_picture(const std::string& path, std::vector<float>& rgba);
 void save_picture(const std::string& path, const std::vector<float>& rgba); // writes the whole file or none
 
-// ---- judge.cxx: fills the errors of all results of one scene
-void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results);
+// ---- judge.cxx
+
+// The reference pictures of one scene, which are refined as far as the results that they are compared with ask for.
+class judge
+{
+public:
+  judge(stratus_context* context, const scene& s, int size, const std::string& cache);
+  ~judge();
+  void measure(std::vector<result>& results); // fills errors
+  void compare(std::vector<result>& results); // fills differing_pixels
+
+private:
+  struct state;
+  std::unique_ptr<state> State;
+};
 
 // ---- report.cxx, chart.cxx, origin.cxx
 

@@ -25,6 +25,9 @@ void add_rows(const result& r, std::vector<row>& rows)
     add("max_error", r.max_error, "1");
     add("reference_db", r.reference_db, "dB");
   }
+  if (r.tolerance >= 0.0) {
+    add("tolerance", r.tolerance, "1");
+  }
   if (r.time.samples >= 0.0) {
     add("samples", r.time.samples, "1");
   }

@@ -140,7 +140,7 @@ std::vector<float> to_floats(const std::vector<uint8_t>& bytes)
   return result;
 }
 
-void measure(const std::vector<std::vector<float>>& reference, result& r)
+void measure_result(const std::vector<std::vector<float>>& reference, result& r)
 {
   error in_float;
   error in_bytes;
@@ -158,28 +158,101 @@ void measure(const std::vector<std::vector<float>>& reference, result& r)
   r.max_error = floats ? in_float.largest : in_bytes.largest;
 }
 
-// Returns "@device" of stratus:octant@device. Only pictures of one device are compared.
-std::string where(const std::string& method)
+// Returns "~0.01@device" of stratus:octant~0.01@device. Only pictures of one tolerance and device are compared.
+std::string how(const std::string& method)
 {
-  const size_t at = method.find('@');
-  return at == std::string::npos ? "" : method.substr(at);
+  return method.substr(std::min(method.find_first_of("~@"), method.size()));
+}
+} // namespace
+
+struct judge::state {
+  stratus_context* Context;
+  const scene& Scene;
+  int Size;
+  references Source;
+  double Step; // of Fine; 0: nothing is drawn yet
+  std::vector<std::vector<float>> Coarse, Fine;
+  double Agreement; // dB, of Fine with Coarse
+
+  double draw(double step);
+};
+
+// Draws all views, and returns how far they agree with the last ones, in dB.
+double judge::state::draw(double step)
+{
+  error self;
+  for (int view = 0; view < views; ++view) {
+    progress(this->Scene, step, view);
+    const size_t v = static_cast<size_t>(view);
+    this->Coarse[v].swap(this->Fine[v]);
+    this->Fine[v] = this->Source.make(view, step);
+    if (!this->Coarse[v].empty()) {
+      self.add(this->Coarse[v].data(), this->Fine[v].data(), this->Fine[v].size() / 4);
+    }
+  }
+  progress(this->Scene, step, views);
+  this->Step = step;
+  return self.psnr();
 }
 
-void compare(stratus_context* context, const scene& s, int size, std::vector<result>& results)
+judge::judge(stratus_context* context, const scene& s, int size, const std::string& cache)
+    : State(new state{ context, s, size, references(context, s, size, cache), 0.0, {}, {}, 0.0 })
 {
-  std::map<std::string, std::vector<picture>> none; // by device
+  this->State->Coarse.resize(views);
+  this->State->Fine.resize(views);
+}
+
+judge::~judge() = default;
+
+void judge::measure(std::vector<result>& results)
+{
+  state& j = *this->State;
+  if (std::none_of(results.begin(), results.end(), [](const result& r) { return r.judged; })) {
+    return;
+  }
+  const double least = jumps(j.Scene.first.opacity, 2) || jumps(j.Scene.first.color, 4) ? least_of_jumps : 0.0;
+  if (j.Step == 0.0) {
+    // Without light and other components, steps end at cells and at the function's points, so that long ones suffice.
+    j.draw(j.Scene.shaded || j.Scene.volume.components > 1 ? 0.125 : 1.0);
+    j.Agreement = j.draw(0.5 * j.Step);
+  }
+  for (;;) {
+    double best = 0.0;
+    for (result& r : results) {
+      if (r.judged) {
+        measure_result(j.Fine, r);
+        r.reference_db = j.Agreement;
+        best = std::max({ best, r.psnr_db, r.psnr8_db });
+      }
+    }
+    if (j.Agreement >= std::max(best + 10.0, least)) {
+      return;
+    }
+    if (0.5 * j.Step < finest) {
+      std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n",
+        j.Scene.name.c_str(), j.Agreement, best);
+      return;
+    }
+    j.Agreement = j.draw(0.5 * j.Step);
+  }
+}
+
+void judge::compare(std::vector<result>& results)
+{
+  const state& j = *this->State;
+  std::map<std::string, std::vector<picture>> none; // by tolerance and device
   for (const result& r : results) {
     if (r.method.rfind("stratus:none", 0) == 0 && r.judged) {
-      none[where(r.method)] = r.pictures;
+      none[how(r.method)] = r.pictures;
     }
   }
   for (result& r : results) {
     if (r.method.rfind("stratus:", 0) != 0 || !r.judged) {
       continue;
     }
-    std::vector<picture>& plain = none[where(r.method)];
+    std::vector<picture>& plain = none[how(r.method)];
     if (plain.empty()) {
-      plain = run_method(context, s, "stratus:none" + where(r.method), size).pictures;
+      plain = run_method(j.Context, j.Scene, "stratus:none" + how(r.method), j.Size, r.tolerance).pictures;
     }
     r.differing_pixels = 0.0;
     for (int view = 0; view < views; ++view) {
@@ -190,56 +263,5 @@ void compare(stratus_context* context, const scene& s, int size, std::vector<res
       }
     }
   }
-}
-} // namespace
-
-void judge(stratus_context* context, const scene& s, int size, const std::string& cache, std::vector<result>& results)
-{
-  if (std::none_of(results.begin(), results.end(), [](const result& r) { return r.judged; })) {
-    return;
-  }
-  const references source(context, s, size, cache);
-  std::vector<std::vector<float>> coarse(views);
-  std::vector<std::vector<float>> fine(views);
-  double agreement = 0.0;
-  double best = 0.0;
-  const double least = jumps(s.first.opacity, 2) || jumps(s.first.color, 4) ? least_of_jumps : 0.0;
-  // Without light and other components, steps end at cells and at the function's points, so that long ones suffice.
-  const double coarsest = s.shaded || s.volume.components > 1 ? 0.125 : 1.0;
-  for (int view = 0; view < views; ++view) {
-    progress(s, coarsest, view);
-    fine[static_cast<size_t>(view)] = source.make(view, coarsest);
-  }
-  for (double step = 0.5 * coarsest; step >= finest; step *= 0.5) {
-    error self;
-    for (int view = 0; view < views; ++view) {
-      progress(s, step, view);
-      const size_t v = static_cast<size_t>(view);
-      coarse[v].swap(fine[v]);
-      fine[v] = source.make(view, step);
-      self.add(coarse[v].data(), fine[v].data(), fine[v].size() / 4);
-    }
-    progress(s, step, views);
-    agreement = self.psnr();
-    best = 0.0;
-    for (result& r : results) {
-      if (!r.judged) {
-        continue;
-      }
-      measure(fine, r);
-      best = std::max({ best, r.psnr_db, r.psnr8_db });
-    }
-    if (agreement >= std::max(best + 10.0, least)) {
-      break;
-    }
-  }
-  if (agreement < std::max(best + 10.0, least)) {
-    std::fprintf(stderr, "  warning: the reference of %s agrees with itself to %.1f dB only, the best figure is %.1f dB\n", s.name.c_str(),
-      agreement, best);
-  }
-  for (result& r : results) {
-    r.reference_db = r.judged ? agreement : 0.0;
-  }
-  compare(context, s, size, results);
 }
 } // namespace bench

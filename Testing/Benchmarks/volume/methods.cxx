@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 namespace bench {
 
@@ -38,32 +39,45 @@ bool parse_dress(const std::string& whole, std::string& name, dress& d)
   return d.gradient || d.samples || d.axes || d.outline;
 }
 
-// Parses stratus:STRUCTURE[@host|@device]. Returns false for other names.
-bool parse_stratus(const std::string& name, int& structure, std::string& device)
+// stratus:STRUCTURE[~TOLERANCE][@host|@device]
+struct stratus_method {
+  int structure = 0;
+  std::string tolerance; // a number, or `fixedpoint`; empty: the default
+  std::string device;
+};
+
+// Returns false for other names.
+bool parse_stratus(const std::string& name, stratus_method& m)
 {
   if (name.rfind("stratus:", 0) != 0) {
     return false;
   }
-  const size_t at = name.find('@');
-  const std::string kind = name.substr(8, at == std::string::npos ? at : at - 8);
-  const std::string where = at == std::string::npos ? "" : name.substr(at + 1);
-  const auto found = std::find(std::begin(structures), std::end(structures), kind);
-  if (found == std::end(structures) || (!where.empty() && where != "host" && where != "device")) {
+  const size_t at = std::min(name.find('@'), name.size());
+  const size_t about = std::min(name.find('~'), at);
+  const std::string where = name.substr(std::min(at + 1, name.size()));
+  const auto found = std::find(std::begin(structures), std::end(structures), name.substr(8, about - 8));
+  if (found == std::end(structures) || (at < name.size() && where != "host" && where != "device")) {
     return false;
   }
-  structure = static_cast<int>(found - std::begin(structures));
-  device = where.empty() ? "auto" : where == "device" ? "0" : where;
-  return true;
+  m.structure = static_cast<int>(found - std::begin(structures));
+  m.tolerance = about < at ? name.substr(about + 1, at - about - 1) : "";
+  m.device = where.empty() ? "auto" : where == "device" ? "0" : where;
+  char* end = nullptr;
+  const bool positive = std::strtod(m.tolerance.c_str(), &end) > 0.0 && *end == '\0';
+  return about == at || m.tolerance == "fixedpoint" || positive;
 }
 
-vtkSmartPointer<vtkVolumeMapper> make_stratus(int structure, const std::string& device)
+vtkSmartPointer<vtkVolumeMapper> make_stratus(const stratus_method& m, double fixed_point_error)
 {
-  if (device == "0" && stratus_device_count() == 0) {
+  if (m.device == "0" && stratus_device_count() == 0) {
     throw failure("no OpenCL device for @device");
   }
   auto mapper = vtkSmartPointer<vtkStratusVolumeMapper>::New();
-  mapper->SetStructure(structure);
-  mapper->SetDevice(device.c_str());
+  mapper->SetStructure(m.structure);
+  mapper->SetDevice(m.device.c_str());
+  if (!m.tolerance.empty()) {
+    mapper->SetImageErrorTolerance(m.tolerance == "fixedpoint" ? fixed_point_error : std::atof(m.tolerance.c_str()));
+  }
   return mapper;
 }
 
@@ -92,12 +106,11 @@ vtkSmartPointer<vtkVolumeMapper> make_gpu(double step)
   return mapper;
 }
 
-vtkSmartPointer<vtkVolumeMapper> make_mapper(const scene& s, const std::string& method)
+vtkSmartPointer<vtkVolumeMapper> make_mapper(const scene& s, const std::string& method, double fixed_point_error)
 {
-  int structure = 0;
-  std::string device;
-  if (parse_stratus(method, structure, device)) {
-    return make_stratus(structure, device);
+  stratus_method ours;
+  if (parse_stratus(method, ours)) {
+    return make_stratus(ours, fixed_point_error);
   }
   if (method == "vtk:fixedpoint" || method == "vtk:fixedpoint:0.5") {
     return make_fixed_point(method == "vtk:fixedpoint" ? s.voxel : 0.5 * s.voxel);
@@ -147,25 +160,31 @@ bool draws(const std::vector<uint8_t>& bytes)
 std::vector<std::string> all_methods()
 {
   return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:hybrid", "stratus:auto", "stratus:none@device",
-    "stratus:auto@device", "stratus:auto+ordinary", "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb",
-    "floor" };
+    "stratus:auto@device", "stratus:auto+ordinary", "stratus:auto~0.0126", "vtk:fixedpoint", "vtk:fixedpoint:0.5",
+    "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb", "floor", "stratus:auto~fixedpoint" };
 }
 
 void check_method(const std::string& whole)
 {
-  int structure = 0;
-  std::string device, name;
+  stratus_method ours;
+  std::string name;
   dress d;
   static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
   const bool dressed = parse_dress(whole, name, d) && (name == whole || name != "floor");
-  if (!dressed || (!parse_stratus(name, structure, device) && std::find(std::begin(others), std::end(others), name) == std::end(others))) {
+  if (!dressed || (!parse_stratus(name, ours) && std::find(std::begin(others), std::end(others), name) == std::end(others))) {
     throw failure("unknown method '" + whole +
-      "'; known: stratus:none|block|distance|octant|hybrid|auto with @host or @device or neither, vtk:fixedpoint, vtk:fixedpoint:0.5, "
-      "vtk:gpu, openvdb, floor; all but floor with +ordinary, +gradient, +samples, +axes or +outline");
+      "'; known: stratus:none|block|distance|octant|hybrid|auto with ~TOLERANCE or ~fixedpoint or neither, and @host or @device or "
+      "neither, "
+      "vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; all but floor with +ordinary, +gradient, +samples, +axes or +outline");
   }
 }
 
-result run_method(stratus_context* context, const scene& s, const std::string& whole, int size)
+bool needs_fixed_point(const std::string& method)
+{
+  return method.find("~fixedpoint") != std::string::npos;
+}
+
+result run_method(stratus_context* context, const scene& s, const std::string& whole, int size, double fixed_point_error)
 {
   result r;
   dress d;
@@ -174,7 +193,7 @@ result run_method(stratus_context* context, const scene& s, const std::string& w
   r.scene = s.name;
   r.method = whole;
   r.judged = whole == method;
-  const vtkSmartPointer<vtkVolumeMapper> mapper = make_mapper(s, method);
+  const vtkSmartPointer<vtkVolumeMapper> mapper = make_mapper(s, method, fixed_point_error);
   window w(context, s, mapper, size, d);
   r.time.first_ms = w.first();
   std::vector<double> frames;
@@ -204,6 +223,7 @@ result run_method(stratus_context* context, const scene& s, const std::string& w
   r.time.update_ms = median(updates);
   r.time.samples = median(samples);
   if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
+    r.tolerance = ours->GetImageErrorTolerance();
     r.time.device = std::string(ours->GetDeviceName() ? ours->GetDeviceName() : "") + "; " + (ours->GetReason() ? ours->GetReason() : "");
   }
   return r;

@@ -3,6 +3,8 @@
 #include "bench.h"
 #include "rate.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -19,10 +21,11 @@ const char* const help = R"(stratus-bench volume [options]
                             headlight; default: all of these but haze and cloud-N, cloud+shade, and ../shared/data/isabel_02.vti, plain and
                             lit, where it is
   --size N                  N x N pixels (default 512)
-  --method M,...            stratus:none|block|distance|octant|hybrid|auto, with @host or @device (the first OpenCL device) behind it;
-                            vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; each but floor with a window behind it: +gradient
-                            (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four (default: all methods,
-                            stratus:auto and vtk:fixedpoint in ordinary windows, too)
+  --method M,...            stratus:none|block|distance|octant|hybrid|auto, with ~TOLERANCE behind it, a number, or ~fixedpoint, which is
+                            the root mean square error that vtk:fixedpoint has in this run, and with @host or @device (the first OpenCL
+                            device) behind that; vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; each but floor with a window
+                            behind it: +gradient (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
+                            (default: all methods, stratus:auto and vtk:fixedpoint in ordinary windows, too)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `#
                             name,value`: processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
   --chart FILE.png          frame time against error
@@ -114,6 +117,16 @@ options parse(int argc, char* argv[])
   return o;
 }
 
+// Returns the error of vtk:fixedpoint over lit pixels, in the terms of the tolerance.
+double fixed_point_error(
+  stratus_context* context, const bench::scene& scene, int size, bench::judge& judge, std::vector<bench::result>& results)
+{
+  const auto known = std::find_if(results.begin(), results.end(), [](const bench::result& r) { return r.method == "vtk:fixedpoint"; });
+  std::vector<bench::result> fixed = { known != results.end() ? *known : bench::run_method(context, scene, "vtk:fixedpoint", size, 0.0) };
+  judge.measure(fixed);
+  return std::pow(10.0, -0.05 * fixed[0].psnr8_db);
+}
+
 // Shows on a terminal what is being measured.
 void working_on(const std::string& scene, const std::string& method)
 {
@@ -124,9 +137,10 @@ void working_on(const std::string& scene, const std::string& method)
 
 void run_scene(stratus_context* context, const std::string& source, const options& o, std::vector<bench::row>& rows)
 {
-  std::fprintf(stderr, "%s\n", source.c_str());
   const bench::scene scene = bench::make_scene(context, source);
   std::vector<bench::result> results;
+  bench::judge judge(context, scene, o.size, o.cache);
+  double fixed_point = 0.0;
   const bool plain = !scene.shaded && scene.volume.components == 1;
   for (const std::string& method : o.methods) {
     if (!plain && (method == "floor" || method == "openvdb")) {
@@ -142,14 +156,26 @@ void run_scene(stratus_context* context, const std::string& source, const option
       bench::add_rows(scene.name, f, rows);
       continue;
     }
-    results.push_back(bench::run_method(context, scene, method, o.size));
+    if (bench::needs_fixed_point(method) && fixed_point == 0.0) {
+      if (!o.error) {
+        working_on("", "");
+        std::fprintf(stderr, "  %s needs errors, which --no-error does without: left out\n", method.c_str());
+        continue;
+      }
+      fixed_point = fixed_point_error(context, scene, o.size, judge, results);
+    }
+    results.push_back(bench::run_method(context, scene, method, o.size, fixed_point));
     working_on("", "");
     const bench::timing& t = results.back().time;
     std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms,
       t.device.c_str());
   }
   if (o.error) {
-    bench::judge(context, scene, o.size, o.cache, results);
+    if (!isatty(STDERR_FILENO)) {
+      std::fprintf(stderr, "  drawing the reference\n");
+    }
+    judge.measure(results);
+    judge.compare(results);
   }
   for (const bench::result& r : results) {
     bench::add_rows(r, rows);
@@ -167,8 +193,9 @@ void run(const options& o)
   }
   std::vector<bench::row> rows;
   bench::make_folder(o.cache);
-  for (const std::string& source : o.scenes) {
-    run_scene(context, source, o, rows);
+  for (size_t i = 0; i < o.scenes.size(); ++i) {
+    std::fprintf(stderr, "%s (scene %zu of %zu)\n", o.scenes[i].c_str(), i + 1, o.scenes.size());
+    run_scene(context, o.scenes[i], o, rows);
   }
   bench::print_table(rows);
   bench::write_csv(o.csv, rows);
