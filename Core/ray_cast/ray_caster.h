@@ -13,6 +13,14 @@
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
 
+/* A table and what it was made for. */
+typedef struct stratus_ray_made_table {
+  stratus_table* table; /* NULL: none */
+  double distance;      /* between samples */
+  int entries;          /* asked for, at least */
+  uint64_t number;      /* of the caster's tables, in the order of their making */
+} stratus_ray_made_table;
+
 struct stratus_ray_caster {
   stratus_context* context;
 
@@ -36,9 +44,11 @@ struct stratus_ray_caster {
   stratus_ray_choice_inputs measured_for; /* the inputs of `measured`; tolerance -1: data or function have changed since */
   char tried[256];                        /* what the probe tried; empty: there was none */
   stratus_table* table;
-  double table_distance;  /* sample distance of the table */
-  int table_entries;      /* asked for, at least */
-  stratus_shown values;   /* the fetched values that matter; of NULL: not known yet */
+  double table_distance; /* sample distance of the table */
+  int table_entries;     /* asked for, at least */
+  uint64_t table_number;
+  stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
+  stratus_shown values;               /* the fetched values that matter; of NULL: not known yet */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;

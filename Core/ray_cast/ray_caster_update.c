@@ -152,26 +152,42 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
   return STRATUS_OK;
 }
 
+/* Whether a table of the midpoint rule or of running sums is what is asked for. Sums serve every distance. */
+static bool table_fits(const stratus_ray_made_table* made, bool sums, int entries, double distance)
+{
+  return made->table && (made->table->sums != NULL) == sums && made->entries == entries && (sums || made->distance == distance);
+}
+
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  const bool preintegrated = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
-  const stratus_sampling rule = preintegrated ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
+  const stratus_sampling rule = sums ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
   const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
-  if (!caster->table || (caster->table->sums != NULL) != preintegrated || caster->table_entries != entries ||
-    (!preintegrated && caster->table_distance != distance)) {
-    const stratus_table_values values = stratus_table_values_of(caster->ranges, caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
-    stratus_table* table = NULL;
-    TRY(stratus_table_create_fine(caster->context, caster->transfers, &values, rule, distance, entries, &table));
-    stratus_table_destroy(caster->table);
-    caster->table = table;
-    caster->table_entries = entries;
-    ++caster->table_builds;
+  const stratus_ray_made_table last = { caster->table, caster->table_distance, caster->table_entries, caster->table_number };
+  stratus_ray_made_table made = last;
+  if (!table_fits(&last, sums, entries, distance)) {
+    made = caster->spare_table;
+    if (!table_fits(&made, sums, entries, distance)) {
+      const stratus_table_values values = stratus_table_values_of(caster->ranges, caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
+      made = (stratus_ray_made_table){ NULL, distance, entries, caster->table_builds + 1 };
+      TRY(stratus_table_create_fine(caster->context, caster->transfers, &values, rule, distance, entries, &made.table));
+      ++caster->table_builds;
+      const bool same_kind = last.table && (last.table->sums != NULL) == sums;
+      stratus_table_destroy(same_kind ? last.table : caster->spare_table.table);
+      caster->spare_table = same_kind ? caster->spare_table : last;
+    } else {
+      caster->spare_table = last;
+    }
     ++caster->table_serial;
-  } else if (preintegrated) {
-    stratus_table_set_distance(caster->table, distance);
   }
+  if (sums) {
+    stratus_table_set_distance(made.table, distance);
+  }
+  caster->table = made.table;
+  caster->table_entries = entries;
   caster->table_distance = distance;
+  caster->table_number = made.number;
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 

@@ -126,6 +126,35 @@ static int component_of(const stratus_ray_caster* caster, int m)
   return components <= 1 ? 0 : caster->transfer_count == 1 ? components - 1 : m;
 }
 
+/* Returns the first index from `at` on whose byte is another than `value`, or `end`. */
+static int64_t pass_bytes(const uint8_t* bytes, uint8_t value, int64_t at, int64_t end)
+{
+  const uint64_t eight = value * UINT64_C(0x0101010101010101);
+  for (uint64_t word = eight; at + 8 <= end; at += 8) {
+    memcpy(&word, bytes + at, sizeof word);
+    if (word != eight) {
+      break;
+    }
+  }
+  while (at < end && bytes[at] == value) {
+    ++at;
+  }
+  return at;
+}
+
+/* Where rows of blocks begin and end along x within the box of the occupied blocks, by their number. */
+static void row_of(const stratus_occupancy* occupancy, int64_t row, int64_t* begin, int64_t* end)
+{
+  const int64_t *lo = occupancy->lo, *hi = occupancy->hi, ny = hi[1] - lo[1];
+  *begin = ((lo[2] + row / ny) * occupancy->blocks[1] + lo[1] + row % ny) * occupancy->blocks[0] + lo[0];
+  *end = *begin + hi[0] - lo[0];
+}
+
+static int64_t rows_of(const stratus_occupancy* occupancy)
+{
+  return (occupancy->hi[1] - occupancy->lo[1]) * (occupancy->hi[2] - occupancy->lo[2]);
+}
+
 static stratus_status classify(const stratus_ray_caster* caster, double voxel, classes* k)
 {
   const stratus_occupancy* occupancy = caster->occupancy;
@@ -145,13 +174,15 @@ static stratus_status classify(const stratus_ray_caster* caster, double voxel, c
       any ? (double)ranges->whole_hi + ranges->bias : 0.0, v + m);
   }
   memset(k->count, 0, sizeof k->count);
+  memset(k->of, CLASSES, (size_t)blocks);
 #pragma omp parallel num_threads(caster->context->threads)
   {
     int64_t mine[CLASSES] = { 0 };
 #pragma omp for schedule(static) nowait
-    for (int64_t b = 0; b < blocks; ++b) {
-      k->of[b] = CLASSES;
-      if (occupancy->occupied[b]) {
+    for (int64_t row = 0; row < rows_of(occupancy); ++row) {
+      int64_t b, end;
+      row_of(occupancy, row, &b, &end);
+      for (b = pass_bytes(occupancy->occupied, 0, b, end); b < end; b = pass_bytes(occupancy->occupied, 0, b + 1, end)) {
         double changes = 0.0;
         for (int m = 0; m < media; ++m) {
           const stratus_value_range* r = stratus_ray_shading_range_of(caster, component_of(caster, m));
@@ -318,29 +349,24 @@ static stratus_status make_patches(const stratus_ray_caster* caster, stratus_pro
     number += dealt[c];
     wanted[c] = -1;
   }
-  const int64_t* lo = caster->occupancy->lo;
-  const int64_t* hi = caster->occupancy->hi;
-  for (int64_t z = lo[2]; z < hi[2]; ++z) {
-    for (int64_t y = lo[1]; y < hi[1]; ++y) {
-      for (int64_t b = (z * k.blocks[1] + y) * k.blocks[0] + lo[0], end = b + hi[0] - lo[0]; b < end; ++b) {
-        const int c = k.of[b];
-        if (c == CLASSES) {
-          continue;
+  for (int64_t row = 0; row < rows_of(caster->occupancy); ++row) {
+    int64_t b, end;
+    row_of(caster->occupancy, row, &b, &end);
+    for (b = pass_bytes(k.of, CLASSES, b, end); b < end; b = pass_bytes(k.of, CLASSES, b + 1, end)) {
+      const int c = k.of[b];
+      while (next[c] < dealt[c]) { /* blocks are drawn evenly from the class's list, one at random from each stretch of it */
+        const int patch = first[c] + next[c];
+        if (wanted[c] < 0) {
+          wanted[c] = (int64_t)((next[c] + uniform_of((uint32_t)patch, 7)) / dealt[c] * (double)k.count[c]);
         }
-        while (next[c] < dealt[c]) { /* blocks are drawn evenly from the class's list, one at random from each stretch of it */
-          const int patch = first[c] + next[c];
-          if (wanted[c] < 0) {
-            wanted[c] = (int64_t)((next[c] + uniform_of((uint32_t)patch, 7)) / dealt[c] * (double)k.count[c]);
-          }
-          if (wanted[c] > seen[c]) {
-            break;
-          }
-          make_patch(caster, &k, dealt, b, voxel, patch, &patches[patch]);
-          wanted[c] = -1;
-          ++next[c];
+        if (wanted[c] > seen[c]) {
+          break;
         }
-        ++seen[c];
+        make_patch(caster, &k, dealt, b, voxel, patch, &patches[patch]);
+        wanted[c] = -1;
+        ++next[c];
       }
+      ++seen[c];
     }
   }
   *count = number;

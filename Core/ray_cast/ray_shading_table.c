@@ -320,7 +320,7 @@ stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, boo
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
   void* memory = NULL;
-  if (shading->memory && shading->table_builds == caster->table_builds) {
+  if (shading->memory && shading->table_number == caster->table_number) {
     return STRATUS_OK;
   }
   stratus_release(caster->context, shading->memory);
@@ -331,7 +331,7 @@ stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, boo
   (void)lay_out(caster, dependent, memory);
   shading->memory = memory;
   shading->bytes = words * sizeof(float);
-  shading->table_builds = caster->table_builds;
+  shading->table_number = caster->table_number;
   ++caster->table_serial;
   return STRATUS_OK;
 }

@@ -24,6 +24,8 @@
 /* Inverse of the colour change allowed within a piece of a segment; longer pieces are cut. Averaging a piece's colours is wrong by about
  * 1/12 of that change, half of 1/255. */
 #define COLOR_ERROR_INVERSE 48.0
+/* Entries that a thread fills at a time. */
+#define ENTRIES_A_THREAD 2048
 /* Largest running sum: differences of sums are positive ints. */
 #define SUM_MOST 2147483000.0
 
@@ -170,33 +172,70 @@ static double width_of(const stratus_table* table, int e)
   return widths ? (double)(widths[e + 1] - widths[e]) : 1.0;
 }
 
-/* Writes the four running sums in doubles, and the table's color_slope and color_most. An entry is the function at one value, not the mean
- * over its width: a transparent value must stay transparent beside one that shows. */
-static void fill_sums(stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double* sums)
+/* What running sums are made of, over a part of the entries. */
+typedef struct sum_part {
+  double least[3], most[3], steepest; /* of colours where the function shows */
+} sum_part;
+
+/* Writes what entries first..last-1 add to the four running sums. An entry is the function at one value, not the mean over its width: a
+ * transparent value must stay transparent beside one that shows. */
+static void fill_addends(const stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, int first,
+  int last, double* sums, sum_part* part)
 {
-  ptrdiff_t at = -1, color_at[3] = { -1, -1, -1 };
-  double before[3] = { 0 }, least[3] = { 1.0, 1.0, 1.0 }, most[3] = { 0 }, steepest = 0.0, tau_before = 0.0, width_before = 0.0;
-  memset(sums, 0, 4 * sizeof *sums);
-  for (int e = 0; e < table->size; ++e) {
-    double* sum = sums + 4 * (size_t)e;
+  const double begin = entries->value[first > 0 ? first - 1 : 0];
+  ptrdiff_t at = last_point(transfer->opacity, transfer->opacity_count, 2, begin), color_at[3];
+  double before[3] = { 0 }, tau_before = 0.0, width_before = 0.0;
+  color_at[0] = color_at[1] = color_at[2] = last_point(transfer->color, transfer->color_count, 4, begin);
+  *part = (sum_part){ .least = { 1.0, 1.0, 1.0 } };
+  for (int e = first > 0 ? first - 1 : 0; e < last; ++e) { /* the entry before the part tells how steep colours are */
     const double x = entries->value[e], opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
     const double tau = !entries->shows[e] || outside(transfer, x) ? 0.0 : tau_of(transfer, opacity), width = width_of(table, e);
+    double addends[4];
     for (size_t c = 0; c < 3; ++c) {
       const double color = walk(transfer->color, transfer->color_count, 4, c + 1, x, &color_at[c]);
-      if (e > 0 && tau + tau_before > 0.0) {
-        steepest = fmax(steepest, fabs(color - before[c]) / (0.5 * (width + width_before)));
-        least[c] = fmin(least[c], fmin(color, before[c]));
-        most[c] = fmax(most[c], fmax(color, before[c]));
+      if (e > 0 && e >= first && tau + tau_before > 0.0) {
+        part->steepest = fmax(part->steepest, fabs(color - before[c]) / (0.5 * (width + width_before)));
+        part->least[c] = fmin(part->least[c], fmin(color, before[c]));
+        part->most[c] = fmax(part->most[c], fmax(color, before[c]));
       }
       before[c] = color;
-      sum[4 + c] = sum[c] + tau * color * width;
+      addends[c] = tau * color * width;
     }
-    sum[7] = sum[3] + tau * width;
+    addends[3] = tau * width;
+    if (e >= first) {
+      memcpy(sums + 4 * ((size_t)e + 1), addends, sizeof addends);
+    }
     tau_before = tau;
     width_before = width;
   }
-  const double change = fmax(fmax(most[0] - least[0], most[1] - least[1]), most[2] - least[2]);
-  table->color_slope = (float)(COLOR_ERROR_INVERSE * steepest);
+}
+
+/* Writes the four running sums in doubles, and the table's color_slope and color_most. Threads share the entries; the sums run in order, so
+ * that their number changes no bit. */
+static void fill_sums(stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, double* sums)
+{
+  sum_part whole = { .least = { 1.0, 1.0, 1.0 } };
+  const int parts = (table->size + ENTRIES_A_THREAD - 1) / ENTRIES_A_THREAD;
+#pragma omp parallel for num_threads(table->context->threads) schedule(static) if (parts > 1)
+  for (int p = 0; p < parts; ++p) {
+    const int first = p * ENTRIES_A_THREAD, last = first + ENTRIES_A_THREAD;
+    sum_part part;
+    fill_addends(table, transfer, entries, first, last < table->size ? last : table->size, sums, &part);
+#pragma omp critical(stratus_table_parts)
+    {
+      whole.steepest = fmax(whole.steepest, part.steepest);
+      for (int c = 0; c < 3; ++c) {
+        whole.least[c] = fmin(whole.least[c], part.least[c]);
+        whole.most[c] = fmax(whole.most[c], part.most[c]);
+      }
+    }
+  }
+  memset(sums, 0, 4 * sizeof *sums);
+  for (size_t i = 4; i < 4 * ((size_t)table->size + 1); ++i) {
+    sums[i] += sums[i - 4];
+  }
+  const double change = fmax(fmax(whole.most[0] - whole.least[0], whole.most[1] - whole.least[1]), whole.most[2] - whole.least[2]);
+  table->color_slope = (float)(COLOR_ERROR_INVERSE * whole.steepest);
   table->color_most = table->search_steps ? (float)(COLOR_ERROR_INVERSE * fmax(change, 0.0)) : OPAQUE_DEPTH;
 }
 

@@ -163,6 +163,33 @@ static void tiles_change_no_bit(void** state)
   stratus_context_destroy(context);
 }
 
+/* The sampling rules have a table each, lit pictures another: what returns is used again, and is never the other's. */
+static void rules_that_take_turns_keep_their_tables(void** state)
+{
+  (void)state;
+  static const stratus_sampling rules[] = { STRATUS_SAMPLING_MIDPOINT, STRATUS_SAMPLING_PREINTEGRATED };
+  stratus_context* context = case_context("host", 2);
+  for (uint32_t seed = 500; seed < 520; ++seed) {
+    stratus_ray_caster* used = NULL;
+    picture_case c;
+    case_create_random(context, seed, &c);
+    c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
+    c.options.sample_distance = 0.7;
+    c.options.shade = seed % 2;
+    assert_int_equal(stratus_ray_caster_create(context, &used), STRATUS_OK);
+    for (int turn = 0; turn < 4; ++turn) {
+      c.options.sampling = rules[turn % 2];
+      case_render(context, &c, &first);
+      case_render_with(context, used, &c, &second);
+      expect_same("a rule that returns", &first, &second);
+      assert_int_equal(second.report.table_builds, turn == 0 ? 1 : 2);
+    }
+    case_destroy(&c);
+    stratus_ray_caster_destroy(used);
+  }
+  stratus_context_destroy(context);
+}
+
 static void a_caster_that_was_used_before_draws_the_same(void** state)
 {
   (void)state;
@@ -204,6 +231,7 @@ int test_ray_cast_same(void)
     cmocka_unit_test(trees_that_come_with_the_data_change_no_bit),
     cmocka_unit_test(threads_change_no_bit),
     cmocka_unit_test(tiles_change_no_bit),
+    cmocka_unit_test(rules_that_take_turns_keep_their_tables),
     cmocka_unit_test(a_caster_that_was_used_before_draws_the_same),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
