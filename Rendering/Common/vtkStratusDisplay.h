@@ -60,6 +60,12 @@ private:
     int ToSize[2];
   };
 
+  // A rectangle of a part that is drawn at its own size.
+  struct Piece {
+    int From[2]; // in the part
+    int Size[2];
+  };
+
   // A variant of the shader.
   struct QuadKind {
     bool WritesDepth = false;
@@ -81,7 +87,9 @@ private:
   bool CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part);
   vtkOpenGLQuadHelper* PrepareQuad(vtkOpenGLRenderWindow* window, const QuadKind& kind);
   bool UploadDepth(vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Part& part);
-  bool Blend(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Pixels& pixels, const Part& part);
+  static std::vector<Piece> FindPieces(const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
+  bool Blend(
+    vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
 
   std::vector<float> WindowDepth; // of this draw; empty: it shows no depth
   vtkNew<vtkTextureObject> Texture;

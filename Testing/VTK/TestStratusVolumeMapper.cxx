@@ -133,14 +133,21 @@ void Tiles()
   CHECK(worst <= 1.0, "tiles differ from the whole by %g of 255", worst);
 }
 
-// A window with several samples a pixel shows the same.
+// A window with several samples a pixel shows the same, though the picture is drawn in pieces, without its empty rows and margins. No pixel
+// is drawn twice or left out where pieces meet. Software OpenGL rounds three times where it blends over a colour: 1.3 of 255 at most.
 void Multisampled()
 {
-  Scene scene;
-  scene.Window->SetMultiSamples(4);
-  scene.Render();
-  const double shown = scene.ShownError(scene.Renderer->GetBackground());
-  CHECK(shown <= 1.0, "with 4 samples a pixel what is shown differs by %.2f of 255", shown);
+  for (const int samples : { 4, 8 }) {
+    for (const double gray : { 0.0, 0.6 }) {
+      Scene scene(333, 251);
+      scene.Renderer->SetBackground(gray, gray, gray);
+      scene.Window->SetMultiSamples(samples);
+      scene.Render();
+      const double shown = scene.ShownError(scene.Renderer->GetBackground());
+      CHECK(
+        shown <= (gray > 0.0 ? 1.3 : 1.0), "with %d samples a pixel over %g what is shown differs by %.2f of 255", samples, gray, shown);
+    }
+  }
 }
 
 // A volume behind the camera: nothing drawn, nothing said.
