@@ -210,6 +210,52 @@ void Labels()
   }
 }
 
+// A threshold of any one label, as a user picks it: every label of bytes, and 500 of each larger type.
+void AllLabels()
+{
+  constexpr int Side = 21, Size = 4, Across = Side / Size;
+  std::mt19937 random(7);
+  for (const int type : { VTK_UNSIGNED_CHAR, VTK_UNSIGNED_SHORT, VTK_INT, VTK_FLOAT }) {
+    const double most = type == VTK_UNSIGNED_CHAR ? 255 : type == VTK_UNSIGNED_SHORT ? 65535 : type == VTK_INT ? 2e9 : 1e6;
+    const double least = type == VTK_INT ? -2e9 : 0.0;
+    std::uniform_real_distribution<double> any(least, most);
+    double of[27];
+    for (double& label : of) {
+      label = std::floor(any(random));
+    }
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(Side, Side, Side);
+    image->AllocateScalars(type, 1);
+    vtkDataArray* labels = image->GetPointData()->GetScalars();
+    for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i) { // a label for each 9 values across
+      labels->SetTuple1(i, of[i % Side / 9 + i / Side % Side / 9 * 3 + i / Side / Side / 9 * 9]);
+    }
+    double hulls[Across * Across * Across][2];
+    for (int b = 0; b < Across * Across * Across; ++b) {
+      hulls[b][0] = most;
+      hulls[b][1] = least;
+      for (int v = 0; v < (Size + 1) * (Size + 1) * (Size + 1); ++v) {
+        const int x = b % Across * Size + v % (Size + 1), y = b / Across % Across * Size + v / (Size + 1) % (Size + 1);
+        const int z = b / Across / Across * Size + v / (Size + 1) / (Size + 1);
+        const double value = labels->GetTuple1((static_cast<vtkIdType>(z) * Side + y) * Side + x);
+        hulls[b][0] = std::min(hulls[b][0], value);
+        hulls[b][1] = std::max(hulls[b][1], value);
+      }
+    }
+    vtkNew<vtkStratusDistanceMapFilter> filter;
+    filter->SetInputData(image);
+    for (int n = 0; n < (type == VTK_UNSIGNED_CHAR ? 256 : 500); ++n) {
+      const double label = type == VTK_UNSIGNED_CHAR ? n : n % 2 ? of[random() % 27] : std::floor(any(random));
+      const vtkIdType expected =
+        std::count_if(std::begin(hulls), std::end(hulls), [&](const double* h) { return h[0] <= label && h[1] >= label; });
+      filter->ThresholdBetween(label, label);
+      filter->Update();
+      CHECK(filter->GetOccupiedBlocks() == expected, "label %.9g of type %d is in %lld blocks of %lld", label, type,
+        static_cast<long long>(filter->GetOccupiedBlocks()), static_cast<long long>(expected));
+    }
+  }
+}
+
 void Refused(const char* word, const std::function<void(vtkStratusDistanceMapFilter*)>& breaks)
 {
   Scene scene;
@@ -260,6 +306,7 @@ int main()
   Geometry();
   Property();
   Labels();
+  AllLabels();
   Refusals();
   return Failures == 0 ? 0 : 1;
 }

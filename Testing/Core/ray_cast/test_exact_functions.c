@@ -60,9 +60,9 @@ static void fill_slab(stratus_type type, double inside, double outside, double m
   put(type, 0, most);
 }
 
-/* Draws with all structures, which must not differ, and returns the alpha of the middle pixel. */
+/* Draws with all structures, or with octants alone, which must not differ, and returns the alpha of the middle pixel. */
 static double draw(stratus_context* context, stratus_type type, const double* opacity, size_t count, stratus_sampling sampling,
-  stratus_interpolation interpolation)
+  stratus_interpolation interpolation, bool all)
 {
   static const double white[] = { 0, 1, 1, 1 };
   const double middle = 0.5 * (SIDE - 1), eye[3] = { middle, middle, 4.0 * SIDE }, focal[3] = { middle, middle, 0.0 }, up[3] = { 0, 1, 0 };
@@ -86,14 +86,15 @@ static double draw(stratus_context* context, stratus_type type, const double* op
   options.audit = 1;
   assert_int_equal(stratus_camera_parallel(context, eye, focal, up, 0.6 * SIDE, 1.0, &camera), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
-  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+  const int first = all ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_OCTANT;
+  for (int structure = first; structure <= (all ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_OCTANT); ++structure) {
     stratus_ray_cast_report report;
     options.structure = (stratus_structure)structure;
     if (stratus_ray_caster_render(caster, &volume, &transfer, &camera, &options, &image, &report) != STRATUS_OK) {
       fail_msg("%s", stratus_context_message(context));
     }
     assert_int_equal(report.differing_pixels, 0);
-    if (structure == STRATUS_STRUCTURE_NONE) {
+    if (structure == first) {
       memcpy(plain, drawn, sizeof plain);
     }
     assert_memory_equal(plain, drawn, sizeof plain);
@@ -118,26 +119,34 @@ static void check_slab(double alpha, double opacity, stratus_interpolation inter
   }
 }
 
+/* Every label of bytes, and 500 of each larger type. The first ones are drawn in every way with all structures, the others with octants,
+ * and those of larger types in one way each. */
 static void each_label_is_shown_by_its_window(void** state)
 {
+  enum { OF_BYTES = 256, OF_OTHERS = 500, WITH_ALL = 12 };
   static const stratus_type types[] = { STRATUS_UINT8, STRATUS_UINT16, STRATUS_INT32, STRATUS_FLOAT32 };
   static const double mosts[] = { 255, 65535, 2000000000, 1000000 };
   static const char* const names[] = { "uint8", "uint16", "int32", "float32" };
   uint32_t random = 5;
   for (int type = 0; type < 4; ++type) {
-    for (int n = 0; n < 24; ++n) {
+    for (int n = 0; n < (type == 0 ? OF_BYTES : OF_OTHERS); ++n) {
       random = random * 1664525u + 1013904223u;
-      const double k = floor(2.0 + (mosts[type] - 4.0) * (double)(random >> 8) / 16777216.0);
+      const double k = type == 0 ? n : floor((mosts[type] + 1.0) * (double)(random >> 8) / 16777216.0);
+      const bool high = k > 0.5 * mosts[type];
+      const double outside = high ? 0.0 : mosts[type], inner = high ? k - 1.0 : k + 1.0;
       const double window[] = { k - 0.5, 0, k - 0.5, 0.3, k + 0.5, 0.3, k + 0.5, 0 };
       for (int way = 0; way < 3; ++way) {
+        if (type > 0 && n >= WITH_ALL && way != n % 3) {
+          continue;
+        }
         const stratus_interpolation interpolation = way ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
         const stratus_sampling sampling = way == 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-        fill_slab(types[type], k, 0.0, mosts[type]);
-        const double alpha = draw(*state, types[type], window, 4, sampling, interpolation);
-        check_slab(alpha, 0.3, interpolation, fmin(0.5 / k, 0.5), names[type], k);
+        fill_slab(types[type], k, outside, mosts[type] - outside);
+        const double alpha = draw(*state, types[type], window, 4, sampling, interpolation, n < WITH_ALL);
+        check_slab(alpha, 0.3, interpolation, 0.5 / fabs(k - outside), names[type], k);
         if (interpolation == STRATUS_INTERPOLATION_NEAREST && type < 2) { /* its neighbours are others */
-          fill_slab(types[type], k - 1.0, 0.0, mosts[type]);
-          assert_true(draw(*state, types[type], window, 4, sampling, interpolation) == 0.0);
+          fill_slab(types[type], inner, outside, mosts[type] - outside);
+          assert_true(draw(*state, types[type], window, 4, sampling, interpolation, n < WITH_ALL) == 0.0);
         }
       }
     }
@@ -153,10 +162,10 @@ static void a_plateau_of_a_millionth_is_shown(void** state)
     const stratus_interpolation interpolation = way % 3 ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
     const stratus_sampling sampling = way % 3 == 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
     fill_slab(STRATUS_FLOAT32, at, 0.0, 1.0);
-    const double alpha = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation);
+    const double alpha = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation, true);
     check_slab(alpha, 0.3, interpolation, 1e-6, way < 3 ? "steps" : "ramps", way);
     fill_slab(STRATUS_FLOAT32, at + w, 0.0, 1.0);
-    const double beside = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation);
+    const double beside = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation, true);
     assert_true(way % 3 == 0 ? beside == 0.0 : beside < 0.1);
   }
 }
