@@ -156,11 +156,25 @@ static void thicken(const stratus_table* table, float* out)
   }
 }
 
-static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, stratus_table** table)
+/* entries: at least as many as the tolerance asks for. */
+static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, int entries, stratus_table** table)
 {
   const stratus_table_values values =
     stratus_table_values_of(stratus_ray_shading_range_of(caster, c), caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
-  return stratus_table_create(caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, table);
+  return stratus_table_create_fine(
+    caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, entries, table);
+}
+
+/* Returns the entries that each label's table gets: those of the caster's table, which follow the tolerance, unless so many labels have no
+ * room for them. Then a half of the room is left for narrow features. */
+static int entries_of_labels(const stratus_ray_caster* caster)
+{
+  const int least = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, stratus_ray_cast_options_default().tolerance);
+  int entries = caster->table_entries;
+  while (entries > least && 2.0 * entries * caster->transfer_count > 0.5 * LABEL_ENTRIES_MOST) {
+    entries /= 2;
+  }
+  return entries;
 }
 
 static stratus_status create_label_tables(stratus_ray_caster* caster)
@@ -174,9 +188,10 @@ static stratus_status create_label_tables(stratus_ray_caster* caster)
   TRY(stratus_allocate_zero(caster->context, (size_t)caster->transfer_count, sizeof *shading->label_tables, &memory));
   shading->label_tables = memory;
   shading->label_tables_count = caster->transfer_count;
+  const int least = entries_of_labels(caster);
   size_t entries = 0;
   for (int l = 0; l < caster->transfer_count; ++l) {
-    TRY(create_table(caster, caster->transfers + l, 0, &shading->label_tables[l]));
+    TRY(create_table(caster, caster->transfers + l, 0, least, &shading->label_tables[l]));
     entries += 2 * (size_t)shading->label_tables[l]->size;
   }
   if (entries > LABEL_ENTRIES_MOST) {
@@ -202,7 +217,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
   }
   if (!dependent) {
     for (int c = 0; c <= last; ++c) {
-      TRY(create_table(caster, caster->transfers + c, c, &shading->tables[c]));
+      TRY(create_table(caster, caster->transfers + c, c, caster->table_entries, &shading->tables[c]));
     }
     return STRATUS_OK;
   }
@@ -212,9 +227,9 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
     color.opacity = opaque;
     color.opacity_count = 1;
     color.clamp = 1;
-    TRY(create_table(caster, &color, 0, &shading->tables[0]));
+    TRY(create_table(caster, &color, 0, caster->table_entries, &shading->tables[0]));
   }
-  return create_table(caster, caster->transfers, last, &shading->tables[last]);
+  return create_table(caster, caster->transfers, last, caster->table_entries, &shading->tables[last]);
 }
 
 /* Samples the gradient opacity from magnitude 0 to the function's last point. */

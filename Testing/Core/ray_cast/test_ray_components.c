@@ -3,6 +3,7 @@
  * to the bit, each function and weight by its effect, and refusals. */
 #include "picture_case.h"
 
+#include "ray_caster.h"
 #include "volume.h"
 
 /* dB against the reference at a quarter of a voxel, as for one component: only the sampling's own error is left. */
@@ -356,6 +357,48 @@ static void what_it_cannot_show_is_refused(void** state)
   stratus_context_destroy(context);
 }
 
+/* Tables of components and labels have as many entries as the tolerance asks for; of more labels than have room, as many as fit. */
+static void components_and_labels_take_the_entries_of_the_tolerance(void** state)
+{
+  (void)state;
+  static const double tolerances[] = { 0.01, 0.001, 0.0001, 0.00001 };
+  static uint8_t labels[9 * 8 * 7];
+  stratus_context* context = case_context("host", 2);
+  for (int kind = 0; kind < 4; ++kind) { /* independent and dependent components, labels, very many labels */
+    const int components = kind < 2 ? 2 : 1;
+    many m;
+    many_create(context, &m, STRATUS_FLOAT32, components, 9, 8, 7, 67);
+    m.c.options.dependent = kind == 1;
+    m.c.options.sample_distance = 0.5;
+    m.c.options.sampling = STRATUS_SAMPLING_AUTO; /* by hand, there is no tolerance */
+    stratus_transfer transfers[256];
+    if (kind >= 2) {
+      set_labels(&m, labels);
+    }
+    for (int t = 0; t < 256; ++t) {
+      transfers[t] = m.transfers[t < 2 ? t : kind < 2 ? 0 : 2];
+    }
+    m.c.options.label_count = kind == 3 ? 255 : m.c.options.label_count;
+    for (size_t t = kind == 3 ? 3 : 0; t < sizeof tolerances / sizeof *tolerances; ++t) {
+      const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+      stratus_ray_caster* caster = NULL;
+      m.c.options.tolerance = tolerances[t];
+      assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+      assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, transfers, &m.c.camera, &m.c.options, &image, NULL), STRATUS_OK);
+      const stratus_ray_shading_tables* tables = &caster->shading_tables;
+      const int wanted = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, tolerances[t]);
+      assert_true(wanted >= (t < 2 ? 4096 : t == 2 ? 32768 : 65536));
+      for (int i = 0; i < (kind < 2 ? components : tables->label_tables_count); ++i) {
+        const stratus_table* table = kind < 2 ? tables->tables[i] : tables->label_tables[i];
+        assert_true(table->size >= (kind == 3 && wanted > 8192 ? 8192 : wanted));
+      }
+      stratus_ray_caster_destroy(caster);
+    }
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 /* Gradient opacity, labels and components share their arguments with the light, which is not checked where nothing is lit. */
 static void a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit(void** state)
 {
@@ -400,6 +443,7 @@ int test_ray_components(void)
     cmocka_unit_test(each_component_has_its_own_units),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
     cmocka_unit_test(labels_have_colours_and_opacities_of_their_own),
+    cmocka_unit_test(components_and_labels_take_the_entries_of_the_tolerance),
     cmocka_unit_test(a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit),
     cmocka_unit_test(no_structure_changes_a_bit),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
