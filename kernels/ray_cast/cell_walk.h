@@ -14,6 +14,7 @@
 typedef struct cell_walk {
   vfloat s, leave, end;
   vfloat enter_at[3], leave_at[3];
+  vfloat ahead[3]; /* the plane that is met at leave_at */
   vint cell[3];
   vfloat run; /* up to this s the structure need not be asked */
   int halves; /* 1: the planes are half a cell apart, so that cell c of the volume is 2 c and 2 c + 1; else 0 */
@@ -24,20 +25,18 @@ INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane) { return 
 /* The cell that each ray enters at its point s. */
 INLINE void cell_enter(const stratus_packet* k, cell_walk* w)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const vint step = vi_set(1), none = vi_set(0);
+  const vint zero = vi_set(0), one = vi_set(1);
   w->leave = w->end;
   for (int axis = 0; axis < 3; ++axis) {
-    const vmask forward = v_lt(zero, k->inverse[axis]);
-    vint cell = v_to_int(v_fma(w->s, k->d[axis], k->p[axis]) + one) - step; /* never below -1 */
+    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
+    const vint step = vi_select(forward, one, vi_set(-1)), to_near = vi_select(forward, zero, one);
+    const vint cell = v_to_int(v_fma(w->s, k->d[axis], k->p[axis]) + v_set(1.0f)) - one; /* never below -1 */
     /* the product is rounded, so that the cell may be one off */
-    const vfloat before = plane_met(k, axis, vi_select(forward, cell, cell + step));
-    cell = cell - vi_select(v_lt(w->s, before), vi_select(forward, step, none - step), none);
-    const vfloat after = plane_met(k, axis, vi_select(forward, cell + step, cell));
-    cell = cell + vi_select(v_le(after, w->s), vi_select(forward, step, none - step), none);
-    w->cell[axis] = cell;
-    w->enter_at[axis] = plane_met(k, axis, vi_select(forward, cell, cell + step));
-    w->leave_at[axis] = plane_met(k, axis, vi_select(forward, cell + step, cell));
+    const vfloat before = plane_met(k, axis, cell + to_near), after = plane_met(k, axis, cell + to_near + step);
+    w->cell[axis] = cell + vi_select(v_lt(w->s, before), zero - step, vi_select(v_le(after, w->s), step, zero));
+    w->enter_at[axis] = plane_met(k, axis, w->cell[axis] + to_near);
+    w->ahead[axis] = v_from_int(w->cell[axis] + to_near + step);
+    w->leave_at[axis] = (w->ahead[axis] - k->p[axis]) * k->inverse[axis];
     w->leave = v_min(w->leave_at[axis], w->leave);
   }
 }
@@ -55,11 +54,25 @@ INLINE int cell_begin(stratus_packet* k, int halves, cell_walk* w)
   return m_any(k->live);
 }
 
-/* Moves the rays to where they leave their cells. A ray always advances, even where two planes are too near for floats to tell apart. */
-INLINE void cell_leave(stratus_packet* k, cell_walk* w)
+/* Moves the rays of `mask` into the cells behind theirs. A ray always advances, even where two planes are too near for floats to tell
+ * apart. Only the planes that a ray has met are taken anew; they are met at the numbers that cell_enter() computes. */
+INLINE void cell_leave(stratus_packet* k, vmask mask, cell_walk* w)
 {
-  w->s = v_select(k->live, v_select(v_lt(w->s, w->leave), w->leave, v_fma(w->s, v_set(1e-6f), w->s + v_set(1e-6f))), w->s);
-  k->live = k->live & v_lt(w->s, w->end);
+  const vfloat next = v_select(v_lt(w->s, w->leave), w->leave, v_fma(w->s, v_set(1e-6f), w->s + v_set(1e-6f)));
+  w->s = v_select(mask, next, w->s);
+  k->live = m_andnot(k->live, mask & v_le(w->end, w->s));
+  w->leave = w->end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]), met = mask & v_le(w->leave_at[axis], w->s);
+    w->enter_at[axis] = v_select(met, w->leave_at[axis], w->enter_at[axis]);
+    w->cell[axis] = vi_select(met, w->cell[axis] + vi_select(forward, vi_set(1), vi_set(-1)), w->cell[axis]);
+    w->ahead[axis] = v_select(met, w->ahead[axis] + v_select(forward, v_set(1.0f), v_set(-1.0f)), w->ahead[axis]);
+    w->leave_at[axis] = (w->ahead[axis] - k->p[axis]) * k->inverse[axis];
+    w->leave = v_min(w->leave_at[axis], w->leave);
+  }
+  if (m_any(mask & k->live & v_le(w->leave, w->s))) { /* several planes of an axis at once */
+    cell_enter(k, w);
+  }
 }
 
 /* The cell whose values are read. Where positions are clamped that is the border's cell. */
@@ -76,16 +89,16 @@ INLINE vfloat cell_fraction(const stratus_packet* k, int axis, vint inside, vflo
   return v_clamp(v_select(there, exact, at), 0.0f, 1.0f);
 }
 
-/* The structure is asked once all live lanes need it, or one lane has waited for CELL_PATIENCE voxels. A lane that waits visits cells,
+/* The structure is asked once all lanes of `mask` need it, or one lane has waited for CELL_PATIENCE voxels. A lane that waits visits cells,
  * which add nothing. */
 #define CELL_PATIENCE 8.0f
 
-INLINE vmask cell_lanes_to_skip(const stratus_packet* k, const cell_walk* w)
+INLINE vmask cell_lanes_to_skip(vmask mask, const cell_walk* w)
 {
-  const vmask need = k->live & v_le(w->run, w->s);
+  const vmask need = mask & v_le(w->run, w->s);
 #if STRATUS_WIDTH > 1
   const int count = m_count(need);
-  if (count && count < m_count(k->live) && !m_any(k->live & v_le(w->run + v_set(CELL_PATIENCE), w->s))) {
+  if (count && count < m_count(mask) && !m_any(need & v_le(w->run + v_set(CELL_PATIENCE), w->s))) {
     return m_none();
   }
 #endif

@@ -124,13 +124,13 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   if (!m_any(k->live) || !cell_begin(k, 0, &w)) {
     return;
   }
+  cell_enter(k, &w);
   do {
-    cell_enter(k, &w);
     if (a->map.structure) {
       cell_skip(a, map, k, k->live & v_le(w.run, w.s), &w);
     }
     RAY_NAME(surface_visit)(a, values, hidden, k, &w);
-    cell_leave(k, &w);
+    cell_leave(k, k->live, &w);
   } while (m_any(k->live));
 }
 
