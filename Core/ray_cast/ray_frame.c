@@ -283,7 +283,9 @@ void stratus_ray_frame_structures(const stratus_table* table, double tolerance, 
 {
   if (table) {
     a->table = stratus_table_arguments_of(table);
-    a->table.color_slope *= (float)(TABLE_COLOR_ERROR / fmax(tolerance, TERMINATION_LEAST));
+    const float stricter = (float)(TABLE_COLOR_ERROR / fmax(tolerance, TERMINATION_LEAST));
+    a->table.color_slope *= stricter;
+    a->table.color_most *= stricter;
   }
   a->map.structure = map != NULL;
   double lo[3], hi[3];

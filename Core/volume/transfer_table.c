@@ -236,7 +236,7 @@ static void fill_sums(stratus_table* table, const stratus_transfer* transfer, co
   }
   const double change = fmax(fmax(whole.most[0] - whole.least[0], whole.most[1] - whole.least[1]), whole.most[2] - whole.least[2]);
   table->color_slope = (float)(COLOR_ERROR_INVERSE * whole.steepest);
-  table->color_most = table->search_steps ? (float)(COLOR_ERROR_INVERSE * fmax(change, 0.0)) : OPAQUE_DEPTH;
+  table->color_most = (float)(COLOR_ERROR_INVERSE * fmax(change, 0.0));
 }
 
 /* True if the function is 1 not only at `value`, where it is known to be 1, but over an interval. *at: a point below the value, kept
