@@ -56,5 +56,7 @@ stratus_status stratus_product(stratus_context* context, const char* what, size_
 /* Returns STRATUS_OVERFLOW if no array can hold `count` items of `size` bytes. `what` names them in the message, such as "points". */
 stratus_status stratus_array_check(stratus_context* context, const char* what, size_t count, size_t size);
 double stratus_now_ms(void); /* monotonic clock, milliseconds */
+/* Returns the milliseconds that the calling thread has run. Work of other threads and programs does not count. */
+double stratus_thread_ms(void);
 
 #endif

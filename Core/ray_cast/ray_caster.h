@@ -21,6 +21,25 @@ typedef struct stratus_ray_made_table {
   uint64_t number;      /* of the caster's tables, in the order of their making */
 } stratus_ray_made_table;
 
+/* Milliseconds of a frame, and of building, by structure. */
+typedef struct stratus_ray_costs {
+  double frame[STRATUS_STRUCTURE_HYBRID + 1], build[STRATUS_STRUCTURE_HYBRID + 1];
+} stratus_ray_costs;
+
+/* What an automatic choice of the structure has measured since the occupancy changed, see ray_trial.h. */
+typedef struct stratus_ray_trial {
+  stratus_structure map;                    /* of caster->map; AUTO: none was made yet */
+  bool tried[STRATUS_STRUCTURE_HYBRID + 1]; /* maps that were built */
+  stratus_structure lost;                   /* the last that was built and was slower than `map`; AUTO: none */
+  uint64_t table_serial;                    /* of the table that the times are of */
+  int frames;                               /* drawn with that table */
+  double with, without, skippable;          /* sums over the trials, in milliseconds of a frame: with the map, without, and what look-ups
+                                             * cost beyond the samples */
+  int trials;
+  double build_ms; /* of the map */
+  double regret;   /* milliseconds that a map of free look-ups would have saved */
+} stratus_ray_trial;
+
 struct stratus_ray_caster {
   stratus_context* context;
 
@@ -53,11 +72,12 @@ struct stratus_ray_caster {
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
-  stratus_tree* offered;       /* a tree that came with the data, in index coordinates; NULL: none */
-  int tree_serves;             /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
-  uint64_t hash;               /* of the volume's values and shape */
-  uint64_t hash_ranges;        /* range_builds when `hash` was computed; `hash` is stale if they differ */
-  uint64_t lookups_since_edit; /* look-ups in the map since the transfer function changed */
+  stratus_tree* offered; /* a tree that came with the data, in index coordinates; NULL: none */
+  int tree_serves;       /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
+  uint64_t hash;         /* of the volume's values and shape */
+  uint64_t hash_ranges;  /* range_builds when `hash` was computed; `hash` is stale if they differ */
+  stratus_ray_trial trial;
+  const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
@@ -85,8 +105,12 @@ int stratus_ray_block_size(const stratus_volume* volume);
 stratus_status stratus_ray_make_occupancy(stratus_ray_caster* caster);
 /* Makes the tables of caster->choice. */
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
-  size_t capacity, stratus_ray_cast_report* report);
+/* Makes a map for a structure other than NONE. offered: of the tree that came with the data. *map: NULL if no block is occupied and the
+ * structure is a tree. */
+stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, stratus_distance_map** map);
+/* *offered: a tree that came with the data serves. */
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, bool* offered,
+  char* why, size_t capacity, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes. */
 stratus_ray_cast_frame stratus_ray_frame_of(

@@ -20,6 +20,7 @@ void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells)
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster)
 {
   stratus_ray_forget_offer(caster, true);
+  caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   if (caster->map && caster->map->tree_nodes > 0) {
     stratus_ray_drop_map(caster);
   }
@@ -29,6 +30,7 @@ void stratus_ray_drop_occupancy(stratus_ray_caster* caster)
 {
   stratus_ray_drop_map(caster);
   stratus_ray_forget_offer(caster, true);
+  caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   stratus_occupancy_destroy(caster->occupancy);
   caster->occupancy = NULL;
 }

@@ -12,6 +12,7 @@
 #include "ray_probe.h"
 #include "ray_shading_render.h"
 #include "ray_shading_table.h"
+#include "ray_trial.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -169,19 +170,19 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   _Alignas(64) stratus_ray_cast_arguments arguments; /* aligned so that a device can borrow them */
   stratus_structure used = STRATUS_STRUCTURE_NONE;
   stratus_ray_counts counts = { 0 };
-  char why[128] = "";
-  bool empty = false;
+  char why[192] = "";
+  bool empty = false, offered = false;
 
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
-  TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
+  TRY(stratus_ray_update_structures(caster, options->structure, &used, &offered, why, sizeof why, report));
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
   TRY(stratus_ray_frame_arguments(
     caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   const bool covers = stratus_ray_modes_covers(options);
-  const bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
-  const double start = stratus_now_ms();
+  bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
+  double start = stratus_now_ms();
   if (empty || (!stratus_ray_shading_show(caster) && !covers)) {
     stratus_image_clear(image);
     memset(report->window, 0, sizeof report->window);
@@ -192,6 +193,14 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(
       caster->table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
+    if (found && with_map && options->structure == STRATUS_STRUCTURE_AUTO) {
+      const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, &arguments, image, true);
+      TRY(stratus_ray_try(caster, &frame, &arguments, stratus_ray_tolerance(options), offered, &used, why, sizeof why));
+      with_map = used != STRATUS_STRUCTURE_NONE;
+      report->offered_tree = offered && used == STRATUS_STRUCTURE_HYBRID;
+      report->structure_ms += stratus_now_ms() - start;
+      start = stratus_now_ms();
+    }
     if (found) {
       TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
       report_window(arguments.camera.window, report->window);
@@ -204,7 +213,6 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     }
   }
   report->cast_ms = stratus_now_ms() - start - report->upload_ms;
-  caster->lookups_since_edit += counts.lookups;
   caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
   snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s", why, stratus_sampling_name(caster->choice.sampling),

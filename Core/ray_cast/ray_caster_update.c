@@ -17,10 +17,6 @@
 #define BLOCK_SIZE_DEFAULT 4
 /* Traversal addresses all eight octant maps with one int. */
 #define MAP_BYTES_MOST 2000000000.0
-/* Above this share of occupied blocks, skipping saves less than its look-ups cost. */
-#define OCCUPIED_LARGEST 0.8
-/* The eight octant maps cost as much to build as about this many look-ups per block, and save every other look-up. */
-#define OCTANT_LOOKUPS_A_BLOCK 6
 
 static bool same_data(const stratus_ray_caster* caster, const stratus_volume* volume, int block_size)
 {
@@ -111,7 +107,6 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
   caster->transfers = copy;
   caster->transfer_count = count;
   caster->dependent = dependent;
-  caster->lookups_since_edit = 0;
   return STRATUS_OK;
 }
 
@@ -228,67 +223,58 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   return STRATUS_OK;
 }
 
-/* Chooses the cheapest structure for the scene by the share of occupied blocks and the look-ups that rays have made since the last edit of
- * the transfer function. */
-static stratus_structure choose_structure(
-  const stratus_ray_caster* caster, stratus_structure wanted, bool offered, char* why, size_t capacity)
+/* Returns the structure whose map an automatic choice draws or tries first: the one of fewer blocks. stratus_ray_try() measures whether it
+ * pays. In modes that skip by bounds, no number of occupied blocks tells that nothing can be skipped. */
+static stratus_structure automatic(stratus_ray_caster* caster, bool offered)
 {
   const int64_t* n = caster->occupancy->blocks;
-  const double blocks = (double)n[0] * (double)n[1] * (double)n[2], share = (double)caster->occupancy->count / blocks;
-  if (wanted != STRATUS_STRUCTURE_AUTO) {
-    snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
-    return wanted;
-  }
-  if (share > OCCUPIED_LARGEST) {
-    snprintf(why, capacity, "none: %.3g %% of the blocks are occupied, nothing to skip", 100.0 * share);
+  const size_t blocks = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+  if ((size_t)caster->occupancy->count == blocks && caster->shown.mode == STRATUS_MODE_COMPOSITE) {
     return STRATUS_STRUCTURE_NONE;
   }
-  if (offered) {
-    snprintf(why, capacity, "hybrid: %.3g %% occupied, and a tree came with the data", 100.0 * share);
-    return STRATUS_STRUCTURE_HYBRID;
+  if (caster->trial.map == STRATUS_STRUCTURE_HYBRID && !offered) {
+    caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   }
-  if ((double)caster->lookups_since_edit > OCTANT_LOOKUPS_A_BLOCK * blocks) {
-    snprintf(why, capacity, "octant: %.3g %% occupied, and rays have paid for eight maps since the last edit", 100.0 * share);
-    return STRATUS_STRUCTURE_OCTANT;
+  if (caster->trial.map == STRATUS_STRUCTURE_AUTO) {
+    caster->trial.map = offered && stratus_ray_tree_blocks(caster) < blocks ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_DISTANCE;
+    caster->trial.tried[caster->trial.map] = true;
   }
-  snprintf(why, capacity, "distance: %.3g %% occupied; eight maps are not paid for yet", 100.0 * share);
-  return STRATUS_STRUCTURE_DISTANCE;
+  return caster->trial.map;
 }
 
-static bool is_map_of(const stratus_distance_map* map, stratus_structure structure, stratus_distance_kind kind)
-{
-  return map && (structure == STRATUS_STRUCTURE_HYBRID ? map->tree_nodes > 0 : map->tree_nodes == 0 && map->kind == kind);
-}
-
-static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, double* ms)
+static stratus_distance_kind kind_of(stratus_structure structure)
 {
   static const stratus_distance_kind kinds[] = { [STRATUS_STRUCTURE_BLOCK] = STRATUS_DISTANCE_BLOCK,
     [STRATUS_STRUCTURE_DISTANCE] = STRATUS_DISTANCE_FULL,
     [STRATUS_STRUCTURE_OCTANT] = STRATUS_DISTANCE_OCTANT,
     [STRATUS_STRUCTURE_HYBRID] = STRATUS_DISTANCE_FULL };
-  if (structure == STRATUS_STRUCTURE_NONE || is_map_of(caster->map, structure, kinds[structure])) {
-    return STRATUS_OK;
-  }
-  const double start = stratus_now_ms();
+  return kinds[structure];
+}
+
+static bool is_map_of(const stratus_distance_map* map, stratus_structure structure)
+{
+  return map && (structure == STRATUS_STRUCTURE_HYBRID ? map->tree_nodes > 0 : map->tree_nodes == 0 && map->kind == kind_of(structure));
+}
+
+stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, stratus_distance_map** out)
+{
   stratus_distance_map* map = NULL;
+  *out = NULL;
   if (structure == STRATUS_STRUCTURE_HYBRID && caster->occupancy->count == 0) {
     return STRATUS_OK; /* the picture is empty: no ray reads the map */
   }
   if (structure == STRATUS_STRUCTURE_HYBRID) {
     TRY(stratus_ray_tree_map(caster, offered, &map));
   } else {
-    TRY(stratus_distance_map_create(caster->context, caster->occupancy, kinds[structure], &map));
+    TRY(stratus_distance_map_create(caster->context, caster->occupancy, kind_of(structure), &map));
   }
   const stratus_status status = stratus_ray_modes_bounds(caster, map);
   if (status != STRATUS_OK) {
     stratus_distance_map_destroy(map);
     return status;
   }
-  stratus_ray_drop_map(caster);
-  caster->map = map;
   caster->structure_builds += structure != STRATUS_STRUCTURE_HYBRID || !offered;
-  ++caster->map_serial;
-  *ms = stratus_now_ms() - start;
+  *out = map;
   return STRATUS_OK;
 }
 
@@ -301,25 +287,49 @@ stratus_status stratus_ray_make_occupancy(stratus_ray_caster* caster)
   return stratus_occupancy_build(caster->context, caster->ranges, &caster->values, gaps, &caster->occupancy);
 }
 
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
-  size_t capacity, stratus_ray_cast_report* report)
+static stratus_status update_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, double* ms)
 {
-  bool offered = false;
+  stratus_distance_map* map = NULL;
+  if (structure == STRATUS_STRUCTURE_NONE || is_map_of(caster->map, structure)) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  TRY(stratus_ray_make_map(caster, structure, offered, &map));
+  if (map) {
+    stratus_ray_drop_map(caster);
+    caster->map = map;
+    ++caster->map_serial;
+    *ms = stratus_now_ms() - start;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, bool* offered,
+  char* why, size_t capacity, stratus_ray_cast_report* report)
+{
+  const bool automatically = wanted == STRATUS_STRUCTURE_AUTO;
+  *offered = false;
   if (!caster->occupancy && (wanted != STRATUS_STRUCTURE_NONE || caster->choice.provisional)) {
     const double start = stratus_now_ms();
     TRY(stratus_ray_make_occupancy(caster));
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }
-  if (wanted == STRATUS_STRUCTURE_NONE) {
-    *used = wanted;
-    snprintf(why, capacity, "none as asked");
-    return STRATUS_OK;
+  if (wanted == STRATUS_STRUCTURE_HYBRID || automatically) {
+    TRY(stratus_ray_tree_serves(caster, offered));
   }
-  if (wanted == STRATUS_STRUCTURE_HYBRID || wanted == STRATUS_STRUCTURE_AUTO) {
-    TRY(stratus_ray_tree_serves(caster, &offered));
+  *used = automatically ? automatic(caster, *offered) : wanted;
+  report->offered_tree = *offered && *used == STRATUS_STRUCTURE_HYBRID;
+  if (automatically) { /* stratus_ray_try() tells more, where it measures */
+    snprintf(why, capacity, "%s: %s", stratus_structure_name(*used),
+      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip" : "the first to be tried");
+  } else {
+    snprintf(
+      why, capacity, "%s as asked%s", stratus_structure_name(wanted), report->offered_tree ? ", the tree that came with the data" : "");
   }
-  *used = choose_structure(caster, wanted, offered, why, capacity);
-  report->offered_tree = offered && *used == STRATUS_STRUCTURE_HYBRID;
-  return update_map(caster, *used, offered, &report->structure_ms);
+  TRY(update_map(caster, *used, *offered, &report->structure_ms));
+  if (automatically && report->structure_ms > 0.0) {
+    caster->trial.build_ms = report->structure_ms;
+  }
+  return STRATUS_OK;
 }

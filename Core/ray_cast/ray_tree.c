@@ -85,6 +85,11 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
   return STRATUS_OK;
 }
 
+size_t stratus_ray_tree_blocks(const stratus_ray_caster* caster)
+{
+  return stratus_tree_map_blocks(offered_tree(caster, true));
+}
+
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map)
 {
   if (offered) {

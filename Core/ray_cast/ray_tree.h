@@ -11,6 +11,8 @@ stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
  * added to *ms. */
 stratus_status stratus_ray_tree_serves_first_hits(
   stratus_ray_caster* caster, const stratus_volume* in_index, const stratus_criterion* criterion, bool* serves, double* ms);
+/* Returns the number of blocks in the map of the offered tree, which serves. */
+size_t stratus_ray_tree_blocks(const stratus_ray_caster* caster);
 /* Makes the map of the offered tree, or of a new tree of caster->occupancy. */
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);
 

@@ -117,6 +117,18 @@ static stratus_status fill(stratus_context* context, const stratus_tree* tree, s
   return STRATUS_OK;
 }
 
+size_t stratus_tree_map_blocks(const stratus_tree* tree)
+{
+  size_t blocks = 0;
+  for (uint32_t n = 0; n < tree->node_count; ++n) {
+    if (stratus_tree_node_kind(&tree->nodes[n]) != STRATUS_NODE_INNER) {
+      const extent e = blocks_of(&tree->nodes[n]);
+      blocks += volume_of(&e);
+    }
+  }
+  return blocks;
+}
+
 stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, int block_size, stratus_distance_map** out)
 {
   double size = ((double)tree->node_count + (double)tree->statistics.leaves) * 8 * sizeof(int32_t) + PADDING;

@@ -9,6 +9,9 @@
  * 2^31 bytes. */
 stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, int block_size, stratus_distance_map** map);
 
+/* Returns the number of blocks in the tree's leaves: what its map holds. */
+size_t stratus_tree_map_blocks(const stratus_tree* tree);
+
 /* Builds a hybrid tree of the occupied blocks. Each block is a brick of 4^3 voxels, whatever its size in cells. */
 stratus_status stratus_tree_of_occupancy(stratus_context* context, const stratus_occupancy* occupancy, stratus_tree** tree);
 
