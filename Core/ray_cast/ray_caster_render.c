@@ -213,6 +213,9 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     }
   }
   report->cast_ms = stratus_now_ms() - start - report->upload_ms;
+  if (options->structure == STRATUS_STRUCTURE_AUTO) {
+    stratus_ray_tried(caster, report->cast_ms);
+  }
   caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
   snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s", why, stratus_sampling_name(caster->choice.sampling),

@@ -19,13 +19,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Side of a tile in pixels: the traversal's unit is 8. */
-#define SIDE 8
+/* Side of a tile in pixels: a multiple of the traversal's 8, large enough that rays share memory as they do in the picture. */
+#define SIDE 16
 /* Tiles of one trial: up to ACROSS x ACROSS, but no more than one in SHARE of the picture's. */
-#define ACROSS 4
+#define ACROSS 3
 #define SHARE 64
-/* Each tile is drawn so many times, and the shortest time counts: interruptions only add. */
-#define REPEATS 2
 /* Eight octant maps are eight sweeps over the blocks, where one distance map is one. */
 #define OCTANT_MAPS 8
 
@@ -38,6 +36,7 @@ typedef struct trial_job {
   stratus_ray_cast_frame frame;
   stratus_ray_cast_tile* draw;
   int across; /* tiles along either axis of the window */
+  int first;  /* tile that the first of this pass stands for */
   int window[4];
   tile_time* times;
 } trial_job;
@@ -45,14 +44,15 @@ typedef struct trial_job {
 static int origin_of(const trial_job* job, int axis, int place)
 {
   const int lo = job->window[2 * axis], size = job->window[2 * axis + 1] - lo;
-  return (lo + (int)((2 * place + 1) * (int64_t)size / (2 * job->across))) / SIDE * SIDE;
+  const int at = lo + (int)((2 * place + 1) * (int64_t)size / (2 * job->across)) - SIDE / 2;
+  return at > 0 ? at / 8 * 8 : 0;
 }
 
 static void time_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_COUNTS])
 {
   const trial_job* job = data;
   const int width = job->frame.arguments->picture.width, height = job->frame.arguments->picture.height;
-  const int x0 = origin_of(job, 0, tile % job->across), y0 = origin_of(job, 1, tile / job->across);
+  const int place = job->first + tile, x0 = origin_of(job, 0, place % job->across), y0 = origin_of(job, 1, place / job->across);
   stratus_ray_counts mine = { 0 };
   const double start = stratus_thread_ms();
   job->draw(&job->frame, x0, y0, x0 + SIDE < width ? x0 + SIDE : width, y0 + SIDE < height ? y0 + SIDE : height, &mine);
@@ -65,7 +65,7 @@ static void time_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_C
 
 /* Times of a whole frame, estimated from the tiles. */
 typedef struct trial_costs {
-  double with, without; /* milliseconds */
+  double with, without; /* milliseconds; without: at least so many, if it is the longer */
   double look_ups;      /* of `with`, what is beyond the samples */
 } trial_costs;
 
@@ -79,12 +79,38 @@ static tile_time sum_of(const tile_time* times, int tiles)
   return sum;
 }
 
-/* Draws tiles with a map and without it, in turns, and estimates the frame's times. arguments: with the map. */
-static stratus_status measure(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, const stratus_ray_cast_arguments* arguments,
-  stratus_ray_variant variant, const stratus_distance_map* map, stratus_structure structure, trial_costs* costs)
+/* Draws tiles with the map, without it, and with it again: nothing counts the first reads of memory. Without it, no more is drawn than is
+ * needed to take longer, and nothing if plain is NULL. *drawn: the tiles that were drawn without it. */
+static stratus_status draw_tiles(
+  stratus_context* context, trial_job* job, const stratus_ray_cast_arguments* plain, tile_time* with, tile_time* without, int* drawn)
 {
-  tile_time times[2][ACROSS * ACROSS];
+  const stratus_ray_cast_frame frame = job->frame;
+  const int across = job->across, tiles = across * across;
   uint64_t counts[STRATUS_TILE_COUNTS];
+  for (int tile = 0; tile < tiles; ++tile) {
+    with[tile] = without[tile] = (tile_time){ INFINITY, 0.0 };
+  }
+  job->times = with;
+  TRY(stratus_each_tile(context, "structure", tiles, time_tile, job, counts));
+  job->frame.arguments = plain;
+  job->frame.map = NULL;
+  for (*drawn = 0; plain && *drawn < tiles && sum_of(without, *drawn).ms <= sum_of(with, tiles).ms; *drawn += across) {
+    job->first = (*drawn + tiles / 2 / across * across) % tiles; /* the window's middle first */
+    job->times = without + *drawn;
+    TRY(stratus_each_tile(context, "structure", across, time_tile, job, counts));
+  }
+  job->first = 0;
+  job->frame = frame;
+  job->times = with;
+  return stratus_each_tile(context, "structure", tiles, time_tile, job, counts);
+}
+
+/* Estimates a frame's times with a map, and without it if that is wanted. arguments: with the map. */
+static stratus_status measure(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, const stratus_ray_cast_arguments* arguments,
+  stratus_ray_variant variant, const stratus_distance_map* map, stratus_structure structure, bool both, trial_costs* costs)
+{
+  tile_time with[ACROSS * ACROSS], without[ACROSS * ACROSS];
+  int drawn = 0;
   _Alignas(64) stratus_ray_cast_arguments plain = *arguments;
   stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
   const int* window = plain.camera.window;
@@ -93,33 +119,38 @@ static stratus_status measure(stratus_ray_caster* caster, const stratus_ray_cast
     .draw = stratus_ray_cast_tile_for(caster->context->isa, stratus_ray_fetch_type(&caster->traversed), variant),
     .across = most < ACROSS * ACROSS ? most < 4.0 ? 1 : (int)sqrt(most) : ACROSS };
   const int tiles = job.across * job.across;
+  *costs = (trial_costs){ 0.0, 0.0, 0.0 };
+  if (!(pixels > 0.0)) {
+    return STRATUS_OK;
+  }
   memcpy(job.window, window, sizeof job.window);
-  for (int i = 0; i < 2 * tiles; ++i) {
-    times[i / tiles][i % tiles].ms = INFINITY;
-  }
-  for (int pass = 0; pass < 2 * REPEATS && pixels > 0.0; ++pass) {
-    const bool with = pass % 2 == 0;
-    job.frame.arguments = with ? arguments : &plain;
-    job.frame.map = with ? map->bytes : NULL;
-    job.times = times[with];
-    TRY(stratus_each_tile(caster->context, "structure", tiles, time_tile, &job, counts));
-  }
-  const tile_time with = sum_of(times[1], tiles), without = sum_of(times[0], tiles);
+  job.frame.arguments = arguments;
+  job.frame.map = map->bytes;
+  TRY(draw_tiles(caster->context, &job, both ? &plain : NULL, with, without, &drawn));
+  const tile_time a = sum_of(with, tiles), b = sum_of(without, drawn);
   const double scale = pixels / ((double)SIDE * SIDE * tiles * caster->context->threads); /* tiles' times are of one thread each */
-  costs->with = pixels > 0.0 ? with.ms * scale : 0.0;
-  costs->without = pixels > 0.0 ? without.ms * scale : 0.0;
+  costs->with = a.ms * scale;
+  costs->without = b.ms * scale;
+  costs->look_ups = b.samples > 0.0 ? fmax(a.ms - a.samples * b.ms / b.samples, 0.0) * scale : costs->with;
   if (caster->forced) {
     costs->with = caster->forced->frame[structure];
     costs->without = caster->forced->frame[STRATUS_STRUCTURE_NONE];
+    costs->look_ups = 0.5 * costs->with;
   }
-  costs->look_ups = without.samples > 0.0 ? fmax(costs->with - costs->without * with.samples / without.samples, 0.0) : costs->with;
   return STRATUS_OK;
 }
 
-/* Returns the milliseconds a frame that a map of free look-ups would save, where the better of map and none is taken. */
+/* Returns the milliseconds of a frame that a map of free look-ups would save, where the better of map and none is taken. */
 static double regret_of(const stratus_ray_trial* t)
 {
   return t->trials > 0 ? fmax(fmin(t->with, t->without) - (t->with - t->skippable), 0.0) / t->trials : 0.0;
+}
+
+void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms)
+{
+  stratus_ray_trial* t = &caster->trial;
+  const double frame = t->trials > 0 ? fmin(t->with, t->without) / t->trials : 0.0;
+  t->regret += caster->forced || !(frame > 0.0) ? regret_of(t) : regret_of(t) / frame * cast_ms;
 }
 
 static void add_costs(stratus_ray_trial* t, const trial_costs* costs)
@@ -180,9 +211,9 @@ static stratus_status try_map(stratus_ray_caster* caster, const stratus_ray_cast
   }
   TRY(status);
   stratus_ray_frame_structures(caster->table, tolerance, caster->occupancy, map, &other);
-  stratus_status measured = measure(caster, frame, arguments, variant, caster->map, t->map, &old);
+  stratus_status measured = measure(caster, frame, arguments, variant, caster->map, t->map, false, &old);
   if (measured == STRATUS_OK) {
-    measured = measure(caster, frame, &other, variant, map, structure, &new);
+    measured = measure(caster, frame, &other, variant, map, structure, true, &new);
   }
   if (measured != STRATUS_OK || new.with >= old.with) {
     stratus_distance_map_destroy(map);
@@ -214,10 +245,9 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, const stratus_ray_cas
   ++t->frames;
   if ((t->frames & (t->frames - 1)) == 0) {
     trial_costs costs;
-    TRY(measure(caster, frame, arguments, variant, caster->map, t->map, &costs));
+    TRY(measure(caster, frame, arguments, variant, caster->map, t->map, true, &costs));
     add_costs(t, &costs);
   }
-  t->regret += regret_of(t);
   const stratus_structure next = next_map(caster, offered, &price);
   if (next != STRATUS_STRUCTURE_AUTO && t->regret >= price) {
     t->regret -= price;
@@ -227,8 +257,8 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, const stratus_ray_cas
   if (*used == STRATUS_STRUCTURE_NONE) {
     stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, arguments);
   }
-  snprintf(why, capacity, "%s: measured %.3g ms a frame by %s%s%s%s, %.3g without; look-ups cost %.2g", stratus_structure_name(*used),
+  snprintf(why, capacity, "%s: measured %.3g ms a frame by %s%s%s%s, %s%.3g without; look-ups cost %.2g", stratus_structure_name(*used),
     t->with / t->trials, stratus_structure_name(t->map), t->lost ? " (" : "", t->lost ? stratus_structure_name(t->lost) : "",
-    t->lost ? " was slower)" : "", t->without / t->trials, t->skippable / t->trials);
+    t->lost ? " was slower)" : "", t->with < t->without ? "at least " : "", t->without / t->trials, t->skippable / t->trials);
   return STRATUS_OK;
 }

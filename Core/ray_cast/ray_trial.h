@@ -14,5 +14,7 @@
  * with the data serves. used: as stratus_ray_update_structures() gave it. why: the reason, with what was measured. */
 stratus_status stratus_ray_try(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, stratus_ray_cast_arguments* arguments,
   double tolerance, stratus_ray_variant variant, bool offered, stratus_structure* used, char* why, size_t capacity);
+/* Counts what the frame has spent. cast_ms: its time. */
+void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms);
 
 #endif

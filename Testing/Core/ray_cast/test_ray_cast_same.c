@@ -110,6 +110,7 @@ static void threads_change_no_bit(void** state)
     picture_case c;
     char what[64];
     case_create_random(contexts[0], seed, &c);
+    c.options.structure = STRATUS_STRUCTURE_DISTANCE; /* an automatic one follows from times, and counts follow from it */
     case_render(contexts[0], &c, &first);
     for (int t = 1; t < 3; ++t) {
       case_render(contexts[t], &c, &second);

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The automatic structure follows from what frames and builds cost. The costs are given here, so that no timing decides a test; that the
+ * pictures are the same is tested beside it. */
+#include "picture_case.h"
+#include "ray_caster.h"
+
+static picture first;
+static picture second;
+
+/* A case some of whose blocks are occupied, so that there is something to skip. `first` is its picture. */
+static void make_case(stratus_context* context, picture_case* c)
+{
+  for (uint32_t seed = 1;; ++seed) {
+    case_create_random(context, seed, c);
+    c->options.mode = STRATUS_MODE_COMPOSITE;
+    c->options.block_size = 2;
+    c->options.structure = STRATUS_STRUCTURE_NONE;
+    case_render(context, c, &first);
+    c->options.structure = STRATUS_STRUCTURE_DISTANCE;
+    case_render(context, c, &second);
+    if (second.report.skipped > 0 && second.report.samples > 0 && second.report.occupied_blocks < second.report.blocks &&
+      case_lit(&first) > 20) {
+      break;
+    }
+    case_destroy(c);
+  }
+  c->options.structure = STRATUS_STRUCTURE_AUTO;
+  c->options.audit = 1;
+}
+
+/* Draws some frames with given costs and returns the structure of the last. */
+static stratus_structure drawn_with(stratus_context* context, picture_case* c, const stratus_ray_costs* costs, int frames)
+{
+  stratus_ray_caster* caster = NULL;
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  caster->forced = costs;
+  for (int frame = 0; frame < frames; ++frame) {
+    case_render_with(context, caster, c, &second);
+    assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
+    assert_int_equal(second.report.differing_pixels, 0);
+    assert_memory_equal(
+      second.report.why, stratus_structure_name(second.report.structure), strlen(stratus_structure_name(second.report.structure)));
+  }
+  stratus_ray_caster_destroy(caster);
+  return second.report.structure;
+}
+
+static void the_cheaper_of_map_and_none_is_drawn(void** state)
+{
+  picture_case c;
+  make_case(*state, &c);
+  stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 2.0, [STRATUS_STRUCTURE_DISTANCE] = 3.0 },
+    .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
+  assert_int_equal(drawn_with(*state, &c, &costs, 1), STRATUS_STRUCTURE_NONE);
+  assert_int_equal(second.report.skipped, 0);
+  costs.frame[STRATUS_STRUCTURE_NONE] = 4.0;
+  assert_int_equal(drawn_with(*state, &c, &costs, 1), STRATUS_STRUCTURE_DISTANCE);
+  assert_true(second.report.skipped > 0);
+  case_destroy(&c);
+}
+
+/* Half of what a frame is said to cost counts as look-ups. */
+static void octant_maps_are_built_when_look_ups_have_cost_as_much(void** state)
+{
+  picture_case c;
+  make_case(*state, &c);
+  stratus_ray_costs costs = { .frame = {
+                                [STRATUS_STRUCTURE_NONE] = 2.0, [STRATUS_STRUCTURE_DISTANCE] = 1.0, [STRATUS_STRUCTURE_OCTANT] = 0.5 } };
+  costs.build[STRATUS_STRUCTURE_OCTANT] = 1e9;
+  assert_int_equal(drawn_with(*state, &c, &costs, 9), STRATUS_STRUCTURE_DISTANCE);
+  assert_int_equal(second.report.structure_builds, 1);
+  costs.build[STRATUS_STRUCTURE_OCTANT] = 2.0;
+  assert_int_equal(drawn_with(*state, &c, &costs, 4), STRATUS_STRUCTURE_DISTANCE);
+  assert_int_equal(second.report.structure_builds, 1);
+  assert_int_equal(drawn_with(*state, &c, &costs, 5), STRATUS_STRUCTURE_OCTANT);
+  assert_int_equal(second.report.structure_builds, 2);
+  costs.frame[STRATUS_STRUCTURE_OCTANT] = 1.5; /* they are built and lose: the distance map stays, and they are not built again */
+  assert_int_equal(drawn_with(*state, &c, &costs, 9), STRATUS_STRUCTURE_DISTANCE);
+  assert_int_equal(second.report.structure_builds, 2);
+  case_destroy(&c);
+}
+
+/* Offers a tree of the cells that the transfer function shows. */
+static void offer_tree(stratus_context* context, stratus_ray_caster* caster, const picture_case* c)
+{
+  stratus_criterion criterion = stratus_criterion_default();
+  stratus_voxels* cells = NULL;
+  stratus_tree* tree = NULL;
+  criterion.transfer = &c->transfer;
+  assert_int_equal(stratus_voxels_create_cells(context, &c->volume, &criterion, &cells), STRATUS_OK);
+  assert_int_equal(stratus_tree_create(context, cells, NULL, &tree), STRATUS_OK);
+  void* bytes = malloc(stratus_tree_bytes(tree));
+  stratus_tree_save(tree, bytes);
+  assert_int_equal(stratus_ray_caster_offer_tree(caster, bytes, stratus_tree_bytes(tree)), STRATUS_OK);
+  free(bytes);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(cells);
+}
+
+static void a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper(void** state)
+{
+  picture_case c;
+  int trees = 0;
+  for (uint32_t seed = 1; seed <= 40; ++seed) {
+    case_create_random(*state, seed, &c);
+    c.options.mode = STRATUS_MODE_COMPOSITE;
+    c.options.structure = STRATUS_STRUCTURE_NONE;
+    case_render(*state, &c, &first);
+    c.options.structure = STRATUS_STRUCTURE_AUTO;
+    for (int cheap = 0; cheap < 2; ++cheap) {
+      stratus_ray_caster* caster = NULL;
+      const double tree = cheap ? 0.5 : 2.0;
+      const stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 4.0,
+                                          [STRATUS_STRUCTURE_DISTANCE] = 1.0,
+                                          [STRATUS_STRUCTURE_OCTANT] = 3.0,
+                                          [STRATUS_STRUCTURE_HYBRID] = tree } };
+      assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+      caster->forced = &costs;
+      offer_tree(*state, caster, &c);
+      for (int frame = 0; frame < 3; ++frame) { /* builds cost nothing: each frame tries a map */
+        case_render_with(*state, caster, &c, &second);
+        assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
+      }
+      assert_int_equal(second.report.offered_tree, second.report.structure == STRATUS_STRUCTURE_HYBRID);
+      trees += second.report.offered_tree;
+      if (!cheap && caster->trial.tried[STRATUS_STRUCTURE_DISTANCE]) {
+        assert_int_equal(second.report.offered_tree, 0);
+      }
+      stratus_ray_caster_destroy(caster);
+    }
+    case_destroy(&c);
+  }
+  assert_true(trees > 5);
+}
+
+int test_ray_trial(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_cheaper_of_map_and_none_is_drawn),
+    cmocka_unit_test(octant_maps_are_built_when_look_ups_have_cost_as_much),
+    cmocka_unit_test(a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper),
+  };
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
+}
