@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The traversal on the host: picks the instruction set and distributes tiles over threads. */
-#include "ray_cast_host.h"
+#include "ray_cast_rest.h"
 
 #include "stratus/ray_cast.h"
 
 #include "instruction_set.h"
 #include "tiles.h"
-
-/* Side of a tile in pixels: small enough to balance the threads, large enough that the tile's rays share voxels. */
-#define TILE 32
 
 int stratus_ray_cast_type_is_fast(int type)
 {
@@ -43,8 +40,27 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
   }
 }
 
+void stratus_ray_cast_pixels(
+  const stratus_ray_cast_frame* frame, stratus_ray_cast_tile* draw, int x0, int y0, int x1, int y1, stratus_ray_counts* counts)
+{
+  if (x0 < x1 && y0 < y1) {
+    draw(frame, x0, y0, x1, y1, counts);
+    round_pixels(frame, x0, y0, x1, y1); /* while they are in the cache */
+  }
+}
+
+bool stratus_ray_is_drawn(const stratus_ray_drawn* drawn, int tile)
+{
+  int i = 0;
+  while (i < drawn->count && drawn->tiles[i] != tile) {
+    ++i;
+  }
+  return i < drawn->count;
+}
+
 typedef struct cast_job {
   const stratus_ray_cast_frame* frame;
+  const stratus_ray_drawn* drawn;
   stratus_ray_cast_tile* draw;
   int columns; /* of tiles */
 } cast_job;
@@ -53,25 +69,30 @@ static void cast_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_C
 {
   const cast_job* job = data;
   const int width = job->frame->arguments->picture.width, height = job->frame->arguments->picture.height;
-  const int x0 = tile % job->columns * TILE, x1 = x0 + TILE < width ? x0 + TILE : width;
-  const int y0 = tile / job->columns * TILE, y1 = y0 + TILE < height ? y0 + TILE : height;
+  const int x0 = tile % job->columns * STRATUS_RAY_TILE, x1 = x0 + STRATUS_RAY_TILE < width ? x0 + STRATUS_RAY_TILE : width;
+  const int y0 = tile / job->columns * STRATUS_RAY_TILE, y1 = y0 + STRATUS_RAY_TILE < height ? y0 + STRATUS_RAY_TILE : height;
   stratus_ray_counts mine = { 0 };
-  job->draw(job->frame, x0, y0, x1, y1, &mine);
-  round_pixels(job->frame, x0, y0, x1, y1); /* while the tile is in the cache */
+  if (!stratus_ray_is_drawn(job->drawn, tile)) {
+    stratus_ray_cast_pixels(job->frame, job->draw, x0, y0, x1, y1, &mine);
+  }
   counts[0] += mine.rays;
   counts[1] += mine.samples;
   counts[2] += mine.skipped;
   counts[3] += mine.lookups;
 }
 
-stratus_status stratus_ray_cast_host(
-  stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts)
+stratus_status stratus_ray_cast_rest(stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant,
+  const stratus_ray_drawn* drawn, stratus_ray_counts* counts)
 {
   const int width = frame->arguments->picture.width, height = frame->arguments->picture.height;
-  const int columns = (width + TILE - 1) / TILE, rows = (height + TILE - 1) / TILE;
-  const cast_job job = { frame, stratus_ray_cast_tile_for(context->isa, type, variant), columns };
+  const int columns = (width + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE, rows = (height + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE;
+  const cast_job job = { frame, drawn, stratus_ray_cast_tile_for(context->isa, type, variant), columns };
   uint64_t sums[STRATUS_TILE_COUNTS];
   const stratus_status status = stratus_each_tile(context, "ray cast", columns * rows, cast_tile, &job, sums);
-  *counts = (stratus_ray_counts){ .rays = sums[0], .samples = sums[1], .skipped = sums[2], .lookups = sums[3] };
+  const stratus_ray_counts* before = &drawn->counts;
+  *counts = (stratus_ray_counts){ .rays = before->rays + sums[0],
+    .samples = before->samples + sums[1],
+    .skipped = before->skipped + sums[2],
+    .lookups = before->lookups + sums[3] };
   return status;
 }

@@ -33,11 +33,9 @@ typedef struct stratus_ray_trial {
   stratus_structure lost;                   /* the last that was built and was slower than `map`; AUTO: none */
   uint64_t table_serial;                    /* of the table that the times are of */
   int frames;                               /* drawn with that table */
-  double with, without, skippable;          /* sums over the trials, in milliseconds of a frame: with the map, without, and what look-ups
-                                             * cost beyond the samples */
-  int trials;
-  double build_ms; /* of the map */
-  double regret;   /* milliseconds that a map of free look-ups would have saved */
+  double with, without;                     /* milliseconds of the same pixels, by the map and by none */
+  double build_ms;                          /* of the first map */
+  double spent, built_ms, trial_ms;         /* milliseconds that frames and builds of other maps took, and the last trial of none */
 } stratus_ray_trial;
 
 struct stratus_ray_caster {
@@ -75,6 +73,7 @@ struct stratus_ray_caster {
   stratus_tree* offered; /* a tree that came with the data, in index coordinates; NULL: none */
   int tree_serves;       /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
   uint64_t hash;         /* of the volume's values and shape */
+  double scan_ms;        /* milliseconds that the value ranges took */
   uint64_t hash_ranges;  /* range_builds when `hash` was computed; `hash` is stale if they differ */
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
@@ -108,9 +107,8 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
 /* Makes a map for a structure other than NONE. offered: of the tree that came with the data. *map: NULL if no block is occupied and the
  * structure is a tree. */
 stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, stratus_distance_map** map);
-/* *offered: a tree that came with the data serves. */
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, bool* offered,
-  char* why, size_t capacity, stratus_ray_cast_report* report);
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
+  size_t capacity, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes. */
 stratus_ray_cast_frame stratus_ray_frame_of(

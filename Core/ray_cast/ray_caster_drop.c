@@ -20,9 +20,10 @@ void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells)
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster)
 {
   stratus_ray_forget_offer(caster, true);
-  caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
+  caster->trial.tried[STRATUS_STRUCTURE_HYBRID] = false;
   if (caster->map && caster->map->tree_nodes > 0) {
     stratus_ray_drop_map(caster);
+    caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   }
 }
 

@@ -79,20 +79,21 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
 
 /* ---- drawing */
 
+/* Draws the frame. before: tiles that need no drawing. */
 static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image,
-  bool with_map, stratus_ray_counts* counts, double* upload_ms)
+  bool with_map, const stratus_ray_drawn* before, stratus_ray_counts* counts, double* upload_ms)
 {
   const stratus_ray_variant variant = stratus_ray_modes_variant(caster);
   const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, arguments, image, with_map);
   const int type = stratus_ray_fetch_type(&caster->traversed);
   if (caster->context->device) {
-    bool drawn = false;
+    bool drawn = false; /* all tiles, those before included */
     TRY(stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn));
     if (drawn) {
       return STRATUS_OK;
     }
   }
-  return stratus_ray_cast_host(caster->context, &frame, type, variant, counts);
+  return stratus_ray_cast_rest(caster->context, &frame, type, variant, before, counts);
 }
 
 /* Draws the frame again without a structure and counts the pixels whose bits differ. */
@@ -117,7 +118,7 @@ static stratus_status audit(
     TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(float), &depth));
     march.depth = depth;
   }
-  TRY_CLEANUP(draw(caster, &plain, &march, false, &counts, &upload_ms));
+  TRY_CLEANUP(draw(caster, &plain, &march, false, &(const stratus_ray_drawn){ .count = 0 }, &counts, &upload_ms));
   *differing = 0;
   for (size_t i = 0; i < pixels; ++i) {
     *differing += memcmp(image->rgba + 4 * i, march.rgba + 4 * i, 4 * sizeof(float)) != 0 ||
@@ -171,10 +172,11 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   stratus_structure used = STRATUS_STRUCTURE_NONE;
   stratus_ray_counts counts = { 0 };
   char why[192] = "";
-  bool empty = false, offered = false;
+  stratus_ray_drawn drawn = { .count = 0 };
+  bool empty = false;
 
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
-  TRY(stratus_ray_update_structures(caster, options->structure, &used, &offered, why, sizeof why, report));
+  TRY(stratus_ray_update_structures(caster, options->structure, &used, why, sizeof why, report));
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
@@ -194,15 +196,17 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_frame_structures(
       caster->table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found && with_map && options->structure == STRATUS_STRUCTURE_AUTO) {
-      const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, &arguments, image, true);
-      TRY(stratus_ray_try(caster, &frame, &arguments, stratus_ray_tolerance(options), offered, &used, why, sizeof why));
+      stratus_ray_choice_frame chosen = { .image = image, .tolerance = stratus_ray_tolerance(options), .arguments = &arguments };
+      TRY(stratus_ray_try(caster, &chosen, why, sizeof why));
+      used = chosen.used;
       with_map = used != STRATUS_STRUCTURE_NONE;
-      report->offered_tree = offered && used == STRATUS_STRUCTURE_HYBRID;
+      drawn = chosen.drawn;
+      report->offered_tree = chosen.offered;
       report->structure_ms += stratus_now_ms() - start;
       start = stratus_now_ms();
     }
     if (found) {
-      TRY(draw(caster, &arguments, image, with_map, &counts, &report->upload_ms));
+      TRY(draw(caster, &arguments, image, with_map, &drawn, &counts, &report->upload_ms));
       report_window(arguments.camera.window, report->window);
     } else {
       stratus_image_clear(image);

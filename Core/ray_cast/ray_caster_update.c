@@ -85,6 +85,7 @@ static stratus_status update_ranges(
       ++caster->range_builds;
     }
     *ms = stratus_now_ms() - start;
+    caster->scan_ms = same ? caster->scan_ms : *ms;
   }
   caster->volume = *volume;
   return stratus_ray_fetched_update(caster);
@@ -223,23 +224,27 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   return STRATUS_OK;
 }
 
-/* Returns the structure whose map an automatic choice draws or tries first: the one of fewer blocks. stratus_ray_try() measures whether it
- * pays. In modes that skip by bounds, no number of occupied blocks tells that nothing can be skipped. */
-static stratus_structure automatic(stratus_ray_caster* caster, bool offered)
+/* Returns the structure whose map an automatic choice draws, or tries first. stratus_ray_try() measures whether it pays. In modes that skip
+ * by bounds, no number of occupied blocks tells that nothing can be skipped. */
+static stratus_status automatic(stratus_ray_caster* caster, stratus_structure* structure)
 {
   const int64_t* n = caster->occupancy->blocks;
-  const size_t blocks = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-  if ((size_t)caster->occupancy->count == blocks && caster->shown.mode == STRATUS_MODE_COMPOSITE) {
-    return STRATUS_STRUCTURE_NONE;
+  bool serves = true;
+  *structure = STRATUS_STRUCTURE_NONE;
+  if (caster->occupancy->count == n[0] * n[1] * n[2] && caster->shown.mode == STRATUS_MODE_COMPOSITE) {
+    return STRATUS_OK;
   }
-  if (caster->trial.map == STRATUS_STRUCTURE_HYBRID && !offered) {
+  if (caster->trial.map == STRATUS_STRUCTURE_HYBRID) {
+    TRY(stratus_ray_tree_serves(caster, &serves));
+  }
+  if (!serves) {
     caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   }
   if (caster->trial.map == STRATUS_STRUCTURE_AUTO) {
-    caster->trial.map = offered && stratus_ray_tree_blocks(caster) < blocks ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_DISTANCE;
-    caster->trial.tried[caster->trial.map] = true;
+    caster->trial.map = STRATUS_STRUCTURE_DISTANCE;
   }
-  return caster->trial.map;
+  *structure = caster->trial.map;
+  return STRATUS_OK;
 }
 
 static stratus_distance_kind kind_of(stratus_structure structure)
@@ -300,36 +305,33 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
     caster->map = map;
     ++caster->map_serial;
     *ms = stratus_now_ms() - start;
+    caster->trial.build_ms = structure == STRATUS_STRUCTURE_DISTANCE ? *ms : caster->trial.build_ms;
   }
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, bool* offered,
-  char* why, size_t capacity, stratus_ray_cast_report* report)
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
+  size_t capacity, stratus_ray_cast_report* report)
 {
-  const bool automatically = wanted == STRATUS_STRUCTURE_AUTO;
-  *offered = false;
+  bool offered = false;
+  *used = wanted;
   if (!caster->occupancy && (wanted != STRATUS_STRUCTURE_NONE || caster->choice.provisional)) {
     const double start = stratus_now_ms();
     TRY(stratus_ray_make_occupancy(caster));
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }
-  if (wanted == STRATUS_STRUCTURE_HYBRID || automatically) {
-    TRY(stratus_ray_tree_serves(caster, offered));
-  }
-  *used = automatically ? automatic(caster, *offered) : wanted;
-  report->offered_tree = *offered && *used == STRATUS_STRUCTURE_HYBRID;
-  if (automatically) { /* stratus_ray_try() tells more, where it measures */
+  if (wanted == STRATUS_STRUCTURE_AUTO) { /* stratus_ray_try() tells more, where it measures */
+    TRY(automatic(caster, used));
     snprintf(why, capacity, "%s: %s", stratus_structure_name(*used),
-      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip" : "the first to be tried");
+      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip" : "nothing was measured");
+    offered = *used == STRATUS_STRUCTURE_HYBRID;
   } else {
-    snprintf(
-      why, capacity, "%s as asked%s", stratus_structure_name(wanted), report->offered_tree ? ", the tree that came with the data" : "");
+    if (wanted == STRATUS_STRUCTURE_HYBRID) {
+      TRY(stratus_ray_tree_serves(caster, &offered));
+    }
+    snprintf(why, capacity, "%s as asked%s", stratus_structure_name(wanted), offered ? ", the tree that came with the data" : "");
   }
-  TRY(update_map(caster, *used, *offered, &report->structure_ms));
-  if (automatically && report->structure_ms > 0.0) {
-    caster->trial.build_ms = report->structure_ms;
-  }
-  return STRATUS_OK;
+  report->offered_tree = offered;
+  return update_map(caster, *used, offered, &report->structure_ms);
 }

@@ -59,12 +59,18 @@ stratus_status stratus_ray_tree_serves_first_hits(
   return STRATUS_OK;
 }
 
+bool stratus_ray_tree_is_offered(const stratus_ray_caster* caster)
+{
+  /* only here does one table's opacity alone decide which cells matter */
+  return caster->tree_serves != 0 && offered_tree(caster, true) && caster->shown.mode == STRATUS_MODE_COMPOSITE &&
+    !stratus_ray_shading_several(caster);
+}
+
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves)
 {
   const stratus_tree* tree = offered_tree(caster, true);
   *serves = false;
-  if (!tree || caster->shown.mode != STRATUS_MODE_COMPOSITE || stratus_ray_shading_several(caster)) {
-    /* only here does one table's opacity alone decide which cells matter */
+  if (!stratus_ray_tree_is_offered(caster)) {
     return STRATUS_OK;
   }
   if (caster->tree_serves < 0) {

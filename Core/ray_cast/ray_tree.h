@@ -5,13 +5,15 @@
 
 #include "ray_caster.h"
 
+/* Whether a tree was offered that may serve: what its check would tell is not known yet, or it does. */
+bool stratus_ray_tree_is_offered(const stratus_ray_caster* caster);
 /* Whether the offered tree covers all cells of this very volume that the transfer function shows. */
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves);
 /* Whether the offered tree holds exactly the voxels that the criterion shows. The first call after a change reads the volume; its time is
  * added to *ms. */
 stratus_status stratus_ray_tree_serves_first_hits(
   stratus_ray_caster* caster, const stratus_volume* in_index, const stratus_criterion* criterion, bool* serves, double* ms);
-/* Returns the number of blocks in the map of the offered tree, which serves. */
+/* Returns the number of blocks in the map of the offered tree, which stratus_ray_tree_is_offered(). */
 size_t stratus_ray_tree_blocks(const stratus_ray_caster* caster);
 /* Makes the map of the offered tree, or of a new tree of caster->occupancy. */
 stratus_status stratus_ray_tree_map(stratus_ray_caster* caster, bool offered, stratus_distance_map** map);

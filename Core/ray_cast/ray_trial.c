@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Measures which structure draws a volume's frames fastest. Two decisions are made, and for each the worst that it can cost is known.
+ * Measures which structure draws a volume's frames fastest. A trial compares two structures by tiles of the frame that it is part of. The
+ * better so far draws these tiles for the picture, so that its draws cost nothing. The other draws a small square of each again, stops
+ * where it has taken as long as the better, and draws no more squares once it is clearly the slower: a trial costs a few per cent of a
+ * frame, whatever it finds. Which of the two is first alternates from tile to tile, for the second finds its data in the cache.
  *
- * Skip or not: tiles of the picture are drawn with the map and without it. Noise can only turn a decision between times that are nearly
- * equal.
+ * Skip or not: frames 1, 2, 4, 8, ... since the transfer function changed compare the map with none.
  *
- * Another map: no map can save more than the look-ups in this one cost. Their sum over the frames since the last edit is what a better map
- * would have saved at most. Once it reaches the price of another map, that is built and measured, and stays if it is faster. So maps that
- * bring nothing cost no more than rays have spent on look-ups. (The ski rental problem, Karlin et al. 1988: never more than twice what is
- * best in hindsight.)
- */
+ * Another map is built when frames have spent so much time that building it cannot waste more than a small share of that, and stays if it
+ * is faster. */
 #include "ray_trial.h"
 
 #include "ray_fetched.h"
@@ -16,249 +15,342 @@
 #include "ray_tree.h"
 #include "tiles.h"
 
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Side of a tile in pixels: a multiple of the traversal's 8, large enough that rays share memory as they do in the picture. */
+/* Side in pixels of the traversal's unit, and of the squares that two structures draw. Pictures of fewer than SMALL pixels have smaller
+ * ones. */
+#define UNIT 8
 #define SIDE 16
-/* Tiles of one trial: up to ACROSS x ACROSS, but no more than one in SHARE of the picture's. */
-#define ACROSS 3
-#define SHARE 64
+#define SMALL (384 * 384)
+/* Tiles of a trial along either axis. */
+#define ACROSS 4
+#define TILES (ACROSS * ACROSS)
+/* Where a look-up skips more samples than this, the map surely pays: it reads a byte, where a sample reads eight values and a table. */
+#define SURE 8
+/* A structure that has taken 1 + LOST / n^2 times the other's time in n tiles draws no more squares. */
+#define LOST 16.0
+/* Builds of other maps, and each trial but the first, may take these shares of the time that frames have taken since the transfer function
+ * changed. */
+#define BUILD_SHARE 0.05
+#define TRIAL_SHARE 0.02
 /* Eight octant maps are eight sweeps over the blocks, where one distance map is one. */
 #define OCTANT_MAPS 8
 
-typedef struct tile_time {
-  double ms;
-  double samples;
-} tile_time;
+/* One of the two that a trial compares. */
+typedef struct contender {
+  stratus_structure structure;
+  const stratus_ray_cast_arguments* arguments;
+  const uint8_t* map; /* NULL: none */
+} contender;
 
 typedef struct trial_job {
-  stratus_ray_cast_frame frame;
+  stratus_ray_cast_frame better, other;
   stratus_ray_cast_tile* draw;
-  int across; /* tiles along either axis of the window */
-  int first;  /* tile that the first of this pass stands for */
-  int window[4];
-  tile_time* times;
+  int side;
+  int columns; /* of the picture's tiles */
+  int tiles[TILES];
+  double (*times)[2];     /* of each tile's square, by the better and by the other; the latter 0: it was not drawn */
+  double *whole, *wasted; /* of each tile, by the better; what the other took */
+  stratus_ray_counts* counts;
+  atomic_llong* spent; /* nanoseconds, likewise; then the number of tiles that both have drawn */
 } trial_job;
 
-static int origin_of(const trial_job* job, int axis, int place)
+static double time_pixels(
+  const trial_job* job, const stratus_ray_cast_frame* frame, const int lo[2], const int hi[2], stratus_ray_counts* counts)
 {
-  const int lo = job->window[2 * axis], size = job->window[2 * axis + 1] - lo;
-  const int at = lo + (int)((2 * place + 1) * (int64_t)size / (2 * job->across)) - SIDE / 2;
-  return at > 0 ? at / 8 * 8 : 0;
+  const double start = stratus_thread_ms();
+  stratus_ray_cast_pixels(frame, job->draw, lo[0], lo[1], hi[0], hi[1], counts);
+  return stratus_thread_ms() - start;
 }
 
-static void time_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_COUNTS])
+static bool lost(const trial_job* job)
+{
+  const double better = (double)atomic_load(&job->spent[0]), other = (double)atomic_load(&job->spent[1]);
+  const double tiles = (double)atomic_load(&job->spent[2]);
+  return tiles * tiles * (other - better) > LOST * better;
+}
+
+/* Draws a square unit by unit with the other structure until that has taken `most`. Returns the time of the whole square, estimated if it
+ * was not drawn to its end; 0: nothing was drawn. */
+static double time_other(const trial_job* job, const int lo[2], const int hi[2], double most, double* wasted)
+{
+  double ms = 0.0;
+  *wasted = 0.0;
+  int units = 0, drawn = 0;
+  if (lost(job)) {
+    return 0.0;
+  }
+  for (int y = lo[1]; y < hi[1]; y += UNIT) {
+    for (int x = lo[0]; x < hi[0]; x += UNIT, ++units) {
+      if (ms <= most) {
+        const int ends[2] = { x + UNIT < hi[0] ? x + UNIT : hi[0], y + UNIT < hi[1] ? y + UNIT : hi[1] };
+        stratus_ray_counts ignored = { 0 };
+        ms += time_pixels(job, &job->other, (const int[2]){ x, y }, ends, &ignored);
+        ++drawn;
+      }
+    }
+  }
+  *wasted = ms;
+  return ms * units / drawn;
+}
+
+static void try_tile(const void* data, int number, uint64_t sums[STRATUS_TILE_COUNTS])
 {
   const trial_job* job = data;
-  const int width = job->frame.arguments->picture.width, height = job->frame.arguments->picture.height;
-  const int place = job->first + tile, x0 = origin_of(job, 0, place % job->across), y0 = origin_of(job, 1, place / job->across);
-  stratus_ray_counts mine = { 0 };
-  const double start = stratus_thread_ms();
-  job->draw(&job->frame, x0, y0, x0 + SIDE < width ? x0 + SIDE : width, y0 + SIDE < height ? y0 + SIDE : height, &mine);
-  const double ms = stratus_thread_ms() - start;
-  tile_time* time = &job->times[tile];
-  time->ms = ms < time->ms ? ms : time->ms;
-  time->samples = (double)mine.samples;
-  counts[0] += mine.rays;
+  const int tile = job->tiles[number], sizes[2] = { job->better.arguments->picture.width, job->better.arguments->picture.height };
+  const int lo[2] = { tile % job->columns * STRATUS_RAY_TILE, tile / job->columns * STRATUS_RAY_TILE };
+  int hi[2], inner[2];
+  double* times = job->times[number];
+  stratus_ray_counts counts = { 0 };
+  for (int axis = 0; axis < 2; ++axis) {
+    hi[axis] = lo[axis] + STRATUS_RAY_TILE < sizes[axis] ? lo[axis] + STRATUS_RAY_TILE : sizes[axis];
+    inner[axis] = lo[axis] + job->side < hi[axis] ? lo[axis] + job->side : hi[axis];
+  }
+  const int right[2] = { inner[0], lo[1] }, right_end[2] = { hi[0], inner[1] }, below[2] = { lo[0], inner[1] };
+  double rest = time_pixels(job, &job->better, right, right_end, &counts);
+  rest += time_pixels(job, &job->better, below, hi, &counts);
+  const int square = (inner[0] - lo[0]) * (inner[1] - lo[1]), others = (hi[0] - lo[0]) * (hi[1] - lo[1]) - square;
+  const bool sure = job->better.map && !job->other.map && counts.skipped > SURE * counts.lookups;
+  if (number % 2 && !sure) {
+    times[1] = time_other(job, lo, inner, others > 0 ? rest * square / others : INFINITY, &job->wasted[number]);
+  }
+  times[0] = time_pixels(job, &job->better, lo, inner, &counts);
+  if (sure) { /* at least so much: as if a sample cost no more than a look-up */
+    times[1] = times[0] * (double)(counts.samples + counts.skipped) / (double)(counts.samples + counts.lookups);
+  } else if (number % 2 == 0) {
+    times[1] = time_other(job, lo, inner, times[0], &job->wasted[number]);
+  }
+  job->whole[number] = rest + times[0];
+  job->counts[number] = counts;
+  if (times[1] > 0.0) {
+    atomic_fetch_add(&job->spent[0], (long long)(1e6 * times[0]));
+    atomic_fetch_add(&job->spent[1], (long long)(1e6 * times[1]));
+    atomic_fetch_add(&job->spent[2], 1);
+  }
+  sums[0] += 1;
 }
 
-/* Times of a whole frame, estimated from the tiles. */
-typedef struct trial_costs {
-  double with, without; /* milliseconds; without: at least so many, if it is the longer */
-  double look_ups;      /* of `with`, what is beyond the samples */
-} trial_costs;
-
-static tile_time sum_of(const tile_time* times, int tiles)
+/* Returns the i-th of n places, the middle ones first. */
+static int from_middle(int i, int n)
 {
-  tile_time sum = { 0.0, 0.0 };
-  for (int tile = 0; tile < tiles; ++tile) {
-    sum.ms += times[tile].ms;
-    sum.samples += times[tile].samples;
-  }
-  return sum;
+  return n / 2 + (i % 2 ? -(i + 1) / 2 : i / 2);
 }
 
-/* Draws tiles with the map, without it, and with it again: nothing counts the first reads of memory. Without it, no more is drawn than is
- * needed to take longer, and nothing if plain is NULL. *drawn: the tiles that were drawn without it. */
-static stratus_status draw_tiles(
-  stratus_context* context, trial_job* job, const stratus_ray_cast_arguments* plain, tile_time* with, tile_time* without, int* drawn)
+/* Spreads tiles over the window, the middle's first: the border's may be empty, and tell little. `shift`: of the columns, so that a frame's
+ * second trial takes others. Returns their number. */
+static int place_tiles(const int window[4], int columns, int shift, const stratus_ray_drawn* drawn, int tiles[TILES])
 {
-  const stratus_ray_cast_frame frame = job->frame;
-  const int across = job->across, tiles = across * across;
-  uint64_t counts[STRATUS_TILE_COUNTS];
-  for (int tile = 0; tile < tiles; ++tile) {
-    with[tile] = without[tile] = (tile_time){ INFINITY, 0.0 };
+  int first[2], size[2], across[2], count = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    first[axis] = window[2 * axis] / STRATUS_RAY_TILE;
+    size[axis] = (window[2 * axis + 1] - 1) / STRATUS_RAY_TILE - first[axis] + 1;
+    across[axis] = size[axis] < ACROSS ? size[axis] : ACROSS;
   }
-  job->times = with;
-  TRY(stratus_each_tile(context, "structure", tiles, time_tile, job, counts));
-  job->frame.arguments = plain;
-  job->frame.map = NULL;
-  for (*drawn = 0; plain && *drawn < tiles && sum_of(without, *drawn).ms <= sum_of(with, tiles).ms; *drawn += across) {
-    job->first = (*drawn + tiles / 2 / across * across) % tiles; /* the window's middle first */
-    job->times = without + *drawn;
-    TRY(stratus_each_tile(context, "structure", across, time_tile, job, counts));
+  for (int row = 0; row < across[1]; ++row) {
+    for (int column = 0; column < across[0]; ++column) {
+      const int y = first[1] + (2 * from_middle(row, across[1]) + 1) * size[1] / (2 * across[1]);
+      const int x = first[0] + ((2 * from_middle(column, across[0]) + 1) * size[0] / (2 * across[0]) + shift) % size[0];
+      if (!stratus_ray_is_drawn(drawn, y * columns + x)) {
+        tiles[count++] = y * columns + x;
+      }
+    }
   }
-  job->first = 0;
-  job->frame = frame;
-  job->times = with;
-  return stratus_each_tile(context, "structure", tiles, time_tile, job, counts);
+  return count;
 }
 
-/* Estimates a frame's times with a map, and without it if that is wanted. arguments: with the map. */
-static stratus_status measure(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, const stratus_ray_cast_arguments* arguments,
-  stratus_ray_variant variant, const stratus_distance_map* map, stratus_structure structure, bool both, trial_costs* costs)
+/* What a trial found. */
+typedef struct trial_result {
+  double better, other; /* milliseconds of the squares that both have drawn */
+  double frame;         /* milliseconds of a frame by the better, estimated */
+  double wasted;        /* milliseconds that the other took */
+} trial_result;
+
+static stratus_ray_cast_frame frame_by(const stratus_ray_caster* caster, const stratus_image* image, const contender* c)
 {
-  tile_time with[ACROSS * ACROSS], without[ACROSS * ACROSS];
-  int drawn = 0;
-  _Alignas(64) stratus_ray_cast_arguments plain = *arguments;
+  stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, c->arguments, image, false);
+  frame.map = c->map;
+  return frame;
+}
+
+static void add_up(
+  const trial_job* job, int count, const stratus_context* context, double pixels, stratus_ray_drawn* drawn, trial_result* r)
+{
+  double ms = 0.0;
+  for (int i = 0; i < count; ++i) {
+    ms += job->whole[i];
+    r->wasted += job->wasted[i] / context->threads;
+    if (job->times[i][1] > 0.0) {
+      r->better += job->times[i][0];
+      r->other += job->times[i][1];
+    }
+    drawn->tiles[drawn->count++] = job->tiles[i];
+    drawn->counts.rays += job->counts[i].rays;
+    drawn->counts.samples += job->counts[i].samples;
+    drawn->counts.skipped += job->counts[i].skipped;
+    drawn->counts.lookups += job->counts[i].lookups;
+  }
+  if (count > 0) {
+    r->frame = ms * pixels / ((double)count * STRATUS_RAY_TILE * STRATUS_RAY_TILE * context->threads);
+  }
+}
+
+/* Compares two structures. whole_tiles: by whole tiles. */
+static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, const contender* better, const contender* other,
+  bool whole_tiles, trial_result* result)
+{
+  double times[TILES][2], whole[TILES], wasted[TILES] = { 0.0 };
+  stratus_ray_counts counts[TILES];
+  uint64_t sums[STRATUS_TILE_COUNTS];
+  atomic_llong spent[3] = { 0, 0, 0 };
+  _Alignas(64) stratus_ray_cast_arguments plain = *frame->arguments;
   stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
   const int* window = plain.camera.window;
-  const double pixels = fmax(window[1] - window[0], 0.0) * fmax(window[3] - window[2], 0.0), most = pixels / (SIDE * SIDE * SHARE);
-  trial_job job = { .frame = *frame,
-    .draw = stratus_ray_cast_tile_for(caster->context->isa, stratus_ray_fetch_type(&caster->traversed), variant),
-    .across = most < ACROSS * ACROSS ? most < 4.0 ? 1 : (int)sqrt(most) : ACROSS };
-  const int tiles = job.across * job.across;
-  *costs = (trial_costs){ 0.0, 0.0, 0.0 };
-  if (!(pixels > 0.0)) {
+  const double pixels = (double)(window[1] - window[0]) * (double)(window[3] - window[2]);
+  *result = (trial_result){ .frame = 0.0 };
+  if (window[0] >= window[1] || window[2] >= window[3]) {
     return STRATUS_OK;
   }
-  memcpy(job.window, window, sizeof job.window);
-  job.frame.arguments = arguments;
-  job.frame.map = map->bytes;
-  TRY(draw_tiles(caster->context, &job, both ? &plain : NULL, with, without, &drawn));
-  const tile_time a = sum_of(with, tiles), b = sum_of(without, drawn);
-  const double scale = pixels / ((double)SIDE * SIDE * tiles * caster->context->threads); /* tiles' times are of one thread each */
-  costs->with = a.ms * scale;
-  costs->without = b.ms * scale;
-  costs->look_ups = b.samples > 0.0 ? fmax(a.ms - a.samples * b.ms / b.samples, 0.0) * scale : costs->with;
+  trial_job job = { .better = frame_by(caster, frame->image, better),
+    .other = frame_by(caster, frame->image, other),
+    .draw = stratus_ray_cast_tile_for(caster->context->isa, stratus_ray_fetch_type(&caster->traversed), stratus_ray_modes_variant(caster)),
+    .side = whole_tiles ? STRATUS_RAY_TILE
+      : pixels < SMALL  ? UNIT
+                        : SIDE,
+    .columns = (plain.picture.width + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE,
+    .times = times,
+    .whole = whole,
+    .wasted = wasted,
+    .counts = counts,
+    .spent = spent };
+  const int count = place_tiles(window, job.columns, frame->drawn.count > 0, &frame->drawn, job.tiles);
+  TRY(stratus_each_tile(caster->context, "structure", count, try_tile, &job, sums));
+  add_up(&job, count, caster->context, pixels, &frame->drawn, result);
   if (caster->forced) {
-    costs->with = caster->forced->frame[structure];
-    costs->without = caster->forced->frame[STRATUS_STRUCTURE_NONE];
-    costs->look_ups = 0.5 * costs->with;
+    result->frame = result->better = caster->forced->frame[better->structure];
+    result->other = caster->forced->frame[other->structure];
   }
   return STRATUS_OK;
-}
-
-/* Returns the milliseconds of a frame that a map of free look-ups would save, where the better of map and none is taken. */
-static double regret_of(const stratus_ray_trial* t)
-{
-  return t->trials > 0 ? fmax(fmin(t->with, t->without) - (t->with - t->skippable), 0.0) / t->trials : 0.0;
 }
 
 void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms)
 {
   stratus_ray_trial* t = &caster->trial;
-  const double frame = t->trials > 0 ? fmin(t->with, t->without) / t->trials : 0.0;
-  t->regret += caster->forced || !(frame > 0.0) ? regret_of(t) : regret_of(t) / frame * cast_ms;
+  t->spent += caster->forced ? caster->forced->frame[t->with < t->without ? t->map : STRATUS_STRUCTURE_NONE] : cast_ms;
 }
 
-static void add_costs(stratus_ray_trial* t, const trial_costs* costs)
-{
-  t->with += costs->with;
-  t->without += costs->without;
-  t->skippable += costs->look_ups;
-  ++t->trials;
-}
-
-/* What another map costs to build, by the price of this one and the blocks in each. */
+/* What another map costs to build, by what the first cost and the blocks in each. A tree's origin is checked by a hash, which reads the
+ * values once more, as their ranges have done. */
 static double price_of(const stratus_ray_caster* caster, stratus_structure structure)
 {
   const stratus_ray_trial* t = &caster->trial;
   const int64_t* n = caster->occupancy->blocks;
   const double blocks = (double)n[0] * (double)n[1] * (double)n[2];
-  const double mine = t->map == STRATUS_STRUCTURE_HYBRID ? (double)stratus_ray_tree_blocks(caster)
-    : t->map == STRATUS_STRUCTURE_OCTANT                 ? OCTANT_MAPS * blocks
-                                                         : blocks;
-  const double other = structure == STRATUS_STRUCTURE_HYBRID ? (double)stratus_ray_tree_blocks(caster)
-    : structure == STRATUS_STRUCTURE_OCTANT                  ? OCTANT_MAPS * blocks
-                                                             : blocks;
-  return caster->forced ? caster->forced->build[structure] : t->build_ms * other / fmax(mine, 1.0);
+  if (caster->forced) {
+    return caster->forced->build[structure];
+  }
+  return structure == STRATUS_STRUCTURE_HYBRID ? caster->scan_ms + t->build_ms * (double)stratus_ray_tree_blocks(caster) / blocks
+                                               : OCTANT_MAPS * t->build_ms;
 }
 
-/* Returns the cheapest map that was not tried; AUTO: there is none. */
-static stratus_structure next_map(const stratus_ray_caster* caster, bool offered, double* price)
+/* Returns the map to be built in this frame; AUTO: none. frame_ms: what the frame will take. */
+static stratus_structure next_map(const stratus_ray_caster* caster, double frame_ms)
 {
-  static const stratus_structure maps[] = { STRATUS_STRUCTURE_HYBRID, STRATUS_STRUCTURE_DISTANCE, STRATUS_STRUCTURE_OCTANT };
+  const stratus_ray_trial* t = &caster->trial;
   stratus_structure next = STRATUS_STRUCTURE_AUTO;
-  *price = INFINITY;
-  for (int i = 0; i < 3; ++i) {
-    const bool open = !caster->trial.tried[maps[i]] && (offered || maps[i] != STRATUS_STRUCTURE_HYBRID);
-    const double its = open ? price_of(caster, maps[i]) : INFINITY;
-    if (its < *price) {
-      *price = its;
-      next = maps[i];
+  double most = BUILD_SHARE * (t->spent + frame_ms) - t->built_ms;
+  for (stratus_structure s = STRATUS_STRUCTURE_OCTANT; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+    const bool open = !t->tried[s] && (s != STRATUS_STRUCTURE_HYBRID || stratus_ray_tree_is_offered(caster));
+    const double price = open ? price_of(caster, s) : INFINITY;
+    if (price <= most) {
+      most = price;
+      next = s;
     }
   }
   return next;
 }
 
-/* Builds another map and measures it. The faster of the two stays. If memory runs out, the old one stays. */
-static stratus_status try_map(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, stratus_ray_cast_arguments* arguments,
-  double tolerance, stratus_ray_variant variant, stratus_structure structure, bool offered)
+/* Builds another map and compares it with the better of the first and none. The faster stays. If memory runs out, the old one stays. */
+static stratus_status try_map(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, stratus_structure structure,
+  const stratus_ray_cast_arguments* plain, double* frame_ms)
 {
   stratus_ray_trial* t = &caster->trial;
   stratus_distance_map* map = NULL;
-  trial_costs old, new;
-  _Alignas(64) stratus_ray_cast_arguments other = *arguments;
+  trial_result result;
+  bool offered = structure == STRATUS_STRUCTURE_HYBRID;
+  _Alignas(64) stratus_ray_cast_arguments other = *frame->arguments;
   const double start = stratus_now_ms();
   t->tried[structure] = true;
-  t->lost = structure;
-  const stratus_status status = stratus_ray_make_map(caster, structure, offered && structure == STRATUS_STRUCTURE_HYBRID, &map);
-  const double build_ms = stratus_now_ms() - start;
+  if (offered) {
+    TRY(stratus_ray_tree_serves(caster, &offered));
+    if (!offered) {
+      t->built_ms += stratus_now_ms() - start;
+      return STRATUS_OK;
+    }
+  }
+  const stratus_status status = stratus_ray_make_map(caster, structure, offered, &map);
   if (status == STRATUS_OUT_OF_MEMORY || status == STRATUS_OVERFLOW) {
     return STRATUS_OK;
   }
   TRY(status);
-  stratus_ray_frame_structures(caster->table, tolerance, caster->occupancy, map, &other);
-  stratus_status measured = measure(caster, frame, arguments, variant, caster->map, t->map, false, &old);
-  if (measured == STRATUS_OK) {
-    measured = measure(caster, frame, &other, variant, map, structure, true, &new);
-  }
-  if (measured != STRATUS_OK || new.with >= old.with) {
+  stratus_ray_frame_structures(caster->table, frame->tolerance, caster->occupancy, map, &other);
+  const bool skips = t->with < t->without;
+  const contender mine = { skips ? t->map : STRATUS_STRUCTURE_NONE, skips ? frame->arguments : plain, skips ? caster->map->bytes : NULL };
+  const contender its = { structure, &other, map->bytes };
+  const stratus_status compared = compare(caster, frame, &mine, &its, t->frames > 1, &result);
+  t->built_ms += caster->forced ? caster->forced->build[structure] : stratus_now_ms() - start;
+  if (compared != STRATUS_OK || !(result.other < result.better)) {
     stratus_distance_map_destroy(map);
-    return measured;
+    t->lost = structure;
+    return compared;
   }
   stratus_ray_drop_map(caster);
   caster->map = map;
   ++caster->map_serial;
-  *arguments = other;
+  *frame->arguments = other;
   t->lost = t->map;
   t->map = structure;
-  t->build_ms = build_ms;
-  t->with = t->without = t->skippable = 0.0;
-  t->trials = 0;
-  add_costs(t, &new);
+  /* what was measured of the old map, or of none, stands for the new */
+  t->with = (skips ? t->with : t->without) * result.other / result.better;
+  *frame_ms *= result.other / result.better;
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_try(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, stratus_ray_cast_arguments* arguments,
-  double tolerance, stratus_ray_variant variant, bool offered, stratus_structure* used, char* why, size_t capacity)
+stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, char* why, size_t capacity)
 {
   stratus_ray_trial* t = &caster->trial;
-  double price;
+  _Alignas(64) stratus_ray_cast_arguments plain = *frame->arguments;
+  double frame_ms = 0.0;
+  stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
   if (t->table_serial != caster->table_serial) { /* another sampling: samples cost what was not measured yet */
     t->table_serial = caster->table_serial;
-    t->frames = t->trials = 0;
-    t->with = t->without = t->skippable = 0.0;
+    t->frames = 0;
+    t->with = t->without = 0.0;
   }
   ++t->frames;
-  if ((t->frames & (t->frames - 1)) == 0) {
-    trial_costs costs;
-    TRY(measure(caster, frame, arguments, variant, caster->map, t->map, true, &costs));
-    add_costs(t, &costs);
+  if ((t->frames & (t->frames - 1)) == 0 && t->trial_ms <= TRIAL_SHARE * t->spent) {
+    const bool skips = t->with <= t->without;
+    const contender map = { t->map, frame->arguments, caster->map->bytes }, none = { STRATUS_STRUCTURE_NONE, &plain, NULL };
+    trial_result result;
+    TRY(compare(caster, frame, skips ? &map : &none, skips ? &none : &map, false, &result));
+    t->trial_ms = result.wasted;
+    t->with += skips ? result.better : result.other;
+    t->without += skips ? result.other : result.better;
+    frame_ms = result.frame * (skips && result.other < result.better ? result.other / result.better : 1.0);
   }
-  const stratus_structure next = next_map(caster, offered, &price);
-  if (next != STRATUS_STRUCTURE_AUTO && t->regret >= price) {
-    t->regret -= price;
-    TRY(try_map(caster, frame, arguments, tolerance, variant, next, offered));
+  const stratus_structure next = next_map(caster, frame_ms);
+  if (next != STRATUS_STRUCTURE_AUTO) {
+    TRY(try_map(caster, frame, next, &plain, &frame_ms));
   }
-  *used = t->with < t->without ? t->map : STRATUS_STRUCTURE_NONE;
-  if (*used == STRATUS_STRUCTURE_NONE) {
-    stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, arguments);
+  frame->used = t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE;
+  frame->offered = frame->used == STRATUS_STRUCTURE_HYBRID;
+  if (frame->used == STRATUS_STRUCTURE_NONE) {
+    *frame->arguments = plain;
   }
-  snprintf(why, capacity, "%s: measured %.3g ms a frame by %s%s%s%s, %s%.3g without; look-ups cost %.2g", stratus_structure_name(*used),
-    t->with / t->trials, stratus_structure_name(t->map), t->lost ? " (" : "", t->lost ? stratus_structure_name(t->lost) : "",
-    t->lost ? " was slower)" : "", t->with < t->without ? "at least " : "", t->without / t->trials, t->skippable / t->trials);
+  const double ratio = t->without > 0.0 ? t->with / t->without : 1.0;
+  snprintf(why, capacity, "%s: %s takes %.3g of the time without, as measured%s%s%s", stratus_structure_name(frame->used),
+    stratus_structure_name(t->map), ratio, t->lost ? "; " : "", t->lost ? stratus_structure_name(t->lost) : "",
+    t->lost ? " was slower" : "");
   return STRATUS_OK;
 }
