@@ -11,20 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The table's color_slope is so many times the most that a colour changes between neighbouring entries. */
-#define TABLE_SLOPE 48.0
-/* A stretch of optical depth d, over which a colour changes by c, in n pieces of averaged colour, is wrong by at most c d min(d, 1) / 12 n
- * n: the integral of (s - 1/2) c d exp(-d s) over a piece, summed over pieces behind one another. With n n = c d / 12 e that is e min(d,
- * 1), at most 1.6 e (1 - exp(-d)). What a ray's cells have of its alpha adds up to 1 at most, so that 1.6 e bounds the error of the ray, of
- * however many cells. e is this share of the tolerance: 1.6 times it, and the transparency left where the ray ends, stay below the
- * tolerance. */
-#define PIECES_SHARE 0.4
-#define TERMINATION_SHARE 0.1
-/* Tolerances below count as this one: floats and the table's entries leave more. */
-#define TOLERANCE_LEAST 1e-6
-/* Floats tell no transparency below from none, beside 1. */
-#define TERMINATION_LEAST 0x1p-24
-#define TERMINATION_MOST 0.5
 /* Entries of the table. Segments end at any value, which is rounded to an entry: the error of light falls with the width of entries. */
 #define ENTRIES 32768
 
@@ -171,27 +157,6 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 
 /* ---- drawing */
 
-/* Returns the transparency at which a ray may end. */
-static double termination_of(const stratus_tetra_options* options)
-{
-  return options->termination > 0.0 ? 1.0 - options->termination
-                                    : fmax(fmin(TERMINATION_SHARE * options->tolerance, TERMINATION_MOST), TERMINATION_LEAST);
-}
-
-static void set_shading(
-  const stratus_table* table, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_arguments* arguments)
-{
-  arguments->table = stratus_table_arguments_of(table);
-  const double pieces = 1.0 / (12.0 * PIECES_SHARE * fmax(options->tolerance, TOLERANCE_LEAST));
-  arguments->table.color_slope *= (float)(pieces / TABLE_SLOPE);
-  arguments->pieces = (float)pieces;
-  arguments->picture.want_depth = image->depth != NULL;
-  arguments->picture.want_samples = image->samples != NULL;
-  arguments->picture.want_bytes = image->rgba8 != NULL;
-  arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
-  arguments->termination = arguments->maximum ? 0.0f : (float)termination_of(options);
-}
-
 /* Marches on the device if there is one and it can, else on the host. */
 static stratus_status march_rays(
   stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_counts* counts, stratus_tetra_report* report)
@@ -239,12 +204,12 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
     stratus_image_clear(image);
     return STRATUS_OK;
   }
-  report->method = stratus_tetra_choose(caster, mesh, camera, options, image, report->why, sizeof report->why);
+  TRY(stratus_tetra_choose(caster, mesh, camera, options, image, report));
   const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
   frame.table = caster->table;
   frame.march_sums = caster->march_sums;
-  set_shading(caster->table, options, image, &frame.arguments);
+  stratus_tetra_frame_shade(&frame, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }

@@ -25,6 +25,8 @@ typedef struct stratus_tetra_mesh {
   size_t bytes;
 } stratus_tetra_mesh;
 
+typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
+
 struct stratus_tetra_caster {
   stratus_context* context;
   stratus_mesh view; /* the source of `mesh` */
@@ -37,6 +39,7 @@ struct stratus_tetra_caster {
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, table_builds;
+  const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
@@ -65,9 +68,11 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
  * tile. Buffers grow as needed and are kept for the next frame. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
-/* tetra_method.c: march or project, and the reason. */
-stratus_tetra_method stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
-  const stratus_tetra_options* options, const stratus_image* image, char* why, size_t capacity);
+/* Sets how a frame's cells are drawn by its table. */
+void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+/* tetra_method.c: sets the report's method, march or project, and the reason. */
+stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);
 /* Grows the buffer to at least `count` elements of `size` bytes. Old contents are lost. */
 stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size);

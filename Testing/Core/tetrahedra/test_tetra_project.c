@@ -3,6 +3,7 @@
  * behind opaque objects. Also the choice between the two methods. test_tetra_march*.c, which run once with each method, test what both must
  * do alike. */
 #include "tetra_case.h"
+#include "tetra_costs.h"
 
 /* Half of the bar of record for functions with peaks, since these functions are smoother. */
 #define RMSE_MOST 0.025
@@ -258,31 +259,48 @@ static void leaves_change_nothing_but_roundings(void** state)
   tetra_destroy(&c);
 }
 
-/* Many small cells that all show: the march costs less. One value in a thousand shows: only those cells need be drawn. A camera that stands
- * still keeps one method. */
-static void auto_chooses_by_what_shows(void** state)
+/* The costs are given here, so that no timing decides: where all cells show, those of segments decide, and where one value in a thousand
+ * shows, those of the order. A camera that stands still keeps one method. */
+static void auto_takes_what_costs_less(void** state)
 {
   tetra_case c;
   stratus_tetra_caster* caster = NULL;
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = projected.rgba };
-  static const stratus_tetra_method expected[2] = { STRATUS_TETRA_METHOD_MARCH, STRATUS_TETRA_METHOD_PROJECT };
+  static const stratus_tetra_costs costs[3] = { { 1.0, 1.0, 2.0, 12.0, 9.0 }, { 1000.0, 1.0, 2.0, 12.0, 9.0 },
+    { 1.0, 1.0, 2.0, 12.0, 10000.0 } };
+  static const stratus_tetra_method expected[3][2] = { { STRATUS_TETRA_METHOD_MARCH, STRATUS_TETRA_METHOD_PROJECT },
+    { STRATUS_TETRA_METHOD_PROJECT, STRATUS_TETRA_METHOD_PROJECT }, { STRATUS_TETRA_METHOD_MARCH, STRATUS_TETRA_METHOD_MARCH } };
   tetra_create(&c, 3, 0.2, 0.0, 6);
   tetra_camera(*state, &c, 3, 1, 0);
   c.options.method = STRATUS_TETRA_METHOD_AUTO;
   assert_int_equal(stratus_tetra_options_default().method, STRATUS_TETRA_METHOD_AUTO);
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  for (int rare = 0; rare < 2; ++rare) {
+  for (int i = 0; i < 6; ++i) {
+    const int rare = i % 2;
     const double opacity[8] = { 0.0, rare ? 0.0 : 0.2, rare ? 0.985 : 0.3, rare ? 0.0 : 0.2, rare ? 0.99 : 0.6, 0.7, 1.0, 0.2 };
     memcpy(c.opacity, opacity, sizeof opacity);
+    caster->costs = &costs[i / 2];
     for (int frame = 0; frame < 3; ++frame) {
       stratus_tetra_report report;
       assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &report), STRATUS_OK);
-      assert_int_equal(report.method, expected[rare]);
+      assert_int_equal(report.method, expected[i / 2][rare]);
       assert_memory_equal(report.why, stratus_tetra_method_name(report.method), strlen(stratus_tetra_method_name(report.method)));
     }
   }
   stratus_tetra_caster_destroy(caster);
   tetra_destroy(&c);
+}
+
+/* What is measured is positive, and is measured once: a camera that stands still keeps one method by it, too. */
+static void costs_are_measured_once(void** state)
+{
+  const stratus_tetra_costs *costs, *again;
+  assert_int_equal(stratus_tetra_costs_here(*state, &costs), STRATUS_OK);
+  assert_true(costs->segment > 0.0 && costs->packet > 0.0 && costs->cell > 0.0 && costs->sorted > 0.0 && costs->piece >= 0.0);
+  const stratus_tetra_costs first = *costs;
+  assert_int_equal(stratus_tetra_costs_here(*state, &again), STRATUS_OK);
+  assert_ptr_equal(costs, again);
+  assert_memory_equal(&first, again, sizeof first);
 }
 
 int test_tetra_project(void)
@@ -293,7 +311,8 @@ int test_tetra_project(void)
     cmocka_unit_test(cells_that_overlap_are_drawn_again),
     cmocka_unit_test(opaque_things),
     cmocka_unit_test(leaves_change_nothing_but_roundings),
-    cmocka_unit_test(auto_chooses_by_what_shows),
+    cmocka_unit_test(auto_takes_what_costs_less),
+    cmocka_unit_test(costs_are_measured_once),
   };
   return cmocka_run_group_tests(tests, tetra_start, tetra_stop);
 }

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What march and projection cost: the counts of a view, and the time that each takes on this machine. */
+#ifndef STRATUS_TETRA_COSTS_H
+#define STRATUS_TETRA_COSTS_H
+
+#include "tetra_caster.h"
+
+/* What decides which cells show. */
+typedef struct stratus_tetra_shown {
+  const stratus_tetra_mesh* tetra;
+  const stratus_table* table;
+  stratus_tetra_mode mode;
+} stratus_tetra_shown;
+
+typedef struct stratus_tetra_view {
+  double passed;                 /* cells that rays pass, counted once per ray */
+  double shown, pieces, packets; /* cells in view that can show something, their pieces and packets */
+} stratus_tetra_view;
+
+/* tetra_view.c: estimates the counts of a view. Returns false if its camera spans no space. */
+bool stratus_tetra_count_view(const stratus_tetra_shown* shown, const stratus_mesh* mesh, const stratus_camera* camera,
+  const stratus_image* image, stratus_tetra_view* counts);
+
+/* Nanoseconds by all of a context's threads together. March: per cell that a ray passes. Projection: per piece composited, packet of pixels
+ * tested, cell in view, cell sorted. */
+struct stratus_tetra_costs {
+  double segment, piece, packet, cell, sorted;
+};
+
+/* tetra_costs.c: the costs by this machine and by the context's instruction set and threads, measured when they are first asked for and
+ * kept for the process. */
+stratus_status stratus_tetra_costs_here(stratus_context* context, const stratus_tetra_costs** costs);
+
+#endif
