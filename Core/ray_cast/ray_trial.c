@@ -35,6 +35,8 @@
  * changed. */
 #define BUILD_SHARE 0.05
 #define TRIAL_SHARE 0.02
+/* Octant maps skip at least as far as a distance map, and are taken unless they are slower by this: noise is no reason against them. */
+#define OCTANTS_LOST 1.1
 /* Eight octant maps are eight sweeps over the blocks, where one distance map is one. */
 #define OCTANT_MAPS 8
 
@@ -118,7 +120,7 @@ static void try_tile(const void* data, int number, uint64_t sums[STRATUS_TILE_CO
   }
   times[0] = time_pixels(job, &job->better, lo, inner, &counts);
   if (sure) { /* at least so much: as if a sample cost no more than a look-up */
-    times[1] = times[0] * (double)(counts.samples + counts.skipped) / (double)(counts.samples + counts.lookups);
+    times[1] = times[0] * (double)(counts.samples + counts.skipped) / (double)(counts.samples + counts.lookups + 1);
   } else if (number % 2 == 0) {
     times[1] = time_other(job, lo, inner, times[0], &job->wasted[number]);
   }
@@ -212,6 +214,8 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
   if (window[0] >= window[1] || window[2] >= window[3]) {
     return STRATUS_OK;
   }
+  _Alignas(64) stratus_ray_cast_arguments its = *other->arguments;
+  its.picture.want_samples = 0; /* the counts of samples are those of the better */
   trial_job job = { .better = frame_by(caster, frame->image, better),
     .other = frame_by(caster, frame->image, other),
     .draw = stratus_ray_cast_tile_for(caster->context->isa, stratus_ray_fetch_type(&caster->traversed), stratus_ray_modes_variant(caster)),
@@ -224,6 +228,8 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
     .wasted = wasted,
     .counts = counts,
     .spent = spent };
+  job.other.arguments = &its;
+  job.other.samples = NULL;
   const int count = place_tiles(window, job.columns, frame->drawn.count > 0, &frame->drawn, job.tiles);
   TRY(stratus_each_tile(caster->context, "structure", count, try_tile, &job, sums));
   add_up(&job, count, caster->context, pixels, &frame->drawn, result);
@@ -272,8 +278,8 @@ static stratus_structure next_map(const stratus_ray_caster* caster, double frame
 }
 
 /* Builds another map and compares it with the better of the first and none. The faster stays. If memory runs out, the old one stays. */
-static stratus_status try_map(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, stratus_structure structure,
-  const stratus_ray_cast_arguments* plain, double* frame_ms)
+static stratus_status try_map(
+  stratus_ray_caster* caster, stratus_ray_choice_frame* frame, stratus_structure structure, const stratus_ray_cast_arguments* plain)
 {
   stratus_ray_trial* t = &caster->trial;
   stratus_distance_map* map = NULL;
@@ -300,7 +306,8 @@ static stratus_status try_map(stratus_ray_caster* caster, stratus_ray_choice_fra
   const contender its = { structure, &other, map->bytes };
   const stratus_status compared = compare(caster, frame, &mine, &its, t->frames > 1, &result);
   t->built_ms += caster->forced ? caster->forced->build[structure] : stratus_now_ms() - start;
-  if (compared != STRATUS_OK || !(result.other < result.better)) {
+  const bool as_far = structure == STRATUS_STRUCTURE_OCTANT && mine.structure == STRATUS_STRUCTURE_DISTANCE;
+  if (compared != STRATUS_OK || !(result.other < (as_far ? OCTANTS_LOST : 1.0) * result.better)) {
     stratus_distance_map_destroy(map);
     t->lost = structure;
     return compared;
@@ -312,8 +319,7 @@ static stratus_status try_map(stratus_ray_caster* caster, stratus_ray_choice_fra
   t->lost = t->map;
   t->map = structure;
   /* what was measured of the old map, or of none, stands for the new */
-  t->with = (skips ? t->with : t->without) * result.other / result.better;
-  *frame_ms *= result.other / result.better;
+  t->with = (skips ? t->with : t->without) * fmin(result.other / result.better, 1.0);
   return STRATUS_OK;
 }
 
@@ -329,6 +335,7 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     t->with = t->without = 0.0;
   }
   ++t->frames;
+  const stratus_structure before = t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE;
   if ((t->frames & (t->frames - 1)) == 0 && t->trial_ms <= TRIAL_SHARE * t->spent) {
     const bool skips = t->with <= t->without;
     const contender map = { t->map, frame->arguments, caster->map->bytes }, none = { STRATUS_STRUCTURE_NONE, &plain, NULL };
@@ -341,15 +348,18 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
   }
   const stratus_structure next = next_map(caster, frame_ms);
   if (next != STRATUS_STRUCTURE_AUTO) {
-    TRY(try_map(caster, frame, next, &plain, &frame_ms));
+    TRY(try_map(caster, frame, next, &plain));
   }
   frame->used = t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE;
   frame->offered = frame->used == STRATUS_STRUCTURE_HYBRID;
   if (frame->used == STRATUS_STRUCTURE_NONE) {
     *frame->arguments = plain;
   }
+  if (frame->image->samples && frame->used != before) { /* a picture of samples is by one structure */
+    frame->drawn = (stratus_ray_drawn){ .count = 0 };
+  }
   const double ratio = t->without > 0.0 ? t->with / t->without : 1.0;
-  snprintf(why, capacity, "%s: %s takes %.3g of the time without, as measured%s%s%s", stratus_structure_name(frame->used),
+  snprintf(why, capacity, "%s: measured, %s takes %.2g of the time without%s%s%s", stratus_structure_name(frame->used),
     stratus_structure_name(t->map), ratio, t->lost ? "; " : "", t->lost ? stratus_structure_name(t->lost) : "",
     t->lost ? " was slower" : "");
   return STRATUS_OK;

@@ -17,8 +17,8 @@ typedef struct stratus_ray_choice_frame {
   bool offered; /* its map is of the tree that came with the data */
 } stratus_ray_choice_frame;
 
-/* Decides by which structure this frame is drawn: none, the one that the caster's map is of, or one whose map it builds. No structure changes
- * a bit of the picture, so timings may decide. why: the reason, with what was measured. */
+/* Decides by which structure this frame is drawn: none, the one that the caster's map is of, or one whose map it builds. No structure
+ * changes a bit of the picture, so timings may decide. why: the reason, with what was measured. */
 stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, char* why, size_t capacity);
 /* Counts the milliseconds that a frame has spent. */
 void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms);
