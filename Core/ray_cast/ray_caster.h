@@ -107,8 +107,9 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
 /* Makes a map for a structure other than NONE. offered: of the tree that came with the data. *map: NULL if no block is occupied and the
  * structure is a tree. */
 stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, stratus_distance_map** map);
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
-  size_t capacity, stratus_ray_cast_report* report);
+/* times: what was measured may decide where the structure is automatic. */
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
+  char* why, size_t capacity, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes. */
 stratus_ray_cast_frame stratus_ray_frame_of(

@@ -226,12 +226,16 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
 
 /* Returns the structure whose map an automatic choice draws, or tries first. stratus_ray_try() measures whether it pays. In modes that skip
  * by bounds, no number of occupied blocks tells that nothing can be skipped. */
-static stratus_status automatic(stratus_ray_caster* caster, stratus_structure* structure)
+static stratus_status automatic(stratus_ray_caster* caster, bool times, stratus_structure* structure)
 {
   const int64_t* n = caster->occupancy->blocks;
   bool serves = true;
   *structure = STRATUS_STRUCTURE_NONE;
   if (caster->occupancy->count == n[0] * n[1] * n[2] && caster->shown.mode == STRATUS_MODE_COMPOSITE) {
+    return STRATUS_OK;
+  }
+  if (!times) {
+    *structure = STRATUS_STRUCTURE_DISTANCE;
     return STRATUS_OK;
   }
   if (caster->trial.map == STRATUS_STRUCTURE_HYBRID) {
@@ -310,8 +314,8 @@ static stratus_status update_map(stratus_ray_caster* caster, stratus_structure s
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, stratus_structure* used, char* why,
-  size_t capacity, stratus_ray_cast_report* report)
+stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
+  char* why, size_t capacity, stratus_ray_cast_report* report)
 {
   bool offered = false;
   *used = wanted;
@@ -322,9 +326,11 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
     report->occupancy_ms = stratus_now_ms() - start;
   }
   if (wanted == STRATUS_STRUCTURE_AUTO) { /* stratus_ray_try() tells more, where it measures */
-    TRY(automatic(caster, used));
+    TRY(automatic(caster, times, used));
     snprintf(why, capacity, "%s: %s", stratus_structure_name(*used),
-      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip" : "nothing was measured");
+      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip"
+        : times                       ? "nothing was measured"
+                                      : "a picture of samples follows from no times");
     offered = *used == STRATUS_STRUCTURE_HYBRID;
   } else {
     if (wanted == STRATUS_STRUCTURE_HYBRID) {

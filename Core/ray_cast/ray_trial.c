@@ -214,8 +214,6 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
   if (window[0] >= window[1] || window[2] >= window[3]) {
     return STRATUS_OK;
   }
-  _Alignas(64) stratus_ray_cast_arguments its = *other->arguments;
-  its.picture.want_samples = 0; /* the counts of samples are those of the better */
   trial_job job = { .better = frame_by(caster, frame->image, better),
     .other = frame_by(caster, frame->image, other),
     .draw = stratus_ray_cast_tile_for(caster->context->isa, stratus_ray_fetch_type(&caster->traversed), stratus_ray_modes_variant(caster)),
@@ -228,8 +226,6 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
     .wasted = wasted,
     .counts = counts,
     .spent = spent };
-  job.other.arguments = &its;
-  job.other.samples = NULL;
   const int count = place_tiles(window, job.columns, frame->drawn.count > 0, &frame->drawn, job.tiles);
   TRY(stratus_each_tile(caster->context, "structure", count, try_tile, &job, sums));
   add_up(&job, count, caster->context, pixels, &frame->drawn, result);
@@ -335,7 +331,6 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     t->with = t->without = 0.0;
   }
   ++t->frames;
-  const stratus_structure before = t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE;
   if ((t->frames & (t->frames - 1)) == 0 && t->trial_ms <= TRIAL_SHARE * t->spent) {
     const bool skips = t->with <= t->without;
     const contender map = { t->map, frame->arguments, caster->map->bytes }, none = { STRATUS_STRUCTURE_NONE, &plain, NULL };
@@ -354,9 +349,6 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
   frame->offered = frame->used == STRATUS_STRUCTURE_HYBRID;
   if (frame->used == STRATUS_STRUCTURE_NONE) {
     *frame->arguments = plain;
-  }
-  if (frame->image->samples && frame->used != before) { /* a picture of samples is by one structure */
-    frame->drawn = (stratus_ray_drawn){ .count = 0 };
   }
   const double ratio = t->without > 0.0 ? t->with / t->without : 1.0;
   snprintf(why, capacity, "%s: measured, %s takes %.2g of the time without%s%s%s", stratus_structure_name(frame->used),

@@ -28,6 +28,16 @@ static void make_case(stratus_context* context, picture_case* c)
   c->options.audit = 1;
 }
 
+/* Draws without counts of pixels' samples, which no structure that follows from times gives. */
+static void draw(stratus_ray_caster* caster, const picture_case* c)
+{
+  const stratus_image image = {
+    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = second.rgba, .depth = second.depth, .opaque_depth = c->opaque_depth
+  };
+  assert_int_equal(
+    stratus_ray_caster_render(caster, &c->volume, &c->transfer, &c->camera, &c->options, &image, &second.report), STRATUS_OK);
+}
+
 /* Draws some frames with given costs and returns the structure of the last. */
 static stratus_structure drawn_with(stratus_context* context, picture_case* c, const stratus_ray_costs* costs, int frames)
 {
@@ -35,7 +45,7 @@ static stratus_structure drawn_with(stratus_context* context, picture_case* c, c
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   caster->forced = costs;
   for (int frame = 0; frame < frames; ++frame) {
-    case_render_with(context, caster, c, &second);
+    draw(caster, c);
     assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
     assert_int_equal(second.report.differing_pixels, 0);
     assert_memory_equal(
@@ -75,7 +85,28 @@ static void a_trial_s_tiles_are_drawn_once(void** state)
   assert_int_equal(second.report.skipped, first.report.skipped);
   assert_int_equal(second.report.lookups, first.report.lookups);
   assert_int_equal(second.report.rays, first.report.rays);
+  case_destroy(&c);
+}
+
+static void a_picture_of_samples_follows_from_no_times(void** state)
+{
+  picture_case c;
+  stratus_ray_caster* caster = NULL;
+  const stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 1.0, [STRATUS_STRUCTURE_DISTANCE] = 3.0 },
+    .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
+  make_case(*state, &c);
+  c.options.structure = STRATUS_STRUCTURE_DISTANCE;
+  case_render(*state, &c, &first);
+  c.options.structure = STRATUS_STRUCTURE_AUTO;
+  assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+  caster->forced = &costs;
+  draw(caster, &c);
+  assert_int_equal(second.report.structure, STRATUS_STRUCTURE_NONE);
+  case_render_with(*state, caster, &c, &second);
+  assert_int_equal(second.report.structure, STRATUS_STRUCTURE_DISTANCE);
   assert_memory_equal(first.samples, second.samples, sizeof first.samples);
+  assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
+  stratus_ray_caster_destroy(caster);
   case_destroy(&c);
 }
 
@@ -140,7 +171,7 @@ static void a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper(voi
       caster->forced = &costs;
       offer_tree(*state, caster, &c);
       for (int frame = 0; frame < 4; ++frame) { /* builds cost nothing: each frame tries a map */
-        case_render_with(*state, caster, &c, &second);
+        draw(caster, &c);
         assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
       }
       assert_int_equal(second.report.offered_tree, second.report.structure == STRATUS_STRUCTURE_HYBRID);
@@ -158,6 +189,7 @@ int test_ray_trial(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_cheaper_of_map_and_none_is_drawn),
     cmocka_unit_test(a_trial_s_tiles_are_drawn_once),
+    cmocka_unit_test(a_picture_of_samples_follows_from_no_times),
     cmocka_unit_test(octant_maps_are_built_when_frames_have_cost_much_more),
     cmocka_unit_test(a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper),
   };
