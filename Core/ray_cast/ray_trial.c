@@ -74,28 +74,26 @@ static bool lost(const trial_job* job)
   return tiles * tiles * (other - better) > LOST * better;
 }
 
-/* Draws a square unit by unit with the other structure until that has taken `most`. Returns the time of the whole square, estimated if it
- * was not drawn to its end; 0: nothing was drawn. */
+/* Draws a square with the other structure. Returns its time, estimated by a unit of it if that has cost as much as the better's square; 0:
+ * nothing was drawn. most: the better's time, INFINITY: not known. */
 static double time_other(const trial_job* job, const int lo[2], const int hi[2], double most, double* wasted)
 {
+  const int ends[2] = { lo[0] + UNIT < hi[0] ? lo[0] + UNIT : hi[0], lo[1] + UNIT < hi[1] ? lo[1] + UNIT : hi[1] };
+  stratus_ray_counts ignored = { 0 };
   double ms = 0.0;
-  *wasted = 0.0;
-  int units = 0, drawn = 0;
   if (lost(job)) {
     return 0.0;
   }
-  for (int y = lo[1]; y < hi[1]; y += UNIT) {
-    for (int x = lo[0]; x < hi[0]; x += UNIT, ++units) {
-      if (ms <= most) {
-        const int ends[2] = { x + UNIT < hi[0] ? x + UNIT : hi[0], y + UNIT < hi[1] ? y + UNIT : hi[1] };
-        stratus_ray_counts ignored = { 0 };
-        ms += time_pixels(job, &job->other, (const int[2]){ x, y }, ends, &ignored);
-        ++drawn;
-      }
-    }
+  if (most < INFINITY) {
+    ms = time_pixels(job, &job->other, lo, ends, &ignored);
+    *wasted += ms;
   }
-  *wasted = ms;
-  return ms * units / drawn;
+  if (ms > most) {
+    return ms * ((hi[0] - lo[0]) * (hi[1] - lo[1])) / ((ends[0] - lo[0]) * (ends[1] - lo[1]));
+  }
+  ms = time_pixels(job, &job->other, lo, hi, &ignored); /* at once, as the better does */
+  *wasted += ms;
+  return ms;
 }
 
 static void try_tile(const void* data, int number, uint64_t sums[STRATUS_TILE_COUNTS])
