@@ -102,16 +102,6 @@ static void draw(stratus_context* context, stratus_ray_caster* caster, const vie
   sum->wall += clock_ms(CLOCK_MONOTONIC) - wall;
 }
 
-/* Draws a frame again and takes that time. A choice that counts frames must not see more of them than others do, so only fixed ones
- * are drawn again. */
-static void draw_again(stratus_context* context, stratus_ray_caster* caster, const view* v, int way, int frame, const settings* s,
-  float* rgba, cost* mine, cost* again)
-{
-  stratus_ray_cast_report report;
-  draw(context, caster, v, way, frame, s, rgba, again, &report);
-  *mine = *again;
-}
-
 static int by_wall(const void* a, const void* b)
 {
   const double x = ((const cost*)a)->wall, y = ((const cost*)b)->wall;
@@ -189,11 +179,11 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
       if (!chooses && still[way].cpu > HOPELESS * least) {
         orbit[way].wall = orbit[way].cpu = INFINITY;
       } else if (chooses || counts) {
-        cost mine = { 0 }, again = { 0 };
-        draw(context, casters[way], v, way, frame, s, rgba, &mine, &last[way]);
-        if (counts && frame > 0 && !chooses) { /* the first has the caches that others left, where alone it would have its own */
-          draw_again(context, casters[way], v, way, frame, s, rgba, &mine, &again);
+        cost mine = { 0 }, ignored = { 0 };
+        if (frame > 0 && !chooses) { /* the caches as an orbit leaves them */
+          draw(context, casters[way], v, way, frame - 1, s, rgba, &ignored, &last[way]);
         }
+        draw(context, casters[way], v, way, frame, s, rgba, &mine, &last[way]);
         const double share = chooses || frame == 0 ? 1.0 : frame == STRIDE ? 2.0 * STRIDE - 1.0 : STRIDE;
         orbit[way].wall += share * mine.wall;
         orbit[way].cpu += share * mine.cpu;
