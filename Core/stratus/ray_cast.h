@@ -12,7 +12,7 @@ extern "C" {
 
 /* The structure by which a ray skips empty space. */
 typedef enum stratus_structure {
-  STRATUS_STRUCTURE_AUTO,     /* the cheapest of the others that the scene needs */
+  STRATUS_STRUCTURE_AUTO,     /* the fastest of the others, by times of frames; counts of samples and look-ups follow from it */
   STRATUS_STRUCTURE_NONE,     /* no skipping */
   STRATUS_STRUCTURE_BLOCK,    /* empty blocks, one at a time */
   STRATUS_STRUCTURE_DISTANCE, /* distance map, STRATUS_DISTANCE_FULL */
@@ -147,7 +147,8 @@ typedef struct stratus_ray_cast_report {
   uint64_t lookups;          /* number of reads of the structure */
   uint64_t differing_pixels; /* pixels that differ in an audit; else 0 */
   uint64_t blocks, occupied_blocks;
-  /* Number of builds of each since the caster was created. A camera move raises none of them. */
+  /* Number of builds of each since the caster was created. A camera move raises none of them, but that an automatic structure may change
+   * once frames have paid for another map. */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads;
   double range_ms, table_ms, occupancy_ms, structure_ms, upload_ms, cast_ms; /* times in this call; 0: the step was not needed */
   double probe_ms;                                                           /* likewise: rays drawn to choose the sampling */
