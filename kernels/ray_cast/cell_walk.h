@@ -91,7 +91,7 @@ INLINE vfloat cell_fraction(const stratus_packet* k, int axis, vint inside, vflo
 
 /* The structure is asked once all lanes of `mask` need it, or one lane has waited for CELL_PATIENCE voxels. A lane that waits visits cells,
  * which add nothing. */
-#define CELL_PATIENCE 8.0f
+#define CELL_PATIENCE 3.0f
 
 INLINE vmask cell_lanes_to_skip(vmask mask, const cell_walk* w)
 {

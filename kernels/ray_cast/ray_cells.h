@@ -9,10 +9,8 @@
 /* Most pieces of a cell. */
 #define CELL_PIECES 32.0f
 
-/* Pieces are composited once one of so many lanes has any. */
-#ifndef CELL_WAITING
-#define CELL_WAITING 2
-#endif
+/* Pieces are composited once one in so many lanes has any. */
+#define CELL_WAITING 3
 
 /* The way of every ray through its cell: the field at w in 0..1 is k[0] + k[1] w + k[2] w^2 + k[3] w^3, within lo..hi. The pieces that are
  * left begin at `from`, where the field is `front`, and are `share` long each. */
@@ -248,8 +246,8 @@ INLINE void RAY_NAME(cell_visit_nearest)(CONSTANT stratus_ray_cast_arguments* a,
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
 }
 
-/* Lanes walk each for itself: a lane whose cell shows something waits until half of the lanes have pieces to composite, and a lane that has
- * composited its pieces goes on. */
+/* Lanes walk each for itself: a lane whose cell shows something waits until one in CELL_WAITING has pieces to composite, and a lane that
+ * has composited its pieces goes on. */
 INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k, int nearest, int halves)
 {
