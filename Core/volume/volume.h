@@ -96,8 +96,9 @@ static inline int stratus_entry_within(const float* bound, int first, int beyond
 
 /* The transfer function as traversal samples it. stratus_table_entry() gives the entry e of a fetched value. Midpoint sampling reads
  * colour times alpha, and alpha, from rgba[4*e] on, for one whole sample distance. Pre-integrated sampling reads the inclusive range of
- * entries between two values: sums[4*(last+1)+c] - sums[4*first+c] for each of the four. An entry with zero opacity is exactly 0 in both. An
- * entry has opacity only if the function shows on all floats that have that entry: where the function is transparent the table is, too. */
+ * entries between two values: sums[4*(last+1)+c] - sums[4*first+c] for each of the four. An entry with zero opacity is exactly 0 in both.
+ * An entry has opacity only if the function shows on all floats that have that entry: where the function is transparent the table is, too.
+ */
 typedef struct stratus_table {
   stratus_context* context;
   int size;            /* number of entries */
