@@ -65,8 +65,4 @@ stratus_ray_cast_tile* stratus_ray_shading_tile_isa0(int type, stratus_ray_varia
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_shading_tile_isa2(int type, stratus_ray_variant variant);
 
-/* Draws all tiles on the host. */
-stratus_status stratus_ray_cast_host(
-  stratus_context* context, const stratus_ray_cast_frame* frame, int type, stratus_ray_variant variant, stratus_ray_counts* counts);
-
 #endif

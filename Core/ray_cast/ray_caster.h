@@ -34,7 +34,7 @@ typedef struct stratus_ray_trial {
   uint64_t table_serial;                    /* of the table that the times are of */
   int frames;                               /* drawn with that table */
   double with, without;                     /* milliseconds of the same pixels, by the map and by none */
-  double build_ms;                          /* of the first map */
+  double build_ms;                          /* of the last distance map */
   double spent, built_ms, trial_ms;         /* milliseconds that frames and builds of other maps took, and the last trial of none */
 } stratus_ray_trial;
 

@@ -184,7 +184,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   const bool covers = stratus_ray_modes_covers(options);
   bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
-  double start = stratus_now_ms();
+  double start = stratus_now_ms(), drawn_ms = 0.0;
   if (empty || (!stratus_ray_shading_show(caster) && !covers)) {
     stratus_image_clear(image);
     memset(report->window, 0, sizeof report->window);
@@ -202,7 +202,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
       with_map = used != STRATUS_STRUCTURE_NONE;
       drawn = chosen.drawn;
       report->offered_tree = chosen.offered;
-      report->structure_ms += stratus_now_ms() - start;
+      drawn_ms = chosen.drawn_ms;
+      report->structure_ms += stratus_now_ms() - start - drawn_ms;
       start = stratus_now_ms();
     }
     if (found) {
@@ -216,7 +217,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
       TRY(audit(caster, &arguments, image, &report->differing_pixels));
     }
   }
-  report->cast_ms = stratus_now_ms() - start - report->upload_ms;
+  report->cast_ms = stratus_now_ms() - start - report->upload_ms + drawn_ms;
   if (options->structure == STRATUS_STRUCTURE_AUTO && !image->samples) {
     stratus_ray_tried(caster, report->cast_ms);
   }

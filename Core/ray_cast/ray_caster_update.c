@@ -242,7 +242,7 @@ static stratus_status automatic(stratus_ray_caster* caster, bool times, stratus_
     TRY(stratus_ray_tree_serves(caster, &serves));
   }
   if (!serves) {
-    caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
+    caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO, .build_ms = caster->trial.build_ms };
   }
   if (caster->trial.map == STRATUS_STRUCTURE_AUTO) {
     caster->trial.map = STRATUS_STRUCTURE_DISTANCE;

@@ -165,6 +165,7 @@ typedef struct trial_result {
   double better, other; /* milliseconds of the squares that both have drawn */
   double frame;         /* milliseconds of a frame by the better, estimated */
   double wasted;        /* milliseconds that the other took */
+  double drawn;         /* milliseconds that the better's whole tiles took */
 } trial_result;
 
 static stratus_ray_cast_frame frame_by(const stratus_ray_caster* caster, const stratus_image* image, const contender* c)
@@ -191,6 +192,7 @@ static void add_up(
     drawn->counts.skipped += job->counts[i].skipped;
     drawn->counts.lookups += job->counts[i].lookups;
   }
+  r->drawn = ms / context->threads;
   if (count > 0) {
     r->frame = ms * pixels / ((double)count * STRATUS_RAY_TILE * STRATUS_RAY_TILE * context->threads);
   }
@@ -227,9 +229,11 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
   const int count = place_tiles(window, job.columns, frame->drawn.count > 0, &frame->drawn, job.tiles);
   TRY(stratus_each_tile(caster->context, "structure", count, try_tile, &job, sums));
   add_up(&job, count, caster->context, pixels, &frame->drawn, result);
+  frame->drawn_ms += result->drawn;
   if (caster->forced) {
     result->frame = result->better = caster->forced->frame[better->structure];
     result->other = caster->forced->frame[other->structure];
+    result->wasted = 0.0;
   }
   return STRATUS_OK;
 }
@@ -237,7 +241,7 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
 void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms)
 {
   stratus_ray_trial* t = &caster->trial;
-  t->spent += caster->forced ? caster->forced->frame[t->with < t->without ? t->map : STRATUS_STRUCTURE_NONE] : cast_ms;
+  t->spent += caster->forced ? caster->forced->frame[t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE] : cast_ms;
 }
 
 /* What another map costs to build, by what the first cost and the blocks in each. A tree's origin is checked by a hash, which reads the
@@ -293,9 +297,10 @@ static stratus_status try_map(
   if (status == STRATUS_OUT_OF_MEMORY || status == STRATUS_OVERFLOW) {
     return STRATUS_OK;
   }
+  t->tried[structure] = status != STRATUS_CANCELLED;
   TRY(status);
   stratus_ray_frame_structures(caster->table, frame->tolerance, caster->occupancy, map, &other);
-  const bool skips = t->with < t->without;
+  const bool skips = t->with <= t->without;
   const contender mine = { skips ? t->map : STRATUS_STRUCTURE_NONE, skips ? frame->arguments : plain, skips ? caster->map->bytes : NULL };
   const contender its = { structure, &other, map->bytes };
   const stratus_status compared = compare(caster, frame, &mine, &its, t->frames > 1, &result);
@@ -303,7 +308,8 @@ static stratus_status try_map(
   const bool as_far = structure == STRATUS_STRUCTURE_OCTANT && mine.structure == STRATUS_STRUCTURE_DISTANCE;
   if (compared != STRATUS_OK || !(result.other < (as_far ? OCTANTS_LOST : 1.0) * result.better)) {
     stratus_distance_map_destroy(map);
-    t->lost = structure;
+    t->tried[structure] = compared != STRATUS_CANCELLED;
+    t->lost = compared == STRATUS_OK ? structure : t->lost;
     return compared;
   }
   stratus_ray_drop_map(caster);
@@ -339,7 +345,11 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     t->without += skips ? result.other : result.better;
     frame_ms = result.frame * (skips && result.other < result.better ? result.other / result.better : 1.0);
   }
-  const stratus_structure next = next_map(caster, frame_ms);
+  /* a window of few columns of tiles has none left for a second comparison in one frame */
+  const int* window = plain.camera.window;
+  const bool comparable = window[0] < window[1] && window[2] < window[3] &&
+    (frame->drawn.count == 0 || (window[1] - 1) / STRATUS_RAY_TILE - window[0] / STRATUS_RAY_TILE >= ACROSS);
+  const stratus_structure next = comparable || caster->forced ? next_map(caster, frame_ms) : STRATUS_STRUCTURE_AUTO;
   if (next != STRATUS_STRUCTURE_AUTO) {
     TRY(try_map(caster, frame, next, &plain));
   }
@@ -348,9 +358,12 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
   if (frame->used == STRATUS_STRUCTURE_NONE) {
     *frame->arguments = plain;
   }
-  const double ratio = t->without > 0.0 ? t->with / t->without : 1.0;
+  if (!(t->without > 0.0)) {
+    snprintf(why, capacity, "%s: nothing was measured yet", stratus_structure_name(frame->used));
+    return STRATUS_OK;
+  }
   snprintf(why, capacity, "%s: measured, %s takes %.2g of the time without%s%s%s", stratus_structure_name(frame->used),
-    stratus_structure_name(t->map), ratio, t->lost ? "; " : "", t->lost ? stratus_structure_name(t->lost) : "",
+    stratus_structure_name(t->map), t->with / t->without, t->lost ? "; " : "", t->lost ? stratus_structure_name(t->lost) : "",
     t->lost ? " was slower" : "");
   return STRATUS_OK;
 }

@@ -13,6 +13,7 @@ typedef struct stratus_ray_choice_frame {
   double tolerance;
   stratus_ray_cast_arguments* arguments; /* with the caster's map at first; set for the structure that is taken */
   stratus_ray_drawn drawn;               /* tiles that were drawn while structures were compared: they are the picture's */
+  double drawn_ms;                       /* what the picture's part of these tiles took */
   stratus_structure used;
   bool offered; /* its map is of the tree that came with the data */
 } stratus_ray_choice_frame;

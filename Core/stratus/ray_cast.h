@@ -85,7 +85,7 @@ typedef struct stratus_shading {
 #define STRATUS_CROP_ALL 0x7ffffffu
 
 typedef struct stratus_ray_cast_options {
-  stratus_structure structure; /* default auto: the cheapest that the scene needs; the report names it */
+  stratus_structure structure; /* default auto: the fastest, by times of frames; the report names it */
   /* Default auto: the cheapest that keeps the tolerance, as a probe measures. Nearest interpolation is never pre-integrated. */
   stratus_sampling sampling;
   stratus_interpolation interpolation; /* default linear */

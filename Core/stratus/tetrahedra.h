@@ -27,8 +27,8 @@ typedef enum stratus_tetra_mode {
  * of cells. The methods differ only where cells overlap: projection draws the pieces in order of depth, marching one path through
  * neighbours after the other. */
 typedef enum stratus_tetra_method {
-  /* The method that should cost less, by the numbers of cells, pixels and segments; with a device: march. It does not change while the
-   * camera stands still. */
+  /* The method that should cost less, by the numbers of cells, pixels and segments and by what these cost on this machine; with a device:
+   * march. It does not change while the camera stands still. */
   STRATUS_TETRA_METHOD_AUTO,
   STRATUS_TETRA_METHOD_MARCH,  /* follows each ray from cell to cell */
   STRATUS_TETRA_METHOD_PROJECT /* sorts the cells that can show, assigns them to tiles of pixels, and composites them there */

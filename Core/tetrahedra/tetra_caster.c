@@ -6,7 +6,6 @@
 #include "picture.h"
 #include "camera.h"
 #include "mesh.h"
-#include "table_fill.h"
 
 #include <stdio.h>
 #include <string.h>

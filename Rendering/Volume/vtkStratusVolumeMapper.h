@@ -32,7 +32,8 @@
  * Ambient, Diffuse, Specular and SpecularPower apply. Positional lights have no attenuation and no cone (a cone below 90 degrees is
  * refused). A voxel of point data is a cube about its point, so that the mapper's bounds extend half a voxel farther.
  *
- * The mapper uses the tree of an image that carries one (vtkStratusHybridTreeFilter) if it serves the transfer function.
+ * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
+ * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.
  *
  * The mapper keeps what it builds: a new picture of the same data rebuilds nothing, a new transfer function rebuilds only tables and the
  * structure.
@@ -143,7 +144,7 @@ public:
   //@{
   /**
    * Set/Get the structure by which rays skip empty space: none, a flag per block, a distance map, eight distance maps by the ray's octant,
-   * or a hybrid tree. The structure does not change the picture. Default AUTO_STRUCTURE, the cheapest that the scene needs.
+   * or a hybrid tree. The structure does not change the picture. Default AUTO_STRUCTURE, the fastest by times of frames.
    */
   vtkSetClampMacro(Structure, int, AUTO_STRUCTURE, HYBRID_STRUCTURE);
   vtkGetMacro(Structure, int);

@@ -45,6 +45,7 @@ void Structures()
 void Sampling()
 {
   Scene scene;
+  scene.Mapper->CountSamplesOn(); // so that no time chooses the structure, on which counts hang
   scene.Mapper->SetSamplingToMidpoint();
   scene.Mapper->SetSampleDistance(1.0);
   const std::vector<float> middle = scene.Picture();
@@ -72,6 +73,7 @@ void Sampling()
 void Termination()
 {
   Scene scene;
+  scene.Mapper->CountSamplesOn(); // so that no time chooses the structure, on which counts hang
   scene.Opacity->AddPoint(0.3, 0.9);
   scene.Mapper->SetTermination(1.0);
   scene.Render();
@@ -104,6 +106,7 @@ void FinalColor()
 void ImageSampleDistance()
 {
   Scene scene;
+  scene.Mapper->CountSamplesOn(); // so that no time chooses the structure, on which counts hang
   scene.Render();
   const vtkTypeUInt64 samples = scene.Mapper->GetSamplesTaken();
   const double light = scene.Light();

@@ -208,11 +208,22 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
 /* The four ints from table[4 entry] on. */
 INLINE void gather_four_ints(GLOBAL const int* table, vint entry, vmask mask, vint out[4])
 {
+#if STRATUS_WIDTH == 1
+  for (int c = 0; c < 4; ++c) {
+    out[c] = mask ? table[4 * entry + c] : 0;
+  }
+#elif defined(LANES_LOAD) || defined(STRATUS_DEVICE_AVX512)
   vfloat bits[4];
   gather_four((GLOBAL const float*)table, entry, mask, bits);
   for (int c = 0; c < 4; ++c) {
     out[c] = v_to_bits(bits[c]);
   }
+#else
+  const vint at = entry << vi_set(2);
+  for (int c = 0; c < 4; ++c) {
+    out[c] = v_gather_ints(table + c, at, mask);
+  }
+#endif
 }
 
 /* The int table[index]. */

@@ -116,6 +116,7 @@ INLINE void cell_layer(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k
   for (int c = 0; c < 4; ++c) {
     sum[c] = sum[c] * part;
   }
+  sum[3] = v_min(sum[3], v_set(1.0f)); /* the product is rounded */
   composite(a, k, mask, sum, s);
 }
 
@@ -140,7 +141,8 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   mask = mask & v_lt(zero, sum[3]);
   const vfloat scale = length * v_set(a->table.tau_scale), width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
   const vfloat per_tau = scale * v_reciprocal(width);
-  const vfloat bend = sum[3] * per_tau * v_min(width * v_set(a->table.color_slope), v_set(a->table.color_most)); /* as segment_pieces() */
+  const vfloat bend = sum[3] * per_tau *
+    v_min(width * v_set(a->table.color_slope), v_set(a->table.color_most)); /* as segment_pieces_within(), in every table */
   const vmask plain = mask & v_le(bend, one);
   if (m_any(plain)) {
     cell_layer(a, k, plain, sum, per_tau, s);

@@ -10,7 +10,7 @@
 
 #include <time.h>
 
-#define STRIDE 10    /* fixed choices draw every so manieth frame of an orbit, which stands for all */
+#define STRIDE 10    /* fixed choices draw every so many-th frame of an orbit, which stands for all */
 #define HOPELESS 2.5 /* fixed choices draw no orbit whose still pictures take so many times the least */
 #define STILLS 5
 #define SCENES_MOST 4096
