@@ -174,9 +174,11 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   char why[192] = "";
   stratus_ray_drawn drawn = { .count = 0 };
   bool empty = false;
+  const bool times = !image->samples; /* a picture of samples, which hang on the structure, follows from no times */
+  const bool tries = times && options->structure == STRATUS_STRUCTURE_AUTO;
 
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
-  TRY(stratus_ray_update_structures(caster, options->structure, !image->samples, &used, why, sizeof why, report));
+  TRY(stratus_ray_update_structures(caster, options->structure, times, &used, why, sizeof why, report));
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
@@ -195,7 +197,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(
       caster->table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
-    if (found && with_map && options->structure == STRATUS_STRUCTURE_AUTO && !image->samples) {
+    if (found && with_map && tries) {
       stratus_ray_choice_frame chosen = { .image = image, .tolerance = stratus_ray_tolerance(options), .arguments = &arguments };
       TRY(stratus_ray_try(caster, &chosen, why, sizeof why));
       used = chosen.used;
@@ -218,7 +220,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     }
   }
   report->cast_ms = stratus_now_ms() - start - report->upload_ms + drawn_ms;
-  if (options->structure == STRATUS_STRUCTURE_AUTO && !image->samples) {
+  if (tries) {
     stratus_ray_tried(caster, report->cast_ms);
   }
   caster->samples_since_data += counts.samples;

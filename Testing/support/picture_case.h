@@ -297,6 +297,24 @@ static inline stratus_context* case_context(const char* device, int threads)
   return context;
 }
 
+/* Offers the caster a tree of the cells that the case's transfer function shows. options: NULL for the default's. */
+static inline void case_offer_tree(
+  stratus_context* context, stratus_ray_caster* caster, const picture_case* c, const stratus_tree_options* options)
+{
+  stratus_criterion criterion = stratus_criterion_default();
+  stratus_voxels* cells = NULL;
+  stratus_tree* tree = NULL;
+  criterion.transfer = &c->transfer;
+  assert_int_equal(stratus_voxels_create_cells(context, &c->volume, &criterion, &cells), STRATUS_OK);
+  assert_int_equal(stratus_tree_create(context, cells, options, &tree), STRATUS_OK);
+  void* bytes = malloc(stratus_tree_bytes(tree));
+  stratus_tree_save(tree, bytes);
+  assert_int_equal(stratus_ray_caster_offer_tree(caster, bytes, stratus_tree_bytes(tree)), STRATUS_OK);
+  free(bytes);
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(cells);
+}
+
 /* Set-up and tear-down of a group whose state is a context of the host with two threads. */
 static inline int case_set_up(void** state)
 {

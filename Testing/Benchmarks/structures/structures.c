@@ -208,11 +208,14 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
     }
     const double costs[4] = { still[mine].wall, still[mine].cpu, orbit[mine].wall, orbit[mine].cpu };
     printf("# %s %s over best:", v->name, ways[mine]);
+    const bool room = counted[offered] < SCENES_MOST; /* more scenes are printed, and left out of the summary */
     for (int i = 0; i < 4; ++i) {
-      ratios[offered][i][counted[offered]] = costs[i] / best[i];
+      if (room) {
+        ratios[offered][i][counted[offered]] = costs[i] / best[i];
+      }
       printf(" %.3f", costs[i] / best[i]);
     }
-    ++counted[offered];
+    counted[offered] += room;
     printf("\n");
   }
   fflush(stdout);

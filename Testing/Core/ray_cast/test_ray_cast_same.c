@@ -51,27 +51,16 @@ static void structures_change_no_bit(void** state)
   stratus_context_destroy(context);
 }
 
-/* Offers a tree of the cells that the transfer function shows, with many leaves. Boxes of hierarchies overlap. */
+/* Offers a tree with many leaves. Boxes of hierarchies overlap. */
 static void offer_tree(
   stratus_context* context, stratus_ray_caster* caster, const picture_case* c, stratus_tree_method method, int emptiness)
 {
-  stratus_criterion criterion = stratus_criterion_default();
   stratus_tree_options options = stratus_tree_options_default();
-  stratus_voxels* cells = NULL;
-  stratus_tree* tree = NULL;
-  criterion.transfer = &c->transfer;
   options.method = method;
   options.field_emptiness = emptiness;
   options.leaf_bricks = 1 + emptiness % 3;
   options.leaf_voxels = 8;
-  assert_int_equal(stratus_voxels_create_cells(context, &c->volume, &criterion, &cells), STRATUS_OK);
-  assert_int_equal(stratus_tree_create(context, cells, &options, &tree), STRATUS_OK);
-  void* bytes = malloc(stratus_tree_bytes(tree));
-  stratus_tree_save(tree, bytes);
-  assert_int_equal(stratus_ray_caster_offer_tree(caster, bytes, stratus_tree_bytes(tree)), STRATUS_OK);
-  free(bytes);
-  stratus_tree_destroy(tree);
-  stratus_voxels_destroy(cells);
+  case_offer_tree(context, caster, c, &options);
 }
 
 static void trees_that_come_with_the_data_change_no_bit(void** state)

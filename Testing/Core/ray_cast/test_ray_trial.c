@@ -133,23 +133,6 @@ static void octant_maps_are_built_when_frames_have_cost_much_more(void** state)
   case_destroy(&c);
 }
 
-/* Offers a tree of the cells that the transfer function shows. */
-static void offer_tree(stratus_context* context, stratus_ray_caster* caster, const picture_case* c)
-{
-  stratus_criterion criterion = stratus_criterion_default();
-  stratus_voxels* cells = NULL;
-  stratus_tree* tree = NULL;
-  criterion.transfer = &c->transfer;
-  assert_int_equal(stratus_voxels_create_cells(context, &c->volume, &criterion, &cells), STRATUS_OK);
-  assert_int_equal(stratus_tree_create(context, cells, NULL, &tree), STRATUS_OK);
-  void* bytes = malloc(stratus_tree_bytes(tree));
-  stratus_tree_save(tree, bytes);
-  assert_int_equal(stratus_ray_caster_offer_tree(caster, bytes, stratus_tree_bytes(tree)), STRATUS_OK);
-  free(bytes);
-  stratus_tree_destroy(tree);
-  stratus_voxels_destroy(cells);
-}
-
 static void a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper(void** state)
 {
   picture_case c;
@@ -169,7 +152,7 @@ static void a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper(voi
                                           [STRATUS_STRUCTURE_HYBRID] = tree } };
       assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
       caster->forced = &costs;
-      offer_tree(*state, caster, &c);
+      case_offer_tree(*state, caster, &c, NULL);
       for (int frame = 0; frame < 4; ++frame) { /* builds cost nothing: each frame tries a map */
         draw(caster, &c);
         assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
