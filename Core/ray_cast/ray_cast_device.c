@@ -19,15 +19,15 @@
 /* All members are 4-byte scalars, so no padding separates them. The kernel gets the size by a define and asserts it, too. */
 _Static_assert(sizeof(stratus_ray_cast_arguments) ==
     sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
-      sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_map) + sizeof(stratus_table_arguments) +
-      sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) + sizeof(stratus_ray_media),
+      sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_map) + sizeof(stratus_ray_rough) +
+      sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) + sizeof(stratus_ray_media),
   "arguments must have no padding");
 
-typedef enum buffer_name { VALUES, HIDDEN, MAP, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
+typedef enum buffer_name { VALUES, HIDDEN, MAP, ROUGH, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
 
 struct stratus_ray_device {
   stratus_device_slot slots[BUFFERS];
-  uint64_t data_serial, table_serial, map_serial;
+  uint64_t data_serial, table_serial, map_serial, rough_serial;
 };
 
 void stratus_ray_device_destroy(stratus_ray_caster* caster)
@@ -87,6 +87,11 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, MAP, frame->map, frame->map ? caster->map->bytes_size : 0));
     d->map_serial = map_serial;
   }
+  const uint64_t rough_serial = frame->rough ? caster->rough_serial : 0;
+  if (!d->slots[ROUGH].memory || d->rough_serial != rough_serial) {
+    TRY(replace(caster, ROUGH, frame->rough, frame->rough ? caster->rough->bytes_size : 0));
+    d->rough_serial = rough_serial;
+  }
   return STRATUS_OK;
 }
 
@@ -114,6 +119,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_
     [STRATUS_VARIANT_SUMS] = STRATUS_RAY_SUMS,
     [STRATUS_VARIANT_ISOSURFACE] = STRATUS_RAY_ISOSURFACE,
     [STRATUS_VARIANT_CELLS] = STRATUS_RAY_CELLS,
+    [STRATUS_VARIANT_LOCAL] = STRATUS_RAY_LOCAL,
     [STRATUS_VARIANT_SHADING_MIDPOINT] = STRATUS_RAY_SHADING,
     [STRATUS_VARIANT_SHADING_PREINTEGRATED] = STRATUS_RAY_SHADING };
   char defines[256];
@@ -132,7 +138,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, int type, stratus_
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
-  static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, ROUGH, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   stratus_context* context = caster->context;
   stratus_device_slot* slots = caster->device->slots;
   const stratus_ray_cast_arguments* a = frame->arguments;

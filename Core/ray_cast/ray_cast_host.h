@@ -17,6 +17,7 @@ typedef enum stratus_ray_variant {
   STRATUS_VARIANT_SUMS,     /* means and sums */
   STRATUS_VARIANT_ISOSURFACE,
   STRATUS_VARIANT_CELLS,            /* composite, cell by cell */
+  STRATUS_VARIANT_LOCAL,            /* composite, cell by cell in rough blocks */
   STRATUS_VARIANT_SHADING_MIDPOINT, /* samples are lit, gradient-thinned, multi-component or labelled */
   STRATUS_VARIANT_SHADING_PREINTEGRATED
 } stratus_ray_variant;
@@ -31,7 +32,8 @@ typedef struct stratus_ray_cast_frame {
   const void* values;
   const uint8_t* hidden;
   const uint8_t* map;
-  const void* table; /* midpoint: 4 floats per entry, then 4 more (optical depth, 0, 0, 0) per entry; pre-integrated: sums */
+  const uint8_t* rough; /* the map of rough blocks; NULL but for variant LOCAL */
+  const void* table;    /* midpoint: 4 floats per entry, then 4 more (optical depth, 0, 0, 0) per entry; pre-integrated: sums */
   const float* opaque_depth;
   float* rgba;
   float* depth;      /* NULL: not wanted */
@@ -58,6 +60,9 @@ stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa2(int type);
 stratus_ray_cast_tile* stratus_ray_cells_tile_isa0(int type);
 stratus_ray_cast_tile* stratus_ray_cells_tile_isa1(int type);
 stratus_ray_cast_tile* stratus_ray_cells_tile_isa2(int type);
+stratus_ray_cast_tile* stratus_ray_local_tile_isa0(int type);
+stratus_ray_cast_tile* stratus_ray_local_tile_isa1(int type);
+stratus_ray_cast_tile* stratus_ray_local_tile_isa2(int type);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);

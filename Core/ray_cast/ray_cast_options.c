@@ -10,7 +10,7 @@ const char* stratus_structure_name(stratus_structure structure)
 
 const char* stratus_sampling_name(stratus_sampling sampling)
 {
-  static const char* const names[] = { "auto", "midpoint", "pre-integrated", "cells" };
+  static const char* const names[] = { "auto", "midpoint", "pre-integrated", "cells", "local" };
   return (unsigned)sampling < sizeof names / sizeof *names ? names[sampling] : "unknown";
 }
 

@@ -30,9 +30,9 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2
-        RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0], &k[1]);
+        RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0], &k[1]);
 #else
-        RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->table, &k[0]);
+        RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0]);
 #endif
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {

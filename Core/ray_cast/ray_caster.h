@@ -70,18 +70,20 @@ struct stratus_ray_caster {
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
-  stratus_tree* offered; /* a tree that came with the data, in index coordinates; NULL: none */
-  int tree_serves;       /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
-  uint64_t hash;         /* of the volume's values and shape */
-  double scan_ms;        /* milliseconds that the value ranges took */
-  uint64_t hash_ranges;  /* range_builds when `hash` was computed; `hash` is stale if they differ */
+  stratus_distance_map* rough; /* which blocks rule local takes cell by cell; NULL: none, for it was not taken */
+  stratus_tree* offered;       /* a tree that came with the data, in index coordinates; NULL: none */
+  int tree_serves;             /* 1: the offered tree serves this render; 0: it does not; -1: not known yet */
+  uint64_t hash;               /* of the volume's values and shape */
+  double scan_ms;              /* milliseconds that the value ranges took */
+  uint64_t hash_ranges;        /* range_builds when `hash` was computed; `hash` is stale if they differ */
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
-  stratus_ray_device* device;                     /* buffers on the OpenCL device; NULL: none */
-  uint64_t data_serial, table_serial, map_serial; /* incremented by each build, so that the device knows which buffers are stale */
+  stratus_ray_device* device; /* buffers on the OpenCL device; NULL: none */
+  uint64_t data_serial, table_serial, map_serial,
+    rough_serial; /* incremented by each build, so that the device knows which buffers are stale */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads, probe_builds;
 };
 
@@ -93,6 +95,7 @@ void stratus_ray_drop_transfer(stratus_ray_caster* caster);
 void stratus_ray_drop_values(stratus_ray_caster* caster);
 void stratus_ray_drop_occupancy(stratus_ray_caster* caster);
 void stratus_ray_drop_map(stratus_ray_caster* caster);
+void stratus_ray_drop_rough(stratus_ray_caster* caster);
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 
 /* ray_caster_update.c: rebuilds only what changed. */

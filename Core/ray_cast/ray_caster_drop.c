@@ -10,6 +10,13 @@ void stratus_ray_drop_map(stratus_ray_caster* caster)
   ++caster->map_serial; /* so that the device returns the map that it may have borrowed */
 }
 
+void stratus_ray_drop_rough(stratus_ray_caster* caster)
+{
+  stratus_distance_map_destroy(caster->rough);
+  caster->rough = NULL;
+  ++caster->rough_serial;
+}
+
 void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells)
 {
   if (caster->offered && (caster->offered->origin.cells != 0) == of_cells) {
@@ -39,6 +46,7 @@ void stratus_ray_drop_occupancy(stratus_ray_caster* caster)
 void stratus_ray_drop_values(stratus_ray_caster* caster)
 {
   stratus_ray_drop_occupancy(caster);
+  stratus_ray_drop_rough(caster);
   stratus_release(caster->context, caster->values.of);
   stratus_table_destroy(caster->table);
   stratus_table_destroy(caster->spare_table.table);

@@ -159,7 +159,8 @@ static void fill_report(
   report->structure = used;
   report->sampling = caster->choice.sampling;
   report->sample_distance = caster->choice.sample_distance;
-  report->cell_error = caster->choice.sampling == STRATUS_SAMPLING_CELLS ? caster->choice.cell_error : 0.0;
+  const bool by_cells = caster->choice.sampling == STRATUS_SAMPLING_CELLS || caster->choice.sampling == STRATUS_SAMPLING_LOCAL;
+  report->cell_error = by_cells ? caster->choice.cell_error : 0.0;
   report->expected_error = caster->choice.expected_error;
   report->tolerance_met = caster->choice.met;
   report->probe_builds = caster->probe_builds;

@@ -317,6 +317,7 @@ stratus_ray_cast_frame stratus_ray_frame_of(
     .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
+    .rough = caster->choice.sampling == STRATUS_SAMPLING_LOCAL ? caster->rough->bytes : NULL,
     .table = caster->shades ? caster->shading_tables.memory : table,
     .opaque_depth = image->opaque_depth,
     .rgba = image->rgba,

@@ -217,10 +217,19 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
-  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS) {
+  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
     const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + ranges->bias, hi + ranges->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
+  }
+  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS) {
     a->lattice.jitter = 0; /* rays pass from cell to cell, whatever their lattice */
+  }
+  if (caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
+    const stratus_distance_map* map = caster->rough;
+    a->rough = (stratus_ray_rough){ .pitch = (int)map->pitch, .rows = (int)map->blocks[1] };
+    while (1 << a->rough.block_log2 < map->block_size) {
+      ++a->rough.block_log2;
+    }
   }
   a->mode.contour_count = 0;
   for (int n = 0; n < caster->shown.contour_count; ++n) {
@@ -250,6 +259,7 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
     return is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;
   }
   return caster->choice.sampling == STRATUS_SAMPLING_CELLS      ? STRATUS_VARIANT_CELLS
+    : caster->choice.sampling == STRATUS_SAMPLING_LOCAL         ? STRATUS_VARIANT_LOCAL
     : caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED ? STRATUS_VARIANT_PREINTEGRATED
                                                                 : STRATUS_VARIANT_MIDPOINT;
 }

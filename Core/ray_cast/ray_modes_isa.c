@@ -51,5 +51,6 @@ stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_modes_tile)(int type, stratu
   };
   return variant == STRATUS_VARIANT_ISOSURFACE ? STRATUS_ISA_NAME(stratus_ray_isosurface_tile)(type)
     : variant == STRATUS_VARIANT_CELLS         ? STRATUS_ISA_NAME(stratus_ray_cells_tile)(type)
+    : variant == STRATUS_VARIANT_LOCAL         ? STRATUS_ISA_NAME(stratus_ray_local_tile)(type)
                                                : tiles[variant == STRATUS_VARIANT_SUMS][type + 1];
 }

@@ -31,11 +31,26 @@
 #define SHARE 0.65
 /* An error that rises by less over rungs of cells has come to rest. */
 #define SETTLED 1.1
+/* The rung from which the step of smooth blocks is sought: two voxels. */
+#define LOCAL_START 4
+/* Rule local is for few rough blocks: at most this share of all. It is taken where it costs less than this share of the next best rule: the
+ * turns between its two ways, and the lookups of where they end, are not in its cost. */
+#define LOCAL_MOST 0.5
+#define LOCAL_GAIN 0.75
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
+
+/* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums, which are neighbours in rule local; a cell takes
+ * pieces of two entries each. A line crosses 1.5 cubes in the length of an edge, the mean over all directions. */
+static const double costs[] = { [STRATUS_SAMPLING_MIDPOINT] = 1.0,
+  [STRATUS_SAMPLING_PREINTEGRATED] = 1.6,
+  [STRATUS_SAMPLING_CELLS] = 1.5 * 2.2,
+  [STRATUS_SAMPLING_LOCAL] = 1.3 };
 
 typedef struct setting {
   stratus_sampling sampling;
   int rung;
+  int cells;  /* local: the rung of cells in rough blocks */
+  int beyond; /* local: blocks of classes below it are rough */
 } setting;
 
 /* What one sampling rule has shown so far, at all its rungs. */
@@ -43,6 +58,8 @@ typedef struct family {
   stratus_sampling sampling;
   int rungs;                /* 1 where the user has set the step */
   double cost;              /* of a voxel's length, at a step of one voxel, in samples of the midpoint rule */
+  int cells, beyond;        /* as in setting */
+  double rough;             /* local: the share of rough blocks */
   double error[CELL_RUNGS]; /* root mean square on the probe's rays; -1: not measured */
 } family;
 
@@ -53,6 +70,8 @@ typedef struct probe {
   stratus_ray_cast_options whole; /* the same without what hides parts: a setting serves whatever part is shown */
   stratus_probe_patch patches[STRATUS_PROBE_PATCHES];
   int count;
+  stratus_probe_classes classes;
+  stratus_distance_map* rough[STRATUS_PROBE_CLASSES]; /* number c: of the blocks of classes below c; NULL: not made */
   double voxel;
   float *fine, *coarse; /* pictures of all patches: of the finer setting, and of the candidate */
   uint64_t samples;     /* of all settings together */
@@ -64,7 +83,8 @@ static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
   const stratus_ray_cast_options* options = p->options;
   const bool cells = s->sampling == STRATUS_SAMPLING_CELLS;
   choice->sampling = s->sampling;
-  choice->cell_error = options->cell_error > 0.0 ? options->cell_error : exp2(-2.0 - 0.5 * s->rung);
+  const int cell_rung = s->sampling == STRATUS_SAMPLING_LOCAL ? s->cells : s->rung;
+  choice->cell_error = options->cell_error > 0.0 ? options->cell_error : exp2(-2.0 - 0.5 * cell_rung);
   choice->sample_distance = cells    ? p->voxel
     : options->sample_distance > 0.0 ? options->sample_distance
                                      : exp2(2.0 - 0.25 * s->rung) * p->voxel;
@@ -113,12 +133,31 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   counts[1] += mine.samples;
 }
 
+/* Makes the map of rough blocks for a setting the caster's, on loan. */
+static stratus_status lend_rough(probe* p, int beyond)
+{
+  stratus_context* context = p->caster->context;
+  const stratus_probe_classes* k = &p->classes;
+  if (!p->rough[beyond]) {
+    stratus_occupancy* blocks = NULL;
+    TRY(stratus_occupancy_below(context, k->blocks, k->block_size, k->of, (uint8_t)beyond, &blocks));
+    const stratus_status status = stratus_distance_map_create(context, blocks, STRATUS_DISTANCE_FULL, &p->rough[beyond]);
+    stratus_occupancy_destroy(blocks);
+    TRY(status);
+  }
+  p->caster->rough = p->rough[beyond];
+  return STRATUS_OK;
+}
+
 /* Draws all patches with a setting. */
 static stratus_status draw_patches(probe* p, const setting* s, double tolerance, float* pictures)
 {
   stratus_ray_caster* caster = p->caster;
   uint64_t sums[STRATUS_TILE_COUNTS];
   take(p, s, &caster->choice);
+  if (s->sampling == STRATUS_SAMPLING_LOCAL) {
+    TRY(lend_rough(p, s->beyond));
+  }
   TRY(stratus_ray_update_table(caster, p->options));
   const patch_job job = { .p = p,
     .pictures = pictures,
@@ -178,15 +217,23 @@ static void note(probe* p, const char* format, ...)
   va_end(list);
 }
 
+static setting setting_of(const family* f, int rung)
+{
+  return (setting){ f->sampling, rung, f->cells, f->beyond };
+}
+
 static stratus_status measure(probe* p, family* f, int rung)
 {
-  const setting s = { f->sampling, rung };
+  const setting s = setting_of(f, rung);
   if (f->error[rung] < 0.0) {
     TRY(draw_patches(p, &s, p->options->tolerance, p->coarse));
     f->error[rung] = error_of(p);
     const stratus_ray_choice* c = &p->caster->choice;
     note(p, "%s%s %.3g: %.2g", *p->caster->tried ? ", " : "tried ", stratus_sampling_name(s.sampling),
       s.sampling == STRATUS_SAMPLING_CELLS ? c->cell_error : c->sample_distance / p->voxel, f->error[rung]);
+    if (s.sampling == STRATUS_SAMPLING_LOCAL) {
+      note(p, " (%.2g %% by cells)", 100.0 * f->rough);
+    }
   }
   return STRATUS_OK;
 }
@@ -195,10 +242,13 @@ static stratus_status measure(probe* p, family* f, int rung)
  * rung, but for their pieces. */
 static double cost_of(const probe* p, const family* f, int rung)
 {
-  const setting s = { f->sampling, rung };
+  const setting s = setting_of(f, rung);
   stratus_ray_choice c;
   take(p, &s, &c);
-  return f->sampling == STRATUS_SAMPLING_CELLS ? f->cost : f->cost * p->voxel / c.sample_distance;
+  const double lattice = f->cost * p->voxel / c.sample_distance;
+  return f->sampling == STRATUS_SAMPLING_CELLS ? f->cost
+    : f->sampling == STRATUS_SAMPLING_LOCAL    ? f->rough * costs[STRATUS_SAMPLING_CELLS] + (1.0 - f->rough) * lattice
+                                               : lattice;
 }
 
 /* The coarsest rung of cells: values off by more than the tolerance's share of what the function spans could show in rays that graze a
@@ -245,13 +295,61 @@ static stratus_status search(probe* p, family* f, int start, double most, double
 typedef struct candidates {
   family of[3];
   int count;
+  family local; /* the cheapest of its kind */
   setting fine;
 } candidates;
+
+/* Looks for blocks that are worth cells while all others take longer steps: those of the roughest class, then of the two roughest, and so
+ * on. cells: the rung of cells. *least: the cost of *found at *best; all three are left alone where nothing is cheaper. */
+static stratus_status search_local(probe* p, candidates* k, double most, int cells, double* least, int* best, family** found)
+{
+  const stratus_probe_classes* classes = &p->classes;
+  double all = 0.0, rough = 0.0, before = INFINITY;
+  for (int c = 0; c < STRATUS_PROBE_CLASSES; ++c) {
+    all += (double)classes->count[c];
+  }
+  for (int beyond = 1; beyond < STRATUS_PROBE_CLASSES; ++beyond) {
+    const double more = (double)classes->count[beyond - 1];
+    int rung = -1;
+    rough += more;
+    if (rough > LOCAL_MOST * all) {
+      break;
+    }
+    if (!(more > 0.0)) {
+      continue;
+    }
+    family f = { .sampling = STRATUS_SAMPLING_LOCAL,
+      .rungs = p->options->sample_distance > 0.0 ? 1 : LATTICE_RUNGS,
+      .cost = costs[STRATUS_SAMPLING_LOCAL],
+      .cells = cells,
+      .beyond = beyond,
+      .rough = rough / all };
+    if (cost_of(p, &f, 0) > LOCAL_GAIN * *least) {
+      break; /* the next class only adds cells */
+    }
+    for (int r = 0; r < CELL_RUNGS; ++r) {
+      f.error[r] = -1.0;
+    }
+    TRY(search(p, &f, LOCAL_START, most, LOCAL_GAIN * *least, &rung));
+    const double cost = rung >= 0 ? cost_of(p, &f, rung) : INFINITY;
+    if (cost < LOCAL_GAIN * *least) {
+      k->local = f;
+      *least = cost;
+      *best = rung;
+      *found = &k->local;
+    } else if (cost > before) {
+      break;
+    }
+    before = cost;
+  }
+  return STRATUS_OK;
+}
 
 /* Compares the candidates with one finer setting. *best, *found: the cheapest setting that keeps `most`; found NULL if none does. */
 static stratus_status compare(probe* p, candidates* k, double most, int* best, family** found)
 {
   double least = INFINITY, cells_cost = INFINITY; /* cells are the same in number at every rung */
+  int cell_rung = k->fine.rung - FINER_BY;
   *found = NULL;
   p->caster->tried[0] = '\0';
   TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->tolerance, p->fine));
@@ -274,22 +372,20 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
     }
     TRY(search(p, f, start > 0 ? start : 0, most, fmin(least, cells_cost), &rung));
     f->rungs = rungs;
+    cell_rung = cells && rung >= 0 ? rung : cell_rung;
     if (rung >= 0 && cost_of(p, f, rung) < least) {
       least = cost_of(p, f, rung);
       *best = rung;
       *found = f;
     }
   }
-  return STRATUS_OK;
+  return p->options->sampling == STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(p->caster, p->options, STRATUS_SAMPLING_LOCAL)
+    ? search_local(p, k, most, cell_rung > 0 ? cell_rung : 0, &least, best, found)
+    : STRATUS_OK;
 }
 
 static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
 {
-  /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums; a cell takes pieces of two entries each. A line
-   * crosses 1.5 cubes in the length of an edge, the mean over all directions. */
-  static const double costs[] = {
-    [STRATUS_SAMPLING_MIDPOINT] = 1.0, [STRATUS_SAMPLING_PREINTEGRATED] = 1.6, [STRATUS_SAMPLING_CELLS] = 1.5 * 2.2
-  };
   const stratus_ray_cast_options* options = p->options;
   const bool cells = sampling == STRATUS_SAMPLING_CELLS;
   if (stratus_ray_can_sample(p->caster, options, sampling) &&
@@ -301,8 +397,9 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
   }
 }
 
-/* Takes the cheapest of the settings that keep the tolerance, else the finest. */
-static stratus_status choose(probe* p, stratus_ray_choice* choice)
+/* Takes the cheapest of the settings that keep the tolerance, else the finest. *beyond: blocks of classes below it are rough, 0 if the
+ * choice is not rule local. */
+static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
 {
   const stratus_ray_caster* caster = p->caster;
   const stratus_ray_cast_options* options = p->options;
@@ -317,7 +414,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice)
   k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   if (!(options->tolerance > 0.0)) {
     const bool open = options->sampling == STRATUS_SAMPLING_AUTO;
-    const setting finest = { open ? k.fine.sampling : choice->sampling, last };
+    const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last };
     take(p, &finest, choice);
     return STRATUS_OK;
   }
@@ -329,8 +426,9 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice)
     TRY(compare(p, &k, most, &best, &found));
     const bool same = found && found->sampling == k.fine.sampling;
     if (k.fine.rung == last || (found && !(same && found->rungs > 1 && best > k.fine.rung - FINER_BY))) {
-      const setting s = { found ? found->sampling : k.fine.sampling, found ? best : k.fine.rung };
+      const setting s = found ? setting_of(found, best) : k.fine;
       take(p, &s, choice);
+      *beyond = s.sampling == STRATUS_SAMPLING_LOCAL ? s.beyond : 0;
       choice->met = found != NULL;
       choice->expected_error = found ? found->error[best] : NAN;
       return STRATUS_OK;
@@ -342,7 +440,8 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice)
 /* Draws the picture of this frame with the setting that was measured last, where there is one that can draw it. The next frame measures. */
 static void keep_last(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  if (caster->measured.sample_distance > 0.0 && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
+  const bool has_map = caster->measured.sampling != STRATUS_SAMPLING_LOCAL || caster->rough;
+  if (caster->measured.sample_distance > 0.0 && has_map && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
     caster->choice = caster->measured;
   }
   caster->choice.expected_error = NAN;
@@ -359,23 +458,35 @@ stratus_status stratus_ray_probe(
   probe p = { .caster = caster, .volume = volume, .options = options, .whole = *options, .voxel = stratus_ray_voxel_length(volume) };
   const stratus_ray_choice provisional = caster->choice;
   stratus_ray_choice choice = provisional;
+  stratus_distance_map* const last = caster->rough;
   void* memory = NULL;
+  int beyond = 0;
   p.whole.crop = p.whole.clip_plane_count = p.whole.jitter = 0;
   caster->tried[0] = '\0';
-  stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count);
+  stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count, &p.classes);
   if (status == STRATUS_OK && p.count > 0) {
     status = stratus_allocate(caster->context, 2 * 4 * (size_t)PATCH * (size_t)p.count, sizeof(float), &memory);
   }
   if (status == STRATUS_OUT_OF_MEMORY) {
+    stratus_release(caster->context, p.classes.of);
     keep_last(caster, options);
     return stratus_ray_update_table(caster, options);
   }
-  TRY(status);
-  if (p.count > 0) {
+  if (status == STRATUS_OK && p.count > 0) {
     p.fine = memory;
     p.coarse = p.fine + 4 * (size_t)PATCH * (size_t)p.count;
-    status = choose(&p, &choice);
+    status = choose(&p, &choice, &beyond);
     stratus_release(caster->context, memory);
+  }
+  stratus_release(caster->context, p.classes.of);
+  caster->rough = last;
+  if (status == STRATUS_OK) {
+    stratus_ray_drop_rough(caster);
+    caster->rough = p.rough[beyond];
+    p.rough[beyond] = NULL;
+  }
+  for (int c = 0; c < STRATUS_PROBE_CLASSES; ++c) {
+    stratus_distance_map_destroy(p.rough[c]);
   }
   caster->choice = status == STRATUS_OK ? choice : provisional;
   TRY(status);

@@ -9,8 +9,7 @@
 
 /* Parts of the value range at whose borders the functions' variation is known. */
 #define BINS 512
-/* Classes of blocks: class c holds variations of 4^-c to 4^(1-c), the last one all smaller ones. */
-#define CLASSES 6
+#define CLASSES STRATUS_PROBE_CLASSES
 /* Distance between neighbouring rays of a patch, in voxels: far enough that their errors differ, near enough that they share memory. */
 #define PITCH 1.3
 /* A ray counts as crossing at least this much of a block, so that no weight grows without bound where rays graze a block's corner. */
@@ -105,12 +104,6 @@ static double variation_between(const variation* v, double lo, double hi)
 
 /* ---- classes of blocks */
 
-typedef struct classes {
-  int64_t blocks[3];
-  uint8_t* of; /* class of each block, CLASSES where it is empty */
-  int64_t count[CLASSES];
-} classes;
-
 static int class_of(double changes)
 {
   int exponent = 0;
@@ -155,7 +148,7 @@ static int64_t rows_of(const stratus_occupancy* occupancy)
   return (occupancy->hi[1] - occupancy->lo[1]) * (occupancy->hi[2] - occupancy->lo[2]);
 }
 
-static stratus_status classify(const stratus_ray_caster* caster, double voxel, classes* k)
+static stratus_status classify(const stratus_ray_caster* caster, double voxel, stratus_probe_classes* k)
 {
   const stratus_occupancy* occupancy = caster->occupancy;
   const int64_t blocks = occupancy->blocks[0] * occupancy->blocks[1] * occupancy->blocks[2];
@@ -163,6 +156,7 @@ static stratus_status classify(const stratus_ray_caster* caster, double voxel, c
   void *memory = NULL, *variations = NULL;
   stratus_status status = STRATUS_OK;
   memcpy(k->blocks, occupancy->blocks, sizeof k->blocks);
+  k->block_size = occupancy->block_size;
   TRY(stratus_allocate(caster->context, (size_t)blocks, 1, &memory));
   k->of = memory;
   TRY_CLEANUP(stratus_allocate(caster->context, (size_t)media, sizeof(variation), &variations));
@@ -203,12 +197,13 @@ cleanup:
   stratus_release(caster->context, variations);
   if (status != STRATUS_OK) {
     stratus_release(caster->context, k->of);
+    k->of = NULL;
   }
   return status;
 }
 
 /* Deals the patches to the classes: half of them by the number of blocks, half of them evenly. */
-static void deal(const classes* k, int dealt[CLASSES])
+static void deal(const stratus_probe_classes* k, int dealt[CLASSES])
 {
   int64_t whole = 0;
   int used = 0, rest = STRATUS_PROBE_PATCHES, most = 0;
@@ -228,7 +223,7 @@ static void deal(const classes* k, int dealt[CLASSES])
 /* ---- patches */
 
 /* Adds up the length, in blocks, that the line through p along d crosses of each class. Positions are in blocks. */
-static void measure_chords(const classes* k, const double p[3], const double d[3], double chords[CLASSES])
+static void measure_chords(const stratus_probe_classes* k, const double p[3], const double d[3], double chords[CLASSES])
 {
   double begin = -INFINITY, end = INFINITY, next[3], step[3];
   int64_t cell[3];
@@ -289,8 +284,8 @@ static void aim(const double point[3], double reach, double voxel, int number, s
   }
 }
 
-static void make_patch(const stratus_ray_caster* caster, const classes* k, const int dealt[CLASSES], int64_t block, double voxel,
-  int number, stratus_probe_patch* patch)
+static void make_patch(const stratus_ray_caster* caster, const stratus_probe_classes* k, const int dealt[CLASSES], int64_t block,
+  double voxel, int number, stratus_probe_patch* patch)
 {
   const int64_t at[3] = { block % k->blocks[0], block / k->blocks[0] % k->blocks[1], block / k->blocks[0] / k->blocks[1] };
   const stratus_volume* volume = &caster->volume;
@@ -331,18 +326,18 @@ static void make_patch(const stratus_ray_caster* caster, const classes* k, const
   patch->weight = density > 0.0 ? 1.0 / density : 0.0;
 }
 
-static stratus_status make_patches(const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+static stratus_status make_patches(
+  const stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* k)
 {
   const double voxel = stratus_ray_voxel_length(&caster->volume);
-  classes k = { .of = NULL };
   int dealt[CLASSES], next[CLASSES] = { 0 };
   int64_t seen[CLASSES] = { 0 }, wanted[CLASSES];
   *count = 0;
   if (caster->occupancy->count == 0) {
     return STRATUS_OK;
   }
-  TRY(classify(caster, voxel, &k));
-  deal(&k, dealt);
+  TRY(classify(caster, voxel, k));
+  deal(k, dealt);
   int first[CLASSES], number = 0;
   for (int c = 0; c < CLASSES; ++c) {
     first[c] = number;
@@ -352,17 +347,17 @@ static stratus_status make_patches(const stratus_ray_caster* caster, stratus_pro
   for (int64_t row = 0; row < rows_of(caster->occupancy); ++row) {
     int64_t b, end;
     row_of(caster->occupancy, row, &b, &end);
-    for (b = pass_bytes(k.of, CLASSES, b, end); b < end; b = pass_bytes(k.of, CLASSES, b + 1, end)) {
-      const int c = k.of[b];
+    for (b = pass_bytes(k->of, CLASSES, b, end); b < end; b = pass_bytes(k->of, CLASSES, b + 1, end)) {
+      const int c = k->of[b];
       while (next[c] < dealt[c]) { /* blocks are drawn evenly from the class's list, one at random from each stretch of it */
         const int patch = first[c] + next[c];
         if (wanted[c] < 0) {
-          wanted[c] = (int64_t)((next[c] + uniform_of((uint32_t)patch, 7)) / dealt[c] * (double)k.count[c]);
+          wanted[c] = (int64_t)((next[c] + uniform_of((uint32_t)patch, 7)) / dealt[c] * (double)k->count[c]);
         }
         if (wanted[c] > seen[c]) {
           break;
         }
-        make_patch(caster, &k, dealt, b, voxel, patch, &patches[patch]);
+        make_patch(caster, k, dealt, b, voxel, patch, &patches[patch]);
         wanted[c] = -1;
         ++next[c];
       }
@@ -370,13 +365,12 @@ static stratus_status make_patches(const stratus_ray_caster* caster, stratus_pro
     }
   }
   *count = number;
-  stratus_release(caster->context, k.of);
   return STRATUS_OK;
 }
 
 /* Makes patches by blocks of another size than the caster's: with ranges and occupancy of their own, which are dropped again. */
-static stratus_status make_patches_by(
-  stratus_ray_caster* caster, int block_size, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+static stratus_status make_patches_by(stratus_ray_caster* caster, int block_size, stratus_probe_patch patches[STRATUS_PROBE_PATCHES],
+  int* count, stratus_probe_classes* classes)
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
   stratus_value_range *const ranges = caster->ranges, *others[4];
@@ -394,7 +388,7 @@ static stratus_status make_patches_by(
     status = stratus_ray_make_occupancy(caster);
   }
   if (status == STRATUS_OK) {
-    status = make_patches(caster, patches, count);
+    status = make_patches(caster, patches, count, classes);
   }
   stratus_value_range_destroy(caster->ranges);
   stratus_occupancy_destroy(caster->occupancy);
@@ -407,9 +401,12 @@ static stratus_status make_patches_by(
   return status;
 }
 
-stratus_status stratus_ray_probe_rays(stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count)
+stratus_status stratus_ray_probe_rays(
+  stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* classes)
 {
   const int size = stratus_ray_block_size(&caster->volume);
   *count = 0;
-  return caster->ranges->block_size == size ? make_patches(caster, patches, count) : make_patches_by(caster, size, patches, count);
+  classes->of = NULL;
+  return caster->ranges->block_size == size ? make_patches(caster, patches, count, classes)
+                                            : make_patches_by(caster, size, patches, count, classes);
 }

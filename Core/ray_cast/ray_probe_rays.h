@@ -15,10 +15,22 @@ typedef struct stratus_probe_patch {
   double weight; /* of each of its rays */
 } stratus_probe_patch;
 
+/* Classes of blocks by how much the transfer functions change over their values: class c holds variations of 4^-c to 4^(1-c), the last
+ * one all smaller ones. */
+#define STRATUS_PROBE_CLASSES 6
+
+typedef struct stratus_probe_classes {
+  int64_t blocks[3];
+  int block_size;
+  uint8_t* of; /* class of each block, STRATUS_PROBE_CLASSES where it is empty; the caller releases it */
+  int64_t count[STRATUS_PROBE_CLASSES];
+} stratus_probe_classes;
+
 /* Makes patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer
  * functions change over their values, so that a small rough part of a large smooth volume is met, too. A patch weighs the inverse of the
  * density of rays where it lies, so that weighted sums over the rays stand for sums over pictures. The blocks are those of 4^3 voxels
- * whatever size the user set, so that a structure decides nothing. *count: 0 if no block is occupied. */
-stratus_status stratus_ray_probe_rays(stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count);
+ * whatever size the user set, so that a structure decides nothing. *count: 0 if no block is occupied, and then there are no classes. */
+stratus_status stratus_ray_probe_rays(
+  stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* classes);
 
 #endif

@@ -28,6 +28,8 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
   switch (sampling) {
     case STRATUS_SAMPLING_CELLS:
       return one_medium && !caster->shades && !options->mask;
+    case STRATUS_SAMPLING_LOCAL:
+      return one_medium && !caster->shades && !options->mask && options->interpolation != STRATUS_INTERPOLATION_NEAREST;
     case STRATUS_SAMPLING_PREINTEGRATED:
       return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST;
     default:

@@ -10,7 +10,7 @@
 typedef struct stratus_ray_choice {
   stratus_sampling sampling;
   double sample_distance; /* cells: a voxel, which is only their unit of length */
-  double cell_error;      /* cells: as in stratus_ray_cast_options */
+  double cell_error;      /* cells, local: as in stratus_ray_cast_options */
   bool provisional;       /* not measured yet: stratus_ray_probe() is to replace it */
   /* What the probe found; NaN and true where there was none. */
   double expected_error;

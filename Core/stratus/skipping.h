@@ -36,7 +36,10 @@ typedef enum stratus_sampling {
   /* Pictures of volumes, composite. Rays pass from cell to cell. The way through a cell, where the field along the ray is a cubic, is cut
    * into pieces that are nearly straight, and each is pre-integrated. With nearest interpolation the cells are the boxes about the values,
    * so that the picture is exact. */
-  STRATUS_SAMPLING_CELLS
+  STRATUS_SAMPLING_CELLS,
+  /* What an automatic rule may take, and what cannot be asked for: CELLS in the blocks of 4^3 voxels where the transfer function changes
+   * much, MIDPOINT in all others. The tolerance decides where that is. */
+  STRATUS_SAMPLING_LOCAL
 } stratus_sampling;
 
 typedef struct stratus_occupancy stratus_occupancy;

@@ -96,15 +96,15 @@ static void test_rows(
   }
 }
 
-static stratus_status create_empty(stratus_context* context, const stratus_value_range* ranges, stratus_occupancy** out)
+static stratus_status create_empty(stratus_context* context, const int64_t blocks[3], int block_size, stratus_occupancy** out)
 {
   void* memory;
   TRY(stratus_allocate_zero(context, 1, sizeof **out, &memory));
   stratus_occupancy* occupancy = memory;
   occupancy->context = context;
-  occupancy->block_size = ranges->block_size;
-  memcpy(occupancy->blocks, ranges->blocks, sizeof occupancy->blocks);
-  const stratus_status status = stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), 1, &memory);
+  occupancy->block_size = block_size;
+  memcpy(occupancy->blocks, blocks, sizeof occupancy->blocks);
+  const stratus_status status = stratus_allocate(context, (size_t)(blocks[0] * blocks[1] * blocks[2]), 1, &memory);
   if (status != STRATUS_OK) {
     stratus_occupancy_destroy(occupancy);
     return status;
@@ -122,7 +122,7 @@ stratus_status stratus_occupancy_build(
 
   gaps = gaps && stratus_shown_meets(shown, ranges->whole_lo, ranges->whole_hi);
   TRY(stratus_progress(context, "occupancy", 0.0));
-  TRY(create_empty(context, ranges, &occupancy));
+  TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
   if (stratus_device_builds(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
     TRY_CLEANUP(stratus_device_occupancy(context, ranges, shown, gaps, occupancy));
     test_rows(context, NULL, NULL, false, occupancy);
@@ -136,6 +136,17 @@ stratus_status stratus_occupancy_build(
 cleanup:
   stratus_occupancy_destroy(occupancy);
   return status;
+}
+
+stratus_status stratus_occupancy_below(
+  stratus_context* context, const int64_t blocks[3], int block_size, const uint8_t* bytes, uint8_t beyond, stratus_occupancy** occupancy)
+{
+  TRY(create_empty(context, blocks, block_size, occupancy));
+  for (int64_t b = 0; b < blocks[0] * blocks[1] * blocks[2]; ++b) {
+    (*occupancy)->occupied[b] = bytes[b] < beyond;
+  }
+  test_rows(context, NULL, NULL, false, *occupancy); /* counts them */
+  return STRATUS_OK;
 }
 
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other)
@@ -192,7 +203,7 @@ stratus_status stratus_occupancy_create_between(
   const stratus_criterion criterion = { .lower = lower, .upper = upper };
   TRY(stratus_criterion_check(context, &criterion));
   TRY(stratus_progress(context, "occupancy", 0.0));
-  TRY(create_empty(context, ranges, &occupancy));
+  TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
   find_ends(ranges, lower, upper, &first, &last);
   const int64_t blocks = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)

@@ -200,6 +200,9 @@ void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy
  * without gaps share finite voxels, so that a cube of empty blocks has one connected, transparent hull. */
 stratus_status stratus_occupancy_build(
   stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps, stratus_occupancy** occupancy);
+/* Marks the blocks whose byte is below `beyond`. */
+stratus_status stratus_occupancy_below(
+  stratus_context* context, const int64_t blocks[3], int block_size, const uint8_t* bytes, uint8_t beyond, stratus_occupancy** occupancy);
 
 /* ---- distance_map.c
  * Traversal reads one byte for each block. Of an empty block it is the distance, 1..127. Of an occupied block it is 128 plus the distance

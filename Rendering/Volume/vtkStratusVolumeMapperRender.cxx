@@ -56,7 +56,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
     const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND &&
-      this->FullSampling != STRATUS_SAMPLING_CELLS; // rays from cell to cell have no step
+      this->FullSampling != STRATUS_SAMPLING_CELLS && this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));

@@ -33,9 +33,14 @@ static void device_and_host_draw_the_same(void** state)
   int64_t most = 0;
   int other_counts = 0;
   int lit = 0;
-  for (uint32_t seed = 500; seed < 540; ++seed) {
+  int local = 0;
+  for (uint32_t seed = 500; seed < 552; ++seed) {
     picture_case c;
-    case_create_random(host, seed, &c);
+    if (seed < 540) {
+      case_create_random(host, seed, &c);
+    } else {
+      case_create_local(host, seed, &c);
+    }
     const stratus_structure structure = (stratus_structure)(seed % 5);
     c.options.structure = structure;
     case_render(host, &c, &on_host);
@@ -48,6 +53,7 @@ static void device_and_host_draw_the_same(void** state)
       fail();
     }
     lit += case_lit(&on_host) > 0;
+    local += on_host.report.sampling == STRATUS_SAMPLING_LOCAL && on_device.report.sampling == STRATUS_SAMPLING_LOCAL;
     for (int i = 0; i < CASE_PIXELS; ++i) {
       other_counts += on_host.samples[i] != on_device.samples[i];
       for (int k = 4 * i; k < 4 * i + 4; ++k) {
@@ -60,6 +66,7 @@ static void device_and_host_draw_the_same(void** state)
   print_message("             %d pictures, at most %lld units in the last place apart, %d pixels with other counts\n", lit, (long long)most,
     other_counts);
   assert_true(lit > 20);
+  assert_int_equal(local, 12);
   assert_true(other_counts == 0 || !case_counts_agree());
   assert_true(most <= ULPS_MOST);
   stratus_context_destroy(host);

@@ -217,6 +217,53 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
   }
 }
 
+/* Makes a case of clouds of thin haze with a small rough box among them, whose sampling is left open and becomes rule local at the default
+ * tolerance. The type of values, holes, crop and camera are random. */
+static inline void case_create_local(stratus_context* context, uint32_t seed, picture_case* c)
+{
+  static const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_UINT8, STRATUS_INT16, STRATUS_UINT16, STRATUS_FLOAT64, STRATUS_INT8 };
+  uint32_t s = seed * 6364136u + 5u;
+  const stratus_type type = types[case_random(&s) % 6];
+  const int64_t n[3] = { 40 + case_random(&s) % 20, 40 + case_random(&s) % 20, 40 + case_random(&s) % 20 };
+  const double base = case_type_values[type].base, scale = case_type_values[type].scale;
+  case_create(context, c, type, n[0], n[1], n[2], seed);
+  int64_t lo[3];
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = 4 + case_random(&s) % (uint32_t)(n[a] - 20);
+  }
+  for (int64_t at = 0; at < n[0] * n[1] * n[2]; ++at) {
+    const int64_t p[3] = { at % n[0], at / n[0] % n[1], at / n[0] / n[1] };
+    bool inside = true;
+    for (int a = 0; a < 3; ++a) {
+      inside = inside && p[a] >= lo[a] && p[a] < lo[a] + 9;
+    }
+    const double haze = -0.6 + 0.15 * sin(0.12 * (double)p[0] + 0.07 * (double)p[1] + 0.05 * (double)p[2]);
+    case_store(c->values, type, (size_t)at, base + scale * (inside ? case_uniform(&s, -0.4, 0.95) : haze));
+  }
+  const double opacity[8] = { base - 0.6 * scale, 0, base - 0.45 * scale, 0.006, base + 0.3 * scale, 0.7, base + 0.5 * scale, 0.05 };
+  const double color[12] = { base - 0.9 * scale, 0.2, 0.3, 0.9, base - 0.4 * scale, 0.25, 0.3, 0.9, base + 0.4 * scale, 1, 0.1, 0.1 };
+  memcpy(c->opacity, opacity, sizeof opacity);
+  memcpy(c->color, color, sizeof color);
+  c->options = stratus_ray_cast_options_default();
+  c->volume.cell_centered = case_random(&s) % 3 == 0;
+  if (case_random(&s) % 3 == 0) {
+    c->cell_ghosts = calloc((size_t)(n[0] * n[1] * n[2]), 1);
+    for (int i = 0; i < 10; ++i) {
+      c->cell_ghosts[case_random(&s) % (uint32_t)(n[0] * n[1] * n[2])] = STRATUS_GHOST_HIDDEN_CELL;
+    }
+    c->volume.cell_ghosts = c->cell_ghosts;
+  }
+  if (case_random(&s) % 3 == 0) {
+    c->options.crop = 1;
+    c->options.crop_regions = case_random(&s) % 2 ? STRATUS_CROP_INSIDE : 0x5a5a5a5u;
+    for (int a = 0; a < 3; ++a) {
+      c->options.crop_bounds[2 * a] = case_uniform(&s, -2, 20);
+      c->options.crop_bounds[2 * a + 1] = c->options.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
+    }
+  }
+  case_camera(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
+}
+
 static inline void case_destroy(picture_case* c)
 {
   free(c->values);

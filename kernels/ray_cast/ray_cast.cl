@@ -60,8 +60,8 @@ static void store_pixel(
 #if STRATUS_WIDTH == 1
 /* counts: rays, samples, skipped, lookups of each row of pixels, so that 32 bits hold them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
-  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
-  __global float* depth, __global uint* samples, __global uint* counts)
+  __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
+  __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -79,7 +79,7 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
         crop_enter(a, &crop, piece, &k);
       }
       if (m_any(k.live)) {
-        RAY_NAME(ray_march)(a, values, hidden, map, table, &k);
+        RAY_NAME(ray_march)(a, values, hidden, map, rough, table, &k);
       }
     }
   }
@@ -151,8 +151,8 @@ static uint sum_lanes(vint lanes)
 
 /* counts: rays, samples, skipped, lookups of each tile. 32 bits hold a tile's, and no other work item adds to them. */
 __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
-  __global const uchar* map, __global const void* table, __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
-  __global float* depth, __global uint* samples, __global uint* counts)
+  __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
+  __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
@@ -178,9 +178,9 @@ __kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const 
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2
-        RAY_NAME(ray_march_two)(a, values, hidden, map, table, &k[0], &k[1]);
+        RAY_NAME(ray_march_two)(a, values, hidden, map, rough, table, &k[0], &k[1]);
 #else
-        RAY_NAME(ray_march)(a, values, hidden, map, table, &k[0]);
+        RAY_NAME(ray_march)(a, values, hidden, map, rough, table, &k[0]);
 #endif
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {

@@ -18,6 +18,12 @@
 #define RAY_MODE_OPEN 1
 #endif
 
+/* Whether rays go from cell to cell, at least in part. */
+#ifndef RAY_BY_CELLS
+#define RAY_BY_CELLS                                                                                                                       \
+  (STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL)
+#endif
+
 #include "fetch.h"
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 #include "ray_extremes.h"
@@ -134,7 +140,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "gradient.h"
 #include "lighting.h"
 #endif
-#if STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS
+#if RAY_BY_CELLS
 #include "cell_cubic.h"
 #include "cell_walk.h"
 #endif
@@ -142,7 +148,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "ray_shading.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
 #include "ray_isosurface.h"
-#elif STRATUS_RAY_MODE == STRATUS_RAY_CELLS
+#elif STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_cells.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
 #include "ray_modes.h"
@@ -181,10 +187,15 @@ INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
   }
   return 1;
 }
+#endif
 
+#if STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
+#include "ray_local.h"
+#elif STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
+  (void)rough;
   while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
     const stratus_sample sample = RAY_NAME(ray_sample)(a, values, hidden, k);
     RAY_NAME(ray_shade)(a, table, k, &sample);
@@ -194,16 +205,34 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
 #if PACKETS_TOGETHER == 2
 /* Marches two packets side by side: while one waits for its values, the other computes. The bits are those of each packet alone. */
 INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
   while (m_any(left->live) && m_any(right->live) && RAY_NAME(ray_leap)(a, map, left) && RAY_NAME(ray_leap)(a, map, right)) {
     const stratus_sample one = RAY_NAME(ray_sample)(a, values, hidden, left), other = RAY_NAME(ray_sample)(a, values, hidden, right);
     RAY_NAME(ray_shade)(a, table, left, &one);
     RAY_NAME(ray_shade)(a, table, right, &other);
   }
-  RAY_NAME(ray_march)(a, values, hidden, map, table, m_any(left->live) ? left : right);
+  RAY_NAME(ray_march)(a, values, hidden, map, rough, table, m_any(left->live) ? left : right);
 }
 #endif
+#endif
+
+#if RAY_BY_CELLS
+#if PACKETS_TOGETHER == 2
+INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
+{
+  RAY_NAME(ray_march)(a, values, hidden, map, rough, table, left);
+  RAY_NAME(ray_march)(a, values, hidden, map, rough, table, right);
+}
+#endif
+
+INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+{
+  (void)a;
+  (void)table;
+  (void)k;
+}
 #endif
 
 /* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */

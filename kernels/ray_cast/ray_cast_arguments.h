@@ -27,6 +27,7 @@
  * labelled. */
 #define STRATUS_RAY_SHADING 4
 #define STRATUS_RAY_CELLS 5 /* light behind light, cell by cell */
+#define STRATUS_RAY_LOCAL 6 /* light behind light, cell by cell in rough blocks, from sample to sample elsewhere */
 
 /* The rays: ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward. */
 typedef struct stratus_ray_camera {
@@ -85,6 +86,12 @@ typedef struct stratus_ray_map {
   int bounds_across, bounds_rows; /* blocks in a row of bounds, rows in a slice */
 } stratus_ray_map;
 
+/* Which blocks are rough: a byte a block, as in a map of full distances. */
+typedef struct stratus_ray_rough {
+  int pitch, rows; /* bytes from one row of blocks to the next; rows in a slice */
+  int block_log2;
+} stratus_ray_rough;
+
 /* Extremes, sums and isosurfaces. */
 typedef struct stratus_ray_mode {
   float sign, top;                   /* extremes: 1 for maxima, -1 for minima, and sign times the value that none passes */
@@ -131,6 +138,7 @@ typedef struct stratus_ray_cast_arguments {
   stratus_ray_crop crop;
   stratus_ray_values values;
   stratus_ray_map map;
+  stratus_ray_rough rough;
   stratus_table_arguments table;
   stratus_ray_mode mode;
   stratus_ray_lights light;

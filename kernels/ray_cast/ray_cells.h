@@ -2,7 +2,7 @@
  * Light along a packet of rays, cell by cell. Along a ray the field in a cell is a cubic. The way through a cell is cut into pieces in
  * which the cubic hardly departs from its chord, and each piece is pre-integrated between the values at its ends. With nearest
  * interpolation the cells are the boxes about the values, and each is one piece. Included by ray_cast.h with STRATUS_RAY_MODE set to
- * STRATUS_RAY_CELLS. */
+ * STRATUS_RAY_CELLS or STRATUS_RAY_LOCAL. */
 #ifndef STRATUS_RAY_CELLS_H
 #define STRATUS_RAY_CELLS_H
 
@@ -282,11 +282,13 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   } while (m_any(k->live));
 }
 
+#if STRATUS_RAY_MODE == STRATUS_RAY_CELLS
 /* Boxes about values are cells half a cell further on. Where cells of a volume of points are hidden, boxes are cut at the cells' planes,
  * too: then the planes are half a cell apart. */
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
+  (void)rough;
   if (!a->values.nearest) {
     RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
     return;
@@ -307,19 +309,4 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
     k->inverse[axis] = inverse[axis];
   }
 }
-
-#if PACKETS_TOGETHER == 2
-INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
-{
-  RAY_NAME(ray_march)(a, values, hidden, map, table, left);
-  RAY_NAME(ray_march)(a, values, hidden, map, table, right);
-}
 #endif
-
-INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
-{
-  (void)a;
-  (void)table;
-  (void)k;
-}

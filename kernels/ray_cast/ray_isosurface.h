@@ -117,9 +117,10 @@ INLINE void RAY_NAME(surface_visit)(
 }
 
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k)
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   cell_walk w;
+  (void)rough;
   (void)table;
   if (!m_any(k->live) || !cell_begin(k, 0, &w)) {
     return;
@@ -132,20 +133,4 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
     RAY_NAME(surface_visit)(a, values, hidden, k, &w);
     cell_leave(k, k->live, &w);
   } while (m_any(k->live));
-}
-
-#if PACKETS_TOGETHER == 2
-INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
-  GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
-{
-  RAY_NAME(ray_march)(a, values, hidden, map, table, left);
-  RAY_NAME(ray_march)(a, values, hidden, map, table, right);
-}
-#endif
-
-INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
-{
-  (void)a;
-  (void)table;
-  (void)k;
 }

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Light along a packet of rays, by two rules: from sample to sample where the transfer function hardly changes, cell by cell where it does.
+ * A map of blocks of its own, which no structure decides, tells the rough blocks. A ray is a sequence of runs, the longest parts of it
+ * whose blocks are all smooth or all rough. A run ends where a cell does, at a plane's number (cell_walk.h). The lattice of smooth runs is
+ * the ray's own, cut to each run. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOCAL. */
+#ifndef STRATUS_RAY_LOCAL_H
+#define STRATUS_RAY_LOCAL_H
+
+/* Where the run of every ray begins, where it ends and where the ray does, in samples. */
+typedef struct local_runs {
+  vfloat begin, to, end;
+  vmask rough;
+} local_runs;
+
+/* The bytes of the map of rough blocks in the blocks where the walk is, and where rays leave the cubes of blocks of the same kind. */
+INLINE vint local_byte(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* rough, const stratus_packet* k, const cell_walk* w, vmask mask, vfloat* leave)
+{
+  vint block[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    block[axis] = cell_inside(a, w, axis) >> vi_set(a->rough.block_log2);
+  }
+  const vint byte = gather_map(rough, block[0] + (block[1] + block[2] * vi_set(a->rough.rows)) * vi_set(a->rough.pitch), mask);
+  const vint distance = byte & vi_set(127);
+  *leave = w->end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
+    const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
+    *leave = v_min(plane_met(k, axis, face << vi_set(a->rough.block_log2)), *leave);
+  }
+  return byte;
+}
+
+/* Finds the runs that begin at r->begin in the lanes of the mask. */
+INLINE void local_find(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* rough, stratus_packet* k, vmask mask, local_runs* r)
+{
+  vmask first = mask;
+  cell_walk w;
+  w.s = r->begin;
+  w.end = r->end;
+  w.halves = 0;
+  while (m_any(mask)) {
+    vfloat leave;
+    cell_enter(k, &w);
+    const vint byte = local_byte(a, rough, k, &w, mask, &leave);
+    const vmask is_rough = mask & vi_ge(byte, vi_set(128));
+    k->lookups -= mask_int(mask);
+    r->rough = m_andnot(r->rough, first) | (is_rough & first);
+    first = m_none();
+    mask = (is_rough & r->rough) | m_andnot(m_andnot(mask, is_rough), r->rough);
+    leave = v_max(leave, w.leave); /* in the volume's rim, where values are clamped, the border's block is behind the ray */
+    leave = v_min(v_select(v_lt(w.s, leave), leave, v_fma(w.s, v_set(1e-6f), w.s + v_set(1e-6f))), w.end);
+    r->to = v_select(mask, leave, r->to);
+    mask = mask & v_lt(leave, w.end);
+    w.s = v_select(mask, leave, w.s);
+  }
+}
+
+/* Composites a part of a segment in which the field is `value`. */
+INLINE void local_composite(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat length, vfloat s)
+{
+  if (a->table.has_opaque | a->table.cut) {
+    cell_integrate(a, sums, k, mask, value, value, length, s);
+    return;
+  }
+  const vfloat place = table_place(&a->table, value);
+  mask = mask & v_lt(place, v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), place);
+  if (m_any(mask)) {
+    const vint entry = entry_in_cell(&a->table, sums, v_to_int(place), value, mask), beyond = entry + vi_set(1);
+    vfloat sum[4];
+    sums_between(sums, entry, beyond, mask, sum);
+    mask = mask & v_lt(v_set(0.0f), sum[3]);
+    if (m_any(mask)) {
+      const vfloat width = v_max(width_between(&a->table, sums, entry, beyond, mask), v_set(1.0f));
+      cell_layer(a, k, mask, sum, length * v_set(a->table.tau_scale) * v_reciprocal(width), s);
+    }
+  }
+}
+
+#endif
+
+/* Marches the live rays, all of them in smooth runs. */
+INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const uchar* map, GLOBAL const int* sums, stratus_packet* k)
+{
+  while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
+    const stratus_sample sample = RAY_NAME(ray_sample)(a, values, hidden, k);
+    k->samples -= mask_int(k->live);
+    local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.weight, sample.lo);
+    k->i = k->i + vi_set(1);
+    k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
+  }
+}
+
+/* Rays take a run each in turns: all that are in smooth runs first, then all that are in rough ones, so that neighbours keep together. */
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+  GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
+{
+  const vfloat zero = v_set(0.0f), whole_begin = k->begin, whole_end = k->end;
+  const vint none = vi_set(0), never = vi_set(0x7fffffff);
+  local_runs r;
+  r.begin = v_max(v_from_int(k->i), k->begin);
+  r.end = v_min(v_from_int(k->last), k->end);
+  vmask left = k->live & v_lt(r.begin, r.end);
+  r.begin = v_select(left, r.begin, zero); /* lanes without a way stay at a harmless place */
+  r.end = v_select(left, r.end, zero);
+  r.to = r.end;
+  r.rough = m_none();
+  local_find(a, rough, k, left, &r);
+  while (m_any(left)) {
+    for (int kind = 0; kind < 2; ++kind) {
+      vmask mine = m_andnot(left, r.rough);
+      if (kind) {
+        mine = left & r.rough;
+      }
+      if (!m_any(mine)) {
+        continue;
+      }
+      k->live = mine;
+      k->begin = v_select(mine, r.begin, zero);
+      k->end = v_select(mine, r.to, zero);
+      k->i = v_to_int(k->begin);
+      const vint whole = v_to_int(k->end);
+      k->last = vi_select(mine, vi_select(v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole), none);
+      if (kind) {
+        k->run = never; /* every block on the way holds what shows */
+        RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
+      } else {
+        k->run = a->map.structure ? k->i : never;
+        RAY_NAME(local_march)(a, values, hidden, map, (GLOBAL const int*)table, k);
+      }
+      left = m_andnot(left, mine & (v_lt(k->transparency, v_set(a->termination)) | v_le(r.end, r.to)));
+      r.begin = v_select(mine, r.to, r.begin);
+      local_find(a, rough, k, left & mine, &r);
+    }
+  }
+  k->begin = whole_begin;
+  k->end = whole_end;
+  k->live = m_none();
+}
