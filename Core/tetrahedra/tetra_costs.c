@@ -144,7 +144,29 @@ static stratus_status measure(sample* s, stratus_tetra_costs* costs)
   return STRATUS_OK;
 }
 
-stratus_status stratus_tetra_costs_here(stratus_context* context, const stratus_tetra_costs** out)
+/* Measures in a context like `context`. *costs is written only if that succeeds. */
+static stratus_status measure_like(stratus_context* context, stratus_tetra_costs* costs)
+{
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, 1, sizeof(sample), &memory));
+  sample* s = memory;
+  s->context = *context;
+  s->context.options.progress = NULL;
+  s->context.options.log = NULL;
+  const stratus_status status = measure(s, costs);
+  stratus_tetra_projector_destroy(s->projector);
+  stratus_release(&s->context, s->sums);
+  stratus_table_destroy(s->table);
+  stratus_tetra_mesh_destroy(s->tetra);
+  stratus_tetra_buffers_release(&s->context, &s->buffers);
+  if (status != STRATUS_OK) {
+    (void)stratus_fail(context, status, "%s", s->context.message);
+  }
+  stratus_release(context, memory);
+  return status;
+}
+
+stratus_status stratus_tetra_costs_here(stratus_context* context, stratus_tetra_costs* costs)
 {
   static struct kept {
     int isa, threads;
@@ -159,32 +181,17 @@ stratus_status stratus_tetra_costs_here(stratus_context* context, const stratus_
       ++i;
     }
     if (i == count) {
-      void* memory = NULL;
-      i = count < KEPT ? count : KEPT - 1;
-      status = stratus_allocate_zero(context, 1, sizeof(sample), &memory);
+      struct kept made = { .isa = context->isa, .threads = context->threads };
+      i = count < KEPT ? count : KEPT - 1; /* the last makes room for more */
+      status = measure_like(context, &made.costs);
       if (status == STRATUS_OK) {
-        sample* s = memory;
-        s->context = *context;
-        s->context.options.progress = NULL;
-        s->context.options.log = NULL;
-        status = measure(s, &kept[i].costs);
-        stratus_tetra_projector_destroy(s->projector);
-        stratus_release(&s->context, s->sums);
-        stratus_table_destroy(s->table);
-        stratus_tetra_mesh_destroy(s->tetra);
-        stratus_tetra_buffers_release(&s->context, &s->buffers);
-        if (status != STRATUS_OK) {
-          (void)stratus_fail(context, status, "%s", s->context.message);
-        }
-        stratus_release(context, memory);
-      }
-      if (status == STRATUS_OK) {
-        kept[i].isa = context->isa;
-        kept[i].threads = context->threads;
+        kept[i] = made;
         count = i + 1;
       }
     }
-    *out = &kept[i].costs;
+    if (status == STRATUS_OK) {
+      *costs = kept[i].costs;
+    }
   }
   return status;
 }

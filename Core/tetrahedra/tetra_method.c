@@ -17,7 +17,7 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
   const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   const stratus_tetra_shown shown = { caster->mesh, caster->table, caster->mode };
-  const stratus_tetra_costs* costs = caster->costs;
+  stratus_tetra_costs costs;
   stratus_tetra_view view;
   report->method = options->method;
   if (options->method != STRATUS_TETRA_METHOD_AUTO) {
@@ -29,13 +29,14 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     snprintf(report->why, sizeof report->why, "march: devices march only");
     return STRATUS_OK;
   }
-  if (!costs) {
+  if (caster->costs) {
+    costs = *caster->costs;
+  } else {
     TRY(stratus_tetra_costs_here(caster->context, &costs));
   }
   const double sorted = options->mode == STRATUS_TETRA_MAXIMUM ? 0.0 : (double)mesh->cell_count;
-  const double march = 1e-6 * costs->segment * view.passed;
-  const double project =
-    1e-6 * (costs->piece * view.pieces + costs->packet * view.packets + costs->cell * view.shown + costs->sorted * sorted);
+  const double march = 1e-6 * costs.segment * view.passed;
+  const double project = 1e-6 * (costs.piece * view.pieces + costs.packet * view.packets + costs.cell * view.shown + costs.sorted * sorted);
   report->method = project < march ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
   snprintf(report->why, sizeof report->why,
     "%s: some %.2g million cells to be passed by rays in %.2g ms, against %.2g million pieces of %.2g million cells, %.2g million sorted, "

@@ -294,13 +294,29 @@ static void auto_takes_what_costs_less(void** state)
 /* What is measured is positive, and is measured once: a camera that stands still keeps one method by it, too. */
 static void costs_are_measured_once(void** state)
 {
-  const stratus_tetra_costs *costs, *again;
+  stratus_tetra_costs costs, again;
   assert_int_equal(stratus_tetra_costs_here(*state, &costs), STRATUS_OK);
-  assert_true(costs->segment > 0.0 && costs->packet > 0.0 && costs->cell > 0.0 && costs->sorted > 0.0 && costs->piece >= 0.0);
-  const stratus_tetra_costs first = *costs;
+  assert_true(costs.segment > 0.0 && costs.packet > 0.0 && costs.cell > 0.0 && costs.sorted > 0.0 && costs.piece >= 0.0);
   assert_int_equal(stratus_tetra_costs_here(*state, &again), STRATUS_OK);
-  assert_ptr_equal(costs, again);
-  assert_memory_equal(&first, again, sizeof first);
+  assert_memory_equal(&costs, &again, sizeof costs);
+}
+
+/* More numbers of threads than there is room for: the first and the last that were asked for are not measured again. */
+static void costs_of_many_numbers_of_threads_change_no_other_s(void** state)
+{
+  enum { MANY = 20 };
+  stratus_context context = *(stratus_context*)*state;
+  stratus_tetra_costs costs[MANY], again;
+  for (int i = 0; i < MANY; ++i) {
+    context.threads = 1 + i;
+    assert_int_equal(stratus_tetra_costs_here(&context, &costs[i]), STRATUS_OK);
+    assert_true(costs[i].segment > 0.0);
+  }
+  for (int i = 0; i < MANY; i += MANY - 1) {
+    context.threads = 1 + i;
+    assert_int_equal(stratus_tetra_costs_here(&context, &again), STRATUS_OK);
+    assert_memory_equal(&costs[i], &again, sizeof again);
+  }
 }
 
 int test_tetra_project(void)
@@ -313,6 +329,7 @@ int test_tetra_project(void)
     cmocka_unit_test(leaves_change_nothing_but_roundings),
     cmocka_unit_test(auto_takes_what_costs_less),
     cmocka_unit_test(costs_are_measured_once),
+    cmocka_unit_test(costs_of_many_numbers_of_threads_change_no_other_s),
   };
   return cmocka_run_group_tests(tests, tetra_start, tetra_stop);
 }
