@@ -21,9 +21,9 @@ typedef struct stratus_ray_made_table {
   uint64_t number;      /* of the caster's tables, in the order of their making */
 } stratus_ray_made_table;
 
-/* Milliseconds of a frame, and of building, by structure. */
+/* Milliseconds of a frame, and of building, by structure; and what a trial wastes. */
 typedef struct stratus_ray_costs {
-  double frame[STRATUS_STRUCTURE_HYBRID + 1], build[STRATUS_STRUCTURE_HYBRID + 1];
+  double frame[STRATUS_STRUCTURE_HYBRID + 1], build[STRATUS_STRUCTURE_HYBRID + 1], trial;
 } stratus_ray_costs;
 
 /* What an automatic choice of the structure has measured since the occupancy changed, see ray_trial.h. */
@@ -31,8 +31,10 @@ typedef struct stratus_ray_trial {
   stratus_structure map;                    /* of caster->map; AUTO: none was made yet */
   bool tried[STRATUS_STRUCTURE_HYBRID + 1]; /* maps that were built */
   stratus_structure lost;                   /* the last that was built and was slower than `map`; AUTO: none */
-  uint64_t table_serial;                    /* of the table that the times are of */
-  int frames;                               /* drawn with that table */
+  uint64_t table_serial;                    /* of the table of the frame before */
+  stratus_ray_choice choice;                /* its sampling */
+  int frames;                               /* drawn with that table and sampling */
+  bool timed;                               /* `with` and `without` are of these; else of those before */
   double with, without;                     /* milliseconds of the same pixels, by the map and by none */
   double build_ms;                          /* of the last distance map */
   double spent, built_ms, trial_ms;         /* milliseconds that frames and builds of other maps took, and the last trial of none */

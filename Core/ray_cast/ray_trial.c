@@ -4,7 +4,7 @@
  * where it has taken as long as the better, and draws no more squares once it is clearly the slower: a trial costs a few per cent of a
  * frame, whatever it finds. Which of the two is first alternates from tile to tile, for the second finds its data in the cache.
  *
- * Skip or not: frames 1, 2, 4, 8, ... since the transfer function changed compare the map with none.
+ * Skip or not: frames 1, 2, 4, 8, ... since the transfer function or the sampling changed compare the map with none.
  *
  * Another map is built when frames have spent so much time that building it cannot waste more than a small share of that, and stays if it
  * is faster. */
@@ -233,7 +233,7 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
   if (caster->forced) {
     result->frame = result->better = caster->forced->frame[better->structure];
     result->other = caster->forced->frame[other->structure];
-    result->wasted = 0.0;
+    result->wasted = caster->forced->trial;
   }
   return STRATUS_OK;
 }
@@ -323,16 +323,25 @@ static stratus_status try_map(
   return STRATUS_OK;
 }
 
+/* Whether the times are of this frame's table and sampling. One table of running sums serves two rules and every step. */
+static bool same_sampling(const stratus_ray_caster* caster)
+{
+  const stratus_ray_choice *last = &caster->trial.choice, *next = &caster->choice;
+  return caster->trial.table_serial == caster->table_serial && last->sampling == next->sampling &&
+    last->sample_distance == next->sample_distance && (next->sampling != STRATUS_SAMPLING_CELLS || last->cell_error == next->cell_error);
+}
+
 stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, char* why, size_t capacity)
 {
   stratus_ray_trial* t = &caster->trial;
   _Alignas(64) stratus_ray_cast_arguments plain = *frame->arguments;
   double frame_ms = 0.0;
   stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
-  if (t->table_serial != caster->table_serial) { /* another sampling: samples cost what was not measured yet */
+  if (!same_sampling(caster)) { /* samples cost what was not measured yet; until it is, the times before are the best guess */
     t->table_serial = caster->table_serial;
+    t->choice = caster->choice;
     t->frames = 0;
-    t->with = t->without = 0.0;
+    t->timed = false;
   }
   ++t->frames;
   if ((t->frames & (t->frames - 1)) == 0 && t->trial_ms <= TRIAL_SHARE * t->spent) {
@@ -341,8 +350,9 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     trial_result result;
     TRY(compare(caster, frame, skips ? &map : &none, skips ? &none : &map, false, &result));
     t->trial_ms = result.wasted;
-    t->with += skips ? result.better : result.other;
-    t->without += skips ? result.other : result.better;
+    t->with = (t->timed ? t->with : 0.0) + (skips ? result.better : result.other);
+    t->without = (t->timed ? t->without : 0.0) + (skips ? result.other : result.better);
+    t->timed = true;
     frame_ms = result.frame * (skips && result.other < result.better ? result.other / result.better : 1.0);
   }
   /* a window of few columns of tiles has none left for a second comparison in one frame */
@@ -362,8 +372,8 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     snprintf(why, capacity, "%s: nothing was measured yet", stratus_structure_name(frame->used));
     return STRATUS_OK;
   }
-  snprintf(why, capacity, "%s: measured, %s takes %.2g of the time without%s%s%s", stratus_structure_name(frame->used),
-    stratus_structure_name(t->map), t->with / t->without, t->lost ? "; " : "", t->lost ? stratus_structure_name(t->lost) : "",
-    t->lost ? " was slower" : "");
+  snprintf(why, capacity, "%s: measured%s, %s takes %.2g of the time without%s%s%s", stratus_structure_name(frame->used),
+    t->timed ? "" : " with another sampling", stratus_structure_name(t->map), t->with / t->without, t->lost ? "; " : "",
+    t->lost ? stratus_structure_name(t->lost) : "", t->lost ? " was slower" : "");
   return STRATUS_OK;
 }

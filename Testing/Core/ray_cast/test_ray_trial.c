@@ -70,6 +70,67 @@ static void the_cheaper_of_map_and_none_is_drawn(void** state)
   case_destroy(&c);
 }
 
+/* A table of running sums serves two rules and every step: what a trial found with one of them tells nothing of another. */
+static void another_sampling_is_tried_anew(void** state)
+{
+  static const struct {
+    stratus_sampling sampling;
+    double step, cell_error;
+  } samplings[] = { { STRATUS_SAMPLING_PREINTEGRATED, 1.0, 0.0 }, { STRATUS_SAMPLING_PREINTEGRATED, 0.5, 0.0 },
+    { STRATUS_SAMPLING_CELLS, 0.5, 0.1 }, { STRATUS_SAMPLING_CELLS, 0.5, 0.05 }, { STRATUS_SAMPLING_PREINTEGRATED, 0.5, 0.05 } };
+  picture_case c;
+  stratus_ray_caster* caster = NULL;
+  stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 2.0, [STRATUS_STRUCTURE_DISTANCE] = 8.0 },
+    .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
+  make_case(*state, &c);
+  c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
+  assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+  caster->forced = &costs;
+  for (int i = 0; i < 5; ++i) {
+    c.options.sampling = samplings[i].sampling;
+    c.options.sample_distance = samplings[i].step;
+    c.options.cell_error = samplings[i].cell_error;
+    /* the times turn by less than those before had told */
+    costs.frame[STRATUS_STRUCTURE_NONE] = i % 2 ? 3.0 : 2.0;
+    costs.frame[STRATUS_STRUCTURE_DISTANCE] = i % 2 ? 2.5 : 8.0;
+    for (int frame = 0; frame < 3; ++frame) {
+      draw(caster, &c);
+      assert_int_equal(second.report.sampling, samplings[i].sampling);
+      assert_int_equal(second.report.structure, i % 2 ? STRATUS_STRUCTURE_DISTANCE : STRATUS_STRUCTURE_NONE);
+      assert_int_equal(second.report.differing_pixels, 0);
+    }
+  }
+  assert_int_equal(second.report.table_builds, 1);
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+}
+
+/* The second sampling's trial has to wait until frames have taken 50 times what the first's has wasted. */
+static void what_another_sampling_told_serves_until_the_next_trial(void** state)
+{
+  static const stratus_structure expected[] = { STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_NONE,
+    STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_DISTANCE };
+  picture_case c;
+  stratus_ray_caster* caster = NULL;
+  stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 2.0, [STRATUS_STRUCTURE_DISTANCE] = 3.0 },
+    .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 },
+    .trial = 0.15 };
+  make_case(*state, &c);
+  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+  caster->forced = &costs;
+  for (int frame = 0; frame < 5; ++frame) {
+    c.options.sample_distance = frame > 0 ? 0.5 : 1.0;
+    costs.frame[STRATUS_STRUCTURE_NONE] = frame > 0 ? 3.0 : 2.0;
+    costs.frame[STRATUS_STRUCTURE_DISTANCE] = frame > 0 ? 2.0 : 3.0;
+    draw(caster, &c);
+    assert_int_equal(second.report.structure, expected[frame]);
+    assert_int_equal(strstr(second.report.why, "with another sampling") != NULL, frame > 0 && frame < 4);
+  }
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+}
+
 /* Tiles that a trial draws are the picture's: with either structure the counts are those of all pixels. */
 static void a_trial_s_tiles_are_drawn_once(void** state)
 {
@@ -171,6 +232,8 @@ int test_ray_trial(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_cheaper_of_map_and_none_is_drawn),
+    cmocka_unit_test(another_sampling_is_tried_anew),
+    cmocka_unit_test(what_another_sampling_told_serves_until_the_next_trial),
     cmocka_unit_test(a_trial_s_tiles_are_drawn_once),
     cmocka_unit_test(a_picture_of_samples_follows_from_no_times),
     cmocka_unit_test(octant_maps_are_built_when_frames_have_cost_much_more),
