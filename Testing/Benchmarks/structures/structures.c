@@ -8,9 +8,10 @@
 #include "stratus/scenes.h"
 #include "stratus/voxels.h"
 
+#include <errno.h>
 #include <time.h>
 
-#define STRIDE 10    /* fixed choices draw every so many-th frame of an orbit, which stands for all */
+#define STRIDE 10    /* fixed choices draw the first frame of an orbit and every so many-th, which stand for all */
 #define HOPELESS 2.5 /* fixed choices draw no orbit whose still pictures take so many times the least */
 #define STILLS 5
 #define SCENES_MOST 4096
@@ -172,8 +173,11 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
   for (int way = 0; way < count; ++way) {
     least = fmin(least, still[way].cpu);
   }
+  /* the first frame builds, and is itself alone; those that are drawn behind it are equal parts of the rest */
+  const int stride = s->frames > STRIDE ? STRIDE : s->frames > 1 ? s->frames - 1 : 1;
+  const double weight = s->frames > 1 ? (double)(s->frames - 1) / ((s->frames - 1) / stride) : 0.0;
   for (int frame = 0; frame < s->frames; ++frame) {
-    const bool counts = frame % STRIDE == 0;
+    const bool counts = frame % stride == 0;
     for (int way = 0; way < count; ++way) {
       const bool chooses = way == AUTO || way == AUTO_OFFERED;
       if (!chooses && still[way].cpu > HOPELESS * least) {
@@ -184,7 +188,7 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
           draw(context, casters[way], v, way, frame - 1, s, rgba, &ignored, &last[way]);
         }
         draw(context, casters[way], v, way, frame, s, rgba, &mine, &last[way]);
-        const double share = chooses || frame == 0 ? 1.0 : frame == STRIDE ? 2.0 * STRIDE - 1.0 : STRIDE;
+        const double share = chooses || frame == 0 ? 1.0 : weight;
         orbit[way].wall += share * mine.wall;
         orbit[way].cpu += share * mine.cpu;
       }
@@ -272,29 +276,52 @@ static void summary(void)
   }
 }
 
+/* Sets an option. Returns false, with a message, if there is none of this name or if its value is not a number in its range. */
+static bool set_option(settings* s, const char* name, const char* value)
+{
+  const struct {
+    const char* name;
+    int *number, least, most;
+  } numbers[] = { { "--size", &s->size, 1, 8192 }, { "--frames", &s->frames, 1, 100000 }, { "--scenes", &s->scenes, 0, 1 },
+    { "--random", &s->random, 0, 1000000 }, { "--first", &s->first, 0, 1000000 }, { "--trees", &s->trees, 0, 1 },
+    { "--seconds", &s->seconds, 0, 1 << 30 } };
+  const size_t count = sizeof numbers / sizeof *numbers;
+  char* end = NULL;
+  size_t i = 0;
+  if (!strcmp(name, "--only") && value) {
+    s->only = value;
+    return true;
+  }
+  while (i < count && strcmp(name, numbers[i].name) != 0) {
+    ++i;
+  }
+  if (i == count || !value) {
+    const bool known = i < count || !strcmp(name, "--only");
+    fprintf(stderr, "%s%s: options, each with a value, are --only", name, known ? " has no value" : " is no option");
+    for (size_t k = 0; k < count; ++k) {
+      fprintf(stderr, ", %s", numbers[k].name);
+    }
+    fprintf(stderr, "\n");
+    return false;
+  }
+  errno = 0;
+  const long number = strtol(value, &end, 10);
+  if (end == value || *end || errno || number < numbers[i].least || number > numbers[i].most) {
+    fprintf(stderr, "%s %s, must be %d..%d\n", name, value, numbers[i].least, numbers[i].most);
+    return false;
+  }
+  *numbers[i].number = (int)number;
+  return true;
+}
+
 int main(int argc, char** argv)
 {
   settings s = { .size = 256, .frames = 100, .scenes = 1, .random = 200, .trees = 1, .seconds = 1 << 30 };
   stratus_context_options options = stratus_context_options_default();
   stratus_context* context;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const char* value = argv[i + 1];
-    if (!strcmp(argv[i], "--size")) {
-      s.size = atoi(value);
-    } else if (!strcmp(argv[i], "--frames")) {
-      s.frames = atoi(value);
-    } else if (!strcmp(argv[i], "--scenes")) {
-      s.scenes = atoi(value);
-    } else if (!strcmp(argv[i], "--only")) {
-      s.only = value;
-    } else if (!strcmp(argv[i], "--random")) {
-      s.random = atoi(value);
-    } else if (!strcmp(argv[i], "--trees")) {
-      s.trees = atoi(value);
-    } else if (!strcmp(argv[i], "--seconds")) {
-      s.seconds = atoi(value);
-    } else if (!strcmp(argv[i], "--first")) {
-      s.first = atoi(value);
+  for (int i = 1; i < argc; i += 2) {
+    if (!set_option(&s, argv[i], i + 1 < argc ? argv[i + 1] : NULL)) {
+      return 2;
     }
   }
   if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
