@@ -78,7 +78,7 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
   }
   const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* shading has a table of its own */
   if (d->table_serial != table_serial) {
-    const size_t bytes = stratus_table_words(caster->table) * sizeof(float);
+    const size_t bytes = stratus_table_words(caster->made.table) * sizeof(float);
     TRY(replace(caster, TABLE, frame->table, caster->shades ? caster->shading_tables.bytes : bytes));
     d->table_serial = table_serial;
   }

@@ -62,10 +62,7 @@ struct stratus_ray_caster {
   stratus_ray_choice measured;            /* the last that the probe made; its sample distance is 0 before the first */
   stratus_ray_choice_inputs measured_for; /* the inputs of `measured`; tolerance -1: data or function have changed since */
   char tried[256];                        /* what the probe tried; empty: there was none */
-  stratus_table* table;
-  double table_distance; /* sample distance of the table */
-  int table_entries;     /* asked for, at least */
-  uint64_t table_number;
+  stratus_ray_made_table made;            /* the table that is drawn by */
   stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
   stratus_shown values;               /* the fetched values that matter; of NULL: not known yet */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */

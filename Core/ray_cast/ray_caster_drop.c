@@ -48,10 +48,10 @@ void stratus_ray_drop_values(stratus_ray_caster* caster)
   stratus_ray_drop_occupancy(caster);
   stratus_ray_drop_rough(caster);
   stratus_release(caster->context, caster->values.of);
-  stratus_table_destroy(caster->table);
+  stratus_table_destroy(caster->made.table);
   stratus_table_destroy(caster->spare_table.table);
   caster->values = (stratus_shown){ .of = NULL };
-  caster->table = NULL;
+  caster->made.table = NULL;
   caster->spare_table.table = NULL;
 }
 

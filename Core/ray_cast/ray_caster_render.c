@@ -197,7 +197,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(
-      caster->table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
+      caster->made.table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found && with_map && tries) {
       stratus_ray_choice_frame chosen = { .image = image, .tolerance = stratus_ray_tolerance(options), .arguments = &arguments };
       TRY(stratus_ray_try(caster, &chosen, why, sizeof why));

@@ -160,7 +160,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   const stratus_sampling rule = sums ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
   const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
-  const stratus_ray_made_table last = { caster->table, caster->table_distance, caster->table_entries, caster->table_number };
+  const stratus_ray_made_table last = caster->made;
   stratus_ray_made_table made = last;
   if (!table_fits(&last, sums, entries, distance)) {
     made = caster->spare_table;
@@ -180,10 +180,8 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   if (sums) {
     stratus_table_set_distance(made.table, distance);
   }
-  caster->table = made.table;
-  caster->table_entries = entries;
-  caster->table_distance = distance;
-  caster->table_number = made.number;
+  made.distance = distance;
+  caster->made = made;
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
@@ -214,7 +212,7 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   TRY(stratus_ray_shading_ranges(caster));
   const double start = stratus_now_ms();
   const uint64_t builds = caster->table_builds;
-  bool changed = !caster->table;
+  bool changed = !caster->made.table;
   TRY(update_function(caster, volume, transfer, options, &changed));
   update_choice(caster, volume, options, changed);
   if (!caster->choice.provisional) { /* the probe makes the tables of its own choice */

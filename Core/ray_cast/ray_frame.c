@@ -312,7 +312,7 @@ void stratus_ray_frame_structures(const stratus_table* table, double tolerance, 
 stratus_ray_cast_frame stratus_ray_frame_of(
   const stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map)
 {
-  const void* const table = caster->table->sums ? (const void*)caster->table->sums : (const void*)caster->table->rgba;
+  const void* const table = caster->made.table->sums ? (const void*)caster->made.table->sums : (const void*)caster->made.table->rgba;
   return (stratus_ray_cast_frame){ .arguments = arguments,
     .values = caster->traversed.values,
     .hidden = caster->hidden,

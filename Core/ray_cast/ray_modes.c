@@ -250,7 +250,7 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 {
   const stratus_mode mode = caster->shown.mode;
   if (caster->shades) {
-    return caster->table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
+    return caster->made.table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   }
   if (mode == STRATUS_MODE_ISOSURFACE) {
     return STRATUS_VARIANT_ISOSURFACE;

@@ -170,7 +170,7 @@ static stratus_status create_table(stratus_ray_caster* caster, const stratus_tra
 static int entries_of_labels(const stratus_ray_caster* caster)
 {
   const int least = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, stratus_ray_cast_options_default().tolerance);
-  int entries = caster->table_entries;
+  int entries = caster->made.entries;
   while (entries > least && 2.0 * entries * caster->transfer_count > 0.5 * LABEL_ENTRIES_MOST) {
     entries /= 2;
   }
@@ -217,7 +217,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
   }
   if (!dependent) {
     for (int c = 0; c <= last; ++c) {
-      TRY(create_table(caster, caster->transfers + c, c, caster->table_entries, &shading->tables[c]));
+      TRY(create_table(caster, caster->transfers + c, c, caster->made.entries, &shading->tables[c]));
     }
     return STRATUS_OK;
   }
@@ -227,9 +227,9 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
     color.opacity = opaque;
     color.opacity_count = 1;
     color.clamp = 1;
-    TRY(create_table(caster, &color, 0, caster->table_entries, &shading->tables[0]));
+    TRY(create_table(caster, &color, 0, caster->made.entries, &shading->tables[0]));
   }
-  return create_table(caster, caster->transfers, last, caster->table_entries, &shading->tables[last]);
+  return create_table(caster, caster->transfers, last, caster->made.entries, &shading->tables[last]);
 }
 
 /* Samples the gradient opacity from magnitude 0 to the function's last point. */
@@ -300,9 +300,9 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
   stratus_ray_shading_tables* shading = &caster->shading_tables;
   size_t at = 0;
   if (shading->components == 1) {
-    at = stratus_table_words(caster->table);
+    at = stratus_table_words(caster->made.table);
     if (out) {
-      memcpy(out, caster->table->rgba ? (const void*)caster->table->rgba : (const void*)caster->table->sums, 4 * at);
+      memcpy(out, caster->made.table->rgba ? (const void*)caster->made.table->rgba : (const void*)caster->made.table->sums, 4 * at);
     }
   }
   for (int c = 0; c < shading->components; ++c) {
@@ -335,7 +335,7 @@ stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, boo
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
   void* memory = NULL;
-  if (shading->memory && shading->table_number == caster->table_number) {
+  if (shading->memory && shading->table_number == caster->made.number) {
     return STRATUS_OK;
   }
   stratus_release(caster->context, shading->memory);
@@ -346,7 +346,7 @@ stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, boo
   (void)lay_out(caster, dependent, memory);
   shading->memory = memory;
   shading->bytes = words * sizeof(float);
-  shading->table_number = caster->table_number;
+  shading->table_number = caster->made.number;
   ++caster->table_serial;
   return STRATUS_OK;
 }

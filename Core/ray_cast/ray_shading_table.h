@@ -31,7 +31,7 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* value ranges of all components but the first */
 const stratus_value_range* stratus_ray_shading_range_of(const stratus_ray_caster* caster, int component);
-stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* call after caster->table is made */
+stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* call after caster->made is */
 bool stratus_ray_shading_several(const stratus_ray_caster* caster);       /* whether several tables decide which blocks are occupied */
 bool stratus_ray_shading_show(const stratus_ray_caster* caster);          /* whether any table shows anything */
 stratus_status stratus_ray_shading_occupancy(stratus_ray_caster* caster); /* makes caster->occupancy from several tables */

@@ -299,7 +299,7 @@ static stratus_status try_map(
   }
   t->tried[structure] = status != STRATUS_CANCELLED;
   TRY(status);
-  stratus_ray_frame_structures(caster->table, frame->tolerance, caster->occupancy, map, &other);
+  stratus_ray_frame_structures(caster->made.table, frame->tolerance, caster->occupancy, map, &other);
   const bool skips = t->with <= t->without;
   const contender mine = { skips ? t->map : STRATUS_STRUCTURE_NONE, skips ? frame->arguments : plain, skips ? caster->map->bytes : NULL };
   const contender its = { structure, &other, map->bytes };
