@@ -37,7 +37,7 @@ typedef struct stratus_ray_trial {
   bool timed;                               /* `with` and `without` are of these; else of those before */
   double with, without;                     /* milliseconds of the same pixels, by the map and by none */
   double build_ms;                          /* of the last distance map */
-  double spent, built_ms, trial_ms;         /* milliseconds that frames and builds of other maps took, and the last trial of none */
+  double spent, built_ms, trial_ms;         /* milliseconds that frames, builds of other maps, and trials of none took */
 } stratus_ray_trial;
 
 struct stratus_ray_caster {

@@ -27,15 +27,23 @@
 /* Tiles of a trial along either axis. */
 #define ACROSS 4
 #define TILES (ACROSS * ACROSS)
-/* Where a look-up skips more samples than this, the map surely pays: it reads a byte, where a sample reads eight values and a table. */
+/* Where a look-up skips more samples than this, the map surely pays, and nothing is measured. A look-up reads one byte of the map, a sample
+ * eight values and a table: for the map to lose, a look-up would have to take as long as 64 reads of values. This is policy, far from where
+ * the two are equal, so that little hangs on it. */
 #define SURE 8
-/* A structure that has taken 1 + LOST / n^2 times the other's time in n tiles draws no more squares. */
-#define LOST 16.0
-/* Builds of other maps, and each trial but the first, may take these shares of the time that frames have taken since the transfer function
- * changed. */
+/* A structure that has taken 1 + LOST / n^2 times the other's time in n tiles draws no more squares. It has then taken the time of n + LOST
+ * / n of the other's squares. With as many as there are tiles that is TILES + 1 at most, but for what the last square took beyond: to find
+ * a loser costs no more than to compare two that are as fast. */
+#define LOST ((double)TILES)
+/* Builds of other maps, and trials, may take these shares of the time that frames have taken since the transfer function changed. What
+ * never pays has then cost these shares in all, and a trial or what a map's price was wrong by. The other side is that a map which makes
+ * frames take 1/k of the time comes late: a camera that stops just then has paid k times what it had to. Any share trades one for the
+ * other. These are policy: what frames differ by from run to run, so that nobody sees that structures are tried. */
 #define BUILD_SHARE 0.05
 #define TRIAL_SHARE 0.02
-/* Octant maps skip at least as far as a distance map, and are taken unless they are slower by this: noise is no reason against them. */
+/* Octant maps skip at least as far as a distance map, so that they lose by the cache alone. They are taken unless they are slower by this.
+ * It is policy: what one trial's times are uncertain by goes to the map of fewer look-ups, and costs no more than this where it is wrong.
+ */
 #define OCTANTS_LOST 1.1
 /* Eight octant maps are eight sweeps over the blocks, where one distance map is one. */
 #define OCTANT_MAPS 8
@@ -349,7 +357,7 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
     const contender map = { t->map, frame->arguments, caster->map->bytes }, none = { STRATUS_STRUCTURE_NONE, &plain, NULL };
     trial_result result;
     TRY(compare(caster, frame, skips ? &map : &none, skips ? &none : &map, false, &result));
-    t->trial_ms = result.wasted;
+    t->trial_ms += result.wasted;
     t->with = (t->timed ? t->with : 0.0) + (skips ? result.better : result.other);
     t->without = (t->timed ? t->without : 0.0) + (skips ? result.other : result.better);
     t->timed = true;

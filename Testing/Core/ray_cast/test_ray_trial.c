@@ -131,6 +131,32 @@ static void what_another_sampling_told_serves_until_the_next_trial(void** state)
   case_destroy(&c);
 }
 
+/* Samplings that change with every frame ask for as many trials. Each finds other times, so that the report tells it from the one before.
+ */
+static void all_trials_together_take_a_small_share(void** state)
+{
+  enum { FRAMES = 200 };
+  picture_case c;
+  stratus_ray_caster* caster = NULL;
+  stratus_ray_costs costs = { .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 }, .trial = 0.1 };
+  int trials = 0;
+  make_case(*state, &c);
+  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c.options.audit = 0;
+  assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+  caster->forced = &costs;
+  for (int frame = 0; frame < FRAMES; ++frame) {
+    c.options.sample_distance = frame % 2 ? 2.0 : 1.0;
+    costs.frame[STRATUS_STRUCTURE_NONE] = 1.0 + 1e-4 * frame;
+    costs.frame[STRATUS_STRUCTURE_DISTANCE] = 1.0;
+    draw(caster, &c);
+    trials += strstr(second.report.why, "with another sampling") == NULL;
+  }
+  assert_in_range(trials, FRAMES / 10, FRAMES / 5 + 1); /* a trial of .1 is a fiftieth of five frames */
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+}
+
 /* Tiles that a trial draws are the picture's: with either structure the counts are those of all pixels. */
 static void a_trial_s_tiles_are_drawn_once(void** state)
 {
@@ -234,6 +260,7 @@ int test_ray_trial(void)
     cmocka_unit_test(the_cheaper_of_map_and_none_is_drawn),
     cmocka_unit_test(another_sampling_is_tried_anew),
     cmocka_unit_test(what_another_sampling_told_serves_until_the_next_trial),
+    cmocka_unit_test(all_trials_together_take_a_small_share),
     cmocka_unit_test(a_trial_s_tiles_are_drawn_once),
     cmocka_unit_test(a_picture_of_samples_follows_from_no_times),
     cmocka_unit_test(octant_maps_are_built_when_frames_have_cost_much_more),
