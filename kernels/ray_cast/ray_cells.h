@@ -141,15 +141,14 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   mask = mask & v_lt(zero, sum[3]);
   const vfloat scale = length * v_set(a->table.tau_scale), width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
   const vfloat per_tau = scale * v_reciprocal(width);
-  const vfloat bend = sum[3] * per_tau *
-    v_min(width * v_set(a->table.color_slope), v_set(a->table.color_most)); /* as segment_pieces_within(), in every table */
-  const vmask plain = mask & v_le(bend, one);
+  const vfloat error = segment_error(&a->table, sum[3] * per_tau, width);
+  const vmask plain = mask & v_le(error, one);
   if (m_any(plain)) {
     cell_layer(a, k, plain, sum, per_tau, s);
   }
   mask = m_andnot(mask, plain);
   if (m_any(mask)) {
-    const vfloat pieces = pieces_for(bend), share = v_reciprocal(pieces), step = (value - front) * share, piece_scale = scale * share;
+    const vfloat pieces = pieces_for(error), share = v_reciprocal(pieces), step = (value - front) * share, piece_scale = scale * share;
     vfloat piece = one;
     do {
       const vint to = vi_select(v_lt(piece, pieces), table_entry(&a->table, sums, v_fma(step, piece, front)), last);

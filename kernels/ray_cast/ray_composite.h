@@ -134,7 +134,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
     return;
   }
   vfloat entries = width_between(&a->table, sums, low, beyond, mask);
-  const vfloat pieces = segment_pieces_within(&a->table, sum[3] * depth_scale * v_reciprocal(v_max(entries, one)), entries);
+  const vfloat pieces = pieces_for(segment_error(&a->table, sum[3] * depth_scale * v_reciprocal(v_max(entries, one)), entries));
   const vmask several = mask & v_lt(one, pieces);
   vfloat share = one, piece = zero;
   vint from = front;

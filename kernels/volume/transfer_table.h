@@ -83,7 +83,7 @@ INLINE vmask opaque_on_the_way(CONSTANT stratus_table_arguments* t, GLOBAL const
   return mask & ((rises & vi_ge(to, *first)) | m_andnot(vi_ge(*first, to), rises));
 }
 
-/* The number of pieces by the error of one, relative to that allowed. */
+/* Into how many pieces a segment is cut, by its error. */
 INLINE vfloat pieces_for(vfloat q)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
@@ -92,20 +92,12 @@ INLINE vfloat pieces_for(vfloat q)
   return pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero);
 }
 
-/* Into how many pieces a segment is cut. Averaging a piece's colour is wrong by an error that grows with optical depth and with the most
- * that the colour can change over the entries, and falls with the square of the number of pieces. */
-INLINE vfloat segment_pieces(CONSTANT stratus_table_arguments* t, vfloat depth, vfloat entries)
+/* The error of a segment that is composited at once, relative to that allowed. Averaging colour is wrong by an error that grows with
+ * optical depth and with the most that the colour can change over the entries, which is no more than over the whole table. The error falls
+ * with the square of the number of pieces. */
+INLINE vfloat segment_error(CONSTANT stratus_table_arguments* t, vfloat depth, vfloat widths)
 {
-  return pieces_for(depth * entries * v_set(t->color_slope));
-}
-
-/* The same for any table: no colour changes by more than it does over the whole table. */
-INLINE vfloat segment_pieces_within(CONSTANT stratus_table_arguments* t, vfloat depth, vfloat widths)
-{
-  if (t->search_steps) {
-    return pieces_for(depth * v_min(widths * v_set(t->color_slope), v_set(t->color_most)));
-  }
-  return segment_pieces(t, depth, widths);
+  return depth * v_min(widths * v_set(t->color_slope), v_set(t->color_most));
 }
 
 #endif
