@@ -164,7 +164,7 @@ public:
    * transfer function between the values at both ends; it is never used with nearest interpolation. CELLS_SAMPLING goes from cell to cell
    * and integrates the field between a cell's walls, as finely as CellError says; composite of one component, without shading, mask and
    * gradient opacity, else the picture is refused. AUTO_SAMPLING takes the cheapest of them that keeps ImageErrorTolerance, as a probe of
-   * 640 rays measures. Default AUTO_SAMPLING.
+   * 640 rays measures, or cells in some blocks and midpoint in all others. Default AUTO_SAMPLING.
    */
   vtkSetClampMacro(Sampling, int, AUTO_SAMPLING, CELLS_SAMPLING);
   vtkGetMacro(Sampling, int);

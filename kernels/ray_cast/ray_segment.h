@@ -7,10 +7,9 @@
 #include "gather.h"
 #include "ray_setup.h"
 
-/* The structure is asked once SKIP_LANES lanes need it, or all that are left do, or one lane has waited for SKIP_PATIENCE samples. A lane
- * that waits takes samples, which add nothing. */
-#define SKIP_LANES STRATUS_WIDTH
-#define SKIP_PATIENCE 64
+/* The structure is asked once all lanes that are left need it, or one lane has waited for SKIP_PATIENCE samples. A lane that waits takes
+ * samples, which add nothing. Then it has wasted about as much as the question costs, for which all other lanes wait. */
+#define SKIP_PATIENCE STRATUS_WIDTH
 
 /* BIAS_OF(a): the double that values of wide types are relative to. stratus_index: an index into a volume of any size. */
 #ifdef STRATUS_DEVICE
@@ -64,7 +63,7 @@ INLINE vmask lanes_to_skip(const stratus_packet* k)
   const vmask need = k->live & vi_ge(k->i, k->run);
 #if STRATUS_WIDTH > 1
   const int count = m_count(need);
-  if (count && count < SKIP_LANES && count < m_count(k->live) && !m_any(k->live & vi_ge(k->i, k->run + vi_set(SKIP_PATIENCE)))) {
+  if (count && count < m_count(k->live) && !m_any(k->live & vi_ge(k->i, k->run + vi_set(SKIP_PATIENCE)))) {
     return m_none();
   }
 #endif
