@@ -381,6 +381,26 @@ static stratus_status allocate_table(stratus_table* table, const stratus_table_e
   return STRATUS_OK;
 }
 
+/* Moves points that lie at the number above a float, which is not whole, onto that float. */
+static void settle(const double* points, size_t count, size_t width)
+{
+  for (double* x = (double*)points; count > 0; x += width, --count) {
+    const double least = (double)(float)*x;
+    *x = least < *x && nextafter(least, INFINITY) == *x && least != floor(least) ? least : *x;
+  }
+}
+
+/* Copies a function for values that are whole numbers. VTK holds the value left of a step at the step, so that a translated function has
+ * its step at the next number. Whole numbers tell no difference, and between two of them a ray meets that one float hardly ever; but a
+ * label window's step now lies at the border of the grid's cells, none of which need be divided. */
+static stratus_status copy_settled(stratus_context* context, const stratus_transfer* transfer, stratus_transfer** copy)
+{
+  TRY(stratus_transfer_copy(context, transfer, 1, copy));
+  settle((*copy)->opacity, (*copy)->opacity_count, 2);
+  settle((*copy)->color, (*copy)->color_count, 4);
+  return STRATUS_OK;
+}
+
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* given,
   stratus_sampling sampling, double sample_distance, int least, stratus_table** out)
 {
@@ -388,10 +408,15 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   stratus_status status = STRATUS_OK;
   stratus_table* table = NULL;
   stratus_pieces* pieces = NULL;
+  stratus_transfer* settled = NULL;
   stratus_table_entries entries = { .cells = 0 };
   void* memory = NULL;
 
   values.sums = sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  if (values.fetching.integer && !values.fetching.wide) {
+    TRY_CLEANUP(copy_settled(context, transfer, &settled));
+    transfer = settled;
+  }
   TRY_CLEANUP(stratus_pieces_create(context, transfer, &pieces));
   TRY_CLEANUP(stratus_table_entries_create(context, transfer, pieces, &values, least, &entries));
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *table, &memory));
@@ -416,6 +441,7 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
 cleanup:
   stratus_table_entries_release(context, &entries);
   stratus_pieces_destroy(pieces);
+  stratus_release(context, settled);
   stratus_table_destroy(table);
   return status;
 }

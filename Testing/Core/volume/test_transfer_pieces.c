@@ -172,6 +172,44 @@ static void tables_take_the_function_at_every_value(void** state)
   stratus_context_destroy(context);
 }
 
+/* Label windows as VTK's functions give them, whose steps lie at the number above the half: their tables are those of steps at the half,
+ * and no cell is divided. Floats may have the half itself, so that theirs are divided. */
+static void steps_above_a_half_divide_no_cell_of_whole_numbers(void** state)
+{
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  const double color[4] = { 0, 1, 0.5, 0.25 };
+  double at[16], above[16];
+  for (int i = 0; i < 8; ++i) {
+    at[2 * i] = 0.5 + i / 2;
+    above[2 * i] = nextafter(at[2 * i], INFINITY);
+    at[2 * i + 1] = above[2 * i + 1] = (i + 1) / 2 % 2 ? 0.3 : 0.0;
+  }
+  stratus_transfer t = stratus_transfer_default();
+  t.opacity_count = 8;
+  t.color = color;
+  t.color_count = 1;
+  for (int whole = 0; whole < 2; ++whole) {
+    const stratus_table_values v = { .fetching = { .integer = whole }, .lo = 0.0f, .hi = 10.0f };
+    stratus_table* tables[2];
+    for (int kind = 0; kind < 2; ++kind) {
+      t.opacity = kind ? above : at;
+      assert_int_equal(stratus_table_create(context, &t, &v, STRATUS_SAMPLING_PREINTEGRATED, 1.0, &tables[kind]), STRATUS_OK);
+    }
+    if (whole) {
+      assert_int_equal(tables[1]->search_steps, 0);
+      assert_int_equal(stratus_table_words(tables[0]), stratus_table_words(tables[1]));
+      assert_memory_equal(tables[0]->sums, tables[1]->sums, stratus_table_words(tables[0]) * sizeof(float));
+    } else {
+      assert_false(table_shows(tables[1], 0.5f));
+      assert_true(table_shows(tables[1], nextafterf(0.5f, 1.0f)));
+    }
+    stratus_table_destroy(tables[0]);
+    stratus_table_destroy(tables[1]);
+  }
+  stratus_context_destroy(context);
+}
+
 /* A plateau of a millionth of the range between vertical steps, or with ramps, has entries of its own. */
 static void a_plateau_of_a_millionth_has_entries(void** state)
 {
@@ -247,6 +285,7 @@ int test_transfer_pieces(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(extremes_are_those_of_all_points),
     cmocka_unit_test(tables_take_the_function_at_every_value),
+    cmocka_unit_test(steps_above_a_half_divide_no_cell_of_whole_numbers),
     cmocka_unit_test(a_plateau_of_a_millionth_has_entries),
     cmocka_unit_test(windows_of_labels_show_their_label_alone),
   };
