@@ -66,7 +66,7 @@ static void pass(const stratus_transfer* transfer, double voxel, double x, doubl
 static void measure_variation(const stratus_transfer* transfer, double voxel, double lo, double hi, variation* v)
 {
   const double width = (hi - lo) / BINS;
-  double last[4], sum = 0.0;
+  double last[4], sum = 0.0, passed = lo;
   size_t opacity = 0, color = 0;
   v->from = lo;
   v->per_bin = width > 0.0 ? 1.0 / width : 0.0;
@@ -82,11 +82,19 @@ static void measure_variation(const stratus_transfer* transfer, double voxel, do
       }
       if (next > lo) {
         pass(transfer, voxel, next, last, &sum);
+        passed = next;
       }
-      opacity += next_opacity == next;
-      color += next_color == next;
+      while (opacity < transfer->opacity_count && transfer->opacity[2 * opacity] <= next) {
+        ++opacity; /* a step's points are one place */
+      }
+      while (color < transfer->color_count && transfer->color[4 * color] <= next) {
+        ++color;
+      }
     }
-    pass(transfer, voxel, border, last, &sum);
+    if (border > passed) { /* a point may lie at the very border */
+      pass(transfer, voxel, border, last, &sum);
+      passed = border;
+    }
     v->below[bin] = (float)sum;
   }
 }
