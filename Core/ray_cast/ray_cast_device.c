@@ -106,6 +106,9 @@ static const char* obstacle(const stratus_ray_caster* caster)
   if (caster->map && caster->map->bytes_size > largest) {
     return "the distance map is larger than the device's largest allocation";
   }
+  if (caster->choice.sampling == STRATUS_SAMPLING_LOCAL && caster->rough->bytes_size > largest) {
+    return "the map of rough blocks is larger than the device's largest allocation";
+  }
   if (stratus_type_is_wide(caster->traversed.type) && !stratus_device_has_double(device)) {
     return "the device has no double for this type of values";
   }

@@ -304,7 +304,7 @@ typedef struct candidates {
 static stratus_status search_local(probe* p, candidates* k, double most, int cells, double* least, int* best, family** found)
 {
   const stratus_probe_classes* classes = &p->classes;
-  double all = 0.0, rough = 0.0, before = INFINITY;
+  double all = 0.0, rough = 0.0, before = INFINITY, limit = LOCAL_GAIN * *least;
   for (int c = 0; c < STRATUS_PROBE_CLASSES; ++c) {
     all += (double)classes->count[c];
   }
@@ -324,17 +324,22 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
       .cells = cells,
       .beyond = beyond,
       .rough = rough / all };
-    if (cost_of(p, &f, 0) > LOCAL_GAIN * *least) {
+    if (cost_of(p, &f, 0) > limit) {
       break; /* the next class only adds cells */
     }
+    const stratus_status lent = lend_rough(p, beyond);
+    if (lent == STRATUS_OUT_OF_MEMORY || lent == STRATUS_OVERFLOW) {
+      break; /* the rule only saves time */
+    }
+    TRY(lent);
     for (int r = 0; r < CELL_RUNGS; ++r) {
       f.error[r] = -1.0;
     }
-    TRY(search(p, &f, LOCAL_START, most, LOCAL_GAIN * *least, &rung));
+    TRY(search(p, &f, LOCAL_START, most, limit, &rung));
     const double cost = rung >= 0 ? cost_of(p, &f, rung) : INFINITY;
-    if (cost < LOCAL_GAIN * *least) {
+    if (cost < limit) {
       k->local = f;
-      *least = cost;
+      *least = limit = cost;
       *best = rung;
       *found = &k->local;
     } else if (cost > before) {
@@ -397,6 +402,14 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
   }
 }
 
+/* Whether a setting errs like the finer one that it was compared with. */
+static bool too_near(const probe* p, const family* f, int rung, const setting* fine)
+{
+  const bool local = f->sampling == STRATUS_SAMPLING_LOCAL; /* and then the finer one is of cells */
+  const bool open = local ? !(p->options->cell_error > 0.0) : f->rungs > 1;
+  return (local || f->sampling == fine->sampling) && open && (local ? f->cells : rung) > fine->rung - FINER_BY;
+}
+
 /* Takes the cheapest of the settings that keep the tolerance, else the finest. *beyond: blocks of classes below it are rough, 0 if the
  * choice is not rule local. */
 static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
@@ -424,8 +437,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
     family* found = NULL;
     int best = 0;
     TRY(compare(p, &k, most, &best, &found));
-    const bool same = found && found->sampling == k.fine.sampling;
-    if (k.fine.rung == last || (found && !(same && found->rungs > 1 && best > k.fine.rung - FINER_BY))) {
+    if (k.fine.rung == last || (found && !too_near(p, found, best, &k.fine))) {
       const setting s = found ? setting_of(found, best) : k.fine;
       take(p, &s, choice);
       *beyond = s.sampling == STRATUS_SAMPLING_LOCAL ? s.beyond : 0;
@@ -440,8 +452,9 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
 /* Draws the picture of this frame with the setting that was measured last, where there is one that can draw it. The next frame measures. */
 static void keep_last(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  const bool has_map = caster->measured.sampling != STRATUS_SAMPLING_LOCAL || caster->rough;
-  if (caster->measured.sample_distance > 0.0 && has_map && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
+  const bool open = options->sampling == STRATUS_SAMPLING_AUTO && (caster->measured.sampling != STRATUS_SAMPLING_LOCAL || caster->rough);
+  const bool wanted = open || caster->measured.sampling == options->sampling;
+  if (caster->measured.sample_distance > 0.0 && wanted && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
     caster->choice = caster->measured;
   }
   caster->choice.expected_error = NAN;

@@ -132,7 +132,7 @@ typedef struct stratus_ray_cast_options {
    * those of transfer[0]. The gradient opacity of transfer[0] counts for all labels. Samples with labels are never pre-integrated. */
   int label_count;
   /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
-   * into noise; rule cells has none. Default 0. */
+   * into noise; rule cells has none, and rule local has some in its smooth blocks. Default 0. */
   int jitter;
   uint32_t jitter_seed; /* default 0 */
 } stratus_ray_cast_options;
@@ -144,7 +144,7 @@ typedef struct stratus_ray_cast_report {
   uint64_t rays;
   uint64_t samples;          /* values interpolated; isosurface: cells visited */
   uint64_t skipped;          /* segments that the structure skipped */
-  uint64_t lookups;          /* number of reads of the structure */
+  uint64_t lookups;          /* number of reads of the structure, and by rule local of its rough blocks */
   uint64_t differing_pixels; /* pixels that differ in an audit; else 0 */
   uint64_t blocks, occupied_blocks;
   /* Number of builds of each since the caster was created. A camera move raises none of them, but that an automatic structure may change
@@ -157,7 +157,7 @@ typedef struct stratus_ray_cast_report {
   stratus_structure structure; /* the one used */
   stratus_sampling sampling;   /* the one used */
   double sample_distance;      /* the one used, world length */
-  double cell_error;           /* the one used, of sampling by cells; else 0 */
+  double cell_error;           /* the one used, of rules cells and local; else 0 */
   double expected_error;       /* measured on the probe's rays, in the tolerance's terms; NaN if no ray was probed */
   int tolerance_met;           /* 0: the finest setting is expected to miss the tolerance; else 1 */
   uint64_t probe_builds;       /* number of probes since the caster was created */

@@ -56,7 +56,8 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
     const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND &&
-      this->FullSampling != STRATUS_SAMPLING_CELLS && this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step
+      this->FullSampling != STRATUS_SAMPLING_CELLS &&
+      this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step, local is not for asking
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));

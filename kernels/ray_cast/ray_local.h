@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light along a packet of rays, by two rules: from sample to sample where the transfer function hardly changes, cell by cell where it does.
- * A map of blocks of its own, which no structure decides, tells the rough blocks. A ray is a sequence of runs, the longest parts of it
- * whose blocks are all smooth or all rough. A run ends where a cell does, at a plane's number (cell_walk.h). The lattice of smooth runs is
- * the ray's own, cut to each run. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOCAL. */
+ * Light along a packet of rays, by two rules: from sample to sample where the transfer function hardly changes, cell by cell where it
+ * does. A map of blocks of its own, which no structure decides, tells the rough blocks. A ray is a sequence of runs, the longest parts of
+ * it whose blocks are all smooth or all rough. One run ends and the next begins where a cell does, at a plane's number (cell_walk.h). The
+ * lattice of smooth runs is the ray's own, cut to each run. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_LOCAL. */
 #ifndef STRATUS_RAY_LOCAL_H
 #define STRATUS_RAY_LOCAL_H
 
