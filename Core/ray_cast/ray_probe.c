@@ -37,6 +37,9 @@
  * turns between its two ways, and the lookups of where they end, are not in its cost. */
 #define LOCAL_MOST 0.5
 #define LOCAL_GAIN 0.75
+/* What rule local may err by on the probe's rays, of what other rules may: half, because two parts of it err, and those of the error that
+ * are of few blocks are met by few rays. */
+#define LOCAL_SHARE 0.5
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
 /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums, which are neighbours in rule local; a cell takes
@@ -335,7 +338,7 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
     for (int r = 0; r < CELL_RUNGS; ++r) {
       f.error[r] = -1.0;
     }
-    TRY(search(p, &f, LOCAL_START, most, limit, &rung));
+    TRY(search(p, &f, LOCAL_START, LOCAL_SHARE * most, limit, &rung));
     const double cost = rung >= 0 ? cost_of(p, &f, rung) : INFINITY;
     if (cost < limit) {
       k->local = f;
