@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Measures what march and projection cost on this machine: both draw a small mesh, once with many pixels to a cell and once with few, so
  * that costs of pixels and costs of cells are told apart. What they draw is counted by the estimate that views
- * of the user's are counted by, so that what it is wrong by is in the costs. A process does so once for each instruction set and number of
- * threads. */
+ * of the user's are counted by, so that what it is wrong by is in the costs. It is done once for each instruction set and number of
+ * threads, by a few processes (calibration.h). */
 #include "tetra_costs.h"
 
+#include "calibration.h"
 #include "mesh.h"
 
 #include <string.h>
@@ -20,7 +21,6 @@
 #define REPEATS 2
 #define ENTRIES 256
 #define TOLERANCE 0.001
-#define KEPT 16
 
 typedef struct sample {
   stratus_context context; /* without callbacks: nobody asked for these pictures */
@@ -35,6 +35,18 @@ typedef struct sample {
   int32_t vertices[4 * CELLS];
   float rgba[4 * MANY * MANY];
 } sample;
+
+/* What is measured, in nanoseconds as stratus_tetra_costs has them. Only times that can be compared between processes: a piece's cost is a
+ * difference of two, which is too small where an interruption made the second too large. */
+typedef enum measured {
+  SEGMENT,
+  SORTED,
+  CELL,
+  PACKET_OF_FEW,     /* a packet of the picture with few pixels, in which pieces hardly count */
+  PACKET_OF_MANY,    /* a packet of the other with its pieces */
+  PACKETS_PER_PIECE, /* of the picture with many pixels; the same in each process */
+  MEASURED
+} measured;
 
 /* The shortest times of a picture, in milliseconds. */
 typedef struct sample_times {
@@ -125,7 +137,7 @@ static stratus_status draw(sample* s, int side, int turn, sample_times* times)
   return STRATUS_OK;
 }
 
-static stratus_status measure(sample* s, stratus_tetra_costs* costs)
+static stratus_status measure(sample* s, double* costs)
 {
   sample_times many = { { 0 }, INFINITY, INFINITY, INFINITY, INFINITY }, few = many;
   make_mesh(s);
@@ -136,18 +148,20 @@ static stratus_status measure(sample* s, stratus_tetra_costs* costs)
     TRY(draw(s, MANY, 2 * i, &many));
     TRY(draw(s, FEW, 2 * i + 1, &few));
   }
-  costs->segment = 1e6 * many.march / many.view.passed;
-  costs->sorted = 1e6 * fmin(many.sort, few.sort) / CELLS;
-  costs->cell = 1e6 * few.bin / few.view.shown;
-  costs->packet = 1e6 * few.project / few.view.packets;
-  costs->piece = fmax(1e6 * many.project - costs->packet * many.view.packets, 0.0) / many.view.pieces;
+  costs[SEGMENT] = 1e6 * many.march / many.view.passed;
+  costs[SORTED] = 1e6 * fmin(many.sort, few.sort) / CELLS;
+  costs[CELL] = 1e6 * few.bin / few.view.shown;
+  costs[PACKET_OF_FEW] = 1e6 * few.project / few.view.packets;
+  costs[PACKET_OF_MANY] = 1e6 * many.project / many.view.packets;
+  costs[PACKETS_PER_PIECE] = many.view.packets / many.view.pieces;
   return STRATUS_OK;
 }
 
-/* Measures in a context like `context`. *costs is written only if that succeeds. */
-static stratus_status measure_like(stratus_context* context, stratus_tetra_costs* costs)
+/* Measures in a context like `context`. */
+static stratus_status measure_like(stratus_context* context, void* job, double* costs)
 {
   void* memory = NULL;
+  (void)job;
   TRY(stratus_allocate_zero(context, 1, sizeof(sample), &memory));
   sample* s = memory;
   s->context = *context;
@@ -168,30 +182,15 @@ static stratus_status measure_like(stratus_context* context, stratus_tetra_costs
 
 stratus_status stratus_tetra_costs_here(stratus_context* context, stratus_tetra_costs* costs)
 {
-  static struct kept {
-    int isa, threads;
-    stratus_tetra_costs costs;
-  } kept[KEPT];
-  static int count = 0;
-  stratus_status status = STRATUS_OK;
-#pragma omp critical(stratus_tetra_costs)
-  {
-    int i = 0;
-    while (i < count && (kept[i].isa != context->isa || kept[i].threads != context->threads)) {
-      ++i;
-    }
-    if (i == count) {
-      struct kept made = { .isa = context->isa, .threads = context->threads };
-      i = count < KEPT ? count : KEPT - 1; /* the last makes room for more */
-      status = measure_like(context, &made.costs);
-      if (status == STRATUS_OK) {
-        kept[i] = made;
-        count = i + 1;
-      }
-    }
-    if (status == STRATUS_OK) {
-      *costs = kept[i].costs;
-    }
-  }
-  return status;
+  stratus_calibration here = stratus_calibration_of_host(context, "tetrahedra", MEASURED);
+  TRY(stratus_calibrate(context, &here, measure_like, NULL));
+  const double* n = here.numbers;
+  *costs = (stratus_tetra_costs){
+    .segment = n[SEGMENT],
+    .piece = fmax(n[PACKET_OF_MANY] - n[PACKET_OF_FEW], 0.0) * n[PACKETS_PER_PIECE],
+    .packet = n[PACKET_OF_FEW],
+    .cell = n[CELL],
+    .sorted = n[SORTED],
+  };
+  return STRATUS_OK;
 }

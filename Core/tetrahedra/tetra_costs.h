@@ -27,8 +27,8 @@ struct stratus_tetra_costs {
   double segment, piece, packet, cell, sorted;
 };
 
-/* tetra_costs.c: copies the costs by this machine and by the context's instruction set and threads, which are measured when they are first
- * asked for and kept for the process. Of more than 16 pairs of instruction set and threads, those that came last are measured again.
+/* tetra_costs.c: copies the costs by this machine and by the context's instruction set and threads. They are kept for the process, and
+ * three processes measure them before they are taken from a file: see calibration.h.
  *
  * They are those of one mesh: 25 thousand cells of like size and shape, all of which show, of an opacity that ends no ray, in pictures of
  * 96 x 96 and 16 x 16 pixels. So they say how two ways of drawing compare on this machine, not how long a view takes. A mesh of many
