@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Creation and destruction of a context: its options, its device and its threads. */
 #define _POSIX_C_SOURCE 200809L
-#include "device.h"
+#include "device_choice.h"
 #include "instruction_set.h"
 
 #include <omp.h>
@@ -71,27 +71,6 @@ static stratus_status check_options(stratus_context* context, const stratus_cont
   return STRATUS_OK;
 }
 
-static stratus_status choose_device(stratus_context* context, const char* selector)
-{
-  if (!selector || !*selector) {
-    selector = "auto";
-  }
-  if (strcmp(selector, "host") != 0) {
-    TRY(stratus_device_open(context, selector, &context->device));
-  }
-  if (context->device) {
-    snprintf(context->device_name, sizeof context->device_name, "%s", stratus_device_label(context->device));
-  } else {
-    snprintf(context->device_name, sizeof context->device_name, "host (%s, %d thread%s)", stratus_isa_name(), context->threads,
-      context->threads == 1 ? "" : "s");
-    if (strcmp(selector, "auto") == 0) {
-      stratus_log(
-        context, STRATUS_LOG_INFO, "no OpenCL GPU among %d device(s): drawing on the %s", stratus_device_count(), context->device_name);
-    }
-  }
-  return STRATUS_OK;
-}
-
 stratus_status stratus_context_create(const stratus_context_options* options, stratus_context** out, char* message, size_t capacity)
 {
   const stratus_context_options defaults = stratus_context_options_default();
@@ -130,7 +109,7 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
   if (status == STRATUS_OK) {
     context = memory;
     *context = draft;
-    status = choose_device(context, options->device);
+    status = stratus_device_choose(context, options->device, false);
     draft = *context;
   }
   if (status != STRATUS_OK) {

@@ -13,7 +13,6 @@
 #include <string.h>
 
 #define PLATFORMS_MAX 16
-#define DEVICES_MAX 64
 /* Alignment that malloc() guarantees: enough for the scalar loads of kernels. A host pointer of less is copied. */
 #define BORROW_ALIGNMENT 16
 
@@ -21,7 +20,7 @@ typedef struct device_list {
   int count;
   const char* call; /* the last call that found nothing, and its error */
   cl_int error;
-  cl_device_id ids[DEVICES_MAX];
+  cl_device_id ids[STRATUS_DEVICES_MAX];
 } device_list;
 
 /* ---------------------------------------------------------------- errors */
@@ -42,8 +41,8 @@ static device_list find_devices(void)
   if (list.error != CL_SUCCESS) {
     return list;
   }
-  for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX && list.count < DEVICES_MAX; ++p) {
-    const cl_uint space = (cl_uint)(DEVICES_MAX - list.count);
+  for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX && list.count < STRATUS_DEVICES_MAX; ++p) {
+    const cl_uint space = (cl_uint)(STRATUS_DEVICES_MAX - list.count);
     cl_uint found = 0;
     /* A platform without devices is not an error: other platforms may have some. */
     const cl_int error = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, space, list.ids + list.count, &found);
@@ -114,26 +113,48 @@ static bool contains(const char* text, const char* part)
   return false;
 }
 
-/* True for a GPU that is not also a CPU: a simulator may report every type at once. */
-static bool is_gpu(cl_device_id id)
+/* A GPU that is also a CPU is none: a simulator may report every type at once. */
+static bool is_candidate(cl_device_id id, bool processors)
 {
   cl_device_type type = 0;
-  return clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL) == CL_SUCCESS && (type & CL_DEVICE_TYPE_GPU) &&
-    !(type & CL_DEVICE_TYPE_CPU);
+  return clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL) == CL_SUCCESS &&
+    (type & CL_DEVICE_TYPE_CPU ? processors : (type & CL_DEVICE_TYPE_GPU) != 0);
+}
+
+int stratus_device_candidates(bool processors, cl_device_id ids[STRATUS_DEVICES_MAX])
+{
+  const device_list list = list_devices();
+  int count = 0;
+  for (int i = 0; i < list.count; ++i) {
+    if (is_candidate(list.ids[i], processors)) {
+      ids[count] = list.ids[i];
+      ++count;
+    }
+  }
+  return count;
+}
+
+void stratus_device_describe(cl_device_id id, char* text, size_t capacity)
+{
+  char name[192], driver[128] = "";
+  device_name(id, name, sizeof name);
+  if (clGetDeviceInfo(id, CL_DRIVER_VERSION, sizeof driver - 1, driver, NULL) != CL_SUCCESS) {
+    snprintf(driver, sizeof driver, "unknown");
+  }
+  snprintf(text, capacity, "%s, driver %s", name, driver);
 }
 
 /* Returns the index of the device that the selector names, -1 if there is none. */
 static int select_device(const device_list* list, const char* selector)
 {
-  const bool automatic = strcmp(selector, "auto") == 0;
-  if (!automatic && selector[strspn(selector, "0123456789")] == '\0') {
+  if (selector[strspn(selector, "0123456789")] == '\0') {
     const unsigned long index = strtoul(selector, NULL, 10);
     return index < (unsigned long)list->count ? (int)index : -1;
   }
   for (int i = 0; i < list->count; ++i) {
     char name[192];
     device_name(list->ids[i], name, sizeof name);
-    if (automatic ? is_gpu(list->ids[i]) : contains(name, selector)) {
+    if (contains(name, selector)) {
       return i;
     }
   }
@@ -186,9 +207,10 @@ static stratus_status describe(stratus_context* context, stratus_device* device)
   return STRATUS_OK;
 }
 
-static stratus_status open_device(stratus_context* context, cl_device_id id, stratus_device** out)
+stratus_status stratus_device_open_id(stratus_context* context, cl_device_id id, stratus_device** out)
 {
   void* memory = NULL;
+  *out = NULL;
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_device), &memory));
   stratus_device* device = memory;
   device->owner = context;
@@ -215,19 +237,9 @@ cleanup:
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device)
 {
   const device_list list = list_devices();
-  const bool automatic = strcmp(selector, "auto") == 0;
   const int index = select_device(&list, selector);
-  if (index < 0) {
-    *device = NULL;
-    return automatic ? STRATUS_OK : no_such_device(context, &list, selector);
-  }
   *device = NULL;
-  const stratus_status status = open_device(context, list.ids[index], device);
-  if (automatic && status == STRATUS_DEVICE_ERROR) {
-    stratus_log(context, STRATUS_LOG_WARNING, "the GPU cannot be used: %s", context->message);
-    return STRATUS_OK;
-  }
-  return status;
+  return index < 0 ? no_such_device(context, &list, selector) : stratus_device_open_id(context, list.ids[index], device);
 }
 
 void stratus_device_close(stratus_device* device)

@@ -10,10 +10,18 @@
 #endif
 #include <CL/cl.h>
 
-/* Opens a device. selector: "auto" (the first GPU; if there is none, STRATUS_OK and *device NULL), a decimal index, or a part of a name in
- * any case. */
+/* More devices than this are not found. */
+#define STRATUS_DEVICES_MAX 64
+
+/* Opens a device. selector: a decimal index, or a part of a name in any case. */
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
+stratus_status stratus_device_open_id(stratus_context* context, cl_device_id id, stratus_device** device);
 void stratus_device_close(stratus_device* device); /* takes NULL */
+
+/* Lists the devices that "auto" may take, and returns how many they are: GPUs, and with `processors` CPUs, too. */
+int stratus_device_candidates(bool processors, cl_device_id ids[STRATUS_DEVICES_MAX]);
+/* Writes a device's name and its driver's version. */
+void stratus_device_describe(cl_device_id id, char* text, size_t capacity);
 
 /* True if the context's device builds structures. A CPU's OpenCL does not: the host builds them faster. */
 bool stratus_device_builds(const stratus_context* context);

@@ -38,8 +38,8 @@ typedef void (*stratus_log_function)(void* user, stratus_log_level level, const 
 typedef int (*stratus_progress_function)(void* user, const char* stage, double fraction);
 
 typedef struct stratus_context_options {
-  /* "auto" or NULL: the first OpenCL GPU, or the host if there is none. "host": plain C. Otherwise the device's index for
-   * stratus_device_name(), or a part of its name in any case. Default "auto". */
+  /* "auto" or NULL: the host or an OpenCL GPU, whichever draws a small picture faster (docs/devices.md). "host": plain C. Otherwise the
+   * device's index for stratus_device_name(), or a part of its name in any case. Default "auto". */
   const char* device;
   int threads;                        /* threads on the host, 1..1024; 0: as many as OpenMP offers. Default 0. */
   stratus_allocate_function allocate; /* give both functions or neither. Default: the C library. */
