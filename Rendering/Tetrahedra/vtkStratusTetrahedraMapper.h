@@ -86,9 +86,9 @@ public:
 
   //@{
   /**
-   * Set/Get the device on which rays march: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a
-   * part of its name. The picture does not depend on it. A device that does not exist is an error that lists the existing ones, and the
-   * previous device stays. A mesh that does not fit a device is drawn on the host. Default "auto".
+   * Set/Get the device on which rays march: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an
+   * OpenCL device by its number or a part of its name. The picture does not depend on it. A device that does not exist is an error that
+   * lists the existing ones, and the previous device stays. A mesh that does not fit a device is drawn on the host. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();

@@ -243,8 +243,9 @@ public:
 
   //@{
   /**
-   * Set/Get the device on which rays are cast: "auto" (the first OpenCL GPU, else the host), "host", or an OpenCL device by its number or a
-   * part of its name. A device that does not exist is an error that lists the existing ones, and the previous device stays. Default "auto".
+   * Set/Get the device on which rays are cast: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an
+   * OpenCL device by its number or a part of its name. A device that does not exist is an error that lists the existing ones, and the
+   * previous device stays. Default "auto".
    */
   virtual void SetDevice(const char* device);
   virtual const char* GetDevice();
