@@ -4,6 +4,7 @@
 #include "stratus.h"
 #include "volume.h"
 
+#include "calibration_picture.h"
 #include "device_state.h"
 #include "testing.h"
 #include "volume.h"
@@ -187,6 +188,45 @@ static int same_pictures(stratus_context* context, const stratus_volume* volume,
   return bad;
 }
 
+/* The first group of the calibration picture: all of its rays would take a simulator an hour. */
+static int same_calibration(stratus_context* device)
+{
+  enum { VALUES = STRATUS_CALIBRATION_VALUES * STRATUS_CALIBRATION_VALUES * STRATUS_CALIBRATION_VALUES };
+  static float input[VALUES + 4 * STRATUS_CALIBRATION_ENTRIES], by_host[STRATUS_CALIBRATION_FLOATS], by_device[STRATUS_CALIBRATION_FLOATS];
+  const size_t group[2] = { SIDE, SIDE };
+  cl_kernel kernel;
+  cl_mem buffers[3] = { NULL };
+  int bad = 0;
+  uint32_t state = 1;
+  for (size_t i = 0; i < COUNT_OF(input); ++i) {
+    state = state * 1664525u + 1013904223u;
+    input[i] = (float)(state >> 8) * 0x1p-24f;
+  }
+  stratus_calibration_tile_isa0(input, input + VALUES, 0, by_host);
+  const char* defines = "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=1";
+  bad |= stratus_device_kernel(device, "calibration_picture", defines, "calibration_picture", &kernel) != STRATUS_OK;
+  bad |= stratus_device_buffer(device, CL_MEM_READ_ONLY, VALUES * sizeof(float), input, false, &buffers[0]) != STRATUS_OK;
+  bad |= stratus_device_buffer(device, CL_MEM_READ_ONLY, sizeof input - VALUES * sizeof(float), input + VALUES, false, &buffers[1]) !=
+    STRATUS_OK;
+  bad |= stratus_device_buffer(device, CL_MEM_WRITE_ONLY, sizeof by_device, NULL, false, &buffers[2]) != STRATUS_OK;
+  for (unsigned i = 0; i < 3 && !bad; ++i) {
+    bad |= stratus_device_argument(device, kernel, i, sizeof(cl_mem), &buffers[i]) != STRATUS_OK;
+  }
+  bad = bad || stratus_device_run(device, kernel, 2, group, group) != STRATUS_OK;
+  for (size_t y = 0; y < SIDE && !bad; ++y) {
+    const size_t row = 4 * STRATUS_CALIBRATION_SIDE * y, bytes = 4 * SIDE * sizeof(float);
+    bad |= stratus_device_read(device, buffers[2], row * sizeof(float), bytes, by_device + row) != STRATUS_OK;
+    bad |= memcmp(by_host + row, by_device + row, bytes) != 0;
+  }
+  for (int i = 0; i < 3; ++i) {
+    stratus_device_buffer_release(buffers[i]);
+  }
+  if (bad) {
+    printf("FAILED: the calibration picture is not the host's: %s\n", stratus_context_message(device));
+  }
+  return bad;
+}
+
 int test_device_tiny(void)
 {
   char message[1024];
@@ -212,7 +252,7 @@ int test_device_tiny(void)
     printf("FAILED: %s\n", message);
     return 1;
   }
-  int bad = 0;
+  int bad = same_calibration(device);
   /* As a GPU, one ray a work item and structures built on the device; as a CPU, 16 rays. Each must run on whatever this is. */
   for (int cpu = 0; cpu < 2; ++cpu) {
     device->device->is_cpu = cpu;
