@@ -16,10 +16,24 @@
 #define STILLS 5
 #define SCENES_MOST 4096
 
-/* Ways to choose. OFFERED: a tree comes with the data. */
-enum { AUTO, NONE, BLOCK, DISTANCE, OCTANT, HYBRID, OFFERED, AUTO_OFFERED, WAYS };
+/* Ways to choose: the structures, of blocks of 4, then distances of blocks of other sizes. OFFERED: a tree comes with the data. */
+enum { AUTO, NONE, BLOCK, DISTANCE, OCTANT, HYBRID, DISTANCE_2, DISTANCE_8, DISTANCE_16, OFFERED, AUTO_OFFERED, WAYS };
 
-static const char* const ways[WAYS] = { "auto", "none", "block", "distance", "octant", "hybrid", "tree", "auto+tree" };
+static const struct way {
+  const char* name;
+  stratus_structure structure;
+  int block_size; /* 0: the default */
+} ways[WAYS] = { [AUTO] = { "auto", STRATUS_STRUCTURE_AUTO, 0 },
+  [NONE] = { "none", STRATUS_STRUCTURE_NONE, 0 },
+  [BLOCK] = { "block", STRATUS_STRUCTURE_BLOCK, 0 },
+  [DISTANCE] = { "distance", STRATUS_STRUCTURE_DISTANCE, 0 },
+  [OCTANT] = { "octant", STRATUS_STRUCTURE_OCTANT, 0 },
+  [HYBRID] = { "hybrid", STRATUS_STRUCTURE_HYBRID, 0 },
+  [DISTANCE_2] = { "distance of 2", STRATUS_STRUCTURE_DISTANCE, 2 },
+  [DISTANCE_8] = { "distance of 8", STRATUS_STRUCTURE_DISTANCE, 8 },
+  [DISTANCE_16] = { "distance of 16", STRATUS_STRUCTURE_DISTANCE, 16 },
+  [OFFERED] = { "tree", STRATUS_STRUCTURE_HYBRID, 0 },
+  [AUTO_OFFERED] = { "auto+tree", STRATUS_STRUCTURE_AUTO, 0 } };
 
 typedef struct cost {
   double wall, cpu; /* milliseconds */
@@ -96,7 +110,8 @@ static void draw(stratus_context* context, stratus_ray_caster* caster, const vie
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   const stratus_image image = { .width = s->size, .height = s->size, .rgba = rgba };
   const stratus_camera camera = camera_at(v, frame, s->frames);
-  options.structure = way == OFFERED ? STRATUS_STRUCTURE_HYBRID : way == AUTO_OFFERED ? STRATUS_STRUCTURE_AUTO : (stratus_structure)way;
+  options.structure = ways[way].structure;
+  options.block_size = ways[way].block_size;
   const double wall = clock_ms(CLOCK_MONOTONIC), cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
   check(context, stratus_ray_caster_render(caster, v->volume, v->transfers, &camera, &options, &image, report));
   sum->cpu += clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu;
@@ -196,7 +211,7 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
   }
   for (int way = 0; way < count; ++way) {
     stratus_ray_caster_destroy(casters[way]);
-    printf("%s,%s,%s,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", v->name, ways[way], stratus_structure_name(first[way].structure),
+    printf("%s,%s,%s,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", v->name, ways[way].name, stratus_structure_name(first[way].structure),
       stratus_structure_name(last[way].structure), still[way].wall, still[way].cpu, orbit[way].wall, orbit[way].cpu,
       first[way].structure_ms, first[way].cast_ms, last[way].cast_ms);
   }
@@ -204,14 +219,14 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
   for (int offered = 0; offered < (count == WAYS ? 2 : 1); ++offered) {
     const int mine = offered ? AUTO_OFFERED : AUTO;
     double best[4] = { INFINITY, INFINITY, INFINITY, INFINITY };
-    for (int way = NONE; way <= (offered ? OFFERED : HYBRID); ++way) {
+    for (int way = NONE; way < (offered ? AUTO_OFFERED : OFFERED); ++way) {
       const double costs[4] = { still[way].wall, still[way].cpu, orbit[way].wall, orbit[way].cpu };
       for (int i = 0; i < 4; ++i) {
         best[i] = fmin(best[i], costs[i]);
       }
     }
     const double costs[4] = { still[mine].wall, still[mine].cpu, orbit[mine].wall, orbit[mine].cpu };
-    printf("# %s %s over best:", v->name, ways[mine]);
+    printf("# %s %s over best:", v->name, ways[mine].name);
     const bool room = counted[offered] < SCENES_MOST; /* more scenes are printed, and left out of the summary */
     for (int i = 0; i < 4; ++i) {
       if (room) {
@@ -271,7 +286,7 @@ static void summary(void)
       double* r = ratios[offered][i];
       qsort(r, (size_t)n, sizeof(double), by_value);
       printf("# %s: %s over best fixed, %d scenes: median %.3f, 90 %% %.3f, 98 %% %.3f, worst %.3f\n", names[i],
-        ways[offered ? AUTO_OFFERED : AUTO], n, r[n / 2], r[n * 9 / 10], r[n * 98 / 100], r[n - 1]);
+        ways[offered ? AUTO_OFFERED : AUTO].name, n, r[n / 2], r[n * 9 / 10], r[n * 98 / 100], r[n - 1]);
     }
   }
 }
