@@ -1,30 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Composite rays, cell by cell, compiled for one instruction set, STRATUS_ISA. Types without a fetch of their own use the generic one,
- * until ray_fetched.c copies their values as floats. */
+ * Composite rays, cell by cell, compiled for one instruction set, STRATUS_ISA. */
 #include "ray_cast_packets.h"
 
 #define STRATUS_PREINTEGRATED 0
 #define STRATUS_RAY_MODE STRATUS_RAY_CELLS
-
-#define STRATUS_TYPE -1
-#define RAY_NAME(x) JOIN(x, cells_any)
-#include "ray_cast_tile.h"
-#define STRATUS_TYPE 1
-#define RAY_NAME(x) JOIN(x, cells_uint8)
-#include "ray_cast_tile.h"
-#define STRATUS_TYPE 2
-#define RAY_NAME(x) JOIN(x, cells_int16)
-#include "ray_cast_tile.h"
-#define STRATUS_TYPE 3
-#define RAY_NAME(x) JOIN(x, cells_uint16)
-#include "ray_cast_tile.h"
-#define STRATUS_TYPE 8
-#define RAY_NAME(x) JOIN(x, cells_float32)
-#include "ray_cast_tile.h"
+#define STRATUS_RAY_SET cells
+#include "ray_cast_tiles.h"
 
 stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_cells_tile)(int type)
 {
-  static stratus_ray_cast_tile* const tiles[11] = { tile_cells_any, tile_cells_any, tile_cells_uint8, tile_cells_int16, tile_cells_uint16,
-    tile_cells_any, tile_cells_any, tile_cells_any, tile_cells_any, tile_cells_float32, tile_cells_any };
-  return tiles[type + 1];
+  return tiles_cells[type + 1];
 }
