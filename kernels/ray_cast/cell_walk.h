@@ -54,12 +54,15 @@ INLINE int cell_begin(stratus_packet* k, int halves, cell_walk* w)
   return m_any(k->live);
 }
 
-/* Moves the rays of `mask` into the cells behind theirs. A ray always advances, even where two planes are too near for floats to tell
- * apart. Only the planes that a ray has met are taken anew; they are met at the numbers that cell_enter() computes. */
+/* Where a ray at s goes on that leaves what it is in at `leave`. A ray always advances, even where two planes are too near for floats to
+ * tell apart. */
+INLINE vfloat beyond_plane(vfloat s, vfloat leave) { return v_select(v_lt(s, leave), leave, v_fma(s, v_set(1e-6f), s + v_set(1e-6f))); }
+
+/* Moves the rays of `mask` into the cells behind theirs. Only the planes that a ray has met are taken anew; they are met at the numbers
+ * that cell_enter() computes. */
 INLINE void cell_leave(stratus_packet* k, vmask mask, cell_walk* w)
 {
-  const vfloat next = v_select(v_lt(w->s, w->leave), w->leave, v_fma(w->s, v_set(1e-6f), w->s + v_set(1e-6f)));
-  w->s = v_select(mask, next, w->s);
+  w->s = v_select(mask, beyond_plane(w->s, w->leave), w->s);
   k->live = m_andnot(k->live, mask & v_le(w->end, w->s));
   w->leave = w->end;
   for (int axis = 0; axis < 3; ++axis) {
@@ -105,6 +108,18 @@ INLINE vmask cell_lanes_to_skip(vmask mask, const cell_walk* w)
   return need;
 }
 
+/* Where rays leave the cubes of blocks nearer than `distance`, at their end at the latest. block_log2: of a block's size in planes. */
+INLINE vfloat cell_cube_exit(const stratus_packet* k, const cell_walk* w, const vint block[3], vint distance, int block_log2)
+{
+  vfloat leave = w->end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
+    const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
+    leave = v_min(plane_met(k, axis, face << vi_set(block_log2)), leave);
+  }
+  return leave;
+}
+
 /* Moves the rays of `need` over cubes of blocks that hold nothing that shows. */
 INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k, vmask need, cell_walk* w)
 {
@@ -121,12 +136,7 @@ INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
     k->lookups -= mask_int(need);
     const vmask occupied = need & vi_ge(byte, vi_set(128));
     const vint distance = byte & vi_set(127);
-    vfloat leave = w->end;
-    for (int axis = 0; axis < 3; ++axis) {
-      const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
-      const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-      leave = v_min(plane_met(k, axis, face << vi_set(a->map.block_log2 + w->halves)), leave);
-    }
+    vfloat leave = cell_cube_exit(k, w, block, distance, a->map.block_log2 + w->halves);
     const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* in the volume's rim, where values are clamped, there is no leap */
     w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
     leave = v_select(leap, leave, w->s); /* in other lanes a plane may be farther than an int can hold */

@@ -91,8 +91,7 @@ static
   }
   const vfloat begin = v_load(crop->from[piece]), end = v_load(crop->to[piece]);
   const vmask mask = crop->all & v_lt(begin, end) & v_le(v_set(a->termination), k->transparency);
-  const vint whole = v_to_int(v_min(end, v_set(8e6f)));
-  const vint beyond = vi_select(v_lt(v_from_int(whole), end), whole + vi_set(1), whole);
+  const vint beyond = segment_behind(v_min(end, v_set(8e6f)));
   k->begin = v_select(mask, begin, v_set(0.0f));
   k->end = v_select(mask, end, v_set(0.0f));
   k->i = vi_max(v_to_int(v_min(k->begin, v_set(8e6f))), crop->first);

@@ -21,13 +21,7 @@ INLINE vint local_byte(
     block[axis] = cell_inside(a, w, axis) >> vi_set(a->rough.block_log2);
   }
   const vint byte = gather_map(rough, block[0] + (block[1] + block[2] * vi_set(a->rough.rows)) * vi_set(a->rough.pitch), mask);
-  const vint distance = byte & vi_set(127);
-  *leave = w->end;
-  for (int axis = 0; axis < 3; ++axis) {
-    const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
-    const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-    *leave = v_min(plane_met(k, axis, face << vi_set(a->rough.block_log2)), *leave);
-  }
+  *leave = cell_cube_exit(k, w, block, byte & vi_set(127), a->rough.block_log2);
   return byte;
 }
 
@@ -49,7 +43,7 @@ INLINE void local_find(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
     first = m_none();
     mask = (is_rough & r->rough) | m_andnot(m_andnot(mask, is_rough), r->rough);
     leave = v_max(leave, w.leave); /* in the volume's rim, where values are clamped, the border's block is behind the ray */
-    leave = v_min(v_select(v_lt(w.s, leave), leave, v_fma(w.s, v_set(1e-6f), w.s + v_set(1e-6f))), w.end);
+    leave = v_min(beyond_plane(w.s, leave), w.end);
     r->to = v_select(mask, leave, r->to);
     mask = mask & v_lt(leave, w.end);
     w.s = v_select(mask, leave, w.s);
@@ -98,7 +92,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), whole_begin = k->begin, whole_end = k->end;
-  const vint none = vi_set(0), never = vi_set(0x7fffffff);
+  const vint never = vi_set(0x7fffffff);
   local_runs r;
   r.begin = v_max(v_from_int(k->i), k->begin);
   r.end = v_min(v_from_int(k->last), k->end);
@@ -121,8 +115,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
       k->begin = v_select(mine, r.begin, zero);
       k->end = v_select(mine, r.to, zero);
       k->i = v_to_int(k->begin);
-      const vint whole = v_to_int(k->end);
-      k->last = vi_select(mine, vi_select(v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole), none);
+      k->last = segment_behind(k->end);
       if (kind) {
         k->run = never; /* every block on the way holds what shows */
         RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);

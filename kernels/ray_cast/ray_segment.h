@@ -58,6 +58,13 @@ INLINE vfloat segment_middle(const stratus_packet* k, vfloat fi)
   return v_set(0.5f) * (v_max(fi, k->begin) + v_min(fi + v_set(1.0f), k->end));
 }
 
+/* The first segment that begins at `end` or behind it. */
+INLINE vint segment_behind(vfloat end)
+{
+  const vint whole = v_to_int(end);
+  return vi_select(v_lt(v_from_int(whole), end), whole + vi_set(1), whole);
+}
+
 INLINE vmask lanes_to_skip(const stratus_packet* k)
 {
   const vmask need = k->live & vi_ge(k->i, k->run);
@@ -140,8 +147,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
     const vmask forward = v_lt(zero, k->inverse[axis]);
     k->octant = k->octant + vi_select(forward, vi_set(a->map.octant_stride << axis), vi_set(0));
   }
-  const vint whole = v_to_int(v_min(k->end, most));
-  k->last = vi_select(k->live & v_lt(v_from_int(whole), k->end), whole + vi_set(1), whole);
+  k->last = segment_behind(v_min(k->end, most));
   k->i = vi_set(0);
   if (a->crop.has_piece) { /* segments whose middle lies in [piece_begin, piece_end) */
     const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f),
