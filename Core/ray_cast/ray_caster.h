@@ -44,6 +44,8 @@ struct stratus_ray_caster {
   stratus_context* context;
 
   stratus_volume volume;       /* as last rendered */
+  int64_t owned[2][3];         /* the cells lo..hi - 1 that this piece owns */
+  bool owns_all;               /* these are all cells */
   stratus_volume traversed;    /* what rays read: the volume itself, or its fetched values */
   float* fetched;              /* float copy of the values; NULL: none */
   uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */

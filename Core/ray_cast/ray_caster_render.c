@@ -159,8 +159,7 @@ static void fill_report(
   report->structure = used;
   report->sampling = caster->choice.sampling;
   report->sample_distance = caster->choice.sample_distance;
-  const bool by_cells = caster->choice.sampling == STRATUS_SAMPLING_CELLS || caster->choice.sampling == STRATUS_SAMPLING_LOCAL;
-  report->cell_error = by_cells ? caster->choice.cell_error : 0.0;
+  report->cell_error = stratus_ray_visits_cells(caster->choice.sampling) ? caster->choice.cell_error : 0.0;
   report->expected_error = caster->choice.expected_error;
   report->tolerance_met = caster->choice.met;
   report->probe_builds = caster->probe_builds;
@@ -183,8 +182,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
-  TRY(stratus_ray_frame_arguments(
-    caster->context, &caster->traversed, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(stratus_ray_frame_arguments(caster, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
   const bool covers = stratus_ray_modes_covers(options);
   bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   double start = stratus_now_ms(), drawn_ms = 0.0;

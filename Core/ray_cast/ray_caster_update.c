@@ -83,6 +83,7 @@ static stratus_status update_ranges(
       caster->ranges = ranges;
       stratus_ray_fetched_drop(caster);
       ++caster->range_builds;
+      caster->owns_all = stratus_volume_owned(volume, caster->owned[0], caster->owned[1]);
     }
     *ms = stratus_now_ms() - start;
     caster->scan_ms = same ? caster->scan_ms : *ms;

@@ -121,16 +121,17 @@ static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_opt
   return a->crop.regions != 0;
 }
 
-static bool set_piece(const stratus_volume* volume, stratus_ray_cast_arguments* a)
+/* Sets the part that this piece of a larger volume draws. Returns false if it owns nothing. */
+static bool set_piece(const stratus_ray_caster* caster, stratus_ray_cast_arguments* a)
 {
-  int64_t lo[3], hi[3];
+  const stratus_volume* volume = &caster->traversed;
+  const int64_t *lo = caster->owned[0], *hi = caster->owned[1];
   const double half = volume->cell_centered ? 0.5 : 0.0;
-  stratus_volume_owned(volume, lo, hi);
+  a->crop.has_piece = !caster->owns_all;
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t cells = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
     a->crop.piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? (double)lo[axis] - half : -(double)UNBOUNDED);
     a->crop.piece[1][axis] = stratus_pair_of(hi[axis] < cells ? (double)hi[axis] - half : (double)UNBOUNDED);
-    a->crop.has_piece |= lo[axis] > 0 || hi[axis] < cells;
     if (lo[axis] >= hi[axis]) {
       return false;
     }
@@ -205,9 +206,11 @@ static stratus_status check_samples(
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,
+stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
   const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* a, bool* empty)
 {
+  stratus_context* context = caster->context;
+  const stratus_volume* volume = &caster->traversed;
   double index_to_world[16], world_to_index[16];
   memset(a, 0, sizeof *a);
   TRY(stratus_camera_check(context, camera, image));
@@ -241,7 +244,7 @@ stratus_status stratus_ray_frame_arguments(stratus_context* context, const strat
   a->values.bias_high = (int)(uint32_t)(bits >> 32);
   a->lattice.jitter = options->jitter != 0;
   a->lattice.seed = (int)options->jitter_seed;
-  *empty = !set_box(volume, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(volume, a) ||
+  *empty = !set_box(volume, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(caster, a) ||
     !set_regions(volume, options, a);
   return STRATUS_OK;
 }
@@ -255,10 +258,7 @@ static void set_map(const stratus_occupancy* occupancy, const stratus_distance_m
   a->map.bounds_at = (int)(map->bounds_at / 64);
   a->map.bounds_across = (int)occupancy->blocks[0];
   a->map.bounds_rows = (int)occupancy->blocks[1];
-  a->map.block_log2 = 0;
-  while (1 << a->map.block_log2 < map->block_size) {
-    ++a->map.block_log2;
-  }
+  a->map.block_log2 = stratus_distance_map_block_log2(map);
   for (int axis = 0; axis < 3; ++axis) {
     a->map.occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * occupancy->block_size) : -UNBOUNDED;
     a->map.occupied[1][axis] =

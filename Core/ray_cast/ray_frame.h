@@ -7,8 +7,8 @@
 #include "ray_cast_arguments.h"
 #include "volume.h"
 
-/* Sets all arguments but those of table and map. *empty: no ray can meet the volume. */
-stratus_status stratus_ray_frame_arguments(stratus_context* context, const stratus_volume* volume, const stratus_camera* camera,
+/* Sets all arguments of the caster's volume but those of table and map. *empty: no ray can meet the volume. */
+stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
   const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
   bool* empty);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */

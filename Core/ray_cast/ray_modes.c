@@ -217,7 +217,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.grey_scale = extent > 0.0 && isfinite(extent) ? (float)(1.0 / extent) : 0.0f;
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
-  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
+  if (stratus_ray_visits_cells(caster->choice.sampling)) {
     const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + ranges->bias, hi + ranges->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
   }
@@ -226,10 +226,8 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   }
   if (caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
     const stratus_distance_map* map = caster->rough;
-    a->rough = (stratus_ray_rough){ .pitch = (int)map->pitch, .rows = (int)map->blocks[1] };
-    while (1 << a->rough.block_log2 < map->block_size) {
-      ++a->rough.block_log2;
-    }
+    a->rough =
+      (stratus_ray_rough){ .pitch = (int)map->pitch, .rows = (int)map->blocks[1], .block_log2 = stratus_distance_map_block_log2(map) };
   }
   a->mode.contour_count = 0;
   for (int n = 0; n < caster->shown.contour_count; ++n) {

@@ -52,8 +52,7 @@ static const double costs[] = { [STRATUS_SAMPLING_MIDPOINT] = 1.0,
 typedef struct setting {
   stratus_sampling sampling;
   int rung;
-  int cells;  /* local: the rung of cells in rough blocks */
-  int beyond; /* local: blocks of classes below it are rough */
+  int cells; /* local: the rung of cells in rough blocks */
 } setting;
 
 /* What one sampling rule has shown so far, at all its rungs. */
@@ -61,7 +60,8 @@ typedef struct family {
   stratus_sampling sampling;
   int rungs;                /* 1 where the user has set the step */
   double cost;              /* of a voxel's length, at a step of one voxel, in samples of the midpoint rule */
-  int cells, beyond;        /* as in setting */
+  int cells;                /* as in setting */
+  int beyond;               /* local: blocks of classes below it are rough; else 0 */
   double rough;             /* local: the share of rough blocks */
   double error[CELL_RUNGS]; /* root mean square on the probe's rays; -1: not measured */
 } family;
@@ -109,8 +109,7 @@ static stratus_status begin_patch(const patch_job* job, int number, stratus_ray_
   *image = (stratus_image){
     .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number
   };
-  return stratus_ray_frame_arguments(
-    job->p->caster->context, &job->p->caster->traversed, &job->p->patches[number].camera, &job->p->whole, image, job->distance, a, empty);
+  return stratus_ray_frame_arguments(job->p->caster, &job->p->patches[number].camera, &job->p->whole, image, job->distance, a, empty);
 }
 
 static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TILE_COUNTS])
@@ -158,9 +157,6 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
   stratus_ray_caster* caster = p->caster;
   uint64_t sums[STRATUS_TILE_COUNTS];
   take(p, s, &caster->choice);
-  if (s->sampling == STRATUS_SAMPLING_LOCAL) {
-    TRY(lend_rough(p, s->beyond));
-  }
   TRY(stratus_ray_update_table(caster, p->options));
   const patch_job job = { .p = p,
     .pictures = pictures,
@@ -222,7 +218,14 @@ static void note(probe* p, const char* format, ...)
 
 static setting setting_of(const family* f, int rung)
 {
-  return (setting){ f->sampling, rung, f->cells, f->beyond };
+  return (setting){ f->sampling, rung, f->cells };
+}
+
+static void forget(family* f)
+{
+  for (int r = 0; r < CELL_RUNGS; ++r) {
+    f->error[r] = -1.0;
+  }
 }
 
 static stratus_status measure(probe* p, family* f, int rung)
@@ -335,9 +338,7 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
       break; /* the rule only saves time */
     }
     TRY(lent);
-    for (int r = 0; r < CELL_RUNGS; ++r) {
-      f.error[r] = -1.0;
-    }
+    forget(&f);
     TRY(search(p, &f, LOCAL_START, LOCAL_SHARE * most, limit, &rung));
     const double cost = rung >= 0 ? cost_of(p, &f, rung) : INFINITY;
     if (cost < limit) {
@@ -368,9 +369,7 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
     family* f = &k->of[i];
     const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
     int start = cells ? k->fine.rung - FINER_BY : ONE_VOXEL, rung;
-    for (int r = 0; r < CELL_RUNGS; ++r) {
-      f->error[r] = -1.0;
-    }
+    forget(f);
     if (cells ? cells_cost > least : least < INFINITY && k->of[0].error[ONE_VOXEL] <= most && k->of[0].rungs > 1) {
       continue; /* where one sample a voxel is enough, the function hardly bends, and two reads a sample gain nothing */
     }
@@ -443,7 +442,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
     if (k.fine.rung == last || (found && !too_near(p, found, best, &k.fine))) {
       const setting s = found ? setting_of(found, best) : k.fine;
       take(p, &s, choice);
-      *beyond = s.sampling == STRATUS_SAMPLING_LOCAL ? s.beyond : 0;
+      *beyond = found ? found->beyond : 0;
       choice->met = found != NULL;
       choice->expected_error = found ? found->error[best] : NAN;
       return STRATUS_OK;

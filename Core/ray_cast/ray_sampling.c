@@ -20,21 +20,9 @@ double stratus_ray_voxel_length(const stratus_volume* volume)
   return fmin(shortest, FLAT_SHORTER * flat);
 }
 
-/* Whether the volume is a piece of a larger one. A segment of rule local may be four voxels long and belongs to the piece of its middle, so
- * that it would read beyond one layer of ghosts. */
-static bool is_piece(const stratus_volume* volume)
-{
-  int64_t lo[3], hi[3];
-  bool piece = false;
-  stratus_volume_owned(volume, lo, hi);
-  for (int axis = 0; axis < 3; ++axis) {
-    piece = piece || lo[axis] > 0 || hi[axis] < volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
-  }
-  return piece;
-}
-
 /* Rule cells knows a value's colour and opacity alone. The rules that pre-integrate take the field for linear between two values of one
- * medium. */
+ * medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger volume it
+ * would read beyond one layer of ghosts. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)
 {
   const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !stratus_ray_shading_several(caster);
@@ -42,8 +30,7 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
     case STRATUS_SAMPLING_CELLS:
       return one_medium && !caster->shades && !options->mask;
     case STRATUS_SAMPLING_LOCAL:
-      return one_medium && !caster->shades && !options->mask && options->interpolation != STRATUS_INTERPOLATION_NEAREST &&
-        !is_piece(&caster->volume);
+      return one_medium && !caster->shades && !options->mask && options->interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
     case STRATUS_SAMPLING_PREINTEGRATED:
       return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST;
     default:

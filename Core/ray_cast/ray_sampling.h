@@ -30,6 +30,11 @@ typedef struct stratus_ray_choice_inputs {
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice);
 /* Returns the tolerance that governs: the default one where the user has set rule and step by hand. */
 double stratus_ray_tolerance(const stratus_ray_cast_options* options);
+/* Whether rays of a rule pass through cells, by pieces of choice.cell_error: all the way, or in rough blocks. */
+static inline bool stratus_ray_visits_cells(stratus_sampling sampling)
+{
+  return sampling == STRATUS_SAMPLING_CELLS || sampling == STRATUS_SAMPLING_LOCAL;
+}
 /* Whether a rule can draw the scene at all. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling);
 double stratus_ray_voxel_length(

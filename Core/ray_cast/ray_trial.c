@@ -335,9 +335,8 @@ static stratus_status try_map(
 static bool same_sampling(const stratus_ray_caster* caster)
 {
   const stratus_ray_choice *last = &caster->trial.choice, *next = &caster->choice;
-  const bool by_cells = next->sampling == STRATUS_SAMPLING_CELLS || next->sampling == STRATUS_SAMPLING_LOCAL;
   return caster->trial.table_serial == caster->table_serial && last->sampling == next->sampling &&
-    last->sample_distance == next->sample_distance && (!by_cells || last->cell_error == next->cell_error);
+    last->sample_distance == next->sample_distance && (!stratus_ray_visits_cells(next->sampling) || last->cell_error == next->cell_error);
 }
 
 stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, char* why, size_t capacity)

@@ -87,7 +87,7 @@ static bool is_duplicate(const ghosts* g, int64_t i, int64_t j, int64_t k)
   return all;
 }
 
-void stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t hi[3])
+bool stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t hi[3])
 {
   const ghosts g = ghosts_of(volume);
   if (!g.cells && !g.points) {
@@ -95,7 +95,7 @@ void stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t h
       lo[a] = 0;
       hi[a] = g.n[a];
     }
-    return;
+    return true;
   }
   for (int a = 0; a < 3; ++a) {
     lo[a] = g.n[a];
@@ -117,4 +117,5 @@ void stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t h
   if (hi[0] == 0) {
     lo[0] = lo[1] = lo[2] = 0;
   }
+  return lo[0] == 0 && lo[1] == 0 && lo[2] == 0 && hi[0] == g.n[0] && hi[1] == g.n[1] && hi[2] == g.n[2];
 }

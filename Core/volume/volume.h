@@ -38,8 +38,8 @@ void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[1
  * NULL if there is no such cell. */
 stratus_status stratus_volume_hidden_cells(stratus_context* context, const stratus_volume* volume, uint8_t** hidden);
 /* Gives the cells that this piece owns (not DUPLICATE), as the box [lo, hi) in cells (cell_centered: in values). Without ghosts these are
- * all cells. */
-void stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t hi[3]);
+ * all cells. Returns whether the box is of all cells. Reads all ghosts. */
+bool stratus_volume_owned(const stratus_volume* volume, int64_t lo[3], int64_t hi[3]);
 
 /* ---- value_range.c */
 struct stratus_value_range {
@@ -224,5 +224,15 @@ struct stratus_distance_map {
    * mean nothing. */
   int tree_nodes;
 };
+
+/* Returns the binary logarithm of the size of the map's blocks. */
+static inline int stratus_distance_map_block_log2(const stratus_distance_map* map)
+{
+  int log2 = 0;
+  while (1 << log2 < map->block_size) {
+    ++log2;
+  }
+  return log2;
+}
 
 #endif

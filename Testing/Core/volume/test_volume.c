@@ -207,18 +207,18 @@ static void the_owned_box_leaves_out_another_pieces_cells(void** state)
   v.dimensions[0] = 5;
   v.dimensions[1] = 4;
   v.dimensions[2] = 3;
-  stratus_volume_owned(&v, lo, hi);
+  assert_true(stratus_volume_owned(&v, lo, hi));
   assert_memory_equal(lo, ((const int64_t[]){ 0, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 4, 3, 2 }), sizeof hi);
   v.cell_ghosts = cells;
   for (int c = 0; c < 4 * 3 * 2; ++c) {
     cells[c] = c % 4 < 1 || c / 12 == 1 ? STRATUS_GHOST_DUPLICATE : 0;
   }
-  stratus_volume_owned(&v, lo, hi);
+  assert_false(stratus_volume_owned(&v, lo, hi));
   assert_memory_equal(lo, ((const int64_t[]){ 1, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 4, 3, 1 }), sizeof hi);
   memset(cells, STRATUS_GHOST_DUPLICATE, sizeof cells);
-  stratus_volume_owned(&v, lo, hi);
+  assert_false(stratus_volume_owned(&v, lo, hi));
   assert_memory_equal(lo, ((const int64_t[]){ 0, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 0, 0, 0 }), sizeof hi);
   /* Points alone: the first two layers along x are another's, the layer between them and ours is shared. */
@@ -227,7 +227,7 @@ static void the_owned_box_leaves_out_another_pieces_cells(void** state)
   for (int p = 0; p < 60; ++p) {
     points[p] = p % 5 < 2 ? STRATUS_GHOST_DUPLICATE : 0;
   }
-  stratus_volume_owned(&v, lo, hi);
+  assert_false(stratus_volume_owned(&v, lo, hi));
   assert_memory_equal(lo, ((const int64_t[]){ 1, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 4, 3, 2 }), sizeof hi);
 }
