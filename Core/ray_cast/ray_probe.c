@@ -265,12 +265,25 @@ static int coarsest_cells(const probe* p, const family* f)
   return rung < 0.0 ? 0 : rung < f->rungs - 1 ? (int)rung : f->rungs - 1;
 }
 
+/* The coarsest rung of a lattice: one voxel, or the mean free path of light where that is longer. A longer segment gets one colour where
+ * only its front is seen, and the probe may have no ray where that shows. Local: only in smooth blocks, whose values differ little. */
+static int coarsest_lattice(const probe* p, const family* f)
+{
+  const stratus_probe_classes* k = &p->classes;
+  double depth = f->sampling == STRATUS_SAMPLING_LOCAL ? 0.0 : k->deepest;
+  for (int c = f->beyond; f->sampling == STRATUS_SAMPLING_LOCAL && c < STRATUS_PROBE_CLASSES; ++c) {
+    depth = fmax(depth, k->depth[c]);
+  }
+  const double rung = ceil(4.0 * (2.0 + log2(depth))); /* -INFINITY where nothing is opaque */
+  return f->rungs == 1 || p->options->mode != STRATUS_MODE_COMPOSITE || !(rung > 0.0) ? 0 : rung < ONE_VOXEL ? (int)rung : ONE_VOXEL;
+}
+
 /* Finds the coarsest rung of a family that keeps `most`, by as many rungs at a time as the error asks for. Gives up once the next rung to
  * be measured would cost more than `dear`. *best: -1 if no rung was found. */
 static stratus_status search(probe* p, family* f, int start, double most, double dear, int* best)
 {
   const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
-  int low = cells ? coarsest_cells(p, f) : 0, high = f->rungs - 1; /* the rung lies in low..high, if there is one */
+  int low = cells ? coarsest_cells(p, f) : coarsest_lattice(p, f), high = f->rungs - 1; /* the rung lies in low..high, if there is one */
   int rung = start < low ? low : start < high ? start : high;
   *best = -1;
   while (low <= high) {

@@ -47,19 +47,27 @@ static double change_between(const double a[4], const double b[4])
   return largest;
 }
 
-/* Sum of all changes of a function's appearance below each bin's border. */
+/* Sum of all changes of a function's appearance below each bin's border, the optical depth of a voxel's length there, and the greatest. */
 typedef struct variation {
   double from, per_bin; /* bin of value v: (v - from) * per_bin */
-  float below[BINS + 1];
+  double deepest;
+  float below[BINS + 1], depth[BINS + 1];
 } variation;
 
+/* Optical depth of the opacity of an appearance. */
+static double depth_of(const double seen[4])
+{
+  return -log1p(-seen[3]);
+}
+
 /* Adds the variation on the way to x, and the step at x, to `sum`. last: the appearance where the way begins; receives that at x. */
-static void pass(const stratus_transfer* transfer, double voxel, double x, double last[4], double* sum)
+static void pass(const stratus_transfer* transfer, double voxel, double x, double last[4], variation* v, double* sum)
 {
   double before[4], at[4];
   appearance(transfer, voxel, nextafter(x, -INFINITY), before);
   appearance(transfer, voxel, x, at);
   *sum += change_between(last, before) + change_between(before, at);
+  v->deepest = fmax(v->deepest, fmax(depth_of(before), depth_of(at)));
   memcpy(last, at, sizeof at);
 }
 
@@ -71,6 +79,7 @@ static void measure_variation(const stratus_transfer* transfer, double voxel, do
   v->from = lo;
   v->per_bin = width > 0.0 ? 1.0 / width : 0.0;
   appearance(transfer, voxel, lo, last);
+  v->deepest = depth_of(last);
   for (int bin = 0; bin <= BINS; ++bin) {
     const double border = lo + bin * width;
     for (;;) { /* the function's points below the border, in ascending order */
@@ -81,7 +90,7 @@ static void measure_variation(const stratus_transfer* transfer, double voxel, do
         break;
       }
       if (next > lo) {
-        pass(transfer, voxel, next, last, &sum);
+        pass(transfer, voxel, next, last, v, &sum);
         passed = next;
       }
       while (opacity < transfer->opacity_count && transfer->opacity[2 * opacity] <= next) {
@@ -92,10 +101,11 @@ static void measure_variation(const stratus_transfer* transfer, double voxel, do
       }
     }
     if (border > passed) { /* a point may lie at the very border */
-      pass(transfer, voxel, border, last, &sum);
+      pass(transfer, voxel, border, last, v, &sum);
       passed = border;
     }
     v->below[bin] = (float)sum;
+    v->depth[bin] = (float)depth_of(last);
   }
 }
 
@@ -156,6 +166,16 @@ static int64_t rows_of(const stratus_occupancy* occupancy)
   return (occupancy->hi[1] - occupancy->lo[1]) * (occupancy->hi[2] - occupancy->lo[2]);
 }
 
+/* Adds a medium's share of what a block can show: changes of the function, and the optical depth at its least value. */
+static void add_medium(const variation* v, const stratus_value_range* r, int64_t b, double* changes, double* depth)
+{
+  if (r->lo[b] <= r->hi[b]) {
+    const double lo = (double)r->lo[b] + r->bias;
+    *changes += variation_between(v, lo, (double)r->hi[b] + r->bias);
+    *depth += (double)v->depth[bin_of(v, lo)];
+  }
+}
+
 static stratus_status classify(const stratus_ray_caster* caster, double voxel, stratus_probe_classes* k)
 {
   const stratus_occupancy* occupancy = caster->occupancy;
@@ -175,30 +195,36 @@ static stratus_status classify(const stratus_ray_caster* caster, double voxel, s
     measure_variation(caster->transfers + m, voxel, any ? (double)ranges->whole_lo + ranges->bias : 0.0,
       any ? (double)ranges->whole_hi + ranges->bias : 0.0, v + m);
   }
+  k->deepest = 0.0;
+  for (int m = 0; m < media; ++m) {
+    k->deepest += v[m].deepest;
+  }
   memset(k->count, 0, sizeof k->count);
+  memset(k->depth, 0, sizeof k->depth);
   memset(k->of, CLASSES, (size_t)blocks);
 #pragma omp parallel num_threads(caster->context->threads)
   {
     int64_t mine[CLASSES] = { 0 };
+    double deepest[CLASSES] = { 0.0 };
 #pragma omp for schedule(static) nowait
     for (int64_t row = 0; row < rows_of(occupancy); ++row) {
       int64_t b, end;
       row_of(occupancy, row, &b, &end);
       for (b = pass_bytes(occupancy->occupied, 0, b, end); b < end; b = pass_bytes(occupancy->occupied, 0, b + 1, end)) {
-        double changes = 0.0;
+        double changes = 0.0, depth = 0.0;
         for (int m = 0; m < media; ++m) {
-          const stratus_value_range* r = stratus_ray_shading_range_of(caster, component_of(caster, m));
-          if (r->lo[b] <= r->hi[b]) {
-            changes += variation_between(v + m, (double)r->lo[b] + r->bias, (double)r->hi[b] + r->bias);
-          }
+          add_medium(v + m, stratus_ray_shading_range_of(caster, component_of(caster, m)), b, &changes, &depth);
         }
-        k->of[b] = (uint8_t)class_of(changes);
-        ++mine[k->of[b]];
+        const int c = class_of(changes);
+        k->of[b] = (uint8_t)c;
+        deepest[c] = fmax(deepest[c], depth);
+        ++mine[c];
       }
     }
 #pragma omp critical(stratus_probe_classes)
     for (int c = 0; c < CLASSES; ++c) {
       k->count[c] += mine[c];
+      k->depth[c] = fmax(k->depth[c], deepest[c]);
     }
   }
 cleanup:

@@ -24,6 +24,8 @@ typedef struct stratus_probe_classes {
   int block_size;
   uint8_t* of; /* class of each block, STRATUS_PROBE_CLASSES where it is empty; the caller releases it */
   int64_t count[STRATUS_PROBE_CLASSES];
+  double depth[STRATUS_PROBE_CLASSES]; /* the greatest optical depth of a voxel's length at the least values of a class's blocks */
+  double deepest;                      /* the same of all values of the volume */
 } stratus_probe_classes;
 
 /* Makes patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer

@@ -174,11 +174,41 @@ static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
   random_scene_destroy(&s);
 }
 
+/* In a medium that is opaque over a voxel, no step is longer than one: a ray takes its colour from where the medium begins. */
+static void steps_in_a_dense_medium_are_short(void** state)
+{
+  (void)state;
+  static float rgba[4 * PIXELS];
+  stratus_context* context = NULL;
+  stratus_ray_caster* caster = NULL;
+  stratus_ray_cast_report report;
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  random_scene s;
+  assert_int_equal(stratus_context_create(NULL, &context, NULL, 0), STRATUS_OK);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  random_scene_create(context, 2, 1.0, &s); /* smooth where it matters: without the bound steps are several voxels long */
+  const double opacity[4] = { 0.0, 0.9, 1.0, 0.9 };
+  s.transfer.opacity = opacity;
+  s.transfer.opacity_count = 2;
+  options.tolerance = 0.05;
+  for (int dense = 0; dense < 2; ++dense) {
+    const double voxel = fmin(fmin(s.volume.spacing[0], s.volume.spacing[1]), s.volume.spacing[2]);
+    s.transfer.unit_distance = dense ? voxel : 1000.0 * voxel;
+    draw(context, caster, &s, &options, rgba, &report);
+    print_message("             %s %.3g voxels\n", stratus_sampling_name(report.sampling), report.sample_distance / voxel);
+    assert_true(dense ? report.sample_distance <= 1.001 * voxel : report.sample_distance > 2.0 * voxel);
+  }
+  stratus_ray_caster_destroy(caster);
+  stratus_context_destroy(context);
+  random_scene_destroy(&s);
+}
+
 int test_ray_tolerance(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(random_scenes_keep_the_tolerance),
     cmocka_unit_test(a_probe_comes_with_data_function_and_tolerance_alone),
+    cmocka_unit_test(steps_in_a_dense_medium_are_short),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
