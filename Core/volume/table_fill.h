@@ -27,6 +27,8 @@ static inline stratus_table_arguments stratus_table_arguments_of(const stratus_t
     .offset = table->offset,
     .last = (float)(table->cells - 1),
     .entries = table->size,
+    .unit = stratus_table_unit(table),
+    .jumps = table->jumps,
     .search_steps = table->search_steps,
     .first_at = (int)stratus_table_first_at(table),
     .bound_at = (int)stratus_table_bound_at(table),

@@ -12,7 +12,7 @@
 /* The tolerance for which these are enough. A value is off by up to half an entry, so that half the tolerance asks for twice as many. */
 #define ENTRIES_TOLERANCE 1e-3
 /* Units of width over all values: so narrow may a feature be beside them that running sums hold. */
-#define WIDTH_UNITS 0x1p29
+#define WIDTH_UNITS (1 << 29)
 /* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as
  * floats tell it from 0. */
 #define OPAQUE_DEPTH 1e30f
@@ -152,17 +152,28 @@ static void fill_midpoint(
   }
 }
 
-/* Fills the row of widths: running sums of whole units, at least 1 an entry. */
+int stratus_table_unit(const stratus_table* table)
+{
+  return table->search_steps ? WIDTH_UNITS / table->cells : 1;
+}
+
+/* Fills the row of widths: running sums of whole units, at least 1 an entry. Cell c begins at c units of a cell, unless entries that are
+ * too narrow for the unit fill more than the cell. */
 static void fill_widths(stratus_table* table, const stratus_table_entries* entries)
 {
   int32_t* widths = table->sums + stratus_table_widths_at(table);
-  double total = 0.0;
-  for (int e = 0; e < table->size; ++e) {
-    total += entries->wide[e];
-  }
+  const int unit = stratus_table_unit(table);
   widths[0] = 0;
-  for (int e = 0; e < table->size; ++e) {
-    widths[e + 1] = widths[e] + (int32_t)fmax(floor(entries->wide[e] / total * WIDTH_UNITS), 1.0);
+  for (int c = 0; c < table->cells; ++c) {
+    double whole = 0.0, within = 0.0;
+    for (int e = entries->first[c]; e < entries->first[c + 1]; ++e) {
+      whole += entries->wide[e];
+    }
+    for (int e = entries->first[c]; e < entries->first[c + 1]; ++e) {
+      within += entries->wide[e];
+      const int32_t end = c * unit + (int32_t)(whole > 0.0 ? within / whole * unit : unit);
+      widths[e + 1] = end > widths[e] ? end : widths[e] + 1;
+    }
   }
 }
 
@@ -401,6 +412,17 @@ static stratus_status copy_settled(stratus_context* context, const stratus_trans
   return STRATUS_OK;
 }
 
+/* Whether the function changes between two points that are nearer than `width`. */
+static bool has_jumps(const double* points, size_t count, size_t stride, double width)
+{
+  bool jumps = false;
+  for (size_t i = stride; i < count * stride; i += stride) {
+    const bool changes = memcmp(points + i - stride + 1, points + i + 1, (stride - 1) * sizeof *points) != 0;
+    jumps = jumps || (changes && points[i] - points[i - stride] < width);
+  }
+  return jumps;
+}
+
 stratus_status stratus_table_create_fine(stratus_context* context, const stratus_transfer* transfer, const stratus_table_values* given,
   stratus_sampling sampling, double sample_distance, int least, stratus_table** out)
 {
@@ -427,6 +449,8 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   table->scale = entries.scale;
   table->offset = entries.offset;
   table->search_steps = entries.steps;
+  table->jumps = entries.steps > 0 || has_jumps(transfer->opacity, transfer->opacity_count, 2, entries.width) ||
+    has_jumps(transfer->color, transfer->color_count, 4, entries.width);
   table->cut = entries.cut;
   TRY_CLEANUP(allocate_table(table, &entries, sampling == STRATUS_SAMPLING_PREINTEGRATED));
   if (table->sums) {

@@ -106,6 +106,7 @@ typedef struct stratus_table {
   float scale, offset; /* of the grid */
   int search_steps;    /* 0: entries are cells. Else cells have several: so many bisections find one */
   bool preintegrated;  /* it has sums, else rgba */
+  bool jumps;          /* the function has vertical steps, or features narrower than a cell */
   int* next_shown;     /* size+1 numbers: the smallest entry >= i with any opacity, `size` if there is none */
   /* NULL if pre-integrated. Behind the size*4 floats follow 4 more for each entry: the optical depth of a whole sample distance, 0, 0,
    * 0. */
@@ -152,6 +153,8 @@ void stratus_table_set_distance(stratus_table* table, double sample_distance);
 void stratus_table_destroy(stratus_table* table);
 /* Returns the size, in words of four bytes, of rgba or sums with all that follows them. */
 size_t stratus_table_words(const stratus_table* table);
+/* Returns the width of a cell in the row of widths; 1 if entries are cells. */
+int stratus_table_unit(const stratus_table* table);
 /* Return where in these words the widths, first[] and bound[] begin; meant for tables whose entries are not cells. */
 size_t stratus_table_widths_at(const stratus_table* table);
 size_t stratus_table_first_at(const stratus_table* table);

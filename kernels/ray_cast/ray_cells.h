@@ -120,12 +120,43 @@ INLINE void cell_layer(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k
   composite(a, k, mask, sum, s);
 }
 
+/* Composites a piece that the function's table does not allow to be composited at once, in `pieces`. scale: its length. */
+INLINE void cell_integrate_parts(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask,
+  vfloat front, vint from, vfloat value, vint last, vfloat pieces, vfloat scale, vfloat s)
+{
+  const vfloat one = v_set(1.0f), share = v_reciprocal(pieces), step = (value - front) * share, part = scale * share;
+  vfloat piece = one, sum[4], width;
+  table_end begin, end;
+  table_end_at(&a->table, sums, front, from, a->table.jumps ? mask : m_none(), &begin);
+  do {
+    const vmask ends = v_le(pieces, piece);
+    const vfloat at = v_select(ends, value, v_fma(step, piece, front));
+    const vint to = vi_select(ends, last, table_entry(&a->table, sums, at));
+    if (a->table.jumps) {
+      table_end_at(&a->table, sums, at, to, mask, &end);
+      width = sums_from_to(&a->table, &begin, &end, sum);
+      begin = end;
+    } else {
+      const vint low = vi_min(from, to), beyond = vi_max(from, to) + vi_set(1);
+      sums_between(sums, low, beyond, mask, sum);
+      width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
+    }
+    const vmask lit = mask & v_lt(v_set(0.0f), sum[3]);
+    if (m_any(lit)) {
+      cell_layer(a, k, lit, sum, part * v_reciprocal(width), s);
+    }
+    from = to;
+    mask = m_andnot(mask, ends);
+    piece = piece + one;
+  } while (m_any(mask));
+}
+
 /* Composites a piece in which the field goes from `front` to `value`. This is integrate_segment() for tables without opacity 1 that span
  * all values. */
 INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat front,
   vfloat value, vfloat length, vfloat s)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), place = table_place(&a->table, value), front_place = table_place(&a->table, front);
+  const vfloat one = v_set(1.0f), place = table_place(&a->table, value), front_place = table_place(&a->table, front);
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
   if (a->table.has_opaque | a->table.cut) {
@@ -133,14 +164,21 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     integrate_segment(a, sums, k, mask, value, length, s);
     return;
   }
-  vint from = entry_in_cell(&a->table, sums, v_to_int(front_place), front, mask);
+  const vint from = entry_in_cell(&a->table, sums, v_to_int(front_place), front, mask);
   const vint last = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
-  vint low = vi_min(from, last), beyond = vi_max(from, last) + vi_set(1);
-  vfloat sum[4];
-  sums_between(sums, low, beyond, mask, sum);
-  mask = mask & v_lt(zero, sum[3]);
-  const vfloat scale = length * v_set(a->table.tau_scale), width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
-  const vfloat per_tau = scale * v_reciprocal(width);
+  vfloat sum[4], width;
+  if (a->table.jumps) {
+    table_end begin, end;
+    table_end_at(&a->table, sums, front, from, mask, &begin);
+    table_end_at(&a->table, sums, value, last, mask, &end);
+    width = sums_from_to(&a->table, &begin, &end, sum);
+  } else {
+    const vint low = vi_min(from, last), beyond = vi_max(from, last) + vi_set(1);
+    sums_between(sums, low, beyond, mask, sum);
+    width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
+  }
+  mask = mask & v_lt(v_set(0.0f), sum[3]);
+  const vfloat scale = length * v_set(a->table.tau_scale), per_tau = scale * v_reciprocal(width);
   const vfloat error = segment_error(&a->table, sum[3] * per_tau, width);
   const vmask plain = mask & v_le(error, one);
   if (m_any(plain)) {
@@ -148,21 +186,7 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   }
   mask = m_andnot(mask, plain);
   if (m_any(mask)) {
-    const vfloat pieces = pieces_for(error), share = v_reciprocal(pieces), step = (value - front) * share, piece_scale = scale * share;
-    vfloat piece = one;
-    do {
-      const vint to = vi_select(v_lt(piece, pieces), table_entry(&a->table, sums, v_fma(step, piece, front)), last);
-      low = vi_min(from, to);
-      beyond = vi_max(from, to) + vi_set(1);
-      sums_between(sums, low, beyond, mask, sum);
-      const vmask lit = mask & v_lt(zero, sum[3]);
-      if (m_any(lit)) {
-        cell_layer(a, k, lit, sum, piece_scale * v_reciprocal(v_max(width_between(&a->table, sums, low, beyond, lit), one)), s);
-      }
-      from = to;
-      mask = mask & v_lt(piece, pieces);
-      piece = piece + one;
-    } while (m_any(mask));
+    cell_integrate_parts(a, sums, k, mask, front, from, value, last, pieces_for(error), scale, s);
   }
 }
 

@@ -6,6 +6,8 @@
 typedef struct stratus_table_arguments {
   float scale, offset, last; /* a value's cell in the grid is value * scale + offset, within 0..last */
   int entries;
+  int unit;                          /* width of a cell */
+  int jumps;                         /* 1: the function has vertical steps, or features narrower than a cell */
   int search_steps;                  /* 0: entries are cells; else so many bisections find an entry of a cell */
   int first_at, bound_at, widths_at; /* where the arrays of such a table begin, in words of four bytes from the table's first */
   /* the rest is set only for a pre-integrated table */

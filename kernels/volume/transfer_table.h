@@ -74,6 +74,51 @@ INLINE vfloat width_between(CONSTANT stratus_table_arguments* t, GLOBAL const in
   return v_from_int(width);
 }
 
+/* Where a way through values begins or ends: the running sums before the value's entry, the entry's own addends, and the part of it that
+ * lies before the value; the same of widths. */
+typedef struct table_end {
+  vint before[4], begin;
+  vfloat own[4], width, part;
+} table_end;
+
+INLINE void table_end_at(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vfloat value, vint entry, vmask mask, table_end* end)
+{
+  const vint next = entry + vi_set(1);
+  vint behind[4], wide = vi_set(1);
+  end->begin = entry;
+  if (t->search_steps) {
+    end->begin = gather_int32(sums + t->widths_at, entry, mask);
+    wide = gather_int32(sums + t->widths_at, next, mask) - end->begin;
+  }
+  gather_four_ints(sums, entry, mask, end->before);
+  gather_four_ints(sums, next, mask, behind);
+  for (int c = 0; c < 4; ++c) {
+    end->own[c] = v_from_int(behind[c] - end->before[c]);
+  }
+  end->width = v_from_int(wide);
+  const vfloat place = v_clamp(v_fma(value, v_set(t->scale), v_set(t->offset)), 0.0f, t->last + 1.0f);
+  const vint cell = v_to_int(v_min(place, v_set(t->last)));
+  vfloat part = place - v_from_int(cell);
+  if (t->search_steps) {
+    part =
+      v_fma(part, v_set((float)t->unit), v_from_int(cell * vi_set(t->unit) - end->begin)) * v_reciprocal(v_max(end->width, v_set(1.0f)));
+  }
+  end->part = v_clamp(part, 0.0f, 1.0f);
+}
+
+/* The sums from one value to another, where of the entries at both ends only the parts on the way count. Returns the width that they are
+ * over. Where the function jumps, whole entries would count too much of one side. */
+INLINE vfloat sums_from_to(CONSTANT stratus_table_arguments* t, const table_end* from, const table_end* to, vfloat out[4])
+{
+  const vfloat ahead = v_fma(to->part, to->width, v_from_int(to->begin - from->begin)) - from->part * from->width, width = v_abs(ahead);
+  const vmask own = v_lt(width, v_set(0x1p-6f * (float)t->unit)); /* floats cannot tell such parts apart */
+  for (int c = 0; c < 4; ++c) {
+    const vfloat sum = v_fma(to->part, to->own[c], v_from_int(to->before[c] - from->before[c])) - from->part * from->own[c];
+    out[c] = v_select(own, to->own[c], v_abs(sum));
+  }
+  return v_select(own, v_max(to->width, v_set(1.0f)), width);
+}
+
 /* Lanes whose way from one entry to another meets an entry of opacity 1; *first is the first such entry of each. rows: the two rows of
  * entries behind the sums, for rising and for falling ways. */
 INLINE vmask opaque_on_the_way(CONSTANT stratus_table_arguments* t, GLOBAL const int* rows, vint from, vint to, vmask mask, vint* first)
