@@ -49,6 +49,7 @@ struct stratus_ray_caster {
   stratus_volume traversed;    /* what rays read: the volume itself, or its fetched values */
   float* fetched;              /* float copy of the values; NULL: none */
   uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */
+  bool copy_failed;            /* memory ran out for it since the data changed */
   stratus_value_range* ranges;
   uint8_t* hidden;      /* hidden bytes as traversal reads them; NULL: none */
   bool hidden_by_value; /* its cells are centred on values */
@@ -101,7 +102,7 @@ void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 
 /* ray_caster_update.c: rebuilds only what changed. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, stratus_ray_cast_report* report); /* value ranges, choices, table */
+  const stratus_ray_cast_options* options, size_t rays, stratus_ray_cast_report* report); /* value ranges, choices, table */
 /* Returns the size of blocks where the user leaves it open. */
 int stratus_ray_block_size(const stratus_volume* volume);
 /* Makes caster->occupancy of caster->ranges. */

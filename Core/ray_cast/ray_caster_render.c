@@ -177,7 +177,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   const bool times = !image->samples; /* a picture of samples, which hang on the structure, follows from no times */
   const bool tries = times && options->structure == STRATUS_STRUCTURE_AUTO;
 
-  TRY(stratus_ray_update_tables(caster, volume, transfer, options, report));
+  TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));
   TRY(stratus_ray_update_structures(caster, options->structure, times, &used, why, sizeof why, report));
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));

@@ -47,7 +47,7 @@ int stratus_ray_block_size(const stratus_volume* volume)
 }
 
 static stratus_status update_ranges(
-  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, double* ms)
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, size_t rays, double* ms)
 {
   const int block_size = chosen_block_size(volume, options->block_size);
   const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
@@ -89,7 +89,11 @@ static stratus_status update_ranges(
     caster->scan_ms = same ? caster->scan_ms : *ms;
   }
   caster->volume = *volume;
-  return stratus_ray_fetched_update(caster);
+  const float* before = caster->fetched;
+  const double start = stratus_now_ms();
+  TRY(stratus_ray_fetched_update(caster, rays));
+  *ms += caster->fetched != before ? stratus_now_ms() - start : 0.0;
+  return STRATUS_OK;
 }
 
 static bool same_transfers(const stratus_ray_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
@@ -206,10 +210,10 @@ static void update_choice(stratus_ray_caster* caster, const stratus_volume* volu
 }
 
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
+  const stratus_ray_cast_options* options, size_t rays, stratus_ray_cast_report* report)
 {
   caster->shades = stratus_ray_shading_wanted(volume, transfer, options);
-  TRY(update_ranges(caster, volume, options, &report->range_ms));
+  TRY(update_ranges(caster, volume, options, rays, &report->range_ms));
   TRY(stratus_ray_shading_ranges(caster));
   const double start = stratus_now_ms();
   const uint64_t builds = caster->table_builds;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Chooses the values that rays read: the volume's own or a float copy of them. A volume that is slow to read is copied once rays have taken
- * as many samples as it has values. The copy does not change the picture. */
+ * as many samples as it has values, or at once where this picture's rays may take as many, one a voxel along the longest side. A copy reads
+ * each value once, as the value ranges do, and a sample eight. The copy does not change the picture. */
 #include "ray_fetched.h"
 
 #include "ray_cast_host.h"
@@ -15,6 +16,7 @@ void stratus_ray_fetched_drop(stratus_ray_caster* caster)
   stratus_release(caster->context, caster->fetched);
   caster->fetched = NULL;
   caster->samples_since_data = 0;
+  caster->copy_failed = false;
 }
 
 /* Whether the shape suits the fast fetches: they use 32-bit indices and need a neighbour along each axis. */
@@ -29,7 +31,7 @@ int stratus_ray_fetch_type(const stratus_volume* volume)
   return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
 }
 
-stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
+stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster, size_t rays)
 {
   const stratus_volume* volume = &caster->volume;
   const int type = stratus_ray_fetch_type(volume);
@@ -48,7 +50,10 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
       FETCHED_BYTES_MOST / sizeof(float));
   }
   if (!caster->fetched) {
-    if (!must && (caster->samples_since_data < slice * slices || !fits)) {
+    const int64_t* n = volume->dimensions;
+    const double longest = (double)(n[0] > n[1] ? n[0] > n[2] ? n[0] : n[2] : n[1] > n[2] ? n[1] : n[2]);
+    const double samples = (double)caster->samples_since_data + (caster->copy_failed ? 0.0 : longest * (double)rays);
+    if (!must && (samples < (double)(slice * slices) || !fits)) {
       return STRATUS_OK;
     }
     void* memory = NULL;
@@ -59,6 +64,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster)
     if (status != STRATUS_OK) {
       stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to keep the values as floats: drawing stays slower");
       caster->samples_since_data = 0; /* try again after as many samples more */
+      caster->copy_failed = true;
       return STRATUS_OK;
     }
     float* fetched = memory;

@@ -121,12 +121,6 @@ static inline stratus_status small_render(stratus_ray_caster* caster, const smal
   return stratus_ray_caster_render(caster, &scene->volume, transfer, &scene->camera, &options, &image, report);
 }
 
-/* Whether memory for the probe was refused, so that the picture was drawn with the last setting. */
-static inline int small_unmeasured(const stratus_ray_cast_report* report)
-{
-  return strstr(report->why, "no memory to measure") != NULL;
-}
-
 static inline uint64_t small_mix(uint64_t sum, uint64_t value)
 {
   return (sum ^ value) * 0x100000001b3u;
