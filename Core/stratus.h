@@ -13,8 +13,8 @@
  *   returns a status refuses NULL with STRATUS_INVALID_ARGUMENT, without a message if no object is there to hold one. A call without
  *   a status treats an object that is NULL as an empty one, and writes to no address that is NULL.
  * - One context serves one thread at a time. Different contexts are independent, and several threads may create theirs at once. The core's
- *   only global state is one lock: a single thread at a time asks OpenCL for its devices, since some platforms allow no more. The
- *   lock covers nothing else.
+ *   only global state is what was measured of this machine, and a lock: a single thread at a time asks OpenCL for its devices, since some
+ *   platforms allow no more. Threads wait for one another where the same is measured.
  * - Each calling thread, and each OpenMP thread, needs 128 KiB of stack on the host. An OpenCL implementation may need more.
  */
 #ifndef STRATUS_H

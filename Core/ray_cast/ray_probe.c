@@ -346,6 +346,9 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
     if (cost_of(p, &f, 0) > limit) {
       break; /* the next class only adds cells */
     }
+    if (cost_of(p, &f, coarsest_lattice(p, &f)) > limit) {
+      continue; /* without the densest blocks longer steps may be open */
+    }
     const stratus_status lent = lend_rough(p, beyond);
     if (lent == STRATUS_OUT_OF_MEMORY || lent == STRATUS_OVERFLOW) {
       break; /* the rule only saves time */

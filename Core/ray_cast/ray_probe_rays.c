@@ -196,8 +196,9 @@ static stratus_status classify(const stratus_ray_caster* caster, double voxel, s
       any ? (double)ranges->whole_hi + ranges->bias : 0.0, v + m);
   }
   k->deepest = 0.0;
+  const bool labels = media > 1 && caster->shading_tables.components <= 1; /* of which one holds at a place */
   for (int m = 0; m < media; ++m) {
-    k->deepest += v[m].deepest;
+    k->deepest = labels ? fmax(k->deepest, v[m].deepest) : k->deepest + v[m].deepest;
   }
   memset(k->count, 0, sizeof k->count);
   memset(k->depth, 0, sizeof k->depth);

@@ -171,7 +171,7 @@ static void fill_widths(stratus_table* table, const stratus_table_entries* entri
     }
     for (int e = entries->first[c]; e < entries->first[c + 1]; ++e) {
       within += entries->wide[e];
-      const int32_t end = c * unit + (int32_t)(whole > 0.0 ? within / whole * unit : unit);
+      const int32_t end = c * unit + (int32_t)(whole > 0.0 && isfinite(whole) ? within / whole * unit : unit);
       widths[e + 1] = end > widths[e] ? end : widths[e] + 1;
     }
   }

@@ -151,35 +151,56 @@ INLINE void cell_integrate_parts(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   } while (m_any(mask));
 }
 
-/* Composites a piece in which the field goes from `front` to `value`. This is integrate_segment() for tables without opacity 1 that span
- * all values. */
+/* Lanes whose piece meets an entry of opacity 1, or leaves what the table spans. */
+INLINE vmask cell_lanes_apart(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, vmask mask, vfloat front, vint from,
+  vfloat value, vint last, vfloat length)
+{
+  const vfloat scale = v_set(a->table.scale), offset = v_set(a->table.offset);
+  vmask apart = m_none();
+  if (a->table.has_opaque) {
+    vint first;
+    apart = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), from, last, mask & v_lt(v_set(0.0f), length), &first);
+  }
+  if (a->table.cut) {
+    const vfloat lowest = v_fma(v_min(front, value), scale, offset), highest = v_fma(v_max(front, value), scale, offset);
+    apart = apart | (mask & (v_lt(lowest, v_set(0.0f)) | v_lt(v_set(a->table.last + 1.0f), highest)));
+  }
+  return apart;
+}
+
+/* Composites a piece in which the field goes from `front` to `value`, as integrate_segment() does, which takes the lanes of
+ * cell_lanes_apart(). */
 INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat front,
   vfloat value, vfloat length, vfloat s)
 {
   const vfloat one = v_set(1.0f), place = table_place(&a->table, value), front_place = table_place(&a->table, front);
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
-  if (a->table.has_opaque | a->table.cut) {
-    k->front = front;
-    integrate_segment(a, sums, k, mask, value, length, s);
-    return;
-  }
   const vint from = entry_in_cell(&a->table, sums, v_to_int(front_place), front, mask);
   const vint last = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
-  vfloat sum[4], width;
+  if (a->table.has_opaque | a->table.cut) {
+    const vmask apart = cell_lanes_apart(a, sums, mask, front, from, value, last, length);
+    if (m_any(apart)) {
+      k->front = front;
+      integrate_segment(a, sums, k, apart, value, length, s);
+      mask = m_andnot(mask, apart);
+    }
+  }
+  vfloat sum[4], width, across;
   if (a->table.jumps) {
     table_end begin, end;
     table_end_at(&a->table, sums, front, from, mask, &begin);
     table_end_at(&a->table, sums, value, last, mask, &end);
     width = sums_from_to(&a->table, &begin, &end, sum);
+    across = v_max(width, begin.width + end.width); /* a colour may jump between neighbours */
   } else {
     const vint low = vi_min(from, last), beyond = vi_max(from, last) + vi_set(1);
     sums_between(sums, low, beyond, mask, sum);
-    width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
+    across = width = v_max(width_between(&a->table, sums, low, beyond, mask), one);
   }
   mask = mask & v_lt(v_set(0.0f), sum[3]);
   const vfloat scale = length * v_set(a->table.tau_scale), per_tau = scale * v_reciprocal(width);
-  const vfloat error = segment_error(&a->table, sum[3] * per_tau, width);
+  const vfloat error = segment_error(&a->table, sum[3] * per_tau, across);
   const vmask plain = mask & v_le(error, one);
   if (m_any(plain)) {
     cell_layer(a, k, plain, sum, per_tau, s);

@@ -110,13 +110,15 @@ INLINE void table_end_at(CONSTANT stratus_table_arguments* t, GLOBAL const int* 
  * over. Where the function jumps, whole entries would count too much of one side. */
 INLINE vfloat sums_from_to(CONSTANT stratus_table_arguments* t, const table_end* from, const table_end* to, vfloat out[4])
 {
-  const vfloat ahead = v_fma(to->part, to->width, v_from_int(to->begin - from->begin)) - from->part * from->width, width = v_abs(ahead);
-  const vmask own = v_lt(width, v_set(0x1p-6f * (float)t->unit)); /* floats cannot tell such parts apart */
+  const vfloat zero = v_set(0.0f), least = v_set(0x1p-6f * (float)t->unit), between = v_from_int(to->begin - from->begin);
+  const vfloat width = v_abs(v_fma(to->part, to->width, between) - from->part * from->width);
+  /* floats cannot tell such parts of one entry, or of two neighbours, apart */
+  const vmask own = v_lt(width, least) & v_le(between, from->width) & v_le(zero - between, to->width);
   for (int c = 0; c < 4; ++c) {
     const vfloat sum = v_fma(to->part, to->own[c], v_from_int(to->before[c] - from->before[c])) - from->part * from->own[c];
     out[c] = v_select(own, to->own[c], v_abs(sum));
   }
-  return v_select(own, v_max(to->width, v_set(1.0f)), width);
+  return v_max(v_select(own, to->width, width), v_set(0x1p-6f));
 }
 
 /* Lanes whose way from one entry to another meets an entry of opacity 1; *first is the first such entry of each. rows: the two rows of

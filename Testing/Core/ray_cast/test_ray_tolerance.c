@@ -191,6 +191,7 @@ static void steps_in_a_dense_medium_are_short(void** state)
   s.transfer.opacity = opacity;
   s.transfer.opacity_count = 2;
   options.tolerance = 0.05;
+  options.sampling = STRATUS_SAMPLING_MIDPOINT;
   for (int dense = 0; dense < 2; ++dense) {
     const double voxel = fmin(fmin(s.volume.spacing[0], s.volume.spacing[1]), s.volume.spacing[2]);
     s.transfer.unit_distance = dense ? voxel : 1000.0 * voxel;
