@@ -27,9 +27,9 @@ typedef struct device_list {
 
 /* ---------------------------------------------------------------- choice */
 
-/* Serialises the question for OpenCL's devices. OpenCL lets several threads ask at once,
- * but PoCL (3.1) finds its devices on the first question, and a thread that asks meanwhile gets none, or crashes. Every user of a device
- * has asked for the list before, so that nothing else needs the lock: several contexts build programs and draw at the same time. */
+/* Serialises the question for OpenCL's devices. OpenCL lets several threads ask at once, but PoCL (3.1) finds its devices on the first
+ * question, and a thread that asks meanwhile gets none, or crashes. Every user of a device has asked for the list before, so that nothing
+ * else needs the lock: several contexts build programs and draw at the same time. */
 static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
 
 static device_list find_devices(void)

@@ -51,7 +51,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster, size_t ray
   }
   if (!caster->fetched) {
     const int64_t* n = volume->dimensions;
-    const double longest = (double)(n[0] > n[1] ? n[0] > n[2] ? n[0] : n[2] : n[1] > n[2] ? n[1] : n[2]);
+    const double longest = fmax(fmax((double)n[0], (double)n[1]), (double)n[2]);
     const double samples = (double)caster->samples_since_data + (caster->copy_failed ? 0.0 : longest * (double)rays);
     if (!must && (samples < (double)(slice * slices) || !fits)) {
       return STRATUS_OK;
