@@ -107,8 +107,14 @@ check((early[lit, 3] < whole[lit, 3] - 0.01).any() and (early[lit, 3] >= 0.5).al
 mapper.SetTermination(7)
 check(mapper.GetTermination() == 1, "termination is clamped")
 mapper.SetTermination(0)
-mapper.SetNumberOfThreads(1)
-check((picture() == whole).all(), "one thread draws the same bits")
+by_method = {}  # "auto" may choose otherwise for other threads and devices, so each method is compared with itself
+for method in mapper.PROJECT_METHOD, mapper.MARCH_METHOD:
+    mapper.SetMethod(method)
+    mapper.SetNumberOfThreads(0)
+    by_method[method] = picture()
+    mapper.SetNumberOfThreads(1)
+    check((picture() == by_method[method]).all(), "one thread draws the same bits, method %d" % method)
+check(any((whole == one).all() for one in by_method.values()), "the method that is chosen draws what it draws when asked for")
 mapper.SetNumberOfThreads(-3)
 check(mapper.GetNumberOfThreads() == 0, "threads are clamped")
 mapper.SetDevice("no such device")
@@ -118,9 +124,12 @@ mapper.SetDevice("0")
 if errors:
     errors.clear()  # no OpenCL device on this machine
 else:
-    check((picture() == whole).all(), "an OpenCL device draws the same bits")
+    check((picture() == by_method[mapper.MARCH_METHOD]).all(), "an OpenCL device draws the same bits")
     mapper.SetDevice("host")
+    mapper.SetMethodToAuto()
     check((picture() == whole).all() and mapper.GetDeviceName().startswith("host"), "and so does the host again")
+mapper.SetMethodToAuto()
+picture()
 check(mapper.GetMethodAsString() == "auto" and mapper.GetMethodUsedAsString() in ("march", "project"), "a method is chosen")
 check(len(mapper.GetMethodReason()) > 0, "and a reason given")
 for method, name in (mapper.SetMethodToMarch, "march"), (mapper.SetMethodToProject, "project"):
