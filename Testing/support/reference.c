@@ -221,6 +221,17 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
   return first;
 }
 
+int reference_picks(int tile, int x, int y)
+{
+  if (tile <= 1) {
+    return 1;
+  }
+  uint32_t hash = (uint32_t)(x / tile) * 0x9E3779B1u ^ (uint32_t)(y / tile) * 0x85EBCA77u;
+  hash = (hash ^ hash >> 15) * 0x2C1B3C6Du;
+  hash ^= hash >> 13;
+  return (int)(hash % (uint32_t)tile) == x % tile && (int)(hash / (uint32_t)tile % (uint32_t)tile) == y % tile;
+}
+
 int reference_render(const reference_scene* scene, int width, int height, double step, float* rgba, float* depth)
 {
   reference_field f;
@@ -242,7 +253,7 @@ int reference_render(const reference_scene* scene, int width, int height, double
         scene, &f, (2.0 * x + 1.0) / width - 1.0, (2.0 * y + 1.0) / height - 1.0, scene->opaque_depth ? scene->opaque_depth + at : NULL);
       double first = (double)INFINITY;
       memset(rgba + 4 * at, 0, 4 * sizeof *rgba);
-      if (r.end > r.begin) {
+      if (r.end > r.begin && reference_picks(scene->tile, x, y)) {
         first = shading ? trace(scene, &f, &r, length, rgba + 4 * at) : trace_cells(scene, &f, &breaks, &r, length, rgba + 4 * at);
       }
       if (depth) {

@@ -27,7 +27,12 @@ typedef struct reference_scene {
   int dependent;                  /* as in stratus_ray_cast_options */
   const uint8_t* labels;          /* the mask as in stratus_ray_cast_options, if there are labels */
   int label_count;
+  int tile; /* n > 1: only one pixel of each n x n is drawn, see reference_picks(); the others stay transparent */
 } reference_scene;
+
+/* Whether a pixel is drawn: one in each tile, at a place that differs from tile to tile, so that no pattern of a picture hides from them.
+ */
+int reference_picks(int tile, int x, int y);
 
 /* Returns a value of any type as a double, by its indices or by its number (x fastest). Transfer functions are defined on doubles. */
 double reference_value(const stratus_volume* volume, int64_t i, int64_t j, int64_t k);

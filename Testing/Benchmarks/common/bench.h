@@ -64,7 +64,8 @@ struct timing {
   double first_ms = 0.0;
   double frame_ms = 0.0;
   double update_ms = 0.0;
-  double samples = -1.0; // per frame; -1: unknown
+  double samples = -1.0;      // per frame; -1: unknown
+  std::vector<double> frames; // ms of each view, whose median is frame_ms
   std::string device;
 };
 
@@ -82,6 +83,13 @@ struct floor_result {
   double ms = 0.0, samples = 0.0, rate = 0.0;
 };
 
+// How much of a method is measured.
+struct effort {
+  int size = 512;      // of the window, in pixels each way
+  int repeats = 3;     // frames of each view
+  bool updates = true; // whether transfer functions are changed, too
+};
+
 inline double now_ms()
 {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -94,7 +102,9 @@ std::vector<std::string> all_methods();
 void check_method(const std::string& name); // throws failure
 // Whether a method's tolerance is the error of vtk:fixedpoint, which has to be measured first.
 bool needs_fixed_point(const std::string& method);
-result run_method(stratus_context* context, const scene& s, const std::string& method, int size, double fixed_point_error);
+result run_method(stratus_context* context, const scene& s, const std::string& method, const effort& how, double fixed_point_error);
+// Every method at several settings of its own: tolerances, or steps.
+std::vector<std::string> curve_methods(bool quick);
 floor_result run_floor(stratus_context* context, const scene& s, int size);
 
 // ---- cache.cxx
@@ -102,17 +112,20 @@ floor_result run_floor(stratus_context* context, const scene& s, int size);
 // Makes a folder and its parents, unless they exist or the name is empty. Call it before measuring: a reference takes minutes, and must not
 // be lost because its folder is missing.
 void make_folder(const std::string& folder);
+// The folder for references where none is named: `stratus/references` where the system keeps caches.
+std::string default_reference_cache();
 // Returns false if there is no such file, or if its number of floats differs.
 bool load_picture(const std::string& path, std::vector<float>& rgba);
 void save_picture(const std::string& path, const std::vector<float>& rgba); // writes the whole file or none
 
 // ---- judge.cxx
 
-// The reference pictures of one scene, which are refined as far as the results that they are compared with ask for.
+// The reference pictures of one scene, which are refined as far as the results that they are compared with ask for. They are drawn at some
+// of the pixels, one of each tile, where that leaves enough in which something shows.
 class judge
 {
 public:
-  judge(stratus_context* context, const scene& s, int size, const std::string& cache);
+  judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache);
   ~judge();
   void measure(std::vector<result>& results); // fills errors
   void compare(std::vector<result>& results); // fills differing_pixels
@@ -142,25 +155,90 @@ void write_origin(std::FILE* file, const origin& o);
 void read_origin(const std::string& line, std::vector<origin>& origins); // a row before the header
 // Replaces the rows of the scenes that this run measured, and keeps those of other scenes before them.
 void replace_scenes(table& t, const std::vector<row>& rows);
+std::vector<std::string> split(const std::string& text); // at commas
+// Rows of single measurements, METRIC/0, METRIC/1 and so on, by which runs are compared.
+void add_repeats(const std::string& scene, const std::string& method, const std::string& metric, const char* unit,
+  const std::vector<double>& values, std::vector<row>& rows);
+// Tells of a method that cannot be measured, and adds the row `failed`. The run goes on, and its exit status is 1.
+void add_failure(const std::string& scene, const std::string& method, const char* why, std::vector<row>& rows);
+bool any_failed(const std::vector<row>& rows);
 void add_rows(const result& r, std::vector<row>& rows);
 void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
-// path "-": the standard output; benchmark: the first column. The rows' origin comes before the header.
-void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark = "volume");
-// Writes a table that also holds rows of earlier runs.
+// Writes the rows of this run; append: the file's rows of other scenes stay.
+void save_rows(const std::string& path, const std::vector<row>& rows, const char* benchmark, bool append);
+// path "-": the standard output; benchmark: the first column. The rows' origins come before the header.
 void write_csv(const std::string& path, const table& t, const char* benchmark);
+// Throws failure if a table could not be written there. Call it before measuring.
+void check_writable(const std::string& path);
 // Returns a table without rows if there is no such file.
 table read_csv(const std::string& path);
 void print_table(const std::vector<row>& rows);
-// Charts frame time against error, both logarithmic: one chart per scene, one mark per method.
-void write_chart(const std::string& path, const std::vector<row>& rows);
-struct chart_mark {
-  std::string scene, method;
-  double x, y; // > 0
-};
-void write_chart(const std::string& path, const std::vector<chart_mark>& marks, const char* x_title, const char* y_title);
 
-// ---- volume.cxx
+// ---- curves.cxx: what a chart shows of a table
+
+// A method at one setting.
+struct curve_point {
+  std::string scene, method;
+  double x, y; // > 0; less is better
+};
+// All points of a part of the bench, and what its axes mean.
+struct curves {
+  std::string title, x_title, y_title;
+  std::string beats;    // what a point does that is better by both axes
+  std::string compared; // how a point of ours is compared with a peer's
+  std::vector<curve_point> points;
+  double exact; // the y of points without any error: the lower edge of the chart
+};
+// Returns the method without its setting: all settings of a method lie on one line.
+std::string family_of(const std::string& method);
+bool is_ours(const std::string& method);
+// The curves of a part: volume, tetra, tree (two: primary and random rays), distance, octree.
+std::vector<curves> curves_of(const std::string& part, const std::vector<row>& rows);
+std::vector<std::string> scenes_of(const curves& c);
+// A peer's point, and the point of ours that is faster and more exact by most; without one `by` is nullptr. Where the peer has no error at
+// all, one without error counts.
+struct dominance {
+  const curve_point* peer;
+  const curve_point* by;
+};
+std::vector<dominance> dominance_of(const curves& c, const std::string& scene);
+// One sentence on what the chart of a scene says.
+std::string sentence_of(const curves& c, const std::string& scene);
+
+// ---- chart.cxx
+
+// Charts all scenes in one picture, both axes logarithmic.
+void write_chart(const std::string& path, const curves& c);
+// Charts one scene as STEM.png and STEM.svg, in a size for a page.
+void write_scene_chart(const std::string& stem, const curves& c, const std::string& scene);
+// The colour of a family's line, as #rrggbb.
+std::string color_of(const std::string& family);
+
+// ---- progress.cxx
+
+// Tells on the standard error where a run is: on a terminal a line that is written again and again, elsewhere a line for each scene.
+class progress
+{
+public:
+  progress(size_t scenes, size_t methods);
+  ~progress();
+  void at(const std::string& scene, const std::string& method); // which is about to be measured
+  void end_scene(const std::string& scene);
+
+private:
+  void clear() const;
+  size_t Scenes, Methods, Scene = 0, Method = 0;
+  double Start, SceneStart;
+  std::FILE* Terminal;
+};
+std::string duration(double ms); // "2:05 min"
+
+// ---- volume.cxx, all.cxx, compare.cxx
 int volume_main(int argc, char* argv[]);
+int all_main(int argc, char* argv[]);
+int compare_main(int argc, char* argv[]);
+// ---- page.cxx: charts and index.html of the tables in a folder
+void write_page(const std::string& folder, const std::vector<std::string>& failures);
 
 // ---- main.cxx: restarts the program under xvfb-run if there is no display
 void ensure_display(char* argv[]);

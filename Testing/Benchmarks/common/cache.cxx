@@ -3,6 +3,7 @@
 #include "bench.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -14,6 +15,16 @@ void make_folder(const std::string& folder)
   if (!folder.empty() && (std::filesystem::create_directories(folder, error), error)) {
     throw failure("cannot make folder " + folder + ": " + error.message());
   }
+}
+
+std::string default_reference_cache()
+{
+  const auto named = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
+  const std::string own = named("STRATUS_CACHE_DIR"), system = named("XDG_CACHE_HOME"), home = named("HOME");
+  return !own.empty() ? own + "/references"
+    : !system.empty() ? system + "/stratus/references"
+    : !home.empty()   ? home + "/.cache/stratus/references"
+                      : "";
 }
 
 bool load_picture(const std::string& path, std::vector<float>& rgba)

@@ -48,6 +48,12 @@ int main(int argc, char* argv[])
     if (part == "tetra") {
       return bench::tetra_main(argc, argv);
     }
+    if (part == "all") {
+      return bench::all_main(argc, argv);
+    }
+    if (part == "compare") {
+      return bench::compare_main(argc, argv);
+    }
     return bench::volume_main(argc, argv); // it also prints the help of all parts
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stratus-bench: %s\n", error.what());

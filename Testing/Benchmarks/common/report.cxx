@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -8,15 +9,55 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <unistd.h>
 
 namespace bench {
+
+std::vector<std::string> split(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+void add_repeats(const std::string& scene, const std::string& method, const std::string& metric, const char* unit,
+  const std::vector<double>& values, std::vector<row>& rows)
+{
+  for (size_t i = 0; i < values.size(); ++i) {
+    rows.push_back({ scene, method, metric + '/' + std::to_string(i), unit, values[i] });
+  }
+}
+
+void add_failure(const std::string& scene, const std::string& method, const char* why, std::vector<row>& rows)
+{
+  std::fprintf(stderr, "%s%s of %s FAILED: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", method.c_str(), scene.c_str(), why);
+  rows.push_back({ scene, method, "failed", "1", 1.0 });
+}
+
+bool any_failed(const std::vector<row>& rows)
+{
+  return std::any_of(rows.begin(), rows.end(), [](const row& r) { return r.metric == "failed"; });
+}
+
+void save_rows(const std::string& path, const std::vector<row>& rows, const char* benchmark, bool append)
+{
+  table t = append ? read_csv(path) : table();
+  replace_scenes(t, rows);
+  write_csv(path, t, benchmark);
+}
 
 void add_rows(const result& r, std::vector<row>& rows)
 {
   const auto add = [&](const char* metric, double value, const char* unit) { rows.push_back({ r.scene, r.method, metric, unit, value }); };
   add("first_ms", r.time.first_ms, "ms");
   add("frame_ms", r.time.frame_ms, "ms");
-  add("update_ms", r.time.update_ms, "ms");
+  if (r.time.update_ms >= 0.0) {
+    add("update_ms", r.time.update_ms, "ms");
+  }
+  add_repeats(r.scene, r.method, "frame_ms", "ms", r.time.frames, rows);
   if (r.reference_db > 0.0) {
     if (!r.pictures[0].rgba.empty()) {
       add("psnr_db", r.psnr_db, "dB");
@@ -43,16 +84,11 @@ void add_rows(const std::string& scene, const floor_result& f, std::vector<row>&
   rows.push_back({ scene, "floor", "rate", "1/s", f.rate });
 }
 
-void write_csv(const std::string& path, const std::vector<row>& rows, const char* benchmark)
-{
-  table t;
-  replace_scenes(t, rows);
-  write_csv(path, t, benchmark);
-}
-
 void write_csv(const std::string& path, const table& t, const char* benchmark)
 {
-  std::FILE* file = path == "-" ? stdout : std::fopen(path.c_str(), "w");
+  // A file is replaced as a whole, so that what it holds outlives a run that is interrupted.
+  const std::string part = path + ".part";
+  std::FILE* file = path == "-" ? stdout : std::fopen(part.c_str(), "w");
   if (!file) {
     throw failure("cannot write " + path + ": " + std::strerror(errno));
   }
@@ -64,8 +100,22 @@ void write_csv(const std::string& path, const table& t, const char* benchmark)
     std::fprintf(file, "%s,%s,%s,%s,%.9g,%s\n", benchmark, r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
   }
   const bool bad = std::ferror(file) != 0;
-  if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad) {
+  if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad ||
+    (file != stdout && std::rename(part.c_str(), path.c_str()) != 0)) {
     throw failure("cannot write " + path + ": " + std::strerror(errno));
+  }
+}
+
+void check_writable(const std::string& path)
+{
+  const std::string part = path + ".part";
+  std::FILE* file = path == "-" ? stdout : std::fopen(part.c_str(), "w");
+  if (!file) {
+    throw failure("cannot write " + path + ": " + std::strerror(errno));
+  }
+  if (file != stdout) {
+    std::fclose(file);
+    std::remove(part.c_str());
   }
 }
 

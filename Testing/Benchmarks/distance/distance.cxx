@@ -10,7 +10,6 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
-#include <sstream>
 
 namespace bench {
 
@@ -26,9 +25,10 @@ const char* const help = R"(stratus-bench distance [options]
   --threads N         of the host and of ITK (default 2)
   --csv FILE          tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                       the rows before them tell where they come from, as in stratus-bench volume
+  --append            rows of other scenes that the file has stay
   --chart FILE.png    build time against the share of wrong voxels, of the largest size
 
-build_ms: from the set of voxels to the field, median of 5 (floodings and ITK: 3, and 1 beyond 64 voxels). array_ms: the same, and all
+build_ms: from the set of voxels to the field, median of 7 (floodings and ITK beyond 128 voxels: 1). array_ms: the same, and all
 distances as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines
 that are busy. wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are wrong,
 but in no other error. ITK is judged by what it measures from: the contour.
@@ -39,6 +39,7 @@ struct options {
   std::vector<int64_t> sizes;
   std::string csv = "-", chart;
   int threads = 2;
+  bool append = false;
 };
 
 struct closer {
@@ -80,31 +81,26 @@ method parse_method(const std::string& name)
   throw failure("unknown method " + name + "; --help tells more");
 }
 
-std::vector<std::string> parts_of(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
-  }
-  return parts;
-}
-
 options parse(int argc, char* argv[])
 {
   options o;
   for (int i = 2; i < argc; i += 2) {
     const std::string word = argv[i];
+    if (word == "--append") {
+      o.append = true;
+      --i;
+      continue;
+    }
     if (i + 1 == argc) {
       throw failure(word + " is unknown or lacks its value; --help tells more");
     }
     const std::string value = argv[i + 1];
     if (word == "--case") {
-      o.cases = parts_of(value);
+      o.cases = split(value);
     } else if (word == "--method") {
-      o.methods = parts_of(value);
+      o.methods = split(value);
     } else if (word == "--size") {
-      for (const std::string& size : parts_of(value)) {
+      for (const std::string& size : split(value)) {
         o.sizes.push_back(std::atoi(size.c_str()));
       }
     } else if (word == "--threads") {
@@ -233,16 +229,19 @@ double processor_ms()
   return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+// Repeats by which two runs can be compared: a sign test rejects chance from seven on.
+constexpr int repeats_of_fast = 7;
+
 // Returns fewer repeats for large cases, because floodings and ITK take seconds.
 int repeats_of_slow(size_t count)
 {
-  return count > 64 * 64 * 64 ? 1 : 3;
+  return count > 128 * 128 * 128 ? 1 : repeats_of_fast;
 }
 
 timed time_method(stratus_context* context, const stratus_voxels* voxels, const method& m, size_t count)
 {
   timed t;
-  const int repeats = m.field.method >= STRATUS_FIELD_JFA ? repeats_of_slow(count) : 5;
+  const int repeats = m.field.method >= STRATUS_FIELD_JFA ? repeats_of_slow(count) : repeats_of_fast;
   for (int i = 0; i < repeats; ++i) {
     stratus_field_report report;
     stratus_field* made = nullptr;
@@ -272,30 +271,39 @@ public:
   void run_case(const distance_case& c)
   {
     std::fprintf(stderr, "%s\n", c.name.c_str());
-    const size_t count = c.effective.size();
     const voxels_pointer voxels = make_voxels(host_.get(), c.size, c.effective);
     std::vector<float> right[2];
     for (const std::string& name : o_.methods) {
-      const method m = parse_method(name);
-      if (m.is_itk) {
-        run_itk_rows(c);
-        continue;
+      try {
+        run_method(c, name, voxels.get(), right);
+      } catch (const failure& e) {
+        add_failure(c.name, name, e.what(), rows_);
       }
-      stratus_context* context = m.on_device ? device() : host_.get();
-      const timed t = time_method(context, voxels.get(), m, count);
-      std::vector<float>& exact = right[m.field.is_signed];
-      if (exact.empty()) {
-        exact = exact_distances(host_.get(), voxels.get(), m.field.is_signed, count);
-      }
-      const judgement j = judge(t.distances, exact, 0.0);
-      add(c.name, name, t, j);
-      rows_.push_back({ c.name, name, "passes", "1", static_cast<double>(t.passes) });
     }
   }
 
   const std::vector<row>& rows() const { return rows_; }
 
 private:
+  void run_method(const distance_case& c, const std::string& name, const stratus_voxels* voxels, std::vector<float>* right)
+  {
+    const method m = parse_method(name);
+    if (m.is_itk) {
+      run_itk_rows(c);
+      return;
+    }
+    const size_t count = c.effective.size();
+    stratus_context* context = m.on_device ? device() : host_.get();
+    const timed t = time_method(context, voxels, m, count);
+    std::vector<float>& exact = right[m.field.is_signed];
+    if (exact.empty()) {
+      exact = exact_distances(host_.get(), voxels, m.field.is_signed, count);
+    }
+    const judgement j = judge(t.distances, exact, 0.0);
+    add(c.name, name, t, j);
+    rows_.push_back({ c.name, name, "passes", "1", static_cast<double>(t.passes) });
+  }
+
   stratus_context* device()
   {
     if (!device_) {
@@ -327,6 +335,7 @@ private:
     const double array_ms = median(t.array_ms);
     const double cpu_ms = median(t.cpu_ms);
     rows_.push_back({ scene, name, "build_ms", "ms", build_ms });
+    add_repeats(scene, name, "array_ms", "ms", t.array_ms, rows_);
     rows_.push_back({ scene, name, "array_ms", "ms", array_ms });
     rows_.push_back({ scene, name, "cpu_ms", "ms", cpu_ms });
     rows_.push_back({ scene, name, "wrong_percent", "%", j.wrong_percent });
@@ -343,36 +352,33 @@ private:
   std::vector<row> rows_;
 };
 
-// Charts the cases of one size. Methods without error are drawn at the lower edge, because the axes are logarithmic.
+// Charts the cases of one size; sets that are empty or full have no wrong voxels in any field.
 void chart(const std::string& path, int64_t size, const std::vector<row>& rows)
 {
-  constexpr double least = 1e-5; // below one voxel of 128^3
   const std::string ending = "-" + std::to_string(size);
-  std::vector<chart_mark> marks;
-  double ms = 0.0;
-  for (const row& r : rows) {
+  std::vector<row> shown;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(shown), [&](const row& r) {
     std::string scene = r.scene;
-    if (r.metric == "build_ms") {
-      ms = r.value;
-    } else if (r.metric == "wrong_percent" && cut(scene, ending) && scene != "none" && scene != "all") {
-      marks.push_back({ r.scene, r.method, ms, std::max(r.value, least) });
-    }
-  }
-  write_chart(path, marks, "build, ms", "wrong voxels, unfilled ones too, % (none: 1e-5)");
+    return cut(scene, ending) && scene != "none" && scene != "all";
+  });
+  write_chart(path, curves_of("distance", shown).front());
 }
 
-void run(const options& o)
+// Returns whether all methods were measured.
+bool run(const options& o)
 {
+  check_writable(o.csv);
   runner r(o);
   for (const int64_t size : o.sizes) {
     for (const std::string& name : o.cases) {
       r.run_case(make_distance_case(name, size));
     }
   }
-  write_csv(o.csv, r.rows(), "distance");
+  save_rows(o.csv, r.rows(), "distance", o.append);
   if (!o.chart.empty()) {
     chart(o.chart, *std::max_element(o.sizes.begin(), o.sizes.end()), r.rows());
   }
+  return !any_failed(r.rows());
 }
 } // namespace
 
@@ -386,7 +392,6 @@ int distance_main(int argc, char* argv[])
   if (!o.chart.empty()) {
     ensure_display(argv);
   }
-  run(o);
-  return 0;
+  return run(o) ? 0 : 1;
 }
 } // namespace bench

@@ -11,7 +11,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <sstream>
 
 namespace bench {
 
@@ -26,11 +25,13 @@ const char* const help = R"(stratus-bench octree [options]
                        with :N, to leave nodes of N objects or fewer whole (16 without; the adaptive ones: 256). With actors
                        stratus:culler|culler-static, vtk:coverage. (default: all)
   --sweep C,...        stratus:octree-paper at these C too
+  --curves             methods over their settings: C, objects in a leaf
   --frames N           of each path (default 120)
   --threads N          of the host (default 1)
   --csv FILE           tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); a scene is NAME/PATH
                        the rows before them tell where they come from, as in stratus-bench volume
-  --chart FILE.png     cull_ms against the tree's bytes
+  --append             rows of other scenes that the file has stay
+  --chart FILE.png     cull_ms against false_keeps
 
 cull_ms: median over a path's frames, from a tree that has not been looked at; cull_worst_ms: the slowest. With one thread both are its
 processor time, else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own
@@ -45,6 +46,7 @@ struct options {
   std::vector<std::string> scenes, paths, methods;
   std::string csv = "-", chart;
   int frames = 120, threads = 1;
+  bool append = false, curves = false;
 };
 
 using context_pointer = std::unique_ptr<stratus_context, closer>;
@@ -171,9 +173,11 @@ void run_method(const path_run& run, const std::string& scene, const std::string
   const size_t wrong = judged.judged.wrong_culls + exact.judged.wrong_culls;
   const auto add = [&](const char* metric, double value, const char* unit) { rows.push_back({ scene, method, metric, unit, value }); };
   add("cull_ms", median(plain.ms), "ms");
+  add_repeats(scene, method, "cull_ms", "ms", plain.ms, rows);
   add("cull_worst_ms", *std::max_element(plain.ms.begin(), plain.ms.end()), "ms");
   add("exact_cull_ms", median(exact.ms), "ms");
-  add("update_ms", update_ms(run, octree), "ms");
+  const double moved = update_ms(run, octree);
+  add("update_ms", moved, "ms");
   add("nodes", static_cast<double>(statistics.nodes), "1");
   add("depth", statistics.depth, "1");
   add("bytes", static_cast<double>(statistics.bytes), "B");
@@ -184,9 +188,9 @@ void run_method(const path_run& run, const std::string& scene, const std::string
   std::fprintf(stderr,
     "  %-26s cull %.3f worst %.2f exact %.3f update %.2f ms, %zu nodes, depth %d, %.3g bytes, visible %.0f, false %.3f %% exact %.3f %%, "
     "wrong %zu\n",
-    method.c_str(), median(plain.ms), *std::max_element(plain.ms.begin(), plain.ms.end()), median(exact.ms), rows[rows.size() - 8].value,
-    statistics.nodes, statistics.depth, static_cast<double>(statistics.bytes), plain.visible, false_percent(judged.judged),
-    false_percent(exact.judged), wrong);
+    method.c_str(), median(plain.ms), *std::max_element(plain.ms.begin(), plain.ms.end()), median(exact.ms), moved, statistics.nodes,
+    statistics.depth, static_cast<double>(statistics.bytes), plain.visible, false_percent(judged.judged), false_percent(exact.judged),
+    wrong);
 }
 
 // Returns the depth that the pixel octree reaches on the path. The static octree gets this depth.
@@ -201,16 +205,6 @@ int pixel_depth(const path_run& run)
 
 // ---- options
 
-std::vector<std::string> parts_of(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
-  }
-  return parts;
-}
-
 void check(options& o, const std::vector<std::string>& sweep)
 {
   if (o.scenes.empty()) {
@@ -219,6 +213,12 @@ void check(options& o, const std::vector<std::string>& sweep)
   if (o.methods.empty()) {
     o.methods = { "stratus:octree-paper", "stratus:octree-euclid", "stratus:octree-pixel", "stratus:static", "stratus:static:256",
       "stratus:linear" };
+    o.methods.insert(o.methods.end(), actor_methods().begin(), actor_methods().end());
+  }
+  if (o.curves) {
+    o.methods = { "stratus:octree-paper:17.5", "stratus:octree-paper:35", "stratus:octree-paper:70", "stratus:octree-euclid:17.5",
+      "stratus:octree-euclid:35", "stratus:octree-euclid:70", "stratus:octree-pixel", "stratus:static:4", "stratus:static:16",
+      "stratus:static:256", "stratus:linear" };
     o.methods.insert(o.methods.end(), actor_methods().begin(), actor_methods().end());
   }
   for (const std::string& c : sweep) {
@@ -246,6 +246,12 @@ options parse(int argc, char* argv[])
   std::vector<std::string> sweep;
   for (int i = 2; i < argc; i += 2) {
     const std::string word = argv[i];
+    if (word == "--append" || word == "--curves") {
+      o.append = o.append || word == "--append";
+      o.curves = o.curves || word == "--curves";
+      --i;
+      continue;
+    }
     if (i + 1 == argc) {
       throw failure(word + " is unknown or lacks its value; --help tells more");
     }
@@ -255,7 +261,7 @@ options parse(int argc, char* argv[])
     std::map<std::string, int*> numbers = { { "--frames", &o.frames }, { "--threads", &o.threads } };
     std::map<std::string, std::string*> files = { { "--csv", &o.csv }, { "--chart", &o.chart } };
     if (lists.count(word) > 0) {
-      *lists[word] = parts_of(value);
+      *lists[word] = split(value);
     } else if (numbers.count(word) > 0) {
       *numbers[word] = std::atoi(value.c_str());
     } else if (files.count(word) > 0) {
@@ -266,25 +272,6 @@ options parse(int argc, char* argv[])
   }
   check(o, sweep);
   return o;
-}
-
-std::vector<chart_mark> marks_of(const std::vector<row>& rows)
-{
-  std::map<std::string, chart_mark> found;
-  for (const row& r : rows) {
-    chart_mark& mark = found[r.scene + '\n' + r.method];
-    mark.scene = r.scene;
-    mark.method = r.method;
-    mark.x = r.metric == "cull_ms" ? r.value : mark.x;
-    mark.y = r.metric == "bytes" ? r.value : mark.y;
-  }
-  std::vector<chart_mark> marks; // rows of actors have no bytes, and so no mark
-  for (const auto& entry : found) {
-    if (entry.second.x > 0.0 && entry.second.y > 0.0) {
-      marks.push_back(entry.second);
-    }
-  }
-  return marks;
 }
 
 void run_scene(stratus_context* context, const std::string& scene, const options& o, std::vector<row>& rows)
@@ -356,13 +343,14 @@ int octree_main(int argc, char* argv[])
   }
   const context_pointer context(made);
   std::vector<row> rows;
+  check_writable(o.csv);
   for (const std::string& scene : o.scenes) {
     run_scene(made, scene, o, rows);
   }
-  write_csv(o.csv, rows, "octree");
+  save_rows(o.csv, rows, "octree", o.append);
   if (!o.chart.empty()) {
-    write_chart(o.chart, marks_of(rows), "cull, ms", "bytes of the tree");
+    write_chart(o.chart, curves_of("octree", rows).front());
   }
-  return 0;
+  return any_failed(rows) ? 1 : 0;
 }
 } // namespace bench

@@ -171,6 +171,8 @@ void run_actors(stratus_context* context, const std::string& scene, const std::v
         rows.push_back({ scene + '/' + path, method, metric, unit, value });
       };
       add("cull_ms", median(c.ms), "ms");
+      add_repeats(scene + '/' + path, method, "cull_ms", "ms", c.ms, rows);
+      add_repeats(scene + '/' + path, method, "frame_ms", "ms", frames_ms, rows);
       add("cull_worst_ms", worst, "ms");
       add("frame_ms", frame, "ms");
       add("frame_best_ms", *std::min_element(frames_ms.begin(), frames_ms.end()), "ms");

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <system_error>
 
 namespace bench {
@@ -23,9 +22,11 @@ const char* const help = R"(stratus-bench tetra [options]
                             file of tetrahedra with point scalars; default: the four
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
   --method M,...            stratus:auto|march|project, stratus:march@device (the first OpenCL device), vtk:projected,
-                            vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk);
+                            vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk), vtk:zsweep; ours with
+                            ~TOLERANCE behind it, the last two with :PIXELS from ray to ray (default 1);
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the
                             paper's rule), vtk:depthsort (default: all but @device)
+  --curves, --quick-curves  mappers over their settings
   --size N                  N x N pixels (default 512)
   --repeats N               frames a view and method (default 3); rounds of sorters
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
@@ -50,20 +51,10 @@ functions that mean the same to them.
 
 struct options {
   std::vector<std::string> meshes, functions, methods;
-  std::string csv = "-", chart, cache, reference_cache, pictures;
+  std::string csv = "-", chart, cache, reference_cache = default_reference_cache(), pictures;
   int size = 512, repeats = 3, rays = 160;
   bool error = true, append = false;
 };
-
-std::vector<std::string> parts_of(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
-  }
-  return parts;
-}
 
 bool has(const std::vector<std::string>& names, const std::string& name)
 {
@@ -81,7 +72,7 @@ void check(options& o)
       known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
   }
   for (const std::string& method : o.methods) {
-    if (!has(known, method)) {
+    if (!has(known, method) && !is_tetra_mapper(method)) {
       throw failure("unknown method " + method + "; --help tells more");
     }
   }
@@ -107,6 +98,10 @@ options parse(int argc, char* argv[])
       (word == "--append" ? o.append : o.error) = word == "--append";
       continue;
     }
+    if (word == "--curves" || word == "--quick-curves") {
+      o.methods = tetra_curve_methods(word == "--quick-curves");
+      continue;
+    }
     if (i + 1 == argc) {
       throw failure(word + " is unknown or lacks its value; --help tells more");
     }
@@ -117,7 +112,7 @@ options parse(int argc, char* argv[])
     std::map<std::string, std::string*> files = { { "--csv", &o.csv }, { "--chart", &o.chart }, { "--cache", &o.cache },
       { "--reference-cache", &o.reference_cache }, { "--pictures", &o.pictures } };
     if (lists.count(word) > 0) {
-      *lists[word] = parts_of(value);
+      *lists[word] = split(value);
     } else if (numbers.count(word) > 0) {
       *numbers[word] = std::atoi(value.c_str());
     } else if (files.count(word) > 0) {
@@ -223,7 +218,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
 {
   std::vector<std::string> mappers, sorters;
   for (const std::string& method : o.methods) {
-    (has(tetra_mappers(), method) ? mappers : sorters).push_back(method);
+    (is_tetra_mapper(method) ? mappers : sorters).push_back(method);
   }
   std::vector<std::string> needed = sorters; // the sorters asked for, and those that pictures depend on
   for (const std::string& mapper : mappers) {
@@ -240,13 +235,19 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
   for (size_t f = 0; f < o.functions.size(); ++f) {
     const std::string scene = mesh.name + '/' + o.functions[f];
     std::fprintf(stderr, "%s\n", scene.c_str());
-    const std::vector<frame_result> results = run_mappers(context, mesh, tetra_transfer(mesh, o.functions[f]), mappers, o.size, o.repeats);
+    std::vector<mapper_failure> failures;
+    const std::vector<frame_result> results =
+      run_mappers(context, mesh, tetra_transfer(mesh, o.functions[f]), mappers, o.size, o.repeats, failures);
+    for (const mapper_failure& wrong : failures) {
+      add_failure(scene, wrong.method, wrong.why.c_str(), rows);
+    }
     if (o.error && !o.pictures.empty()) {
       write_pictures(o, scene, results, t.pictures[0][f]);
     }
     for (const frame_result& r : results) {
       rows.push_back({ scene, r.method, "first_ms", "ms", r.first_ms });
       rows.push_back({ scene, r.method, "frame_ms", "ms", r.frame_ms });
+      add_repeats(scene, r.method, "frame_ms", "ms", r.frames, rows);
       if (o.error) {
         add_errors(t, f, r, scene, rows);
       }
@@ -296,22 +297,10 @@ void print(const std::vector<row>& rows)
   std::fprintf(stderr, "\n");
 }
 
-std::vector<chart_mark> marks_of(const std::vector<row>& rows)
+// Returns whether all methods were measured.
+bool run(stratus_context* context, const options& o)
 {
-  std::vector<chart_mark> marks;
-  std::map<std::string, double> frames;
-  for (const row& r : rows) {
-    if (r.metric == "frame_ms") {
-      frames[r.scene + '\n' + r.method] = r.value;
-    } else if (r.metric == "rmse255_8bit") {
-      marks.push_back({ r.scene, r.method, frames[r.scene + '\n' + r.method], r.value });
-    }
-  }
-  return marks;
-}
-
-void run(stratus_context* context, const options& o)
-{
+  check_writable(o.csv);
   std::vector<row> rows;
   for (const std::string& folder : { o.cache, o.reference_cache, o.pictures }) {
     make_folder(folder);
@@ -327,12 +316,11 @@ void run(stratus_context* context, const options& o)
     throw failure("no mesh to measure");
   }
   print(rows);
-  table t = o.append ? read_csv(o.csv) : table();
-  replace_scenes(t, rows);
-  write_csv(o.csv, t, "tetra");
+  save_rows(o.csv, rows, "tetra", o.append);
   if (!o.chart.empty()) {
-    write_chart(o.chart, marks_of(t.rows), "whole frame, ms", "root mean square error of the window's pixels, of 255");
+    write_chart(o.chart, curves_of("tetra", o.append ? read_csv(o.csv).rows : rows).front());
   }
+  return !any_failed(rows);
 }
 } // namespace
 
@@ -352,7 +340,6 @@ int tetra_main(int argc, char* argv[])
     throw failure(message);
   }
   const std::unique_ptr<stratus_context, decltype(&stratus_context_destroy)> context(made, &stratus_context_destroy);
-  run(made, o);
-  return 0;
+  return run(made, o) ? 0 : 1;
 }
 } // namespace bench

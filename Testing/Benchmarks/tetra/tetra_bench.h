@@ -84,14 +84,21 @@ std::map<std::string, sorter_metrics> run_sorters(
 struct frame_result {
   std::string method;
   double first_ms = 0.0, frame_ms = 0.0;
+  std::vector<double> frames; // ms of each view, whose median is frame_ms
   sorter_metrics more;
   std::vector<tetra_picture> pictures; // one per view
 };
+struct mapper_failure {
+  std::string method, why;
+};
 const std::vector<std::string>& tetra_mappers();
+// Whether it is one of these, with or without a setting.
+bool is_tetra_mapper(const std::string& method);
+std::vector<std::string> tetra_curve_methods(bool quick); // at several settings
 // Returns the sorter that a mapper's picture depends on; "": none.
 std::string sorter_of(const std::string& method);
 std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh& mesh, const transfer& function,
-  const std::vector<std::string>& methods, int size, int repeats);
+  const std::vector<std::string>& methods, int size, int repeats, std::vector<mapper_failure>& failures);
 
 // ---- tetra_memory.cxx: counts the bytes that a context allocates
 

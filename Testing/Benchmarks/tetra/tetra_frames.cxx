@@ -18,12 +18,14 @@
 #include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGridVolumeRayCastMapper.h>
+#include <vtkUnstructuredGridVolumeZSweepMapper.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace bench {
 
@@ -33,55 +35,50 @@ constexpr double slow_ms = 1500.0; // frames that take longer are drawn once per
 
 using mapper_pointer = vtkSmartPointer<vtkUnstructuredGridVolumeMapper>;
 
-mapper_pointer make_stratus(const tetra_mesh& mesh, stratus_tetra_method method, const char* device)
+// tolerance 0: the default.
+mapper_pointer make_stratus(const tetra_mesh& mesh, stratus_tetra_method method, const char* device, double tolerance)
 {
   auto mapper = vtkSmartPointer<vtkStratusTetrahedraMapper>::New();
   mapper->SetMethod(static_cast<int>(method));
   mapper->SetDevice(device);
+  if (tolerance > 0.0) {
+    mapper->SetImageErrorTolerance(tolerance);
+  }
   mapper->SetInputData(mesh.grid);
   return mapper;
 }
 
 // Keeps VTK's default settings, whose sorter is vtkCellCenterDepthSort.
-mapper_pointer make_projected(const tetra_mesh& mesh)
+mapper_pointer make_projected(const tetra_mesh& mesh, double)
 {
   auto mapper = vtkSmartPointer<vtkProjectedTetrahedraMapper>::New();
   mapper->SetInputData(mesh.grid);
   return mapper;
 }
 
-mapper_pointer make_projected_sorted(const tetra_mesh& mesh, int depth)
+// Depth: of the partition whose leaves are sorted.
+template <int Depth> mapper_pointer make_projected_sorted(const tetra_mesh& mesh, double)
 {
   auto mapper = vtkSmartPointer<vtkProjectedTetrahedraMapper>::New();
   vtkNew<vtkStratusVisibilitySort> sort;
   mapper->SetVisibilitySort(sort);
   mapper->SetInputData(mesh.grid);
-  if (depth > 0) {
+  if (Depth > 0) {
     vtkNew<vtkStratusPartitionFilter> filter;
     filter->SetInputData(mesh.grid);
-    filter->SetDepth(depth);
+    filter->SetDepth(Depth);
     filter->Update();
     mapper->SetInputData(filter->GetOutput());
   }
   return mapper;
 }
 
-mapper_pointer make_projected_leaves(const tetra_mesh& mesh)
+// Makes one of VTK's mappers that draw in lines of pixels. Every frame has rays so many pixels apart (0: 1), all else is VTK's default.
+template <typename Mapper> mapper_pointer make_scanning(const tetra_mesh& mesh, double pixels)
 {
-  return make_projected_sorted(mesh, 3);
-}
-
-mapper_pointer make_projected_one_leaf(const tetra_mesh& mesh)
-{
-  return make_projected_sorted(mesh, 0);
-}
-
-// Casts one ray per pixel in every frame, and otherwise keeps VTK's default settings.
-mapper_pointer make_ray_cast(const tetra_mesh& mesh)
-{
-  auto mapper = vtkSmartPointer<vtkUnstructuredGridVolumeRayCastMapper>::New();
+  auto mapper = vtkSmartPointer<Mapper>::New();
   mapper->AutoAdjustSampleDistancesOff();
-  mapper->SetImageSampleDistance(1.0f);
+  mapper->SetImageSampleDistance(static_cast<float>(std::max(pixels, 1.0)));
   mapper->SetInputData(mesh.grid);
   return mapper;
 }
@@ -89,7 +86,7 @@ mapper_pointer make_ray_cast(const tetra_mesh& mesh)
 // One line per method.
 const struct recipe {
   const char* name;
-  mapper_pointer (*make)(const tetra_mesh& mesh); // nullptr: one of Stratus
+  mapper_pointer (*make)(const tetra_mesh& mesh, double setting); // nullptr: one of Stratus
   const char* sorter;
   stratus_tetra_method method;
   const char* device;
@@ -99,28 +96,45 @@ const struct recipe {
   { "stratus:project", nullptr, "stratus:sort-1", STRATUS_TETRA_METHOD_PROJECT, "host" },
   { "stratus:march@device", nullptr, "", STRATUS_TETRA_METHOD_MARCH, "0" },
   { "vtk:projected", make_projected, "vtk:depthsort", STRATUS_TETRA_METHOD_AUTO, "" },
-  { "vtk:projected+stratus-sort", make_projected_leaves, "stratus:sort", STRATUS_TETRA_METHOD_AUTO, "" },
-  { "vtk:projected+stratus-sort-1", make_projected_one_leaf, "stratus:sort-1", STRATUS_TETRA_METHOD_AUTO, "" },
-  { "vtk:raycast", make_ray_cast, "", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:projected+stratus-sort", make_projected_sorted<3>, "stratus:sort", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:projected+stratus-sort-1", make_projected_sorted<0>, "stratus:sort-1", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:raycast", make_scanning<vtkUnstructuredGridVolumeRayCastMapper>, "", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:zsweep", make_scanning<vtkUnstructuredGridVolumeZSweepMapper>, "", STRATUS_TETRA_METHOD_AUTO, "" },
 };
 
-const recipe* find(const std::string& name)
+// Finds NAME, stratus:NAME~TOLERANCE, vtk:raycast:PIXELS or vtk:zsweep:PIXELS, and its setting; 0: none is named.
+const recipe* find(const std::string& whole, double* setting = nullptr)
 {
+  const bool ours = is_ours(whole);
+  const size_t mark = ours ? whole.find('~') : whole.rfind(':');
+  std::string name = whole;
+  double value = 0.0;
+  if (mark != std::string::npos && mark > 3) {
+    char* end = nullptr;
+    value = std::strtod(whole.c_str() + mark + 1, &end);
+    if (*end != '\0' || !(value > 0.0 && value <= (ours ? 1.0 : 16.0))) {
+      return nullptr;
+    }
+    name.resize(mark);
+  }
+  if (setting) {
+    *setting = value;
+  }
   const auto found = std::find_if(std::begin(recipes), std::end(recipes), [&](const recipe& r) { return name == r.name; });
   return found == std::end(recipes) ? nullptr : found;
 }
 
-// Returns nullptr, with a message, if there is no device.
-mapper_pointer make_mapper(const tetra_mesh& mesh, const recipe& r)
+mapper_pointer make_mapper(const tetra_mesh& mesh, const std::string& name)
 {
+  double setting = 0.0;
+  const recipe& r = *find(name, &setting);
   if (r.make) {
-    return r.make(mesh);
+    return r.make(mesh, setting);
   }
   if (std::string(r.device) == "0" && stratus_device_count() == 0) {
-    std::fprintf(stderr, "%s is LEFT OUT: there is no OpenCL device\n", r.name);
-    return nullptr;
+    throw failure("there is no OpenCL device");
   }
-  return make_stratus(mesh, r.method, r.device);
+  return make_stratus(mesh, r.method, r.device, setting);
 }
 
 // Converts a transfer function for VTK's mappers of tetrahedra. They take opacity as attenuation, where VTK's mappers of images and Stratus
@@ -309,6 +323,21 @@ const std::vector<std::string>& tetra_mappers()
   return names;
 }
 
+std::vector<std::string> tetra_curve_methods(bool quick)
+{
+  return quick ? std::vector<std::string>{ "stratus:auto~0.1", "stratus:auto~0.001", "stratus:auto~0.00001", "vtk:projected",
+    "vtk:raycast:2", "vtk:raycast", "vtk:zsweep:2", "vtk:zsweep" }
+               : std::vector<std::string>{ "stratus:auto~0.1", "stratus:auto~0.01", "stratus:auto~0.001", "stratus:auto~0.0001",
+                   "stratus:auto~0.00001", "stratus:march~0.01", "stratus:march~0.001", "stratus:march~0.0001", "stratus:project~0.01",
+                   "stratus:project~0.001", "stratus:project~0.0001", "vtk:projected", "vtk:projected+stratus-sort", "vtk:raycast:4",
+                   "vtk:raycast:2", "vtk:raycast", "vtk:zsweep:4", "vtk:zsweep:2", "vtk:zsweep" };
+}
+
+bool is_tetra_mapper(const std::string& method)
+{
+  return find(method) != nullptr;
+}
+
 std::string sorter_of(const std::string& method)
 {
   const recipe* r = find(method);
@@ -316,23 +345,25 @@ std::string sorter_of(const std::string& method)
 }
 
 std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh& mesh, const transfer& function,
-  const std::vector<std::string>& methods, int size, int repeats)
+  const std::vector<std::string>& methods, int size, int repeats, std::vector<mapper_failure>& failures)
 {
   stage s(context, mesh, function, size);
   std::vector<mapper_pointer> mappers;
   std::vector<frame_result> results;
   for (const std::string& method : methods) {
-    if (const mapper_pointer mapper = make_mapper(mesh, *find(method))) {
-      mappers.push_back(mapper);
-      s.add(mapper);
-      results.emplace_back();
-      results.back().method = method;
+    try {
+      mappers.push_back(make_mapper(mesh, method));
+    } catch (const failure& e) {
+      failures.push_back({ method, e.what() });
+      continue;
     }
+    s.add(mappers.back());
+    results.emplace_back();
+    results.back().method = method;
   }
   for (size_t m = 0; m < mappers.size(); ++m) {
     results[m].first_ms = s.render(m, 0, 1.0);
   }
-  std::vector<std::vector<double>> frames(mappers.size());
   for (int view = 0; view < views; ++view) {
     std::vector<std::vector<double>> times(mappers.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -348,11 +379,11 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
       }
     }
     for (size_t m = 0; m < mappers.size(); ++m) {
-      frames[m].push_back(median(times[m]));
+      results[m].frames.push_back(median(times[m]));
     }
   }
   for (size_t m = 0; m < mappers.size(); ++m) {
-    results[m].frame_ms = median(frames[m]);
+    results[m].frame_ms = median(results[m].frames);
     const recipe* r = find(results[m].method);
     if (!r->make && std::string(r->device) == "host") {
       add_bytes(mesh, function, r->method, size, results[m].more);

@@ -171,13 +171,18 @@ struct float_ray {
   float origin[3], direction[3], inverse[3];
 };
 
+// Returns the quality that a kind's last word names.
+RTCBuildQuality quality_of(const std::string& kind)
+{
+  const std::string word = kind.substr(kind.rfind(':') + 1);
+  return word == "low" ? RTC_BUILD_QUALITY_LOW : word == "high" ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+}
+
 class embree_hits : public first_hits
 {
 public:
   embree_hits(const voxel_set& s, const std::string& kind)
-      : set(s), bricks(kind == "bricks"), packets(kind == "packet"), quality(kind == "low" ? RTC_BUILD_QUALITY_LOW
-                                                                         : kind == "high"  ? RTC_BUILD_QUALITY_HIGH
-                                                                                           : RTC_BUILD_QUALITY_MEDIUM)
+      : set(s), bricks(kind.rfind("bricks", 0) == 0), packets(kind.rfind("packet", 0) == 0), quality(quality_of(kind))
   {
     this->device = rtcNewDevice("threads=2,user_threads=0");
     if (!this->device) {

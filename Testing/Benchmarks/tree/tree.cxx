@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <map>
-#include <sstream>
 #include <thread>
 #include <time.h>
 
@@ -18,12 +18,15 @@ namespace {
 const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
-  --method M,...     stratus:hybrid|hybrid-paper|distance|octant|sah|sweep|lbvh|ploc|ac|dpc|kmeans,
-                     embree:low|medium|high|packet|bricks, openvdb (default: all; stratus:hybrid-paper, ac, dpc and kmeans grow faster
-                     than n log n and take sets of up to 35,000 voxels)
+  --method M,...     stratus:hybrid|hybrid-paper|distance|octant|sah|sweep|lbvh|ploc|ac|dpc|kmeans, all but distance and octant with :N
+                     behind it, bricks (the first two) or voxels in a leaf; embree:low|medium|high, embree:packet and embree:bricks with
+                     :low or :high behind it or neither (medium), openvdb (default: all; stratus:hybrid-paper, ac, dpc and kmeans grow
+                     faster than n log n and take sets of up to 35,000 voxels)
+  --curves           methods over their settings; --quick-curves: without the slow ones
   --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
   --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                      the rows before them tell where they come from, as in stratus-bench volume
+  --append           rows of other scenes that the file has stay
   --chart FILE.png   tracing against building
 
 build_ms: from the list of voxels to what can be traced, by the wall clock, 2 threads, median. primary_ns, random_ns: a ray, one thread, its
@@ -40,32 +43,8 @@ struct options {
   std::vector<std::string> scenes, methods;
   std::string csv = "-", chart;
   int rounds = 0;
+  bool append = false;
 };
-
-struct context_deleter {
-  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
-};
-using context_pointer = std::unique_ptr<stratus_context, context_deleter>;
-
-context_pointer host(int threads)
-{
-  stratus_context_options o = stratus_context_options_default();
-  stratus_context* context = nullptr;
-  char message[512];
-  o.device = "host";
-  o.threads = threads;
-  if (stratus_context_create(&o, &context, message, sizeof message) != STRATUS_OK) {
-    throw failure(message);
-  }
-  return context_pointer(context);
-}
-
-void check(stratus_context* context, stratus_status status)
-{
-  if (status != STRATUS_OK) {
-    throw failure(std::string(stratus_status_name(status)) + ": " + stratus_context_message(context));
-  }
-}
 
 double thread_ms()
 {
@@ -74,105 +53,11 @@ double thread_ms()
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-class stratus_hits : public first_hits
-{
-public:
-  stratus_hits(const voxel_set& s, stratus_tree_method m) : set(s), builder(host(2)), tracer(host(1)) { this->tree_options.method = m; }
-  ~stratus_hits() override { stratus_tree_destroy(this->tree); }
-  void build() override
-  {
-    stratus_tree_destroy(this->tree);
-    this->tree = nullptr;
-    stratus_voxels* voxels = nullptr;
-    stratus_context* c = this->builder.get();
-    check(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &voxels));
-    const stratus_status status = stratus_tree_create(c, voxels, &this->tree_options, &this->tree);
-    stratus_voxels_destroy(voxels);
-    check(c, status);
-  }
-  tree_numbers numbers() const override
-  {
-    stratus_tree_statistics s;
-    stratus_tree_get_statistics(this->tree, &s);
-    tree_numbers n;
-    n.bytes = static_cast<double>(s.bytes);
-    n.nodes = static_cast<double>(s.nodes);
-    n.depth = s.depth;
-    n.sah = s.sah;
-    return n;
-  }
-  void prepare(const voxel_rays& r) override
-  {
-    this->rays = &r.rays;
-    this->found.resize(r.rays.size());
-  }
-  void trace() override
-  {
-    check(this->tracer.get(),
-      stratus_tree_first_hit(this->tracer.get(), this->tree, this->rays->data(), this->rays->size(), this->found.data()));
-  }
-  std::vector<voxel_hit> hits() const override
-  {
-    std::vector<voxel_hit> result(this->found.size());
-    for (size_t i = 0; i < result.size(); ++i) {
-      if (this->found[i].voxel[0] >= 0) {
-        result[i].t = this->found[i].t;
-        std::copy(this->found[i].voxel, this->found[i].voxel + 3, result[i].voxel);
-      }
-    }
-    return result;
-  }
-
-private:
-  const voxel_set& set;
-  context_pointer builder, tracer;
-  stratus_tree_options tree_options = stratus_tree_options_default();
-  stratus_tree* tree = nullptr;
-  const std::vector<stratus_ray>* rays = nullptr;
-  std::vector<stratus_hit> found;
-};
-
-// ---------------------------------------------------------------- methods
-
-const char* const peers[] = { "embree:low", "embree:medium", "embree:high", "embree:packet", "embree:bricks", "openvdb" };
-
-std::vector<std::string> all_tree_methods()
-{
-  std::vector<std::string> names;
-  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
-    names.push_back(std::string("stratus:") + stratus_tree_method_name(static_cast<stratus_tree_method>(m)));
-  }
-  names.insert(names.end(), std::begin(peers), std::end(peers));
-  return names;
-}
-
-bool is_slow(const std::string& method)
-{
-  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", "stratus:dpc", "stratus:kmeans" };
-  return std::any_of(std::begin(slow), std::end(slow), [&](const char* name) { return method == name; });
-}
-
-std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method)
-{
-  if (method == "openvdb") {
-    return make_openvdb_hits(set);
-  }
-  if (method.rfind("embree:", 0) == 0) {
-    return make_embree_hits(set, method.substr(7));
-  }
-  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
-    if (method.substr(8) == stratus_tree_method_name(static_cast<stratus_tree_method>(m))) {
-      return std::make_unique<stratus_hits>(set, static_cast<stratus_tree_method>(m));
-    }
-  }
-  throw failure("unknown method " + method);
-}
-
 // ---------------------------------------------------------------- one scene
 
 // A set of voxels, built-in or the cloud's, with its rays and the plain walk's hits.
 struct tree_scene {
-  context_pointer context = host(0);
+  context_pointer context = host_context(0);
   voxel_set set;
   std::vector<int32_t> own; // positions of a set that is not built in
   int32_t* listed = nullptr;
@@ -192,7 +77,7 @@ struct tree_scene {
 void tree_scene::list_volume(const std::string& name)
 {
   stratus_scene* scene = nullptr;
-  check(this->context.get(), stratus_scene_create(this->context.get(), name.c_str(), &scene));
+  check_status(this->context.get(), stratus_scene_create(this->context.get(), name.c_str(), &scene));
   const int64_t* n = scene->volume.dimensions;
   const float* values = static_cast<const float*>(scene->volume.values);
   for (int64_t v = 0; v < n[0] * n[1] * n[2]; ++v) {
@@ -214,16 +99,16 @@ tree_scene::tree_scene(const std::string& name)
   if (name == "cloud") {
     this->list_volume(name);
   } else {
-    check(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
+    check_status(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
     this->set.positions = this->listed;
   }
-  check(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &this->voxels));
+  check_status(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &this->voxels));
   for (int kind = 0; kind < 2; ++kind) {
     this->rays[kind].coherent = kind == 0;
     this->rays[kind].rays.resize(width * width);
     this->walk[kind].resize(width * width);
-    check(c, stratus_voxel_scene_rays(c, this->voxels, kind, this->rays[kind].rays.data()));
-    check(c, stratus_voxels_first_hit(c, this->voxels, this->rays[kind].rays.data(), width * width, this->walk[kind].data()));
+    check_status(c, stratus_voxel_scene_rays(c, this->voxels, kind, this->rays[kind].rays.data()));
+    check_status(c, stratus_voxels_first_hit(c, this->voxels, this->rays[kind].rays.data(), width * width, this->walk[kind].data()));
   }
 }
 
@@ -266,6 +151,9 @@ void add_rows(const std::string& scene, const std::string& method, const measure
       rows.push_back({ scene, method, metric, unit, value });
     }
   };
+  add_repeats(scene, method, "build_ms", "ms", m.build_ms, rows);
+  add_repeats(scene, method, "primary_ns", "ns", m.trace_ns[0], rows);
+  add_repeats(scene, method, "random_ns", "ns", m.trace_ns[1], rows);
   add("build_ms", median(m.build_ms), "ms");
   add("primary_ns", median(m.trace_ns[0]), "ns");
   add("random_ns", median(m.trace_ns[1]), "ns");
@@ -285,11 +173,17 @@ void run_scene(const std::string& name, const options& o, std::vector<row>& rows
   const int rounds = o.rounds ? o.rounds : scene.set.count > 5000000 ? 2 : 5;
   std::vector<std::string> methods;
   std::copy_if(o.methods.begin(), o.methods.end(), std::back_inserter(methods),
-    [&](const std::string& m) { return scene.set.count <= slow_most || !is_slow(m); });
+    [&](const std::string& m) { return scene.set.count <= slow_most || !is_slow_tree(m); });
   std::map<std::string, measured> all;
   for (int round = 0; round < rounds; ++round) {
-    for (const std::string& method : methods) {
-      run_round(scene, method, round == 0, all[method]);
+    for (auto method = methods.begin(); method != methods.end();) {
+      try {
+        run_round(scene, *method, round == 0, all[*method]);
+        ++method;
+      } catch (const failure& e) {
+        add_failure(name, *method, e.what(), rows);
+        method = methods.erase(method);
+      }
     }
   }
   for (const std::string& method : methods) {
@@ -302,16 +196,6 @@ void run_scene(const std::string& name, const options& o, std::vector<row>& rows
 }
 
 // ---------------------------------------------------------------- the command line
-
-std::vector<std::string> split(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
-  }
-  return parts;
-}
 
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& known, const char* what)
 {
@@ -327,6 +211,14 @@ options parse(int argc, char* argv[])
   options o;
   for (int i = 2; i < argc; i += 2) {
     const std::string word = argv[i];
+    if (word == "--append" || word == "--curves" || word == "--quick-curves") {
+      o.append = o.append || word == "--append";
+      if (word != "--append") {
+        o.methods = tree_curve_methods(word == "--quick-curves");
+      }
+      --i;
+      continue;
+    }
     if (i + 1 == argc) {
       throw failure(word + " is unknown or lacks its value; --help tells more");
     }
@@ -354,25 +246,16 @@ options parse(int argc, char* argv[])
   }
   scenes.push_back("cloud");
   check_names(o.scenes, scenes, "scene");
-  check_names(o.methods, all_tree_methods(), "method");
+  for (const std::string& method : o.methods) {
+    if (!is_tree_method(method)) {
+      throw failure("unknown method " + method + "; --help tells which there are");
+    }
+  }
   o.scenes = o.scenes.empty() ? scenes : o.scenes;
   o.methods = o.methods.empty() ? all_tree_methods() : o.methods;
   return o;
 }
 
-void chart(const std::string& path, const std::vector<row>& rows)
-{
-  std::vector<chart_mark> marks;
-  double build = 0.0, primary = 0.0;
-  for (const row& r : rows) {
-    build = r.metric == "build_ms" ? r.value : build;
-    primary = r.metric == "primary_ns" ? r.value : primary;
-    if (r.metric == "random_ns") {
-      marks.push_back({ r.scene, r.method, build, .5 * (primary + r.value) });
-    }
-  }
-  write_chart(path, marks, "build, ms", "a ray, ns: mean of primary and random");
-}
 } // namespace
 
 int tree_main(int argc, char* argv[])
@@ -386,13 +269,14 @@ int tree_main(int argc, char* argv[])
     ensure_display(argv);
   }
   std::vector<row> rows;
+  check_writable(o.csv);
   for (const std::string& name : o.scenes) {
     run_scene(name, o, rows);
   }
-  write_csv(o.csv, rows, "tree");
+  save_rows(o.csv, rows, "tree", o.append);
   if (!o.chart.empty()) {
-    chart(o.chart, rows);
+    write_chart(o.chart, curves_of("tree", rows).back());
   }
-  return 0;
+  return any_failed(rows) ? 1 : 0;
 }
 } // namespace bench

@@ -40,7 +40,23 @@ public:
   virtual std::vector<voxel_hit> hits() const = 0; // of the last trace(), in the rays' order
 };
 
-// ---- embree.cxx: low, medium, high, packet, bricks
+// ---- tree_names.cxx: ours, and the names of all
+
+struct context_deleter {
+  void operator()(stratus_context* c) const { stratus_context_destroy(c); }
+};
+using context_pointer = std::unique_ptr<stratus_context, context_deleter>;
+context_pointer host_context(int threads);
+void check_status(stratus_context* context, stratus_status status); // throws failure
+
+std::vector<std::string> all_tree_methods();
+// Every method at three sizes of leaves, or qualities of the build. quick: without the slow ones.
+std::vector<std::string> tree_curve_methods(bool quick);
+bool is_tree_method(const std::string& name); // with or without a size of leaves
+bool is_slow_tree(const std::string& method);
+std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method);
+
+// ---- embree.cxx: low, medium, high; packet, bricks, with :low, :high or nothing (medium) behind
 std::unique_ptr<first_hits> make_embree_hits(const voxel_set& set, const std::string& kind);
 // ---- openvdb_tree.cxx
 std::unique_ptr<first_hits> make_openvdb_hits(const voxel_set& set);

@@ -3,6 +3,7 @@
 // The reference's step is halved until two pictures agree by 10 dB more than the best figure printed, and to 70 dB at least where a
 // transfer function jumps: there, plain steps converge slowly.
 #include "bench.h"
+#include "bench_commit.h"
 #include "reference.h"
 
 #include <algorithm>
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double finest = 1.0 / 256.0;
 constexpr double least_of_jumps = 70.0; // dB
+// Of all views, on which errors are measured. Squares of errors differ by two decades or so, so that their mean is known to a few percent.
+constexpr size_t enough_pixels = 16384;
 
 uint64_t mix(uint64_t hash, const void* data, size_t bytes)
 {
@@ -34,16 +37,19 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
   return hash;
 }
 
-// Hashes everything that determines the reference's picture, except view, size and step. The number counts the reference's ways to
-// integrate, so that a cache holds no picture of an earlier one.
+// Hashes everything that determines the reference's picture, except view, size, tile and step. The reference's own sources count, so that
+// a cache holds no picture of an earlier one.
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
   const int64_t values = v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride;
-  uint64_t hash = mix(2, v.values, static_cast<size_t>(values) * stratus_type_size(v.type));
+  uint64_t hash = mix(mix(2, STRATUS_BENCH_REFERENCE, std::strlen(STRATUS_BENCH_REFERENCE)), v.values,
+    static_cast<size_t>(values) * stratus_type_size(v.type));
   hash = mix(hash, v.dimensions, sizeof v.dimensions);
   hash = mix(hash, v.spacing, sizeof v.spacing);
   hash = mix(hash, v.origin, sizeof v.origin);
+  hash = mix(hash, &v.components, sizeof v.components);
+  hash = mix(hash, &s.up_axis, sizeof s.up_axis);
   hash = mix(hash, &s.shaded, sizeof s.shaded);
   for (const stratus_transfer& t : transfers_of(s)) {
     hash = mix(hash, t.opacity, 2 * t.opacity_count * sizeof(double));
@@ -65,7 +71,7 @@ bool jumps(const std::vector<double>& points, size_t width)
 }
 
 // Shows on a terminal which reference is being drawn.
-void progress(const scene& s, double step, int view)
+void show(const scene& s, double step, int view)
 {
   if (isatty(STDERR_FILENO)) {
     std::fprintf(stderr, "\r\033[K");
@@ -84,13 +90,15 @@ public:
   {
   }
 
+  // Returns the pixels that errors are measured on, one after the other.
   std::vector<float> make(int view, double step) const
   {
-    std::vector<float> rgba(4 * static_cast<size_t>(this->Size) * static_cast<size_t>(this->Size));
+    std::vector<float> picked(4 * this->Picks.size());
     const std::string path = this->Cache.empty() ? "" : this->path(view, step);
-    if (!path.empty() && load_picture(path, rgba)) {
-      return rgba;
+    if (!path.empty() && load_picture(path, picked)) {
+      return picked;
     }
+    std::vector<float> rgba(4 * static_cast<size_t>(this->Size) * static_cast<size_t>(this->Size));
     const std::vector<stratus_transfer> transfers = transfers_of(this->Scene);
     const stratus_camera camera = camera_of(this->Context, this->Scene, view);
     reference_scene r = {};
@@ -99,21 +107,55 @@ public:
     r.transfer = transfers.data();
     r.camera = &camera;
     r.shading = this->Scene.shaded ? &shading : nullptr;
+    r.tile = this->Tile;
     if (reference_render(&r, this->Size, this->Size, step, rgba.data(), nullptr) != 0) {
       throw failure("no memory for the reference");
     }
+    picked = this->pick(rgba);
     if (!path.empty()) {
-      save_picture(path, rgba);
+      save_picture(path, picked);
     }
-    return rgba;
+    return picked;
+  }
+
+  // Takes the largest tiles that leave enough pixels in which a method shows something.
+  void choose_pixels(const std::vector<picture>& pictures)
+  {
+    for (this->Tile = 8; this->Tile >= 1; this->Tile /= 2) {
+      this->Picks.clear();
+      for (int y = 0; y < this->Size; ++y) {
+        for (int x = 0; x < this->Size; ++x) {
+          if (reference_picks(this->Tile, x, y)) {
+            this->Picks.push_back(static_cast<size_t>(y) * static_cast<size_t>(this->Size) + static_cast<size_t>(x));
+          }
+        }
+      }
+      size_t lit = 0;
+      for (const picture& p : pictures) {
+        lit += static_cast<size_t>(std::count_if(this->Picks.begin(), this->Picks.end(), [&](size_t i) { return p.bytes[4 * i + 3] > 0; }));
+      }
+      if (lit >= enough_pixels || this->Tile == 1) {
+        return;
+      }
+    }
+  }
+
+  template <typename T> std::vector<T> pick(const std::vector<T>& rgba) const
+  {
+    std::vector<T> picked;
+    picked.reserve(4 * this->Picks.size());
+    for (const size_t i : this->Picks) {
+      picked.insert(picked.end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i + 4));
+    }
+    return picked;
   }
 
 private:
   std::string path(int view, double step) const
   {
     char name[160];
-    std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash),
-      this->Size, view, static_cast<int>(std::lround(1.0 / step)));
+    std::snprintf(name, sizeof name, "/%s-%016llx-%d-%d-%d-%d.rgba", this->Scene.name.c_str(), static_cast<unsigned long long>(this->Hash),
+      this->Size, this->Tile, view, static_cast<int>(std::lround(1.0 / step)));
     return this->Cache + name;
   }
 
@@ -122,6 +164,8 @@ private:
   int Size;
   std::string Cache;
   uint64_t Hash;
+  int Tile = 1;
+  std::vector<size_t> Picks;
 };
 
 struct error {
@@ -140,7 +184,7 @@ std::vector<float> to_floats(const std::vector<uint8_t>& bytes)
   return result;
 }
 
-void measure_result(const std::vector<std::vector<float>>& reference, result& r)
+void measure_result(const references& source, const std::vector<std::vector<float>>& reference, result& r)
 {
   error in_float;
   error in_bytes;
@@ -148,9 +192,9 @@ void measure_result(const std::vector<std::vector<float>>& reference, result& r)
     const picture& p = r.pictures[static_cast<size_t>(view)];
     const std::vector<float>& truth = reference[static_cast<size_t>(view)];
     if (!p.rgba.empty()) {
-      in_float.add(p.rgba.data(), truth.data(), truth.size() / 4);
+      in_float.add(source.pick(p.rgba).data(), truth.data(), truth.size() / 4);
     }
-    in_bytes.add(to_floats(p.bytes).data(), truth.data(), truth.size() / 4);
+    in_bytes.add(to_floats(source.pick(p.bytes)).data(), truth.data(), truth.size() / 4);
   }
   const bool floats = !r.pictures[0].rgba.empty();
   r.psnr_db = floats ? in_float.psnr() : 0.0;
@@ -168,7 +212,7 @@ std::string how(const std::string& method)
 struct judge::state {
   stratus_context* Context;
   const scene& Scene;
-  int Size;
+  effort How;
   references Source;
   double Step; // of Fine; 0: nothing is drawn yet
   std::vector<std::vector<float>> Coarse, Fine;
@@ -182,7 +226,7 @@ double judge::state::draw(double step)
 {
   error self;
   for (int view = 0; view < views; ++view) {
-    progress(this->Scene, step, view);
+    show(this->Scene, step, view);
     const size_t v = static_cast<size_t>(view);
     this->Coarse[v].swap(this->Fine[v]);
     this->Fine[v] = this->Source.make(view, step);
@@ -190,13 +234,13 @@ double judge::state::draw(double step)
       self.add(this->Coarse[v].data(), this->Fine[v].data(), this->Fine[v].size() / 4);
     }
   }
-  progress(this->Scene, step, views);
+  show(this->Scene, step, views);
   this->Step = step;
   return self.psnr();
 }
 
-judge::judge(stratus_context* context, const scene& s, int size, const std::string& cache)
-    : State(new state{ context, s, size, references(context, s, size, cache), 0.0, {}, {}, 0.0 })
+judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache)
+    : State(new state{ context, s, how, references(context, s, how.size, cache), 0.0, {}, {}, 0.0 })
 {
   this->State->Coarse.resize(views);
   this->State->Fine.resize(views);
@@ -212,6 +256,7 @@ void judge::measure(std::vector<result>& results)
   }
   const double least = jumps(j.Scene.first.opacity, 2) || jumps(j.Scene.first.color, 4) ? least_of_jumps : 0.0;
   if (j.Step == 0.0) {
+    j.Source.choose_pixels(std::find_if(results.begin(), results.end(), [](const result& r) { return r.judged; })->pictures);
     // Without light and other components, steps end at cells and at the function's points, so that long ones suffice.
     j.draw(j.Scene.shaded || j.Scene.volume.components > 1 ? 0.125 : 1.0);
     j.Agreement = j.draw(0.5 * j.Step);
@@ -220,7 +265,7 @@ void judge::measure(std::vector<result>& results)
     double best = 0.0;
     for (result& r : results) {
       if (r.judged) {
-        measure_result(j.Fine, r);
+        measure_result(j.Source, j.Fine, r);
         r.reference_db = j.Agreement;
         best = std::max({ best, r.psnr_db, r.psnr8_db });
       }
@@ -252,7 +297,10 @@ void judge::compare(std::vector<result>& results)
     }
     std::vector<picture>& plain = none[how(r.method)];
     if (plain.empty()) {
-      plain = run_method(j.Context, j.Scene, "stratus:none" + how(r.method), j.Size, r.tolerance).pictures;
+      effort once = j.How;
+      once.repeats = 1;
+      once.updates = false;
+      plain = run_method(j.Context, j.Scene, "stratus:none" + how(r.method), once, r.tolerance).pictures;
     }
     r.differing_pixels = 0.0;
     for (int view = 0; view < views; ++view) {

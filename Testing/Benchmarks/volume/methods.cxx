@@ -81,15 +81,46 @@ vtkSmartPointer<vtkVolumeMapper> make_stratus(const stratus_method& m, double fi
   return mapper;
 }
 
-// All automatic adjustments are off. step is in world units.
-vtkSmartPointer<vtkVolumeMapper> make_fixed_point(double step)
+// PEER[/PIXELS][:STEP]
+struct peer_method {
+  std::string name;
+  double step = 1.0; // in voxels
+  int image = 1;     // pixels from ray to ray; vtk:fixedpoint alone has another than 1
+};
+
+// Returns false for other names.
+bool parse_peer(const std::string& whole, peer_method& m)
 {
+  static const char* const peers[] = { "vtk:fixedpoint", "vtk:gpu", "openvdb" };
+  const auto found =
+    std::find_if(std::begin(peers), std::end(peers), [&](const std::string& peer) { return whole.compare(0, peer.size(), peer) == 0; });
+  if (found == std::end(peers)) {
+    return false;
+  }
+  m.name = *found;
+  std::string rest = whole.substr(m.name.size());
+  if (m.name == "vtk:fixedpoint" && rest.compare(0, 2, "/2") == 0) {
+    m.image = 2;
+    rest = rest.substr(2);
+  }
+  if (rest.empty()) {
+    return true;
+  }
+  char* end = nullptr;
+  m.step = std::strtod(rest.c_str() + 1, &end);
+  return rest[0] == ':' && *end == '\0' && m.step >= 0.01 && m.step <= 100.0;
+}
+
+// All automatic adjustments are off. step is in world units, image in pixels.
+vtkSmartPointer<vtkVolumeMapper> make_fixed_point(double step, int image)
+{
+  const auto pixels = static_cast<float>(image);
   auto mapper = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
   mapper->AutoAdjustSampleDistancesOff();
   mapper->LockSampleDistanceToInputSpacingOff();
-  mapper->SetImageSampleDistance(1.0f);
-  mapper->SetMinimumImageSampleDistance(1.0f);
-  mapper->SetMaximumImageSampleDistance(1.0f);
+  mapper->SetImageSampleDistance(pixels);
+  mapper->SetMinimumImageSampleDistance(pixels);
+  mapper->SetMaximumImageSampleDistance(pixels);
   mapper->SetSampleDistance(static_cast<float>(step));
   mapper->SetInteractiveSampleDistance(static_cast<float>(step));
   return mapper;
@@ -109,21 +140,22 @@ vtkSmartPointer<vtkVolumeMapper> make_gpu(double step)
 vtkSmartPointer<vtkVolumeMapper> make_mapper(const scene& s, const std::string& method, double fixed_point_error)
 {
   stratus_method ours;
+  peer_method peer;
   if (parse_stratus(method, ours)) {
     return make_stratus(ours, fixed_point_error);
   }
-  if (method == "vtk:fixedpoint" || method == "vtk:fixedpoint:0.5") {
-    return make_fixed_point(method == "vtk:fixedpoint" ? s.voxel : 0.5 * s.voxel);
+  if (!parse_peer(method, peer)) {
+    throw failure("unknown method " + method);
   }
-  if (method == "vtk:gpu") {
-    return make_gpu(s.voxel);
+  if (peer.name == "vtk:fixedpoint") {
+    return make_fixed_point(peer.step * s.voxel, peer.image);
   }
-  if (method == "openvdb") {
-    auto mapper = vtkSmartPointer<openvdb_mapper>::New();
-    mapper->set_volume(s.volume, s.voxel);
-    return mapper;
+  if (peer.name == "vtk:gpu") {
+    return make_gpu(peer.step * s.voxel);
   }
-  throw failure("unknown method " + method);
+  auto mapper = vtkSmartPointer<openvdb_mapper>::New();
+  mapper->set_volume(s.volume, peer.step * s.voxel);
+  return mapper;
 }
 
 std::vector<float> float_picture(vtkVolumeMapper* mapper, int size)
@@ -164,18 +196,51 @@ std::vector<std::string> all_methods()
     "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb", "floor", "stratus:auto~fixedpoint" };
 }
 
+std::vector<std::string> curve_methods(bool quick)
+{
+  std::vector<std::string> methods;
+  const auto add = [&](const std::string& name, std::initializer_list<const char*> settings) {
+    for (const char* setting : settings) {
+      methods.push_back(name + setting);
+    }
+  };
+  if (quick) {
+    add("stratus:auto", { "~0.1", "~0.01", "~0.001", "~0.0001" });
+    add("stratus:none", { "~0.01", "~0.0001" });
+    add("stratus:auto@device", { "" });
+    add("vtk:fixedpoint", { ":2", "", ":0.5" });
+    add("vtk:fixedpoint/2", { ":2", "" });
+    add("vtk:gpu", { ":2", "", ":0.5" });
+    add("openvdb", { ":2", "", ":0.5" });
+    return methods;
+  }
+  add("stratus:auto", { "~0.1", "~0.03", "~0.01", "~0.003", "~0.001", "~0.0003", "~0.0001", "~0.00003", "~0.00001" });
+  for (const char* structure : structures) {
+    if (std::string(structure) != "auto") {
+      add(std::string("stratus:") + structure, { "~0.01", "~0.001", "~0.0001" });
+    }
+  }
+  add("stratus:auto", { "~0.01@device", "~0.001@device", "~0.0001@device" });
+  add("vtk:fixedpoint", { ":2", "", ":0.5", ":0.25" });
+  add("vtk:fixedpoint/2", { ":2", "", ":0.5", ":0.25" });
+  add("vtk:gpu", { ":2", "", ":0.5", ":0.25" });
+  add("openvdb", { ":2", "", ":0.5", ":0.25" });
+  return methods;
+}
+
 void check_method(const std::string& whole)
 {
   stratus_method ours;
+  peer_method peer;
   std::string name;
   dress d;
-  static const char* const others[] = { "vtk:fixedpoint", "vtk:fixedpoint:0.5", "vtk:gpu", "openvdb", "floor" };
   const bool dressed = parse_dress(whole, name, d) && (name == whole || name != "floor");
-  if (!dressed || (!parse_stratus(name, ours) && std::find(std::begin(others), std::end(others), name) == std::end(others))) {
+  if (!dressed || (!parse_stratus(name, ours) && !parse_peer(name, peer) && name != "floor")) {
     throw failure("unknown method '" + whole +
       "'; known: stratus:none|block|distance|octant|hybrid|auto with ~TOLERANCE or ~fixedpoint or neither, and @host or @device or "
       "neither, "
-      "vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; all but floor with +ordinary, +gradient, +samples, +axes or +outline");
+      "vtk:fixedpoint, vtk:fixedpoint/2 (rays every 2 pixels), vtk:gpu and openvdb, each with :STEP (.01 to 100 voxels) or without, floor; "
+      "all but floor with +ordinary, +gradient, +samples, +axes or +outline");
   }
 }
 
@@ -184,7 +249,7 @@ bool needs_fixed_point(const std::string& method)
   return method.find("~fixedpoint") != std::string::npos;
 }
 
-result run_method(stratus_context* context, const scene& s, const std::string& whole, int size, double fixed_point_error)
+result run_method(stratus_context* context, const scene& s, const std::string& whole, const effort& how, double fixed_point_error)
 {
   result r;
   dress d;
@@ -194,33 +259,32 @@ result run_method(stratus_context* context, const scene& s, const std::string& w
   r.method = whole;
   r.judged = whole == method;
   const vtkSmartPointer<vtkVolumeMapper> mapper = make_mapper(s, method, fixed_point_error);
-  window w(context, s, mapper, size, d);
+  window w(context, s, mapper, how.size, d);
   r.time.first_ms = w.first();
-  std::vector<double> frames;
   std::vector<double> samples;
   for (int view = 0; view < views; ++view) {
     std::vector<double> times;
     w.show(view);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < how.repeats; ++i) {
       times.push_back(w.render());
     }
-    frames.push_back(median(times));
+    r.time.frames.push_back(median(times));
     samples.push_back(samples_of(mapper));
-    r.pictures.push_back({ float_picture(mapper, size), w.read() });
+    r.pictures.push_back({ float_picture(mapper, how.size), w.read() });
     if (!draws(r.pictures.back().bytes)) {
       throw failure(method + " shows nothing of " + s.name + " in view " + std::to_string(view));
     }
   }
   std::vector<double> updates;
-  for (int view = 0; view < views; ++view) {
+  for (int view = 0; view < views && how.updates; ++view) {
     w.show(view);
     w.use(s.edited);
     w.render();
     w.use(s.first);
     updates.push_back(w.render());
   }
-  r.time.frame_ms = median(frames);
-  r.time.update_ms = median(updates);
+  r.time.frame_ms = median(r.time.frames);
+  r.time.update_ms = updates.empty() ? -1.0 : median(updates);
   r.time.samples = median(samples);
   if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
     r.tolerance = ours->GetImageErrorTolerance();

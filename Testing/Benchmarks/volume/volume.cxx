@@ -9,8 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <sstream>
-#include <unistd.h>
 
 namespace {
 
@@ -23,54 +21,54 @@ const char* const help = R"(stratus-bench volume [options]
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with ~TOLERANCE behind it, a number, or ~fixedpoint, which is
                             the root mean square error that vtk:fixedpoint has in this run, and with @host or @device (the first OpenCL
-                            device) behind that; vtk:fixedpoint, vtk:fixedpoint:0.5, vtk:gpu, openvdb, floor; each but floor with a window
-                            behind it: +gradient (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
+                            device) behind that; vtk:fixedpoint, vtk:fixedpoint/2 (rays every 2 pixels), vtk:gpu, openvdb, each with
+                            :STEP in voxels behind it (default 1); floor; each but floor with a window behind it: +gradient
+                            (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
                             (default: all methods, stratus:auto and vtk:fixedpoint in ordinary windows, too)
+  --curves, --quick-curves  methods over their settings: ours over tolerances, peers over steps
+  --repeats N               frames of each view (default 3)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `#
                             name,value`: processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
+  --append                  rows of other scenes that the file has stay
   --chart FILE.png          frame time against error
-  --reference-cache FOLDER  keep the reference's pictures, which take most of the time
+  --reference-cache FOLDER  keep the reference's pictures there (default: stratus/references where the system keeps caches; none)
   --no-error                times and differing pixels only
+  --no-update               transfer functions do not change
 
-Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of 3.
-A window is black, without multisampling, unless
-told otherwise. update_ms: from a change of the transfer function to the next picture, median over the views.
-psnr_db is of float pixels, psnr8_db of the
-window read back in 8 bits, max_error of floats where a method has them. samples: a frame's, median. Needs a display; without one it starts
-itself under xvfb-run.
+Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of its repeats,
+and frame_ms/V that of view V. A window is black, without multisampling, unless told otherwise. update_ms: from a change of the transfer
+function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the window read back in 8 bits, max_error of
+floats where a method has them; they are of one pixel in each tile of 8 x 8, 4 x 4 or 2 x 2, where that leaves 16,384 in which something
+shows. samples: a frame's, median. A method that cannot be measured has a row `failed`, and the exit status is 1. Needs a display; without
+one it starts itself under xvfb-run.
 
 floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel until a ray is opaque, at the rate of a tight loop that sets
 up, skips and tests nothing. A method can take fewer samples than floor counts.
 
-stratus-bench distance --help tells of distance fields, stratus-bench octree --help of culling,
-stratus-bench tetra --help of tetrahedra.
+stratus-bench all --out FOLDER measures everything, stratus-bench compare A B compares two such runs.
+stratus-bench distance --help tells of distance fields, octree --help of culling, tetra --help of tetrahedra, tree --help of first hits.
 )";
 
 struct options {
   std::vector<std::string> scenes, methods;
-  std::string csv = "-", chart, cache;
-  int size = 512;
-  bool error = true;
+  std::string csv = "-", chart, cache = bench::default_reference_cache();
+  bench::effort how;
+  bool error = true, append = false;
 };
-
-std::vector<std::string> list(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  std::string part;
-  while (std::getline(stream, part, ',')) {
-    parts.push_back(part);
-  }
-  return parts;
-}
 
 options parse(int argc, char* argv[])
 {
   options o;
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--no-error") {
-      o.error = false;
+    if (word == "--no-error" || word == "--append" || word == "--no-update") {
+      o.error = o.error && word != "--no-error";
+      o.append = o.append || word == "--append";
+      o.how.updates = o.how.updates && word != "--no-update";
+      continue;
+    }
+    if (word == "--curves" || word == "--quick-curves") {
+      o.methods = bench::curve_methods(word == "--quick-curves");
       continue;
     }
     if (i + 1 == argc) {
@@ -78,25 +76,30 @@ options parse(int argc, char* argv[])
     }
     const std::string value = argv[++i];
     if (word == "--scene") {
-      const std::vector<std::string> more = list(value);
+      const std::vector<std::string> more = bench::split(value);
       o.scenes.insert(o.scenes.end(), more.begin(), more.end());
     } else if (word == "--method") {
-      const std::vector<std::string> more = list(value);
+      const std::vector<std::string> more = bench::split(value);
       o.methods.insert(o.methods.end(), more.begin(), more.end());
     } else if (word == "--size") {
-      o.size = std::atoi(value.c_str());
+      o.how.size = std::atoi(value.c_str());
+    } else if (word == "--repeats") {
+      o.how.repeats = std::atoi(value.c_str());
     } else if (word == "--csv") {
       o.csv = value;
     } else if (word == "--chart") {
       o.chart = value;
     } else if (word == "--reference-cache") {
-      o.cache = value;
+      o.cache = value == "none" ? "" : value;
     } else {
       throw bench::failure("unknown option " + word + "; --help tells more");
     }
   }
-  if (o.size < 16 || o.size > 4096) {
+  if (o.how.size < 16 || o.how.size > 4096) {
     throw bench::failure("--size must be within 16..4096");
+  }
+  if (o.how.repeats < 1 || o.how.repeats > 1000) {
+    throw bench::failure("--repeats must be within 1..1000");
   }
   if (o.scenes.empty()) {
     o.scenes = { "cloud", "plume", "fog", "voxel", "peak", "plume2", "bone", "skin", "stripes", "shell", "plate", "labels", "cloud+shade" };
@@ -118,71 +121,72 @@ options parse(int argc, char* argv[])
 }
 
 // Returns the error of vtk:fixedpoint over lit pixels, in the terms of the tolerance.
-double fixed_point_error(
-  stratus_context* context, const bench::scene& scene, int size, bench::judge& judge, std::vector<bench::result>& results)
+double fixed_point_error(stratus_context* context, const bench::scene& scene, const bench::effort& how, bench::judge& judge,
+  const std::vector<bench::result>& results)
 {
   const auto known = std::find_if(results.begin(), results.end(), [](const bench::result& r) { return r.method == "vtk:fixedpoint"; });
-  std::vector<bench::result> fixed = { known != results.end() ? *known : bench::run_method(context, scene, "vtk:fixedpoint", size, 0.0) };
+  std::vector<bench::result> fixed = { known != results.end() ? *known : bench::run_method(context, scene, "vtk:fixedpoint", how, 0.0) };
   judge.measure(fixed);
   return std::pow(10.0, -0.05 * fixed[0].psnr8_db);
 }
 
-// Shows on a terminal what is being measured.
-void working_on(const std::string& scene, const std::string& method)
+void run_floor(stratus_context* context, const bench::scene& scene, const options& o, std::vector<bench::row>& rows)
 {
-  if (isatty(STDERR_FILENO)) {
-    std::fprintf(stderr, "\r\033[K%s%s%s", method.empty() ? "" : "  ", scene.c_str(), method.empty() ? "" : (", " + method).c_str());
-  }
+  const bench::floor_result f = bench::run_floor(context, scene, o.how.size);
+  std::fprintf(stderr, "  floor (estimate): %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples, 1e-6 * f.rate,
+    bench_sample_loop(), f.ms);
+  bench::add_rows(scene.name, f, rows);
 }
 
-void run_scene(stratus_context* context, const std::string& source, const options& o, std::vector<bench::row>& rows)
+// Says why a method is not measured on a scene; empty: it is.
+std::string left_out(const bench::scene& scene, const std::string& method, const options& o)
+{
+  const bool plain = !scene.shaded && scene.volume.components == 1;
+  return !plain && (method == "floor" || method.rfind("openvdb", 0) == 0) ? "it has no light and takes one component"
+    : bench::needs_fixed_point(method) && !o.error                        ? "it needs errors, which --no-error does without"
+                                                                          : "";
+}
+
+void run_scene(
+  stratus_context* context, const std::string& source, const options& o, bench::progress& progress, std::vector<bench::row>& rows)
 {
   const bench::scene scene = bench::make_scene(context, source);
   std::vector<bench::result> results;
-  bench::judge judge(context, scene, o.size, o.cache);
+  bench::judge judge(context, scene, o.how, o.cache);
   double fixed_point = 0.0;
-  const bool plain = !scene.shaded && scene.volume.components == 1;
   for (const std::string& method : o.methods) {
-    if (!plain && (method == "floor" || method == "openvdb")) {
-      std::fprintf(stderr, "  %s has no light and takes one component: left out\n", method.c_str());
+    progress.at(scene.name, method);
+    const std::string why = left_out(scene, method, o);
+    if (!why.empty()) {
+      std::fprintf(stderr, "  %s is left out of %s: %s\n", method.c_str(), scene.name.c_str(), why.c_str());
       continue;
     }
-    working_on(scene.name, method);
-    if (method == "floor") {
-      const bench::floor_result f = bench::run_floor(context, scene, o.size);
-      working_on("", "");
-      std::fprintf(stderr, "  floor (estimate): %.0f samples with alpha > 0 at %.0f M/s (%s, all threads): %.2f ms\n", f.samples,
-        1e-6 * f.rate, bench_sample_loop(), f.ms);
-      bench::add_rows(scene.name, f, rows);
-      continue;
-    }
-    if (bench::needs_fixed_point(method) && fixed_point == 0.0) {
-      if (!o.error) {
-        working_on("", "");
-        std::fprintf(stderr, "  %s needs errors, which --no-error does without: left out\n", method.c_str());
+    try {
+      if (method == "floor") {
+        run_floor(context, scene, o, rows);
         continue;
       }
-      fixed_point = fixed_point_error(context, scene, o.size, judge, results);
+      if (bench::needs_fixed_point(method) && fixed_point == 0.0) {
+        fixed_point = fixed_point_error(context, scene, o.how, judge, results);
+      }
+      results.push_back(bench::run_method(context, scene, method, o.how, fixed_point));
+    } catch (const bench::failure& e) {
+      bench::add_failure(scene.name, method, e.what(), rows);
     }
-    results.push_back(bench::run_method(context, scene, method, o.size, fixed_point));
-    working_on("", "");
-    const bench::timing& t = results.back().time;
-    std::fprintf(stderr, "  %-22s first %.1f ms, frame %.2f ms, update %.2f ms  %s\n", method.c_str(), t.first_ms, t.frame_ms, t.update_ms,
-      t.device.c_str());
   }
   if (o.error) {
-    if (!isatty(STDERR_FILENO)) {
-      std::fprintf(stderr, "  drawing the reference\n");
-    }
+    progress.at(scene.name, "the reference");
     judge.measure(results);
     judge.compare(results);
   }
   for (const bench::result& r : results) {
     bench::add_rows(r, rows);
   }
+  progress.end_scene(scene.name);
 }
 
-void run(const options& o)
+// Returns whether all methods were measured.
+bool run(const options& o)
 {
   stratus_context_options host = stratus_context_options_default();
   stratus_context* context = nullptr;
@@ -193,16 +197,18 @@ void run(const options& o)
   }
   std::vector<bench::row> rows;
   bench::make_folder(o.cache);
-  for (size_t i = 0; i < o.scenes.size(); ++i) {
-    std::fprintf(stderr, "%s (scene %zu of %zu)\n", o.scenes[i].c_str(), i + 1, o.scenes.size());
-    run_scene(context, o.scenes[i], o, rows);
+  bench::check_writable(o.csv);
+  bench::progress progress(o.scenes.size(), o.methods.size() + o.error);
+  for (const std::string& scene : o.scenes) {
+    run_scene(context, scene, o, progress, rows);
   }
   bench::print_table(rows);
-  bench::write_csv(o.csv, rows);
+  bench::save_rows(o.csv, rows, "volume", o.append);
   if (!o.chart.empty()) {
-    bench::write_chart(o.chart, rows);
+    bench::write_chart(o.chart, bench::curves_of("volume", rows).front());
   }
   stratus_context_destroy(context);
+  return !bench::any_failed(rows);
 }
 } // namespace
 
@@ -216,6 +222,5 @@ int bench::volume_main(int argc, char* argv[])
   }
   const options o = parse(argc, argv);
   ensure_display(argv);
-  run(o);
-  return 0;
+  return run(o) ? 0 : 1;
 }

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Our trees as methods of stratus-bench tree, and the names of all methods.
+#include "tree_methods.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace bench {
+
+namespace {
+
+const char* const peers[] = { "embree:low", "embree:medium", "embree:high", "embree:packet:low", "embree:packet", "embree:packet:high",
+  "embree:bricks:low", "embree:bricks", "embree:bricks:high", "openvdb" };
+
+// Whether a method's leaves are of bricks; those of the others are of voxels.
+bool has_bricks(stratus_tree_method m)
+{
+  return m == STRATUS_TREE_HYBRID || m == STRATUS_TREE_HYBRID_PAPER;
+}
+
+class stratus_hits : public first_hits
+{
+public:
+  // leaf: most bricks, or voxels, of a leaf; 0: the default
+  stratus_hits(const voxel_set& s, stratus_tree_method m, int leaf) : set(s), builder(host_context(2)), tracer(host_context(1))
+  {
+    this->tree_options.method = m;
+    if (leaf > 0) {
+      (has_bricks(m) ? this->tree_options.leaf_bricks : this->tree_options.leaf_voxels) = leaf;
+    }
+  }
+  ~stratus_hits() override { stratus_tree_destroy(this->tree); }
+  void build() override
+  {
+    stratus_tree_destroy(this->tree);
+    this->tree = nullptr;
+    stratus_voxels* voxels = nullptr;
+    stratus_context* c = this->builder.get();
+    check_status(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &voxels));
+    const stratus_status status = stratus_tree_create(c, voxels, &this->tree_options, &this->tree);
+    stratus_voxels_destroy(voxels);
+    check_status(c, status);
+  }
+  tree_numbers numbers() const override
+  {
+    stratus_tree_statistics s;
+    stratus_tree_get_statistics(this->tree, &s);
+    tree_numbers n;
+    n.bytes = static_cast<double>(s.bytes);
+    n.nodes = static_cast<double>(s.nodes);
+    n.depth = s.depth;
+    n.sah = s.sah;
+    return n;
+  }
+  void prepare(const voxel_rays& r) override
+  {
+    this->rays = &r.rays;
+    this->found.resize(r.rays.size());
+  }
+  void trace() override
+  {
+    check_status(this->tracer.get(),
+      stratus_tree_first_hit(this->tracer.get(), this->tree, this->rays->data(), this->rays->size(), this->found.data()));
+  }
+  std::vector<voxel_hit> hits() const override
+  {
+    std::vector<voxel_hit> result(this->found.size());
+    for (size_t i = 0; i < result.size(); ++i) {
+      if (this->found[i].voxel[0] >= 0) {
+        result[i].t = this->found[i].t;
+        std::copy(this->found[i].voxel, this->found[i].voxel + 3, result[i].voxel);
+      }
+    }
+    return result;
+  }
+
+private:
+  const voxel_set& set;
+  context_pointer builder, tracer;
+  stratus_tree_options tree_options = stratus_tree_options_default();
+  stratus_tree* tree = nullptr;
+  const std::vector<stratus_ray>* rays = nullptr;
+  std::vector<stratus_hit> found;
+};
+
+// stratus:METHOD[:LEAF]. A tree that is one distance field has no leaves to size.
+bool parse_tree(const std::string& name, stratus_tree_method& method, int& leaf)
+{
+  const std::string family = family_of(name);
+  const bool sized = family != name;
+  leaf = sized ? std::atoi(name.c_str() + family.size() + 1) : 0;
+  for (int m = 0; m < STRATUS_TREE_METHODS && name.rfind("stratus:", 0) == 0; ++m) {
+    method = static_cast<stratus_tree_method>(m);
+    if (family.substr(8) == stratus_tree_method_name(method)) {
+      return !sized || (leaf >= 1 && leaf <= 64 && method != STRATUS_TREE_DISTANCE && method != STRATUS_TREE_OCTANT);
+    }
+  }
+  return false;
+}
+} // namespace
+
+context_pointer host_context(int threads)
+{
+  stratus_context_options o = stratus_context_options_default();
+  stratus_context* context = nullptr;
+  char message[512];
+  o.device = "host";
+  o.threads = threads;
+  if (stratus_context_create(&o, &context, message, sizeof message) != STRATUS_OK) {
+    throw failure(message);
+  }
+  return context_pointer(context);
+}
+
+void check_status(stratus_context* context, stratus_status status)
+{
+  if (status != STRATUS_OK) {
+    throw failure(std::string(stratus_status_name(status)) + ": " + stratus_context_message(context));
+  }
+}
+
+std::vector<std::string> all_tree_methods()
+{
+  std::vector<std::string> names;
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    names.push_back(std::string("stratus:") + stratus_tree_method_name(static_cast<stratus_tree_method>(m)));
+  }
+  names.insert(names.end(), std::begin(peers), std::end(peers));
+  return names;
+}
+
+bool is_slow_tree(const std::string& method)
+{
+  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", "stratus:dpc", "stratus:kmeans" };
+  return std::any_of(std::begin(slow), std::end(slow), [&](const char* name) { return family_of(method) == name; });
+}
+
+std::vector<std::string> tree_curve_methods(bool quick)
+{
+  std::vector<std::string> names;
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    const auto method = static_cast<stratus_tree_method>(m);
+    const std::string name = std::string("stratus:") + stratus_tree_method_name(method);
+    if (quick && is_slow_tree(name)) {
+      continue;
+    }
+    if (method == STRATUS_TREE_DISTANCE || method == STRATUS_TREE_OCTANT) {
+      names.push_back(name);
+      continue;
+    }
+    for (const char* leaf :
+      has_bricks(method) ? std::array<const char*, 3>{ ":1", ":4", ":16" } : std::array<const char*, 3>{ ":1", ":2", ":4" }) {
+      names.push_back(name + leaf);
+    }
+  }
+  names.insert(names.end(), std::begin(peers), std::end(peers));
+  return names;
+}
+
+std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method)
+{
+  if (method == "openvdb") {
+    return make_openvdb_hits(set);
+  }
+  if (method.rfind("embree:", 0) == 0) {
+    return make_embree_hits(set, method.substr(7));
+  }
+  stratus_tree_method m;
+  int leaf = 0;
+  if (parse_tree(method, m, leaf)) {
+    return std::make_unique<stratus_hits>(set, m, leaf);
+  }
+  throw failure("unknown method " + method);
+}
+
+bool is_tree_method(const std::string& name)
+{
+  stratus_tree_method m;
+  int leaf = 0;
+  return parse_tree(name, m, leaf) || std::find(std::begin(peers), std::end(peers), name) != std::end(peers);
+}
+} // namespace bench
