@@ -25,7 +25,8 @@ const char* const help = R"(stratus-bench tetra [options]
                             vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk), vtk:zsweep; ours with
                             ~TOLERANCE behind it, the last two with :PIXELS from ray to ray (default 1);
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the
-                            paper's rule), vtk:depthsort (default: all but @device)
+                            paper's rule), vtk:depthsort (default: all but @device and
+                            vtk:zsweep, which takes tens of seconds a frame)
   --curves, --quick-curves  mappers over their settings
   --size N                  N x N pixels (default 512)
   --repeats N               frames a view and method (default 3); rounds of sorters
@@ -67,9 +68,9 @@ void check(options& o)
   known.insert(known.end(), tetra_sorters().begin(), tetra_sorters().end());
   o.meshes = o.meshes.empty() ? std::vector<std::string>{ "bluntfin", "post", "holes", "wavelet" } : o.meshes;
   o.functions = o.functions.empty() ? tetra_functions() : o.functions;
-  if (o.methods.empty()) { // methods on devices run only on request
-    std::copy_if(
-      known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) { return m.find('@') == std::string::npos; });
+  if (o.methods.empty()) { // methods on devices, and z-sweep, whose frames take tens of seconds, run only on request
+    std::copy_if(known.begin(), known.end(), std::back_inserter(o.methods),
+      [](const std::string& m) { return m.find('@') == std::string::npos && m != "vtk:zsweep"; });
   }
   for (const std::string& method : o.methods) {
     if (!has(known, method) && !is_tetra_mapper(method)) {
