@@ -5,6 +5,7 @@
 #define STRATUS_TESTING_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #define TEST_SKIPPED 77 /* exit status that ctest counts as a skip */
 
@@ -13,6 +14,19 @@ int test_skip(const char* why);
 
 /* Whether the command line holds this word, such as "--tiny". */
 bool test_option(const char* word);
+
+/* Random cases by seed: `for (test_seeds s = test_seeds_of(300, 10000); test_next(&s);)` runs its body with s.seed 0, 1, 2 and so on. There
+ * are `quick` of them, or `all` if the environment has STRATUS_LONG=1, or the one that --seed=N on the command line names. Where a body
+ * fails, how to repeat its seed alone is printed. */
+typedef struct test_seeds {
+  uint32_t seed, end;
+  bool begun;
+} test_seeds;
+
+test_seeds test_seeds_of(uint32_t quick, uint32_t all);
+bool test_next(test_seeds* seeds);
+/* Whether at least so many seeds run, enough for what must hold in their mean. */
+bool test_many(const test_seeds* seeds, uint32_t least);
 
 /* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);
