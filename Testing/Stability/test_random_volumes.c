@@ -4,7 +4,11 @@
 #include "random_scene.h"
 #include "testing.h"
 
+#ifdef NDEBUG
+#define QUICK 1000
+#else /* a build for debugging takes many times as long */
 #define QUICK 100
+#endif
 #define ALL 10000
 
 static picture plain, skipping;

@@ -5,7 +5,11 @@
 #include "testing.h"
 #include "tree.h"
 
+#ifdef NDEBUG
+#define QUICK 100
+#else /* a build for debugging takes many times as long */
 #define QUICK 40
+#endif
 #define ALL 1000
 #define RAYS 200
 #define SLOW_VOXELS 3000 /* clusterings are quadratic: larger sets take the other methods */
