@@ -5,11 +5,6 @@
 #include "tetra_parts.h"
 #include "testing.h"
 
-#ifdef NDEBUG
-#define QUICK 200
-#else /* a build for debugging takes many times as long */
-#define QUICK 40
-#endif
 #define ALL 2000
 #define CLOSE 0.025 /* greatest RMSE of 255: half of the bar of record for functions with peaks */
 
@@ -136,7 +131,7 @@ static void both_methods_draw_the_reference(void** state)
   static double reference[4 * TETRA_PIXELS];
   int64_t inverted = 0, flat = 0, repeated = 0, shown = 0;
   double worst = 0.0;
-  test_seeds seeds = test_seeds_of(QUICK, ALL);
+  test_seeds seeds = test_seeds_of(TEST_SOME(ALL), ALL);
   while (test_next(&seeds)) {
     uint32_t random = seeds.seed * 2654435761u + 31u;
     tetra_case c;
@@ -173,7 +168,7 @@ static void both_methods_draw_the_reference(void** state)
   print_message(
     "             %u meshes, %lld show something; %lld cells inverted, %lld flat, %lld name a point twice; worst RMSE %.4f of 255\n",
     seeds.end, (long long)shown, (long long)inverted, (long long)flat, (long long)repeated, worst);
-  if (test_many(&seeds, QUICK)) {
+  if (test_many(&seeds, 40)) {
     assert_true(shown > 3 * (int64_t)seeds.end / 4);
     assert_true(inverted > 0 && flat > 0 && repeated > 0);
   }

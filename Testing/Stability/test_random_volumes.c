@@ -4,11 +4,6 @@
 #include "random_scene.h"
 #include "testing.h"
 
-#ifdef NDEBUG
-#define QUICK 1000
-#else /* a build for debugging takes many times as long */
-#define QUICK 100
-#endif
 #define ALL 10000
 
 static picture plain, skipping;
@@ -107,7 +102,7 @@ static void no_structure_changes_a_bit(void** state)
 {
   int lit = 0, modes[STRATUS_MODE_ISOSURFACE + 1] = { 0 };
   uint64_t skipped = 0;
-  test_seeds seeds = test_seeds_of(QUICK, ALL);
+  test_seeds seeds = test_seeds_of(TEST_SOME(ALL), ALL);
   while (test_next(&seeds)) {
     uint32_t random = seeds.seed * 2246822519u + 3266489917u;
     picture_case c;
@@ -139,7 +134,7 @@ static void no_structure_changes_a_bit(void** state)
     case_destroy(&c);
   }
   print_message("             %u cases, %d show something\n", seeds.end, lit);
-  if (test_many(&seeds, QUICK)) {
+  if (test_many(&seeds, 100)) {
     assert_true((uint32_t)lit > seeds.end / 2);
     assert_true(skipped > 0);
     for (int mode = 0; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {

@@ -5,11 +5,6 @@
 #include "testing.h"
 #include "tree.h"
 
-#ifdef NDEBUG
-#define QUICK 100
-#else /* a build for debugging takes many times as long */
-#define QUICK 40
-#endif
 #define ALL 1000
 #define RAYS 200
 #define SLOW_VOXELS 3000 /* clusterings are quadratic: larger sets take the other methods */
@@ -44,7 +39,7 @@ static void trees_hit_what_the_walk_hits(void** state)
     options.threads = 1 + i;
     assert_int_equal(stratus_context_create(&options, &contexts[i], NULL, 0), STRATUS_OK);
   }
-  test_seeds seeds = test_seeds_of(QUICK, ALL);
+  test_seeds seeds = test_seeds_of(TEST_SOME(ALL), ALL);
   while (test_next(&seeds)) {
     uint32_t random = seeds.seed * 2654435761u + 99u;
     stratus_context* context = contexts[seeds.seed % 2];
@@ -81,7 +76,7 @@ static void trees_hit_what_the_walk_hits(void** state)
     stratus_voxels_destroy(voxels);
   }
   print_message("             %u sets, %lld voxels, %lld trees\n", seeds.end, (long long)voxel_count, (long long)trees);
-  assert_true(!test_many(&seeds, QUICK) || (voxel_count > 20000 && trees > 8 * (int64_t)seeds.end));
+  assert_true(!test_many(&seeds, 40) || (voxel_count > 20000 && trees > 8 * (int64_t)seeds.end));
   stratus_context_destroy(contexts[0]);
   stratus_context_destroy(contexts[1]);
 }
