@@ -200,6 +200,9 @@ static inline int tetra_meet(
   const int32_t* v = c->mesh.vertices + 4 * cell;
   const double* m = c->mesh.matrix;
   double p[4][3], value[4], coordinate[2][4];
+  if (v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3]) {
+    return 0; /* no volume, whatever rounding makes of it */
+  }
   for (int i = 0; i < 4; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double* q = c->mesh.points + 3 * (int64_t)v[i];
