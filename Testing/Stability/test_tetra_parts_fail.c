@@ -143,6 +143,38 @@ static void few_inverted_cells_among_many(void** state)
   }
 }
 
+/* A flat cell, and cells on the same side of it: no ray leads from one through the flat cell into the other. The colour is uniform, as
+ * order does not matter. chain: a second flat cell lies behind the first. */
+static void a_flat_cell_between_cells_that_overlap(void** state)
+{
+  for (int view = 0; view < 16; ++view) {
+    const int chain = view / 8;
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    tetra_clear(&c, 10, 10);
+    const int32_t p = tetra_add_point(&c, 0, 0, 2), q = tetra_add_point(&c, 4, 0, 2), r = tetra_add_point(&c, 2, 4, 2);
+    const int32_t between = tetra_add_point(&c, 2, 0, 2), within = tetra_add_point(&c, 1, 1, 2);
+    tetra_add_cell(&c, between, p, q, r);
+    tetra_add_cell(&c, p, q, r, tetra_add_point(&c, 2, 1.5, 4));
+    if (chain) {
+      tetra_add_cell(&c, between, p, r, within);
+      tetra_add_cell(&c, between, p, within, tetra_add_point(&c, 1, 1, 3.5));
+    } else {
+      tetra_add_cell(&c, between, p, r, tetra_add_point(&c, 1, 1, 3.5));
+    }
+    tetra_add_cell(&c, between, q, r, tetra_add_point(&c, 3, 1, 0));
+    for (int i = 0; i < 12; ++i) {
+      c.color[i] = i & 3 ? 0.5 : c.color[i];
+    }
+    c.mesh.matrix[10] = view & 4 ? -1.0 : 1.0; /* from below */
+    c.mesh.matrix[11] = view & 4 ? 4.0 : 0.0;
+    tetra_camera(*state, &c, 4, view % 8, view & 1);
+    agrees(*state, &c, "flat");
+    assert_int_equal(picture.report.flat, 1 + chain);
+    tetra_destroy(&c);
+  }
+}
+
 static void a_seam_of_other_faces(void** state)
 {
   const double low[3] = { 0, 0, 0 }, beside[3] = { 1.5, 0, 0 }, size[3] = { 1.5, 3, 3 };
@@ -166,6 +198,7 @@ int test_tetra_parts_fail(void)
     cmocka_unit_test(a_part_in_the_hollow_of_another),
     cmocka_unit_test(points_that_are_there_twice_or_for_nothing),
     cmocka_unit_test(few_inverted_cells_among_many),
+    cmocka_unit_test(a_flat_cell_between_cells_that_overlap),
     cmocka_unit_test(a_seam_of_other_faces),
   };
   int failed = 0;

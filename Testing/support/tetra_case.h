@@ -214,7 +214,12 @@ static inline int tetra_meet(
     }
   }
   const double whole = tetra_volume(p[0], p[1], p[2], p[3]);
-  if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
+  double size = 0.0;
+  for (int i = 0; i < 9; ++i) {
+    size = fmax(size, fabs(p[i / 3 + 1][i % 3] - p[0][i % 3]));
+  }
+  /* less than that is what rounding leaves of a cell without volume, and its coordinates have no digit */
+  if ((c->mesh.hidden && c->mesh.hidden[cell]) || fabs(whole) <= 1e-14 * size * size * size) {
     return 0;
   }
   /* The ray is measured at its point nearest to the cell, and at a second point as far from there as the cell reaches. Points on another
