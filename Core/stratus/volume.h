@@ -33,7 +33,8 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes of a value; 0 
 
 /* A view of values on a regular grid. Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: a
  * voxel with such a value). Types of more than 24 bits are read as differences from one of their values, computed in double, so that a
- * large offset costs no digits. This value is the one of least magnitude among some thousand that are looked at. */
+ * large offset costs no digits. This value is the one of least magnitude among some thousand that are looked at. A double that differs from
+ * it by more than floats hold counts as infinite; where no two values can be told apart as floats, STRATUS_INVALID_ARGUMENT. */
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, value_stride apart */
   stratus_type type;

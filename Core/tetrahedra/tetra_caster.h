@@ -16,6 +16,7 @@ typedef struct stratus_tetra_mesh {
   float* values;      /* a fetched value per mesh point; NULL: values belong to cells */
   float* cell_values; /* a fetched value per cell, in the order of `cells`; NULL: values belong to points */
   uint8_t* shown;     /* per mesh cell, during the build only */
+  int8_t* nominal;    /* likewise: its orientation, of flat cells that of their neighbours; 0: none */
   stratus_tetra_face* faces;
   size_t face_count;
   double lo[3], hi[3]; /* bounds of the points that shown cells use, in local coordinates */

@@ -82,31 +82,64 @@ static int face_with(const int32_t cell[4], const int32_t point[3])
   return -1;
 }
 
-/* Returns the orientation of a cell. A flat cell gets the one that fits a neighbour with volume; 0 if there is none. */
-static int nominal_orientation(const stratus_mesh* mesh, const stratus_adjacency* adjacency, int64_t cell)
+/* Returns the orientation of a cell that fits that of the neighbour behind its face f: both lie on either side of the face. */
+static int fitting_orientation(const stratus_mesh* mesh, int64_t cell, int f, int32_t neighbour, int orientation)
 {
-  const int32_t* v = mesh->vertices + 4 * cell;
-  if (adjacency->orientation[cell] != 0) {
-    return adjacency->orientation[cell];
+  const int32_t* w = mesh->vertices + 4 * (int64_t)neighbour;
+  int32_t point[3], same[3];
+  const int sign = stratus_face_points(mesh->vertices + 4 * cell, f, point), face = face_with(w, point);
+  return face < 0 ? 0 : -sign * stratus_face_points(w, face, same) * orientation;
+}
+
+/* Gives each flat cell the orientation that fits a neighbour: one with volume, or else one that has got its own so. Cells that no chain of
+ * flat ones leads to keep 0. */
+static stratus_status orient_flat_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency)
+{
+  void* memory = NULL;
+  int64_t count = 0;
+  TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, 1, &memory));
+  tetra->nominal = memory;
+  if (adjacency->flat > 0) {
+    TRY(stratus_allocate(tetra->context, (size_t)adjacency->flat, sizeof(int32_t), &memory));
   }
-  for (int f = 0; f < 4; ++f) {
-    const int32_t other = adjacency->neighbours[4 * cell + f];
-    if (other >= 0 && adjacency->orientation[other] != 0) {
-      int32_t point[3], same[3];
-      const int sign = stratus_face_points(v, f, point), face = face_with(mesh->vertices + 4 * (int64_t)other, point);
-      if (face >= 0) {
-        return -sign * stratus_face_points(mesh->vertices + 4 * (int64_t)other, face, same) * adjacency->orientation[other];
+  int32_t* found = adjacency->flat > 0 ? memory : NULL; /* flat cells whose neighbours are still to be looked at */
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    tetra->nominal[cell] = adjacency->orientation[cell];
+    for (int f = 0; f < 4 && tetra->nominal[cell] == 0; ++f) {
+      const int32_t other = adjacency->neighbours[4 * cell + f];
+      if (other >= 0 && adjacency->orientation[other] != 0) {
+        tetra->nominal[cell] = (int8_t)fitting_orientation(mesh, cell, f, other, adjacency->orientation[other]);
+        found[count] = (int32_t)cell;
+        count += tetra->nominal[cell] != 0;
       }
     }
   }
-  return 0;
+  while (count > 0) {
+    const int32_t cell = found[--count];
+    for (int f = 0; f < 4; ++f) {
+      const int32_t other = adjacency->neighbours[4 * (int64_t)cell + f];
+      if (other >= 0 && tetra->nominal[other] == 0) {
+        tetra->nominal[other] = (int8_t)fitting_orientation(mesh, cell, f, other, tetra->nominal[cell]);
+        found[count] = other;
+        count += tetra->nominal[other] != 0;
+      }
+    }
+  }
+  stratus_release(tetra->context, found);
+  return STRATUS_OK;
 }
 
-/* Returns the shown neighbour behind face f; -1: none, the face is a border face. */
-static int32_t shown_neighbour(const stratus_tetra_mesh* tetra, const stratus_adjacency* adjacency, int64_t cell, int f)
+/* Returns the shown neighbour behind face f; -1: none, the face is a border face. A flat cell may have neighbours that overlap, on the same
+ * side of it: those that its orientation does not fit are no neighbours. */
+static int32_t shown_neighbour(
+  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, int64_t cell, int f)
 {
   const int32_t other = adjacency->neighbours[4 * cell + f];
-  return other >= 0 && tetra->shown[other] ? other : -1;
+  if (other < 0 || !tetra->shown[other]) {
+    return -1;
+  }
+  const bool flat = adjacency->orientation[cell] == 0 || adjacency->orientation[other] == 0;
+  return flat && tetra->nominal[cell] * fitting_orientation(mesh, cell, f, other, tetra->nominal[other]) < 0 ? -1 : other;
 }
 
 /* Packs a cell. Each of its points, lowest name first, has two ints: the neighbour behind the opposite face, and the neighbour's fourth
@@ -121,7 +154,7 @@ static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
     for (int i = 0; i < 4; ++i) {
       rank += tetra->names[v[i]] < tetra->names[v[f]] || (v[i] == v[f] && i < f);
     }
-    const int32_t other = shown_neighbour(tetra, adjacency, cell, f);
+    const int32_t other = shown_neighbour(tetra, mesh, adjacency, cell, f);
     ints[2 * rank] = -1;
     ints[2 * rank + 1] = 0;
     if (other >= 0) {
@@ -155,10 +188,10 @@ static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* me
     const int64_t cell = places->at[place];
     const int32_t* v = mesh->vertices + 4 * cell;
     for (int f = 0; f < 4 && tetra->shown[cell]; ++f) {
-      if (shown_neighbour(tetra, adjacency, cell, f) >= 0) {
+      if (shown_neighbour(tetra, mesh, adjacency, cell, f) >= 0) {
         continue;
       }
-      const int nominal = nominal_orientation(mesh, adjacency, cell);
+      const int nominal = tetra->nominal[cell];
       if (nominal == 0) {
         break;
       }
@@ -202,6 +235,7 @@ static stratus_status build(
   TRY(fetch_values(tetra, mesh, &volume));
   find_shown(tetra, mesh, &volume, adjacency);
   find_bounds(tetra, mesh);
+  TRY(orient_flat_cells(tetra, mesh, adjacency));
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, TETRA_CELL * sizeof(int32_t), &memory));
   tetra->cells = memory;
   pack_cells(tetra, mesh, &volume, adjacency, places);
@@ -214,7 +248,9 @@ static stratus_status build(
   tetra->faces = memory;
   (void)list_faces(tetra, mesh, adjacency, places, tetra->faces);
   stratus_release(tetra->context, tetra->shown);
+  stratus_release(tetra->context, tetra->nominal);
   tetra->shown = NULL;
+  tetra->nominal = NULL;
   const size_t values = (size_t)(mesh->cell_values ? mesh->cell_count : mesh->point_count);
   tetra->bytes = (size_t)mesh->cell_count * TETRA_CELL * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
     (size_t)mesh->point_count * sizeof(int32_t) + values * sizeof(float);
@@ -261,6 +297,7 @@ void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
     stratus_release(mesh->context, mesh->cell_values);
     stratus_release(mesh->context, mesh->names);
     stratus_release(mesh->context, mesh->shown);
+    stratus_release(mesh->context, mesh->nominal);
     stratus_release(mesh->context, mesh->faces);
     stratus_release(mesh->context, mesh);
   }

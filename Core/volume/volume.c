@@ -4,6 +4,7 @@
 
 #include "matrix.h"
 
+#include <float.h>
 #include <string.h>
 
 /* Number of values, evenly spread, among which stratus_volume_bias() seeks the one of least magnitude. */
@@ -179,8 +180,12 @@ static stratus_status check_geometry(stratus_context* context, const stratus_vol
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume direction is singular, must be a rotation");
   }
   stratus_volume_index_to_world(volume, world);
-  if (!stratus_matrix_invert_affine(volume->matrix, inverse) || !stratus_matrix_invert_affine(world, inverse)) {
+  if (!stratus_matrix_invert_affine(volume->matrix, inverse)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume matrix is singular, must be invertible");
+  }
+  if (!stratus_matrix_invert_affine(world, inverse)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume spacing %g, %g, %g with its matrix has no inverse within doubles",
+      volume->spacing[0], volume->spacing[1], volume->spacing[2]);
   }
   bounds_of(volume, bounds);
   return check_finite(context, "bounds", bounds, 6);
@@ -262,4 +267,28 @@ bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b)
   return a->values == b->values && a->type == b->type && memcmp(a->dimensions, b->dimensions, sizeof a->dimensions) == 0 &&
     a->value_stride == b->value_stride && a->cell_centered == b->cell_centered && a->point_ghosts == b->point_ghosts &&
     a->cell_ghosts == b->cell_ghosts && a->revision == b->revision;
+}
+
+/* Asked where all fetched values are the same: of a constant volume, or because floats cannot hold what sets the values apart. One value
+ * beyond floats, however often it is there, is a fill value. */
+stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias)
+{
+  if (volume->type != STRATUS_FLOAT64) {
+    return STRATUS_OK;
+  }
+  const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const size_t stride = count / BIAS_VALUES_ASKED + 1;
+  double far = NAN;
+  for (size_t i = 0; i < count; i += stride) {
+    const double value = value_as_double(volume, i), apart = fabs(value - bias);
+    if (!isfinite(value) || value == bias) {
+      continue;
+    }
+    if (apart < (double)FLT_MIN || (apart > (double)FLT_MAX && !isnan(far) && value != far)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too %s: floats can't tell them apart",
+        apart < 1.0 ? bias : far, value, apart < 1.0 ? "close together" : "far out");
+    }
+    far = apart > (double)FLT_MAX ? value : far;
+  }
+  return STRATUS_OK;
 }

@@ -2,7 +2,7 @@
  * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's
  * hollows, cells that share no point, unused points, a few inverted cells among many, a seam of faces that differ. Each method gives the
  * reference's picture. */
-#include "tetra_case.h"
+#include "tetra_parts.h"
 
 #define CLOSE 0.025 /* greatest RMSE of 255: half of the bar of record for functions with peaks */
 
@@ -22,53 +22,6 @@ static void agrees(stratus_context* context, const tetra_case* c, const char* wh
   assert_int_equal(picture.report.stuck, 0);
 }
 
-/* Allocates room for so many points and cells, and leaves none. */
-static void clear(tetra_case* c, size_t points, size_t cells)
-{
-  c->points = realloc(c->points, points * 3 * sizeof(double));
-  c->values = realloc(c->values, points * sizeof(float));
-  c->vertices = realloc(c->vertices, cells * 4 * sizeof(int32_t));
-  assert_true(c->points && c->values && c->vertices);
-  c->mesh.points = c->points;
-  c->mesh.values = c->values;
-  c->mesh.vertices = c->vertices;
-  c->mesh.point_count = c->mesh.cell_count = 0;
-}
-
-static int32_t add_point(tetra_case* c, double x, double y, double z)
-{
-  const int64_t at = c->mesh.point_count++;
-  c->points[3 * at] = x;
-  c->points[3 * at + 1] = y;
-  c->points[3 * at + 2] = z;
-  c->values[at] = (float)(0.5 + 0.25 * sin(1.9 * x + 0.7 * y) + 0.25 * cos(1.3 * z - 0.9 * y));
-  return (int32_t)at;
-}
-
-static void add_cell(tetra_case* c, int32_t p, int32_t q, int32_t r, int32_t s)
-{
-  const int32_t cell[4] = { p, q, r, s };
-  memcpy(c->vertices + 4 * c->mesh.cell_count++, cell, sizeof cell);
-}
-
-/* Adds a box of n^3 times six cells with points of its own. */
-static void add_box(tetra_case* c, int n, const double low[3], const double size[3])
-{
-  static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
-  const int32_t first = (int32_t)c->mesh.point_count, step[3] = { 1, n + 1, (n + 1) * (n + 1) };
-  for (int i = 0; i < (n + 1) * step[2]; ++i) {
-    add_point(
-      c, low[0] + size[0] * (i % step[1]) / n, low[1] + size[1] * (i / step[1] % step[1]) / n, low[2] + size[2] * (i / step[2]) / n);
-  }
-  for (int box = 0; box < n * n * n; ++box) {
-    const int32_t corner = first + box % n + box / n % n * step[1] + box / n / n * step[2];
-    for (int t = 0; t < 6; ++t) {
-      const int32_t a = corner + step[path[t][0]];
-      add_cell(c, corner, a, a + step[path[t][1]], corner + step[0] + step[1] + step[2]);
-    }
-  }
-}
-
 /* Bars about an axis, each over the next and under the one before: whichever comes first, another hides it. */
 static void three_cells_in_a_ring(void** state)
 {
@@ -76,15 +29,15 @@ static void three_cells_in_a_ring(void** state)
   for (int view = 0; view < 9; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
-    clear(&c, 12, 3);
+    tetra_clear(&c, 12, 3);
     for (int bar = 0; bar < 3; ++bar) {
       const double turn = 2.0943951023931953 * bar;
       for (int i = 0; i < 4; ++i) {
         const double x = corners[i][0], y = corners[i][1];
-        add_point(&c, 2.0 + cos(turn) * x - sin(turn) * y, 2.0 + sin(turn) * x + cos(turn) * y, 2.0 + corners[i][2]);
+        tetra_add_point(&c, 2.0 + cos(turn) * x - sin(turn) * y, 2.0 + sin(turn) * x + cos(turn) * y, 2.0 + corners[i][2]);
         c.values[4 * bar + i] = 0.3f + 0.3f * (float)bar;
       }
-      add_cell(&c, 4 * bar, 4 * bar + 1, 4 * bar + 2, 4 * bar + 3);
+      tetra_add_cell(&c, 4 * bar, 4 * bar + 1, 4 * bar + 2, 4 * bar + 3);
     }
     c.transfer.unit_distance = 0.1; /* nearly opaque: what is behind hardly counts */
     tetra_camera(*state, &c, 4, view % 8, view & 1);
@@ -102,11 +55,11 @@ static void parts_that_interleave(void** state)
   for (int view = 0; view < 8; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
-    clear(&c, 64 * 8, 64 * 6);
+    tetra_clear(&c, 64 * 8, 64 * 6);
     for (int i = 0; i < 64; ++i) { /* a chess board of boxes of two sizes that touch in parts of faces */
       const double shrink = (i + i / 4 + i / 16) & 1 ? 0.7 : 1.0;
       const double low[3] = { i % 4, i / 4 % 4, i / 16 }, size[3] = { shrink, shrink, shrink };
-      add_box(&c, 1, low, size);
+      tetra_add_box(&c, 1, low, size);
     }
     tetra_camera(*state, &c, 4, view, view & 1);
     agrees(*state, &c, "board");
@@ -119,11 +72,11 @@ static void a_part_in_the_hollow_of_another(void** state)
   for (int view = 0; view < 4; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
-    clear(&c, 27 * 8, 27 * 6);
+    tetra_clear(&c, 27 * 8, 27 * 6);
     for (int i = 0; i < 27; ++i) {
       const double shrink = i == 13 ? 0.5 : 1.0, shift = (1.0 - shrink) / 2.0;
       const double low[3] = { i % 3 + shift, i / 3 % 3 + shift, i / 9 + shift }, size[3] = { shrink, shrink, shrink };
-      add_box(&c, 1, low, size);
+      tetra_add_box(&c, 1, low, size);
     }
     tetra_camera(*state, &c, 3, 2 * view, view & 1);
     agrees(*state, &c, "hollow");
@@ -137,12 +90,12 @@ static void points_that_are_there_twice_or_for_nothing(void** state)
   tetra_case c, apart;
   tetra_create(&c, 2, 0.2, 0.0, 2);
   tetra_create(&apart, 2, 0.2, 0.0, 2);
-  clear(&apart, 4 * 48 + 3, 48);
-  add_point(&apart, 1e6, -1e6, 3.0);
-  add_point(&apart, 1.0, 1.0, 1.0);
+  tetra_clear(&apart, 4 * 48 + 3, 48);
+  tetra_add_point(&apart, 1e6, -1e6, 3.0);
+  tetra_add_point(&apart, 1.0, 1.0, 1.0);
   for (int64_t i = 0; i < 4 * c.mesh.cell_count; ++i) {
     const double* p = c.points + 3 * (int64_t)c.vertices[i];
-    apart.values[add_point(&apart, p[0], p[1], p[2])] = c.values[c.vertices[i]];
+    apart.values[tetra_add_point(&apart, p[0], p[1], p[2])] = c.values[c.vertices[i]];
     apart.vertices[i] = (int32_t)apart.mesh.point_count - 1;
   }
   apart.mesh.cell_count = c.mesh.cell_count;
@@ -174,8 +127,8 @@ static void few_inverted_cells_among_many(void** state)
   for (int view = 0; view < 2; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
-    clear(&c, 729, 3072);
-    add_box(&c, 8, low, size);
+    tetra_clear(&c, 729, 3072);
+    tetra_add_box(&c, 8, low, size);
     double* pulled = c.points + 3 * (4 + 9 * (4 + 9 * 4));
     pulled[0] = 2.6;
     pulled[1] = 2.05;
@@ -190,15 +143,47 @@ static void few_inverted_cells_among_many(void** state)
   }
 }
 
+/* A flat cell, and cells on the same side of it: no ray leads from one through the flat cell into the other. The colour is uniform, as
+ * order does not matter. chain: a second flat cell lies behind the first. */
+static void a_flat_cell_between_cells_that_overlap(void** state)
+{
+  for (int view = 0; view < 16; ++view) {
+    const int chain = view / 8;
+    tetra_case c;
+    tetra_create(&c, 1, 0.0, 0.0, 1);
+    tetra_clear(&c, 10, 10);
+    const int32_t p = tetra_add_point(&c, 0, 0, 2), q = tetra_add_point(&c, 4, 0, 2), r = tetra_add_point(&c, 2, 4, 2);
+    const int32_t between = tetra_add_point(&c, 2, 0, 2), within = tetra_add_point(&c, 1, 1, 2);
+    tetra_add_cell(&c, between, p, q, r);
+    tetra_add_cell(&c, p, q, r, tetra_add_point(&c, 2, 1.5, 4));
+    if (chain) {
+      tetra_add_cell(&c, between, p, r, within);
+      tetra_add_cell(&c, between, p, within, tetra_add_point(&c, 1, 1, 3.5));
+    } else {
+      tetra_add_cell(&c, between, p, r, tetra_add_point(&c, 1, 1, 3.5));
+    }
+    tetra_add_cell(&c, between, q, r, tetra_add_point(&c, 3, 1, 0));
+    for (int i = 0; i < 12; ++i) {
+      c.color[i] = i & 3 ? 0.5 : c.color[i];
+    }
+    c.mesh.matrix[10] = view & 4 ? -1.0 : 1.0; /* from below */
+    c.mesh.matrix[11] = view & 4 ? 4.0 : 0.0;
+    tetra_camera(*state, &c, 4, view % 8, view & 1);
+    agrees(*state, &c, "flat");
+    assert_int_equal(picture.report.flat, 1 + chain);
+    tetra_destroy(&c);
+  }
+}
+
 static void a_seam_of_other_faces(void** state)
 {
   const double low[3] = { 0, 0, 0 }, beside[3] = { 1.5, 0, 0 }, size[3] = { 1.5, 3, 3 };
   for (int view = 0; view < 8; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
-    clear(&c, 200, 300);
-    add_box(&c, 2, low, size);
-    add_box(&c, 3, beside, size);
+    tetra_clear(&c, 200, 300);
+    tetra_add_box(&c, 2, low, size);
+    tetra_add_box(&c, 3, beside, size);
     tetra_camera(*state, &c, 3, view, view & 1);
     agrees(*state, &c, "seam");
     tetra_destroy(&c);
@@ -213,6 +198,7 @@ int test_tetra_parts_fail(void)
     cmocka_unit_test(a_part_in_the_hollow_of_another),
     cmocka_unit_test(points_that_are_there_twice_or_for_nothing),
     cmocka_unit_test(few_inverted_cells_among_many),
+    cmocka_unit_test(a_flat_cell_between_cells_that_overlap),
     cmocka_unit_test(a_seam_of_other_faces),
   };
   int failed = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * main() of each test program. PROGRAM TEST [--WORD...] [CASE...] runs one test, or those of its cases that match a pattern CASE.
+ * --seed=N runs one seed of random cases.
  *
  * The linker redirects cmocka's group runner and skip() to this file, so that test files stay plain cmocka. cmocka returns 0 if cases were
  * skipped, and if a group's tear-down failed. This file reports the first as ctest's skip, the second as a failure. */
@@ -26,6 +27,10 @@ void __wrap__skip(const char* file, int line);
 static char** words;
 static size_t cases, skipped, failed_teardowns;
 static CMFixtureFunction group_teardown;
+static const struct CMUnitTest* originals; /* what runs now, with the functions that are wrapped here */
+static size_t original;
+static bool seed_runs; /* a seed was begun, and the next was not asked for */
+static uint32_t seed;
 
 int test_skip(const char* why)
 {
@@ -48,6 +53,41 @@ const char* test_program(void)
   return words[0];
 }
 
+/* What follows --seed= on the command line, NULL if nothing does. */
+static const char* given_seed(void)
+{
+  for (char** w = words + 2; *w; ++w) {
+    if (strncmp(*w, "--seed=", 7) == 0) {
+      return *w + 7;
+    }
+  }
+  return NULL;
+}
+
+test_seeds test_seeds_of(uint32_t quick, uint32_t all)
+{
+  const char *given = given_seed(), *all_of_them = getenv("STRATUS_LONG");
+  if (given) {
+    const uint32_t first = (uint32_t)strtoul(given, NULL, 10);
+    return (test_seeds){ .seed = first, .end = first + 1 };
+  }
+  return (test_seeds){ .end = all_of_them && strcmp(all_of_them, "1") == 0 ? all : quick };
+}
+
+bool test_next(test_seeds* seeds)
+{
+  seeds->seed += seeds->begun;
+  seeds->begun = true;
+  seed_runs = seeds->seed < seeds->end;
+  seed = seeds->seed;
+  return seed_runs;
+}
+
+bool test_many(const test_seeds* seeds, uint32_t least)
+{
+  return seeds->end >= least && !given_seed();
+}
+
 /* Whether a pattern of the command line matches this case. NULL: whether there is a pattern at all. */
 static bool pattern_for(const char* name)
 {
@@ -57,6 +97,22 @@ static bool pattern_for(const char* name)
     }
   }
   return false;
+}
+
+static int set_up_case(void** state)
+{
+  return originals[original].setup_func ? originals[original].setup_func(state) : 0;
+}
+
+/* Runs after a case, which an assertion may have left in the middle of a seed. */
+static int tear_down_case(void** state)
+{
+  const struct CMUnitTest* test = &originals[original++];
+  if (seed_runs) {
+    fprintf(stderr, "Seed %u failed. To repeat it alone: %s %s --seed=%u %s\n", seed, words[0], words[1], seed, test->name);
+    seed_runs = false;
+  }
+  return test->teardown_func ? test->teardown_func(state) : 0;
 }
 
 static int tear_down_group(void** state)
@@ -70,16 +126,20 @@ static int tear_down_group(void** state)
 int __wrap__cmocka_run_group_tests(
   const char* name, const struct CMUnitTest* tests, size_t count, CMFixtureFunction set_up, CMFixtureFunction tear_down)
 {
-  struct CMUnitTest* chosen = calloc(count, sizeof *chosen);
+  struct CMUnitTest* chosen = calloc(2 * count, sizeof *chosen);
   size_t number = 0;
   if (!chosen) {
     return 1;
   }
   for (size_t i = 0; i < count; ++i) {
     if (!pattern_for(NULL) || pattern_for(tests[i].name)) {
-      chosen[number++] = tests[i];
+      chosen[number] = chosen[count + number] = tests[i];
+      chosen[number].setup_func = set_up_case;
+      chosen[number++].teardown_func = tear_down_case;
     }
   }
+  originals = chosen + count;
+  original = 0;
   cases += number;
   group_teardown = tear_down;
   const int failed = number ? __real__cmocka_run_group_tests(name, chosen, number, set_up, tear_down ? tear_down_group : NULL) : 0;

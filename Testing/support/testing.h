@@ -5,6 +5,7 @@
 #define STRATUS_TESTING_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #define TEST_SKIPPED 77 /* exit status that ctest counts as a skip */
 
@@ -13,6 +14,35 @@ int test_skip(const char* why);
 
 /* Whether the command line holds this word, such as "--tiny". */
 bool test_option(const char* word);
+
+/* Random cases by seed: `for (test_seeds s = test_seeds_of(TEST_SOME(10000), 10000); test_next(&s);)` runs its body with s.seed 0, 1, 2
+ * and so on. There are `quick` of them, or `all` if the environment has STRATUS_LONG=1, or the one that --seed=N on the command line names.
+ * Where a body fails, how to repeat its seed alone is printed. */
+typedef struct test_seeds {
+  uint32_t seed, end;
+  bool begun;
+} test_seeds;
+
+/* How many of `all` are quick: a tenth, or fewer in a build for debugging, which takes ten times as long, and with sanitizers. */
+#if defined(__SANITIZE_ADDRESS__)
+#define TEST_SOME(all) 20
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TEST_SOME(all) 20
+#endif
+#endif
+#ifndef TEST_SOME
+#ifdef NDEBUG
+#define TEST_SOME(all) ((all) / 10)
+#else
+#define TEST_SOME(all) ((all) < 2000 ? 20 : (all) / 100)
+#endif
+#endif
+
+test_seeds test_seeds_of(uint32_t quick, uint32_t all);
+bool test_next(test_seeds* seeds);
+/* Whether at least so many seeds run, enough for what must hold in their mean. */
+bool test_many(const test_seeds* seeds, uint32_t least);
 
 /* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);

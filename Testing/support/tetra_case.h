@@ -200,6 +200,9 @@ static inline int tetra_meet(
   const int32_t* v = c->mesh.vertices + 4 * cell;
   const double* m = c->mesh.matrix;
   double p[4][3], value[4], coordinate[2][4];
+  if (v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3]) {
+    return 0; /* no volume, whatever rounding makes of it */
+  }
   for (int i = 0; i < 4; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double* q = c->mesh.points + 3 * (int64_t)v[i];
@@ -211,7 +214,12 @@ static inline int tetra_meet(
     }
   }
   const double whole = tetra_volume(p[0], p[1], p[2], p[3]);
-  if ((c->mesh.hidden && c->mesh.hidden[cell]) || whole == 0.0) {
+  double size = 0.0;
+  for (int i = 0; i < 9; ++i) {
+    size = fmax(size, fabs(p[i / 3 + 1][i % 3] - p[0][i % 3]));
+  }
+  /* less than that is what rounding leaves of a cell without volume, and its coordinates have no digit */
+  if ((c->mesh.hidden && c->mesh.hidden[cell]) || fabs(whole) <= 1e-14 * size * size * size) {
     return 0;
   }
   /* The ray is measured at its point nearest to the cell, and at a second point as far from there as the cell reaches. Points on another
