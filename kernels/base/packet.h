@@ -17,13 +17,12 @@
 #ifndef STRATUS_WIDTH
 #define STRATUS_WIDTH 1
 #endif
-/* PACKET_KERNEL(group): a kernel of groups of `group` work items where each holds a packet. These fill the vectors already. The hint tells
- * compilers that would spread a kernel over many work items a vector, such as Intel's for CPUs: 16 items of 16 lanes each would take them
- * ten times as long. With the group's size PoCL compiles a kernel once, and not again for the first launch. */
+/* A work item that holds a packet fills the vectors already. The hint tells compilers that would spread a kernel over many work items a
+ * vector, such as Intel's for CPUs: 16 items of 16 lanes each would take them ten times as long. */
 #if STRATUS_WIDTH == 16
-#define PACKET_KERNEL(group) __kernel __attribute__((vec_type_hint(float16))) __attribute__((reqd_work_group_size(group, 1, 1)))
+#define PACKET_KERNEL __kernel __attribute__((vec_type_hint(float16)))
 #else
-#define PACKET_KERNEL(group) __kernel
+#define PACKET_KERNEL __kernel
 #endif
 #else
 #include <math.h>
