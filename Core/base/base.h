@@ -4,6 +4,7 @@
 #ifndef STRATUS_BASE_H
 #define STRATUS_BASE_H
 
+#include "cache_folder.h"
 #include "stratus/camera.h"
 
 #include <math.h>
@@ -13,10 +14,12 @@
 typedef struct stratus_device stratus_device;
 
 struct stratus_context {
-  stratus_context_options options; /* `device` is not kept, see device_name */
+  stratus_context_options options; /* `device` and `program_folder` are not kept, but device_name and the copy below */
   int threads;
   stratus_device* device; /* NULL: the host draws */
   int isa;                /* best instruction set that host code may use: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
+  stratus_program_statistics programs;
+  char program_folder[STRATUS_CACHE_PATH]; /* of built OpenCL programs; "": they are not kept */
   char device_name[256];
   char message[1024];
 };

@@ -4,9 +4,9 @@
 #define _POSIX_C_SOURCE 200809L
 #include "calibration.h"
 
+#include "cache_folder.h"
 #include "instruction_set.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <float.h>
 #include <inttypes.h>
@@ -21,8 +21,9 @@
 #endif
 
 #define FORMAT 1 /* of the file; part of its name, as the library's version is */
+#define FILE_NAME "calibration-%d-%d.%d.%d.txt"
+#define FILE_NAME_NUMBERS FORMAT, STRATUS_VERSION_MAJOR, STRATUS_VERSION_MINOR, STRATUS_VERSION_PATCH
 #define KEPT 16
-#define PATH_MOST 1024
 #define LINE_MOST 640
 /* A file that is larger is not ours. Some 80 calibrations fit. */
 #define FILE_MOST 16384
@@ -186,38 +187,13 @@ static void append(file_text* file, const stratus_calibration* calibration)
 /* ---------------------------------------------------------------- file */
 
 /* Returns false if there is no place for the file. */
-static bool find_folder(char path[PATH_MOST])
+static bool find_file(char folder[STRATUS_CACHE_PATH], char path[STRATUS_CACHE_PATH])
 {
-  static const struct {
-    const char *variable, *below;
-  } places[] = { { "STRATUS_CACHE_DIR", "" }, { "XDG_CACHE_HOME", "/stratus" }, { "HOME", "/.cache/stratus" } };
-  for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
-    const char* value = getenv(places[i].variable);
-    if (value && (i == 0 || *value == '/')) { /* users' folders count where they are absolute, as XDG's rules say */
-      const int length = snprintf(path, PATH_MOST, "%s%s", value, places[i].below);
-      return *value && length > 0 && length < PATH_MOST;
-    }
+  if (!stratus_cache_find(folder)) {
+    return false;
   }
-  return false;
-}
-
-static bool file_in(const char* folder, const char* ending, char path[PATH_MOST])
-{
-  const int length = snprintf(path, PATH_MOST, "%s/calibration-%d-%d.%d.%d.txt%s", folder, FORMAT, STRATUS_VERSION_MAJOR,
-    STRATUS_VERSION_MINOR, STRATUS_VERSION_PATCH, ending);
-  return length > 0 && length < PATH_MOST;
-}
-
-static void make_folder(const char* path)
-{
-  char above[PATH_MOST];
-  const char* last = strrchr(path, '/');
-  if (mkdir(path, S_IRWXU) != 0 && errno == ENOENT && last) {
-    snprintf(above, sizeof above, "%.*s", (int)(last - path), path);
-    if (mkdir(above, S_IRWXU) == 0) {
-      (void)mkdir(path, S_IRWXU);
-    }
-  }
+  const int length = snprintf(path, STRATUS_CACHE_PATH, "%s/" FILE_NAME, folder, FILE_NAME_NUMBERS);
+  return length > 0 && length < STRATUS_CACHE_PATH;
 }
 
 /* A file that cannot be read, or is none of ours, counts as empty. */
@@ -240,42 +216,12 @@ static void read_file(const char* path, file_text* file)
   close(handle);
 }
 
-static bool write_whole(int handle, const file_text* file)
-{
-  for (size_t done = 0; done < file->length;) {
-    const ssize_t put = write(handle, file->text + done, file->length - done);
-    if (put <= 0) {
-      return false;
-    }
-    done += (size_t)put;
-  }
-  return true;
-}
-
-/* Writes beside the file and renames, so that readers see the old file or the new one. */
-static void write_file(const char* folder, const file_text* file)
-{
-  char path[PATH_MOST], beside[PATH_MOST];
-  if (!file_in(folder, "", path) || !file_in(folder, ".XXXXXX", beside)) {
-    return;
-  }
-  make_folder(folder);
-  const int handle = mkstemp(beside);
-  if (handle < 0) {
-    return;
-  }
-  const bool whole = write_whole(handle, file);
-  if (close(handle) != 0 || !whole || rename(beside, path) != 0) {
-    (void)unlink(beside);
-  }
-}
-
 void stratus_calibration_read(stratus_calibration* calibration)
 {
-  char folder[PATH_MOST], path[PATH_MOST];
+  char folder[STRATUS_CACHE_PATH], path[STRATUS_CACHE_PATH];
   file_text file;
   stratus_calibration found;
-  if (!find_folder(folder) || !file_in(folder, "", path)) {
+  if (!find_file(folder, path)) {
     return;
   }
   read_file(path, &file);
@@ -286,7 +232,7 @@ void stratus_calibration_read(stratus_calibration* calibration)
 
 void stratus_calibration_add(stratus_calibration* calibration)
 {
-  char folder[PATH_MOST], path[PATH_MOST];
+  char folder[STRATUS_CACHE_PATH], path[STRATUS_CACHE_PATH];
   file_text old, file = { .length = 0 };
   stratus_calibration found;
   size_t at = 0;
@@ -296,7 +242,7 @@ void stratus_calibration_add(stratus_calibration* calibration)
       return;
     }
   }
-  if (!find_folder(folder) || !file_in(folder, "", path)) {
+  if (!find_file(folder, path)) {
     return;
   }
   read_file(path, &old);
@@ -312,7 +258,10 @@ void stratus_calibration_add(stratus_calibration* calibration)
     }
   }
   append(&file, calibration);
-  write_file(folder, &file);
+  char name[64];
+  const stratus_cache_part whole = { file.text, file.length };
+  snprintf(name, sizeof name, FILE_NAME, FILE_NAME_NUMBERS);
+  (void)stratus_cache_write(folder, name, &whole, 1);
 }
 
 /* ---------------------------------------------------------------- process */

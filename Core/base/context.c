@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "device_choice.h"
 #include "instruction_set.h"
+#include "program_cache.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -97,11 +98,15 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
     draft.options.release = defaults.release;
     draft.options.allocator_user = NULL;
   }
-  draft.options.device = NULL; /* borrowed for this call only */
+  draft.options.device = NULL; /* both are borrowed for this call only */
+  draft.options.program_folder = NULL;
   draft.threads = options->threads ? options->threads : omp_get_max_threads();
   draft.threads = draft.threads > THREADS_MAX ? THREADS_MAX : draft.threads;
 
   status = check_options(&draft, options);
+  if (status == STRATUS_OK) {
+    status = stratus_program_folder(&draft, options->program_folder, draft.program_folder);
+  }
   void* memory = NULL;
   if (status == STRATUS_OK) {
     status = stratus_allocate(&draft, 1, sizeof *context, &memory);
@@ -110,6 +115,9 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
     context = memory;
     *context = draft;
     status = stratus_device_choose(context, options->device, false);
+    if (context->device && !options->program_folder && stratus_programs_are_kept(stratus_device_id(context->device))) {
+      context->program_folder[0] = '\0';
+    }
     draft = *context;
   }
   if (status != STRATUS_OK) {
@@ -150,4 +158,11 @@ int stratus_context_on_device(const stratus_context* context)
 int stratus_context_threads(const stratus_context* context)
 {
   return context ? context->threads : 0;
+}
+
+void stratus_context_get_programs(const stratus_context* context, stratus_program_statistics* statistics)
+{
+  if (statistics) {
+    *statistics = context ? context->programs : (stratus_program_statistics){ 0 };
+  }
 }

@@ -265,6 +265,11 @@ const char* stratus_device_label(const stratus_device* device)
   return device->label;
 }
 
+cl_device_id stratus_device_id(const stratus_device* device)
+{
+  return device->id;
+}
+
 bool stratus_device_is_cpu(const stratus_device* device)
 {
   return device->is_cpu;

@@ -27,6 +27,7 @@ void stratus_device_describe(cl_device_id id, char* text, size_t capacity);
 bool stratus_device_builds(const stratus_context* context);
 
 const char* stratus_device_label(const stratus_device* device);
+cl_device_id stratus_device_id(const stratus_device* device);
 bool stratus_device_is_cpu(const stratus_device* device);
 bool stratus_device_has_double(const stratus_device* device);
 size_t stratus_device_largest_allocation(const stratus_device* device);

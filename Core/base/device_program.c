@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Programs and kernels of an OpenCL device, built once for each source and set of defines, and their launches. */
+ * Programs and kernels of an OpenCL device, built or loaded from disk once for each source and set of defines, and their launches. */
 #include "device_state.h"
+#include "program_cache.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -27,39 +28,114 @@ static stratus_status build_failed(stratus_context* context, stratus_device* dev
   return status;
 }
 
-static stratus_status build_program(
-  stratus_context* context, stratus_device* device, const char* source, const char* text, const char* defines, cached_program* program)
+static stratus_status compile(
+  stratus_context* context, stratus_device* device, const char* source, const char* text, const char* options, cl_program* program)
 {
-  void* options = NULL;
-  const size_t options_size = strlen(defines) + 32;
-  TRY(stratus_allocate(context, options_size, 1, &options));
-  /* No relaxed mathematics: the device must round as the host does. */
-  snprintf(options, options_size, "-cl-std=CL1.2 %s", defines);
-
   stratus_status status;
-  const double start = stratus_now_ms();
   cl_int error = stratus_device_next_error(device);
   if (error == CL_SUCCESS) {
-    program->program = clCreateProgramWithSource(device->context, 1, &text, NULL, &error);
+    *program = clCreateProgramWithSource(device->context, 1, &text, NULL, &error);
   }
-  TRY_CLEANUP(stratus_device_check(context, device, "clCreateProgramWithSource", error));
+  TRY(stratus_device_check(context, device, "clCreateProgramWithSource", error));
   error = stratus_device_next_error(device);
   if (error == CL_SUCCESS) {
-    error = clBuildProgram(program->program, 1, &device->id, options, NULL, NULL);
+    error = clBuildProgram(*program, 1, &device->id, options, NULL, NULL);
   }
   if (error == CL_BUILD_PROGRAM_FAILURE || error == CL_INVALID_BUILD_OPTIONS) {
-    status = build_failed(context, device, program->program, source, error);
+    status = build_failed(context, device, *program, source, error);
   } else {
     status = stratus_device_check(context, device, "clBuildProgram", error);
   }
-  if (status == STRATUS_OK) {
-    stratus_log(context, STRATUS_LOG_DEBUG, "built %s %s for %s in %.0f ms", source, defines, device->label, stratus_now_ms() - start);
+  if (status != STRATUS_OK) {
+    clReleaseProgram(*program);
+    *program = NULL;
   }
-cleanup:
-  stratus_release(context, options);
-  if (status != STRATUS_OK && program->program) {
-    clReleaseProgram(program->program);
+  return status;
+}
+
+/* Makes the program of the binary that is stored for the key. NULL where there is none, or where OpenCL refuses it. */
+static stratus_status load(stratus_context* context, stratus_device* device, const char* key, const char* options, cl_program* program)
+{
+  void* binary;
+  size_t size = 0;
+  *program = NULL;
+  TRY(stratus_program_read(context, key, &binary, &size));
+  if (!binary) {
+    return STRATUS_OK;
   }
+  const unsigned char* bytes = binary;
+  cl_int answer = CL_SUCCESS, error = stratus_device_next_error(device);
+  if (error == CL_SUCCESS) {
+    *program = clCreateProgramWithBinary(device->context, 1, &device->id, &size, &bytes, &answer, &error);
+  }
+  if (error == CL_SUCCESS && answer == CL_SUCCESS) {
+    error = stratus_device_next_error(device);
+    if (error == CL_SUCCESS) {
+      error = clBuildProgram(*program, 1, &device->id, options, NULL, NULL);
+    }
+  }
+  if (*program && (error != CL_SUCCESS || answer != CL_SUCCESS)) {
+    clReleaseProgram(*program);
+    *program = NULL;
+  }
+  stratus_release(context, binary);
+  return STRATUS_OK;
+}
+
+/* Stores the program's binary for the key. A device that does not give it is no failure. */
+static stratus_status store(stratus_context* context, const char* key, cl_program program)
+{
+  cl_uint devices = 0;
+  size_t size = 0;
+  void* binary = NULL;
+  if (!*context->program_folder || clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof devices, &devices, NULL) != CL_SUCCESS ||
+    devices != 1 || clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(context, size, 1, &binary));
+  unsigned char* bytes = binary;
+  if (clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof bytes, &bytes, NULL) == CL_SUCCESS) {
+    stratus_program_write(context, key, binary, size);
+  }
+  stratus_release(context, binary);
+  return STRATUS_OK;
+}
+
+static stratus_status make_program(
+  stratus_context* context, stratus_device* device, const char* source, const char* text, const char* defines, cached_program* program)
+{
+  stratus_program_statistics* done = &context->programs;
+  char key[STRATUS_PROGRAM_KEY];
+  void* memory = NULL;
+  const size_t options_size = strlen(defines) + 32;
+  TRY(stratus_allocate(context, options_size, 1, &memory));
+  char* options = memory;
+  /* No relaxed mathematics: the device must round as the host does. */
+  snprintf(options, options_size, "-cl-std=CL1.2 %s", defines);
+
+  const double start = stratus_now_ms();
+  const bool kept = *context->program_folder && stratus_program_key(device->id, text, options, key);
+  stratus_status status = kept ? load(context, device, key, options, &program->program) : STRATUS_OK;
+  if (status == STRATUS_OK && program->program) {
+    const double ms = stratus_now_ms() - start;
+    ++done->loaded;
+    done->load_ms += ms;
+    stratus_log(context, STRATUS_LOG_DEBUG, "loaded %s %s for %s in %.0f ms", source, defines, device->label, ms);
+  } else if (status == STRATUS_OK) {
+    status = compile(context, device, source, text, options, &program->program);
+    if (status == STRATUS_OK && kept) {
+      status = store(context, key, program->program);
+    }
+    if (status == STRATUS_OK) {
+      const double ms = stratus_now_ms() - start;
+      ++done->built;
+      done->build_ms += ms;
+      stratus_log(context, STRATUS_LOG_DEBUG, "built %s %s for %s in %.0f ms", source, defines, device->label, ms);
+    } else if (program->program) {
+      clReleaseProgram(program->program);
+    }
+  }
+  stratus_release(context, memory);
   return status;
 }
 
@@ -80,7 +156,7 @@ static stratus_status find_program(
   memcpy(program->name, source, name_size);
   memcpy(program->name + name_size, defines, defines_size);
   program->defines = program->name + name_size;
-  const stratus_status status = build_program(context, device, source, text, defines, program);
+  const stratus_status status = make_program(context, device, source, text, defines, program);
   if (status != STRATUS_OK) {
     stratus_release(context, program);
     return status;

@@ -49,6 +49,10 @@ typedef struct stratus_context_options {
   void* log_user;
   stratus_progress_function progress; /* default: none */
   void* progress_user;
+  /* Folder in which built OpenCL programs are kept for later contexts and processes; it is made if it is not there, and nothing that is
+   * wrong with it is an error. At most 959 characters; "": nothing is kept. NULL, the default: `programs-1` in the folder that
+   * docs/devices.md tells, but nothing for PoCL, which keeps programs itself. */
+  const char* program_folder;
 } stratus_context_options;
 
 STRATUS_API stratus_context_options stratus_context_options_default(void);
@@ -67,6 +71,15 @@ STRATUS_API const char* stratus_context_device(const stratus_context* context);
 STRATUS_API int stratus_context_on_device(const stratus_context* context);
 /* Returns the number of threads on the host. */
 STRATUS_API int stratus_context_threads(const stratus_context* context);
+
+/* OpenCL programs of a context. The first picture that needs one waits for it. */
+typedef struct stratus_program_statistics {
+  uint64_t built, loaded;   /* compiled from source; taken from the folder of built programs */
+  double build_ms, load_ms; /* times of all of these */
+} stratus_program_statistics;
+
+/* Fills in the context's statistics; zeros for NULL. */
+STRATUS_API void stratus_context_get_programs(const stratus_context* context, stratus_program_statistics* statistics);
 
 /* Returns the number of OpenCL devices of all platforms, in the order in which the loader lists them; 0 if there is no platform. */
 STRATUS_API int stratus_device_count(void);

@@ -37,6 +37,7 @@ static stratus_context* open_pocl(faulty_allocator* allocator, log_lines* lines)
   stratus_context_options options = faulty_options(allocator, "PTHREAD");
   options.log = lines ? count_builds : NULL;
   options.log_user = lines;
+  options.program_folder = ""; /* each context builds its own */
   if (stratus_context_create(&options, &context, message, sizeof message) != STRATUS_OK) {
     fail_msg("%s", message);
   }

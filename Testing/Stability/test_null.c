@@ -62,6 +62,7 @@ static void contexts(void)
   IS_SILENT(stratus_context_create(NULL, NULL, message, sizeof message));
   assert_non_null(strstr(message, "NULL"));
   TAKES(stratus_context_destroy(NULL));
+  TAKES(stratus_context_get_programs(NULL, NULL));
   assert_string_equal((remember("stratus_context_message("), stratus_context_message(NULL)), "no context");
   assert_string_equal((remember("stratus_context_device("), stratus_context_device(NULL)), "");
   GIVES(0, stratus_context_on_device(NULL));

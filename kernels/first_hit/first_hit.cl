@@ -25,7 +25,7 @@ typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_AR
 
 /* rays: arrays of `count` floats, in the order origin x y z, direction x y z, inverse direction x y z, end; then arrays of `count` ints,
  * cell x y z. results: arrays of `count` ints, in the order state (STRATUS_HIT_*), voxel x y z, steps. */
-__kernel void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,
+PACKET_KERNEL void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,
   __global const int* masks, __global const float* rays, __global int* results)
 {
   const int count = a->count, first = (int)get_global_id(0) * STRATUS_WIDTH;

@@ -59,7 +59,7 @@ static void store_pixel(
 
 #if STRATUS_WIDTH == 1
 /* counts: rays, samples, skipped, lookups of each row of pixels, so that 32 bits hold them. */
-__kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
   __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
   __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {
@@ -150,7 +150,7 @@ static uint sum_lanes(vint lanes)
 }
 
 /* counts: rays, samples, skipped, lookups of each tile. 32 bits hold a tile's, and no other work item adds to them. */
-__kernel void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
   __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
   __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {

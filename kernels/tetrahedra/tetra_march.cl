@@ -33,7 +33,7 @@ static bool my_pixels(__constant stratus_tetra_arguments* a, int* tile, int* fro
   return column < a->columns && y * TETRA_TILE < a->picture.height;
 }
 
-__kernel void tetra_count(__constant stratus_tetra_arguments* a, __global const float* points, __global const float* lines,
+PACKET_KERNEL void tetra_count(__constant stratus_tetra_arguments* a, __global const float* points, __global const float* lines,
   __global const int* faces, __global const uint* bin_begin, __global const int* bins, __global uint* found)
 {
   const stratus_tetra_view view = { .scene = { .points = points }, .lines = lines, .faces = faces, .bin_begin = bin_begin, .bins = bins };
@@ -44,7 +44,7 @@ __kernel void tetra_count(__constant stratus_tetra_arguments* a, __global const 
 }
 
 /* found: scratch memory, a number for each pixel of the tiles. counts: of each tile rays, entries, segments and stuck rays; 0 before. */
-__kernel void tetra_march(__constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values,
+PACKET_KERNEL void tetra_march(__constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values,
   __global const int* sums, __global const float* colors, __global const float* points, __global const float* lines,
   __global const float* ends, __global const int* faces, __global const uint* bin_begin, __global const int* bins,
   __global const uint* first, __global int* entries, __global uint* found, __global float* rgba, __global uchar* rgba8,

@@ -85,6 +85,9 @@ static void ask_nothing(fuzz* f)
     STATUS(stratus_tree_check(f->context, NULL, NULL)) == bad && STATUS(stratus_tree_load(f->context, NULL, 8, NULL)) == bad, "no tree");
   EXPECT(CALL(stratus_frustum_side(NULL, NULL, 1)) <= STRATUS_SIDE_INSIDE, "a side of nothing");
   (void)CALL(stratus_context_on_device(NULL));
+  stratus_program_statistics programs;
+  CALL(stratus_context_get_programs(NULL, &programs));
+  EXPECT(programs.built == 0 && programs.loaded == 0, "programs of nothing");
   EXPECT(
     CALL(stratus_context_threads(NULL)) == 0 && CALL(stratus_context_message(NULL)) && CALL(stratus_context_device(NULL)), "no context");
 }
@@ -93,10 +96,21 @@ static void make_context(fuzz* f)
 {
   static const char* const devices[] = { "host", "host", "host", "", "no such device", "-1", "99999999999999999999", "2147483648", "h",
     "%s%n" };
+  static const char* const folders[] = { "", "", "/no/such/folder", "%s%n", "/dev/null/below" };
+  static char longest[4000];
   fuzz_memory memory;
+  stratus_program_statistics programs;
   stratus_context_options o = fuzz_context_options(f, &memory);
   const char* device = devices[fuzz_below(f, sizeof devices / sizeof *devices)];
   o.device = fuzz_input(f, device, strlen(device) + 1);
+  const size_t folder = fuzz_below(f, 2 + sizeof folders / sizeof *folders), length = fuzz_below(f, sizeof longest);
+  memset(longest, 'x', sizeof longest);
+  longest[length] = '\0';
+  if (folder < sizeof folders / sizeof *folders) {
+    o.program_folder = fuzz_input(f, folders[folder], strlen(folders[folder]) + 1);
+  } else {
+    o.program_folder = folder % 2 ? NULL : fuzz_input(f, longest, length + 1);
+  }
   o.threads = fuzz_odd(f) ? (int)(uint32_t)(uint64_t)fuzz_odd_integer(f) : fuzz_integer(f, 0, 1024);
   o.allocate = fuzz_odd(f) ? NULL : o.allocate;
   o.release = fuzz_odd(f) ? NULL : o.release;
@@ -110,6 +124,7 @@ static void make_context(fuzz* f)
     EXPECT(context && CALL(stratus_context_threads(context)) >= 1 && strlen(CALL(stratus_context_device(context))) > 0, "no context");
     EXPECT(strcmp(CALL(stratus_context_message(context)), "") == 0, "a message before any failure");
     (void)CALL(stratus_context_on_device(context));
+    CALL(stratus_context_get_programs(context, fuzz_odd(f) ? NULL : &programs));
   } else {
     EXPECT(!context, "%s, but a context", stratus_status_name(status));
     EXPECT(capacity == 0 || !out || memchr(message, '\0', capacity), "the message does not end");

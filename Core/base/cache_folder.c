@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Finds the cache's folder, and writes files in it. */
+#define _POSIX_C_SOURCE 200809L
+#include "cache_folder.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define FOLDERS_ABOVE 2 /* are made, too */
+
+bool stratus_cache_find(char path[STRATUS_CACHE_PATH])
+{
+  static const struct {
+    const char *variable, *below;
+  } places[] = { { "STRATUS_CACHE_DIR", "" }, { "XDG_CACHE_HOME", "/stratus" }, { "HOME", "/.cache/stratus" } };
+  for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+    const char* value = getenv(places[i].variable);
+    if (value && (i == 0 || *value == '/')) { /* users' folders count where they are absolute, as XDG's rules say */
+      const int length = snprintf(path, STRATUS_CACHE_PATH, "%s%s", value, places[i].below);
+      return *value && length > 0 && length < STRATUS_CACHE_PATH;
+    }
+  }
+  return false;
+}
+
+static void make_folder(const char* path, int above)
+{
+  char parent[STRATUS_CACHE_PATH];
+  const char* last = strrchr(path, '/');
+  if (mkdir(path, S_IRWXU) != 0 && errno == ENOENT && last && above > 0) {
+    snprintf(parent, sizeof parent, "%.*s", (int)(last - path), path);
+    make_folder(parent, above - 1);
+    (void)mkdir(path, S_IRWXU);
+  }
+}
+
+static bool write_whole(int handle, const stratus_cache_part* part)
+{
+  const char* bytes = part->bytes;
+  for (size_t done = 0; done < part->size;) {
+    const ssize_t put = write(handle, bytes + done, part->size - done);
+    if (put <= 0) {
+      return false;
+    }
+    done += (size_t)put;
+  }
+  return true;
+}
+
+bool stratus_cache_write(const char* folder, const char* name, const stratus_cache_part* parts, int count)
+{
+  char path[STRATUS_CACHE_PATH], beside[STRATUS_CACHE_PATH];
+  const int length = snprintf(path, sizeof path, "%s/%s", folder, name),
+            longer = snprintf(beside, sizeof beside, "%s/%s.XXXXXX", folder, name);
+  if (length < 0 || longer >= STRATUS_CACHE_PATH) {
+    return false;
+  }
+  make_folder(folder, FOLDERS_ABOVE);
+  const int handle = mkstemp(beside);
+  if (handle < 0) {
+    return false;
+  }
+  bool whole = true;
+  for (int i = 0; i < count; ++i) {
+    whole = whole && write_whole(handle, parts + i);
+  }
+  if (close(handle) != 0 || !whole || rename(beside, path) != 0) {
+    (void)unlink(beside);
+    return false;
+  }
+  return true;
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The folder in which the library keeps what later processes can use: measured costs and built OpenCL programs. No failure here is an
+ * error: without the folder, costs are measured and programs are built. */
+#ifndef STRATUS_CACHE_FOLDER_H
+#define STRATUS_CACHE_FOLDER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Characters of a path with its final zero. */
+#define STRATUS_CACHE_PATH 1024
+
+/* Writes the folder's path: the environment's STRATUS_CACHE_DIR, else $XDG_CACHE_HOME/stratus, else $HOME/.cache/stratus. Returns false
+ * if there is no place for it, as where STRATUS_CACHE_DIR is empty. */
+bool stratus_cache_find(char path[STRATUS_CACHE_PATH]);
+
+/* A part of a file's bytes. */
+typedef struct stratus_cache_part {
+  const void* bytes;
+  size_t size;
+} stratus_cache_part;
+
+/* Writes `parts` to the file folder/name. It is written beside the file and renamed, so that readers see the old file or the new one.
+ * Makes the folder, and up to two above it. Returns false if it could not; then nothing is left. */
+bool stratus_cache_write(const char* folder, const char* name, const stratus_cache_part* parts, int count);
+
+#endif
