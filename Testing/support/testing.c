@@ -43,6 +43,12 @@ bool test_option(const char* word)
   return false;
 }
 
+bool long_run(void)
+{
+  const char* value = getenv("STRATUS_LONG");
+  return value && *value && strcmp(value, "0") != 0;
+}
+
 const char* test_program(void)
 {
   return words[0];

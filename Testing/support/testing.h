@@ -14,6 +14,9 @@ int test_skip(const char* why);
 /* Whether the command line holds this word, such as "--tiny". */
 bool test_option(const char* word);
 
+/* Whether all cases are asked for, which take minutes: the environment variable STRATUS_LONG is set, and not 0. */
+bool long_run(void);
+
 /* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);
 
