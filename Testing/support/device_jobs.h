@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Everything that the core does on a device, as jobs: what a job makes is one number that depends on every bit of its result. */
+ * Everything that the core does on a device or on the host, as jobs: what a job makes is one number that depends on every bit of its
+ * result. */
 #ifndef STRATUS_TESTING_DEVICE_JOBS_H
 #define STRATUS_TESTING_DEVICE_JOBS_H
 
@@ -24,7 +25,9 @@ typedef struct job_data {
   stratus_ray rays[JOB_RAYS];
 } job_data;
 
-static job_data jobs_data;
+static job_data jobs_data; /* jobs only read it, in any thread */
+/* Sum of the thread's last picture of a volume without its counts of samples, which depend on the structure. */
+static _Thread_local uint64_t job_colors;
 
 typedef struct device_job {
   const char* name;
@@ -63,9 +66,10 @@ static void job_picture_close(void* kept)
 
 static stratus_status job_draw(void* caster, const stratus_transfer* transfer, int number, uint64_t* sum)
 {
-  static small_picture picture;
+  small_picture picture;
   const stratus_status status = small_render(caster, &jobs_data.scene, transfer, number, &picture, NULL);
-  *sum = job_sum(7, &picture, sizeof picture);
+  job_colors = job_sum(job_sum(7, picture.rgba, sizeof picture.rgba), picture.depth, sizeof picture.depth);
+  *sum = job_sum(job_colors, picture.samples, sizeof picture.samples);
   return status;
 }
 
@@ -163,7 +167,7 @@ static void job_tetra_close(void* kept)
 
 static stratus_status job_tetra(stratus_context* context, int mode, void* kept, uint64_t* sum)
 {
-  static tetra_picture p;
+  tetra_picture p;
   const tetra_case* c = &jobs_data.tetra;
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = p.rgba, .depth = p.depth, .samples = p.samples };
   stratus_tetra_options options = c->options;
