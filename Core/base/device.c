@@ -195,9 +195,12 @@ static stratus_status describe(stratus_context* context, stratus_device* device)
   TRY(query(context, device, CL_DEVICE_HOST_UNIFIED_MEMORY, "clGetDeviceInfo(CL_DEVICE_HOST_UNIFIED_MEMORY)", sizeof unified, &unified));
   TRY(query(
     context, device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, "clGetDeviceInfo(CL_DEVICE_MEM_BASE_ADDR_ALIGN)", sizeof align_bits, &align_bits));
-  /* Devices without doubles may refuse this question instead of answering 0. */
-  if (clGetDeviceInfo(device->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL) != CL_SUCCESS) {
+  /* Devices without doubles may not know this question instead of answering 0. Any other error is one: a lost device has no answer. */
+  const cl_int error = clGetDeviceInfo(device->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL);
+  if (error == CL_INVALID_VALUE) {
     doubles = 0;
+  } else {
+    TRY(stratus_device_check(context, device, "clGetDeviceInfo(CL_DEVICE_DOUBLE_FP_CONFIG)", error));
   }
   device->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   device->has_double = doubles != 0;

@@ -48,6 +48,12 @@ bool test_option(const char* word)
   return false;
 }
 
+bool long_run(void)
+{
+  const char* value = getenv("STRATUS_LONG");
+  return value && *value && strcmp(value, "0") != 0;
+}
+
 const char* test_program(void)
 {
   return words[0];
@@ -66,12 +72,12 @@ static const char* given_seed(void)
 
 test_seeds test_seeds_of(uint32_t quick, uint32_t all)
 {
-  const char *given = given_seed(), *all_of_them = getenv("STRATUS_LONG");
+  const char* given = given_seed();
   if (given) {
     const uint32_t first = (uint32_t)strtoul(given, NULL, 10);
     return (test_seeds){ .seed = first, .end = first + 1 };
   }
-  return (test_seeds){ .end = all_of_them && strcmp(all_of_them, "1") == 0 ? all : quick };
+  return (test_seeds){ .end = long_run() ? all : quick };
 }
 
 bool test_next(test_seeds* seeds)

@@ -44,6 +44,9 @@ bool test_next(test_seeds* seeds);
 /* Whether at least so many seeds run, enough for what must hold in their mean. */
 bool test_many(const test_seeds* seeds, uint32_t least);
 
+/* Whether all cases are asked for, which take minutes: the environment variable STRATUS_LONG is set, and not 0. */
+bool long_run(void);
+
 /* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);
 

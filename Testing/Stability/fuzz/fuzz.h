@@ -57,6 +57,9 @@ typedef struct fuzz {
   const char* program;
   const char* device; /* device of the contexts */
   uint64_t seed, number, random;
+  const unsigned char* bytes; /* `driven`: choices follow from these bytes, two each, and then from the seed */
+  size_t bytes_left;
+  bool driven; /* by another program, which watches the time, too */
   fuzz_tally* tally;
   bool here; /* 1: there is no supervisor, and a finding aborts */
   /* oddness: of 10000 fields so many get an odd value (NULL, zero, negative, huge, NaN, out of range). odd_at: number of a field that gets

@@ -4,10 +4,15 @@
 
 #include <float.h>
 
-/* splitmix64 */
+/* splitmix64, of the next two bytes if there are any: one choice changes where they do. */
 uint64_t fuzz_next(fuzz* f)
 {
   uint64_t z = f->random += 0x9e3779b97f4a7c15ull;
+  if (f->bytes_left >= 2) {
+    z = ((uint64_t)f->bytes[0] | (uint64_t)f->bytes[1] << 8) * 0x9e3779b97f4a7c15ull;
+    f->bytes += 2;
+    f->bytes_left -= 2;
+  }
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
   return z ^ (z >> 31);

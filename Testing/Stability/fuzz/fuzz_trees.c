@@ -4,6 +4,7 @@
 #include "tree.h"
 
 #include "fuzz.h"
+#include "tree_checksum.h"
 
 #include <stdlib.h>
 
@@ -141,23 +142,6 @@ static void check_hits(fuzz* f, const tree_case* c, const stratus_tree* tree, bo
 
 /* ---- bytes */
 
-/* The format's own checksum, over the bytes from 24 on. With it, changed bytes reach the checks behind it. */
-static uint64_t checksum(const unsigned char* p, size_t size)
-{
-  uint64_t h = 0x9e3779b97f4a7c15ull ^ size;
-  for (; size >= 8; size -= 8, p += 8) {
-    uint64_t word;
-    memcpy(&word, p, 8);
-    h = (h ^ word) * 0xff51afd7ed558ccdull;
-    h ^= h >> 32;
-  }
-  for (; size > 0; --size, ++p) {
-    h = (h ^ *p) * 0xff51afd7ed558ccdull;
-    h ^= h >> 29;
-  }
-  return h;
-}
-
 static void change_bytes(fuzz* f, unsigned char* bytes, size_t size)
 {
   static const int32_t numbers[] = { 0, 1, -1, 2, 3, 7, 64, 255, 256, 65535, 65536, INT32_MAX, INT32_MIN };
@@ -194,7 +178,7 @@ static void load_changed(fuzz* f, const tree_case* c, const unsigned char* saved
   cut = fuzz_chance(f, 0.03) ? size + fuzz_below(f, 64) : cut;
   change_bytes(f, bytes, cut);
   if (fuzz_chance(f, 0.8) && cut > 24) {
-    const uint64_t length = fuzz_chance(f, 0.9) ? cut : size, sum = checksum(bytes + 24, cut - 24);
+    const uint64_t length = fuzz_chance(f, 0.9) ? cut : size, sum = fuzz_tree_checksum(bytes + 24, cut - 24);
     memcpy(bytes + 8, &length, sizeof length);
     memcpy(bytes + 16, &sum, sizeof sum);
   }
