@@ -38,6 +38,7 @@ static stratus_context* open_context(const char* device)
   stratus_context_options options = faulty_options(&allocator, device);
   options.threads = 2;
   options.log = keep_lines;
+  options.program_folder = ""; /* the folder of the case is for measured costs */
   assert_int_equal(stratus_context_create(&options, &result, NULL, 0), STRATUS_OK);
   return result;
 }

@@ -12,7 +12,9 @@
 
 #define ULPS_MOST 4
 #define LOCAL_SEED 540 /* seeds from here on give cases for rule local */
-#define FEW 4          /* of so many seeds one is drawn with --few, or with one work item a ray */
+/* Of so many seeds one is drawn, with one work item a ray or with --few. */
+#define ONE_RAY_STEP 4
+#define FEW_STEP 7
 
 static picture on_host;
 static picture on_device;
@@ -35,11 +37,12 @@ static void compare(bool one_ray)
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
+  const uint32_t step = test_option("--few") ? FEW_STEP : one_ray ? ONE_RAY_STEP : 1;
   int64_t most = 0;
   int other_counts = 0, more_samples = 0;
   int pictures = 0, lit = 0;
   int local_cases = 0, local = 0;
-  for (uint32_t seed = 500; seed < 552; seed += one_ray || test_option("--few") ? FEW : 1) {
+  for (uint32_t seed = 500; seed < 552; seed += step) {
     picture_case c;
     if (seed < LOCAL_SEED) {
       case_create_random(host, seed, &c);
@@ -47,7 +50,7 @@ static void compare(bool one_ray)
       case_create_local(host, seed, &c);
       ++local_cases;
     }
-    const stratus_structure structure = (stratus_structure)(seed / (one_ray ? FEW : 1) % 5);
+    const stratus_structure structure = (stratus_structure)((seed - 500) / step % 5);
     c.options.structure = structure;
     case_render(host, &c, &on_host);
     c.options.audit = 1;
@@ -74,7 +77,7 @@ static void compare(bool one_ray)
   print_message("             %d pictures of %d, at most %lld units in the last place apart, %d pixels with other counts, %d with more\n",
     lit, pictures, (long long)most, other_counts, more_samples);
   assert_true(lit > pictures / 3);
-  assert_true(local_cases >= 3);
+  assert_true(local_cases >= 2);
   assert_int_equal(local, local_cases);
   assert_true(other_counts == 0 || (!one_ray && !case_counts_agree()));
   assert_true(!one_ray || more_samples == 0);

@@ -189,7 +189,7 @@ static void refused_memory(void** state)
   assert_int_equal(allocator.live, 0);
 }
 
-/* --tiny: two small meshes, for a simulator that checks each access. */
+/* --few: a third of the meshes. --tiny: two small meshes, for a simulator that checks each access. */
 int test_tetra_march_device(void)
 {
   int as_cpu = 0, as_gpu = 1;
@@ -214,5 +214,6 @@ int test_tetra_march_device(void)
     edge = 1;
     return cmocka_run_group_tests(few, NULL, NULL);
   }
+  seeds = test_option("--few") ? 4 : seeds;
   return cmocka_run_group_tests(all, NULL, NULL);
 }

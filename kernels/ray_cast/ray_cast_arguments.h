@@ -10,6 +10,15 @@
 
 #define STRATUS_CLIP_MAX 6
 
+/* What few frames have: crop regions, clip planes, pieces, jitter, hidden or nearest values, a tree for a map, several components, labels,
+ * functions that are opaque, cut or jump. A device builds a kernel without these for other frames (RAY_PLAIN), in half the time.
+ * is_plain() in ray_cast_device.c names the same fields. */
+#ifdef RAY_PLAIN
+#define RAY_RARE(field) 0
+#else
+#define RAY_RARE(field) (field)
+#endif
+
 /* has_hidden: what the hidden bytes hold. The mask comes first, a byte for each value, 0 where it hides the value; then a byte for each
  * cell, 1 where the cell is hidden. */
 #define HIDDEN_CELLS 1
