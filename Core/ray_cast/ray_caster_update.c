@@ -64,7 +64,11 @@ static stratus_status update_ranges(
     if (status == STRATUS_OK && !same) {
       status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
     }
+    if (status == STRATUS_OK && ranges && ranges->whole_lo == ranges->whole_hi) {
+      status = stratus_volume_check_floats(caster->context, volume, ranges->bias);
+    }
     if (status != STRATUS_OK) {
+      stratus_value_range_destroy(ranges);
       stratus_release(caster->context, hidden);
       return status;
     }

@@ -360,9 +360,6 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
     flag_hidden(volume, hidden, ranges);
   }
   reduce_whole(context, ranges);
-  if (ranges->whole_lo == ranges->whole_hi) {
-    TRY_CLEANUP(stratus_volume_check_floats(context, volume, ranges->bias));
-  }
   TRY_CLEANUP(stratus_progress(context, "value ranges", 1.0));
   *out = ranges;
   ranges = NULL;

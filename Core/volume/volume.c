@@ -270,7 +270,7 @@ bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b)
 }
 
 /* Asked where all fetched values are the same: of a constant volume, or because floats cannot hold what sets the values apart. One value
- * beyond floats, however often it is there, is a fill value. */
+ * beyond floats on either side, however often it is there, is a fill value. */
 stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias)
 {
   if (volume->type != STRATUS_FLOAT64) {
@@ -278,17 +278,22 @@ stratus_status stratus_volume_check_floats(stratus_context* context, const strat
   }
   const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   const size_t stride = count / BIAS_VALUES_ASKED + 1;
-  double far = NAN;
+  double far[2] = { NAN, NAN }; /* below and above */
   for (size_t i = 0; i < count; i += stride) {
     const double value = value_as_double(volume, i), apart = fabs(value - bias);
+    double* fill = &far[value > bias];
     if (!isfinite(value) || value == bias) {
       continue;
     }
-    if (apart < (double)FLT_MIN || (apart > (double)FLT_MAX && !isnan(far) && value != far)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too %s: floats can't tell them apart",
-        apart < 1.0 ? bias : far, value, apart < 1.0 ? "close together" : "far out");
+    if (apart < (double)FLT_MIN) {
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too close together: floats can't tell them apart", bias, value);
     }
-    far = apart > (double)FLT_MAX ? value : far;
+    if (apart > (double)FLT_MAX && !isnan(*fill) && value != *fill) {
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too far from %g: floats can't tell them apart", *fill, value, bias);
+    }
+    *fill = apart > (double)FLT_MAX ? value : *fill;
   }
   return STRATUS_OK;
 }
