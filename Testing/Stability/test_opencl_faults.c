@@ -341,7 +341,10 @@ static void a_device_that_fails_is_left_out_by_auto(void** state)
     if (n < 0) {
       keep_usual();
     } else {
-      assert_true(!met || !context->device);
+      /* A device that vanishes once it was measured, as its queue ends, is taken: the first picture tells. */
+      const bool after =
+        faults->fault == OPENCL_FAULT_VANISH && faults->first >= 0 && strcmp(faults->trace[faults->first], "clFinish") == 0;
+      assert_true(!met || !context->device || after);
     }
     stratus_context_destroy(context);
     assert_int_equal(faults->live, 0);

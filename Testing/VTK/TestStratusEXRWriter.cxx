@@ -319,22 +319,28 @@ void KeepsLinksAndPermissions()
   CHECK(files::status(target).permissions() == few, "the permissions are others");
 }
 
-// As a full disk would: the file may have 100 bytes.
+// As a full disk would: the file may have so many bytes, from 3, which the old file has, to all of its bytes but one.
 void RefusesFullDisks()
 {
   vtkSmartPointer<vtkImageData> image = MakeImage(40, 30);
   AddFloats(image, "RGBA", 4);
   vtkNew<vtkStratusEXRWriter> writer;
   writer->SetInputData(image);
+  writer->SetFileName((Folder + "/whole.exr").c_str());
+  writer->Write();
+  const rlim_t bytes = std::filesystem::file_size(Folder + "/whole.exr");
   writer->SetFileName((Folder + "/old.exr").c_str());
   struct rlimit before, few;
   getrlimit(RLIMIT_FSIZE, &before);
   few = before;
-  few.rlim_cur = 100;
   std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &few);
-  CheckRefused(writer, "File too large");
-  setrlimit(RLIMIT_FSIZE, &before);
+  CHECK(bytes > 1000, "%llu bytes", static_cast<unsigned long long>(bytes));
+  for (rlim_t n = 3; n < bytes; n += n < 400 ? 1 : std::max<rlim_t>(1, std::min<rlim_t>(397, bytes - 1 - n))) {
+    few.rlim_cur = n;
+    setrlimit(RLIMIT_FSIZE, &few);
+    CheckRefused(writer, "File too large");
+    setrlimit(RLIMIT_FSIZE, &before);
+  }
 }
 
 void StopsWhenAborted()

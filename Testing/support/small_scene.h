@@ -76,7 +76,7 @@ static inline stratus_status small_scene_camera(stratus_context* context, small_
 /* A mask that removes the far half. */
 static inline const uint8_t* small_mask(void)
 {
-  static uint8_t mask[SMALL_VALUES];
+  static _Thread_local uint8_t mask[SMALL_VALUES];
   for (int q = 0; q < SMALL_VALUES; ++q) {
     mask[q] = q < SMALL_VALUES * 3 / 4;
   }
