@@ -58,6 +58,7 @@ class Tests:
                     for test in re.findall(r"stratus_add_test\((\w+) ", self.read(relative)):
                         self.source.setdefault(test, relative)
         self.source["fuzz_*"] = "Testing/Stability/fuzz/fuzz.c"
+        self.source["corpus_*"] = "Testing/Stability/fuzz/CMakeLists.txt"
 
     def read(self, relative):
         with open(os.path.join(self.root, relative), encoding="utf-8") as file:
