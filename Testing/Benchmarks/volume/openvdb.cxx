@@ -5,6 +5,7 @@
 #include <openvdb/tools/RayIntersector.h>
 
 #include "openvdb_mapper.h"
+#include "reference.h"
 
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
@@ -71,12 +72,7 @@ struct openvdb_mapper::inside {
   std::atomic<unsigned long long> samples{ 0 };
   std::vector<uint8_t> bytes;
 
-  double value(size_t at) const
-  {
-    return this->volume.type == STRATUS_UINT8 ? static_cast<const uint8_t*>(this->volume.values)[at]
-      : this->volume.type == STRATUS_FLOAT32  ? static_cast<double>(static_cast<const float*>(this->volume.values)[at])
-                                              : static_cast<const double*>(this->volume.values)[at];
-  }
+  double value(size_t at) const { return reference_value_at(&this->volume, static_cast<int64_t>(at)); }
   void make_grid();
   void make_table(vtkVolumeProperty* property);
   void make_topology();
