@@ -112,7 +112,7 @@ floor_result run_floor(stratus_context* context, const scene& s, int size);
 // Makes a folder and its parents, unless they exist or the name is empty. Call it before measuring: a reference takes minutes, and must not
 // be lost because its folder is missing.
 void make_folder(const std::string& folder);
-// The folder for references where none is named: `stratus/references` where the system keeps caches.
+// The folder for references where none is named: `references` in the library's cache folder; empty where there is none.
 std::string default_reference_cache();
 // Returns false if there is no such file, or if its number of floats differs.
 bool load_picture(const std::string& path, std::vector<float>& rgba);

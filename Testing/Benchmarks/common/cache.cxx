@@ -2,8 +2,11 @@
 // Keeps reference pictures between runs, because they take most of the time.
 #include "bench.h"
 
+extern "C" {
+#include "cache_folder.h"
+}
+
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -19,12 +22,8 @@ void make_folder(const std::string& folder)
 
 std::string default_reference_cache()
 {
-  const auto named = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
-  const std::string own = named("STRATUS_CACHE_DIR"), system = named("XDG_CACHE_HOME"), home = named("HOME");
-  return !own.empty() ? own + "/references"
-    : !system.empty() ? system + "/stratus/references"
-    : !home.empty()   ? home + "/.cache/stratus/references"
-                      : "";
+  char path[STRATUS_CACHE_PATH];
+  return stratus_cache_find(path) ? std::string(path) + "/references" : "";
 }
 
 bool load_picture(const std::string& path, std::vector<float>& rgba)
