@@ -2,6 +2,7 @@
  * Built programs on disk: a second context loads what the first built, pictures are the same, and whatever is wrong with the folder or a
  * file in it costs the building only. */
 #define _XOPEN_SOURCE 700
+#include "remove_folder.h"
 #include "small_scene.h"
 #include "testing.h"
 
@@ -10,7 +11,6 @@
 
 #include <dirent.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -29,14 +29,6 @@
 static char folder[PATH / 4]; /* of one case */
 static const char* const source = "__kernel void fill(__global float* values) { values[get_global_id(0)] = NUMBER; }\n";
 
-static int remove_one(const char* path, const struct stat* status, int type, struct FTW* walk)
-{
-  (void)status;
-  (void)type;
-  (void)walk;
-  return remove(path);
-}
-
 static int begin(void** state)
 {
   (void)state;
@@ -48,7 +40,7 @@ static int end(void** state)
 {
   (void)state;
   stratus_program_limit(STRATUS_PROGRAMS_MOST);
-  return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+  return remove_folder(folder);
 }
 
 static stratus_context* open_context(const char* programs)
@@ -281,7 +273,7 @@ static void a_folder_that_cannot_be_used_costs_the_building_only(void** state)
     assert_int_equal(run(deep, "2.5f"), 0);
   }
   assert_int_equal(chmod(deep, S_IRWXU), 0);
-  assert_int_equal(nftw(deep, remove_one, 8, FTW_DEPTH | FTW_PHYS), 0); /* it vanished */
+  assert_int_equal(remove_folder(deep), 0); /* it vanished */
   assert_int_equal(run(deep, "1.5f"), 0);
   assert_int_equal(run(deep, "1.5f"), 1);
 }

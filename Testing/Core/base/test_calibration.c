@@ -3,9 +3,9 @@
 #define _XOPEN_SOURCE 700
 #include "calibration.h"
 #include "comma_locale.h"
+#include "remove_folder.h"
 
 #include <float.h>
-#include <ftw.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,14 +23,6 @@
 static char folder[PATH / 4]; /* of one case */
 static stratus_context* host;
 
-static int remove_one(const char* path, const struct stat* status, int type, struct FTW* walk)
-{
-  (void)status;
-  (void)type;
-  (void)walk;
-  return remove(path);
-}
-
 static int begin(void** state)
 {
   stratus_context_options options = stratus_context_options_default();
@@ -45,7 +37,7 @@ static int end(void** state)
 {
   (void)state;
   stratus_context_destroy(host);
-  return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+  return remove_folder(folder);
 }
 
 /* The file that the library should use in a folder. */
