@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Effective voxels from a list of positions. Threads set bits in a field of masks, one for each possible brick. Where that field would be
- * far larger than the list, the numbers of bricks are sorted instead. */
+ * Effective voxels from a list of positions. Threads mark bricks in a field that has a bit and a number for each possible
+ * brick. Where that field would be far larger than the list, the numbers of bricks are sorted instead. */
 #include "voxels_build.h"
 
 #include <string.h>
 
-/* A field of masks is used up to so many bytes, and beyond if it has at most so many bricks for each listed voxel. */
+/* A field is used up to so many bytes, and beyond if it has at most so many bricks for each listed voxel. */
 #define FIELD_BYTES_MAX ((size_t)32 << 20)
 #define FIELD_BRICKS_A_VOXEL 32
+/* A thread pays for its start and its waiting with some thousand voxels, on a busy machine with far more. */
+#define VOXELS_A_THREAD (1 << 14)
 #define DIGIT_BITS 11
 #define DIGITS (1 << DIGIT_BITS)
 
@@ -17,11 +19,11 @@ typedef struct voxel_list {
 } voxel_list;
 
 /* Index of the first position outside the dimensions, or the list's length. */
-static int64_t first_outside(const stratus_voxels* voxels, const voxel_list* list)
+static int64_t first_outside(const stratus_voxels* voxels, const voxel_list* list, int threads)
 {
   const uint32_t nx = (uint32_t)voxels->dimensions[0], ny = (uint32_t)voxels->dimensions[1], nz = (uint32_t)voxels->dimensions[2];
   int64_t first = list->count;
-#pragma omp parallel for schedule(static) num_threads(voxels->context->threads) reduction(min : first)
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(min : first)
   for (int64_t v = 0; v < list->count; ++v) {
     const int32_t* p = list->positions + 3 * v;
     if (((uint32_t)p[0] >= nx || (uint32_t)p[1] >= ny || (uint32_t)p[2] >= nz) && v < first) {
@@ -31,36 +33,141 @@ static int64_t first_outside(const stratus_voxels* voxels, const voxel_list* lis
   return first;
 }
 
-static uint64_t bit_of(const int32_t p[3])
+/* ---------------------------------------------------------------- by a field of bits */
+
+/* All bricks of the dimensions, x fastest: a bit is set in those that hold a voxel, and only these have a number. */
+typedef struct brick_field {
+  int64_t words; /* 64 bricks each */
+  uint64_t* bits;
+  uint32_t* number; /* of a brick among those that hold a voxel, in order */
+} brick_field;
+
+static inline int64_t brick_of(const stratus_voxels* voxels, const int32_t p[3])
 {
-  return (uint64_t)1 << ((p[2] % 4 * 4 + p[1] % 4) * 4 + p[0] % 4);
+  const uint32_t x = (uint32_t)p[0] >> 2, y = (uint32_t)p[1] >> 2, z = (uint32_t)p[2] >> 2;
+  return ((int64_t)z * voxels->bricks_along[1] + (int64_t)y) * voxels->bricks_along[0] + (int64_t)x;
 }
 
-static stratus_status take_by_field(stratus_voxels* voxels, const voxel_list* list)
+static inline uint64_t bit_in_brick(const int32_t p[3])
+{
+  return (uint64_t)1 << ((p[2] & 3) << 4 | (p[1] & 3) << 2 | (p[0] & 3));
+}
+
+/* Sets a bit of a word that other threads may change, too, if it is shared. A word of one thread's own takes half the time. */
+static inline void set_bit(uint64_t* word, uint64_t bit, bool shared)
+{
+  if (shared) {
+#pragma omp atomic
+    *word |= bit;
+  } else {
+    *word |= bit;
+  }
+}
+
+static void mark_bricks(const stratus_voxels* voxels, const voxel_list* list, int threads, const brick_field* field)
+{
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int64_t v = 0; v < list->count; ++v) {
+    const int64_t brick = brick_of(voxels, list->positions + 3 * v);
+    const uint64_t bit = (uint64_t)1 << (brick & 63);
+    uint64_t before;
+#pragma omp atomic read
+    before = field->bits[brick >> 6];
+    if (!(before & bit)) { /* most voxels lie in a brick that another one has marked */
+      set_bit(&field->bits[brick >> 6], bit, threads > 1);
+    }
+  }
+}
+
+/* Numbers the marked bricks of words [first, last) from `number` on, and sets their places. */
+static void place_bricks(stratus_voxels* voxels, const brick_field* field, int64_t first, int64_t last, int64_t number)
+{
+  const int64_t n = voxels->bricks_along[0], ny = voxels->bricks_along[1];
+  int64_t row = first * 64 / n, row_end = (row + 1) * n;
+  for (int64_t w = first; w < last; ++w) {
+    for (uint64_t left = field->bits[w]; left; left &= left - 1, ++number) {
+      const int64_t brick = 64 * w + __builtin_ctzll(left);
+      if (brick >= row_end) {
+        row = brick / n;
+        row_end = (row + 1) * n;
+      }
+      field->number[brick] = (uint32_t)number;
+      voxels->bricks[number] = (stratus_brick){ .at = { (uint16_t)(brick - row_end + n), (uint16_t)(row % ny), (uint16_t)(row / ny) } };
+    }
+  }
+}
+
+/* Makes a brick of every marked one, with its place. */
+static stratus_status number_bricks(stratus_voxels* voxels, int threads, const brick_field* field)
 {
   stratus_context* context = voxels->context;
-  const int64_t nx = voxels->bricks_along[0], ny = voxels->bricks_along[1];
-  void* memory = NULL;
-  TRY(stratus_allocate_zero(context, (size_t)(nx * ny * voxels->bricks_along[2]), sizeof(uint64_t), &memory));
-  uint64_t* masks = memory;
-#pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (int64_t v = 0; v < list->count; ++v) {
-    const int32_t* p = list->positions + 3 * v;
-    const int64_t brick = (p[2] / 4 * ny + p[1] / 4) * nx + p[0] / 4;
-    const uint64_t bit = bit_of(p);
-#pragma omp atomic
-    masks[brick] |= bit;
+  void* memory;
+  TRY(stratus_allocate_zero(context, (size_t)threads + 1, sizeof(int64_t), &memory));
+  int64_t* const start = memory;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int part = 0; part < threads; ++part) {
+    for (int64_t w = field->words * part / threads; w < field->words * (part + 1) / threads; ++w) {
+      for (uint64_t left = field->bits[w]; left; left &= left - 1) {
+        start[part + 1]++;
+      }
+    }
   }
-  const stratus_status status = stratus_voxels_take_masks(voxels, masks);
-  stratus_release(context, masks);
+  for (int part = 0; part < threads; ++part) {
+    start[part + 1] += start[part];
+  }
+  const int64_t count = start[threads];
+  stratus_status status = count > UINT32_MAX
+    ? stratus_fail(context, STRATUS_OVERFLOW, "%lld bricks: at most %u", (long long)count, UINT32_MAX)
+    : stratus_allocate(context, (size_t)count, sizeof(stratus_brick), &memory);
+  if (status == STRATUS_OK) {
+    voxels->bricks = memory;
+    voxels->brick_count = count;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int part = 0; part < threads; ++part) {
+      place_bricks(voxels, field, field->words * part / threads, field->words * (part + 1) / threads, start[part]);
+    }
+  }
+  stratus_release(context, start);
   return status;
 }
+
+static void set_bits(const stratus_voxels* voxels, const voxel_list* list, int threads, const brick_field* field)
+{
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int64_t v = 0; v < list->count; ++v) {
+    const int32_t* p = list->positions + 3 * v;
+    set_bit(&voxels->bricks[field->number[brick_of(voxels, p)]].mask, bit_in_brick(p), threads > 1);
+  }
+}
+
+static stratus_status take_by_field(stratus_voxels* voxels, const voxel_list* list, int threads)
+{
+  stratus_context* context = voxels->context;
+  const int64_t bricks = voxels->bricks_along[0] * voxels->bricks_along[1] * voxels->bricks_along[2];
+  stratus_status status;
+  void *bits = NULL, *numbers = NULL;
+  brick_field field = { .words = (bricks + 63) / 64 };
+  TRY_CLEANUP(stratus_allocate_zero(context, (size_t)field.words, sizeof(uint64_t), &bits));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)bricks, sizeof(uint32_t), &numbers));
+  field.bits = bits;
+  field.number = numbers;
+  mark_bricks(voxels, list, threads, &field);
+  TRY_CLEANUP(number_bricks(voxels, threads, &field));
+  set_bits(voxels, list, threads, &field);
+  stratus_voxels_measure(voxels);
+cleanup:
+  stratus_release(context, numbers);
+  stratus_release(context, bits);
+  return status;
+}
+
+/* ---------------------------------------------------------------- by sorting */
 
 /* Key that sorts as bricks do: the brick's place, 16 bits for each axis, and 6 bits for the voxel in it. */
 static uint64_t key_of(const int32_t p[3])
 {
   return ((uint64_t)(p[2] / 4) << 38) | ((uint64_t)(p[1] / 4) << 22) | ((uint64_t)(p[0] / 4) << 6) |
-    (uint64_t)((p[2] % 4 * 4 + p[1] % 4) * 4 + p[0] % 4);
+    (uint64_t)((p[2] & 3) << 4 | (p[1] & 3) << 2 | (p[0] & 3));
 }
 
 /* Sorts by all bits of the brick's place, digit by digit from the lowest. A digit that all keys share is skipped. Returns the array that
@@ -144,7 +251,9 @@ stratus_status stratus_voxels_create_list(
   }
   TRY(check_list(context, dimensions, positions, count, out));
   TRY(stratus_voxels_create_empty(context, dimensions, &voxels));
-  const int64_t outside = first_outside(voxels, &list);
+  const int64_t pays = list.count / VOXELS_A_THREAD;
+  const int threads = pays < context->threads ? (pays > 1 ? (int)pays : 1) : context->threads;
+  const int64_t outside = first_outside(voxels, &list, threads);
   if (outside < list.count) {
     const int32_t* p = positions + 3 * outside;
     status = stratus_fail(context, STRATUS_INVALID_ARGUMENT, "position %lld is (%d, %d, %d), must be in 0..%lld, 0..%lld, 0..%lld",
@@ -155,8 +264,8 @@ stratus_status stratus_voxels_create_list(
     voxels->index_to_world[4 * a + 3] = 0.5;
   }
   const size_t field = (size_t)(voxels->bricks_along[0] * voxels->bricks_along[1] * voxels->bricks_along[2]);
-  const bool sparse = field > FIELD_BYTES_MAX / sizeof(uint64_t) && field / FIELD_BRICKS_A_VOXEL > count;
-  TRY_CLEANUP(sparse ? take_by_sorting(voxels, &list) : take_by_field(voxels, &list));
+  const bool sparse = field > FIELD_BYTES_MAX / sizeof(uint32_t) && field / FIELD_BRICKS_A_VOXEL > count;
+  TRY_CLEANUP(sparse ? take_by_sorting(voxels, &list) : take_by_field(voxels, &list, threads));
   *out = voxels;
   voxels = NULL;
 cleanup:
