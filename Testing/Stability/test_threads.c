@@ -219,6 +219,7 @@ static void a_call_that_is_cancelled_anywhere_has_the_same_bits_next(void** stat
       /* Where times decide, such as between structures, another run may have fewer reports. */
       const stratus_status expected = c.stage ? STRATUS_CANCELLED : STRATUS_OK;
       cancelled += c.stage != NULL;
+      assert_true(c.stage || at > 0); /* every run has the first report */
       if (status != expected || run_job(context, job, &kept, &sum) != STRATUS_OK || sum != right[j]) {
         fail_msg("%s %d cancelled at report %d of %d (%s): %s, then %s bits", job->name, job->number, (int)at, (int)reports,
           c.stage ? c.stage : "none", stratus_status_name(status), sum == right[j] ? "the same" : "other");
@@ -227,7 +228,7 @@ static void a_call_that_is_cancelled_anywhere_has_the_same_bits_next(void** stat
     }
   }
   print_message("cancelled %d times of %d\n", (int)cancelled, (int)tries);
-  assert_true(cancelled > 30 && cancelled > tries * 3 / 4);
+  assert_true(cancelled > 30);
   stratus_context_destroy(context);
 }
 
