@@ -17,8 +17,9 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
     if (!functions->prepare(batch, rays, count, chunk, bad)) {
       return false;
     }
-    chunk->ahead = (const char*)(rays + count);
-    chunk->ahead_bytes = (size_t)(more < STRATUS_HIT_CHUNK ? more : STRATUS_HIT_CHUNK) * sizeof *rays;
+    chunk->ahead = rays + count;
+    chunk->more = more < STRATUS_HIT_CHUNK ? (int)more : STRATUS_HIT_CHUNK;
+    chunk->hits = hits;
     functions->walk(batch, chunk);
     functions->finish(batch, rays, chunk, hits);
     return true;

@@ -23,13 +23,27 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
 /* A chunk's `count` rays in the form that traversal takes. end < 0: the ray misses the root's box. */
 typedef struct stratus_hit_chunk {
   int count;
-  const char* ahead;  /* memory of the next chunk's rays */
-  size_t ahead_bytes; /* its size; it is prefetched while this chunk is walked */
+  const stratus_ray* ahead; /* the next chunk's rays, prefetched while this chunk is walked */
+  int more;                 /* their number */
+  const stratus_hit* hits;  /* where this chunk's hits will be stored */
   float o[3][STRATUS_HIT_CHUNK], d[3][STRATUS_HIT_CHUNK], inverse[3][STRATUS_HIT_CHUNK], end[STRATUS_HIT_CHUNK];
   int cell[3][STRATUS_HIT_CHUNK];
-  int state[STRATUS_HIT_CHUNK], visited[STRATUS_HIT_CHUNK];       /* out: STRATUS_HIT_*, steps; `cell` is then the voxel */
-  double from[3][STRATUS_HIT_CHUNK], along[3][STRATUS_HIT_CHUNK]; /* the ray in voxel coordinates */
+  int state[STRATUS_HIT_CHUNK], visited[STRATUS_HIT_CHUNK]; /* out: STRATUS_HIT_*, steps; `cell` is then the voxel */
 } stratus_hit_chunk;
+
+/* Prefetches some of the next chunk's rays and of this chunk's hits, those of numbers `from` on before `to`. Returns the next number. A
+ * walk calls it at each step. Without it each chunk would begin and end by waiting for memory. */
+static inline int stratus_hit_fetch(const stratus_hit_chunk* chunk, int from, int to)
+{
+  const int few = from + 4 < to ? from + 4 : to;
+  for (; from < few; ++from) {
+    if (from < chunk->more) {
+      __builtin_prefetch(chunk->ahead + from);
+    }
+    __builtin_prefetch(chunk->hits + from, 1);
+  }
+  return from;
+}
 
 /* first_hit_isa.c, for each instruction set. prepare converts rays to a chunk and returns false if ray *bad is unusable. walk traverses one
  * distance field. finish converts the chunk to hits. */
@@ -47,10 +61,8 @@ extern const stratus_hit_functions stratus_hit_functions_isa0, stratus_hit_funct
 
 /* first_hit_exact.c: finds the hit of one ray in any tree, in double precision. The voxel and the bits of t are those of voxel_walk.c. */
 void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* ray, stratus_hit* hit);
-/* Computes the hit of a known voxel; t is INFINITY if the ray misses it or meets it outside t_min..t_max. from, along: the ray in voxel
- * coordinates. */
-void stratus_hit_of_voxel(const stratus_hit_batch* batch, const stratus_ray* ray, const double from[3], const double along[3],
-  const int voxel[3], stratus_hit* hit);
+/* Computes the hit of a known voxel; t is INFINITY if the ray misses it or meets it outside t_min..t_max. */
+void stratus_hit_of_voxel(const stratus_hit_batch* batch, const stratus_ray* ray, const int voxel[3], stratus_hit* hit);
 
 /* first_hit_device.c: finds the hits of a batch on the context's device. */
 stratus_status stratus_first_hit_device(

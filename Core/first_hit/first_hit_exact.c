@@ -76,10 +76,21 @@ static void make_hit(
   }
 }
 
-void stratus_hit_of_voxel(
-  const stratus_hit_batch* batch, const stratus_ray* ray, const double from[3], const double along[3], const int voxel[3], stratus_hit* hit)
+/* Converts a ray to voxel coordinates. */
+static inline void to_voxels(const double m[16], const stratus_ray* ray, double from[3], double along[3])
 {
+  const double *o = ray->origin, *d = ray->direction;
+  for (int a = 0; a < 3; ++a) {
+    from[a] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
+    along[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+  }
+}
+
+void stratus_hit_of_voxel(const stratus_hit_batch* batch, const stratus_ray* ray, const int voxel[3], stratus_hit* hit)
+{
+  double from[3], along[3];
   crossing entry;
+  to_voxels(batch->to_voxels, ray, from, along);
   hit->t = INFINITY;
   if (enters(ray, from, along, voxel, &entry)) {
     make_hit(batch, ray, along, voxel, entry, hit);
@@ -340,13 +351,10 @@ static void walk_tree(walker* w)
 
 void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* ray, stratus_hit* hit)
 {
-  const double* m = batch->to_voxels;
-  const double *o = ray->origin, *d = ray->direction;
   walker w = { .batch = batch, .tree = batch->tree, .ray = ray, .hit = hit, .first = { INFINITY, 4 } };
   double size = 0.0;
+  to_voxels(batch->to_voxels, ray, w.o, w.d);
   for (int a = 0; a < 3; ++a) {
-    w.o[a] = m[4 * a] * o[0] + m[4 * a + 1] * o[1] + m[4 * a + 2] * o[2] + m[4 * a + 3];
-    w.d[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
     w.inverse[a] = 1.0 / w.d[a];
     w.up[a] = w.d[a] > 0.0;
     w.octant |= w.up[a] << a;

@@ -4,6 +4,7 @@
 #include "first_hit_batch.h"
 
 #include "first_hit.h"
+#include "first_hit_beams.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -13,8 +14,11 @@
 
 #define HAIR 4e-7 /* relative error of a t computed in floats */
 
-/* A loop over a chunk in a form that the compiler vectorizes. */
-#define EACH_RAY _Pragma("omp simd") for (int i = 0; i < n; ++i)
+/* Rays that are prepared together: loops of so many turns become a few vectors each. */
+#define BLOCK 16
+#define EACH_RAY _Pragma("omp simd") for (int i = 0; i < BLOCK; ++i)
+
+_Static_assert(sizeof(stratus_ray) == 8 * sizeof(double) && STRATUS_HIT_CHUNK % BLOCK == 0, "a ray is eight numbers");
 
 static inline double larger(double a, double b)
 {
@@ -25,39 +29,98 @@ static inline double smaller(double a, double b)
   return a < b ? a : b;
 }
 
-/* Converts rays to voxel coordinates. */
-static void transform(
-  const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, double* restrict first, double* restrict last)
+/* Transposes a block: number c of ray i becomes to[c][i]. */
+static inline void take_block(const stratus_ray* rays, double to[8][BLOCK])
 {
-  const double* m = batch->to_voxels;
-  const int n = chunk->count;
+#if STRATUS_ISA == 2
+  for (int half = 0; half < BLOCK; half += 8) {
+    __m512d row[8], pair[8], four[8];
+    for (int i = 0; i < 8; ++i) {
+      row[i] = _mm512_loadu_pd(&rays[half + i]);
+    }
+    for (int i = 0; i < 4; ++i) { /* numbers 0 2 4 6 of two rays, and 1 3 5 7 */
+      pair[i] = _mm512_unpacklo_pd(row[2 * i], row[2 * i + 1]);
+      pair[4 + i] = _mm512_unpackhi_pd(row[2 * i], row[2 * i + 1]);
+    }
+    for (int odd = 0; odd < 2; ++odd) {
+      for (int i = 0; i < 2; ++i) { /* 0 4 of four rays, and 2 6 */
+        four[2 * i] = _mm512_shuffle_f64x2(pair[4 * odd + 2 * i], pair[4 * odd + 2 * i + 1], 0x88);
+        four[2 * i + 1] = _mm512_shuffle_f64x2(pair[4 * odd + 2 * i], pair[4 * odd + 2 * i + 1], 0xdd);
+      }
+      for (int i = 0; i < 2; ++i) {
+        _mm512_storeu_pd(to[odd + 2 * i] + half, _mm512_shuffle_f64x2(four[i], four[i + 2], 0x88));
+        _mm512_storeu_pd(to[odd + 2 * i + 4] + half, _mm512_shuffle_f64x2(four[i], four[i + 2], 0xdd));
+      }
+    }
+  }
+#else
+  for (int i = 0; i < BLOCK; ++i) {
+    for (int c = 0; c < 8; ++c) {
+      to[c][i] = ((const double*)(const void*)&rays[i])[c];
+    }
+  }
+#endif
+}
+
+/* Converts a block's rays to voxel coordinates: origins, directions. */
+static inline void transform(const double m[16], double ray[8][BLOCK], double from[3][BLOCK], double along[3][BLOCK])
+{
   for (int a = 0; a < 3; ++a) {
-    double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
     const double x = m[4 * a], y = m[4 * a + 1], z = m[4 * a + 2], w = m[4 * a + 3];
     EACH_RAY
     {
-      from[i] = x * rays[i].origin[0] + y * rays[i].origin[1] + z * rays[i].origin[2] + w;
-      along[i] = x * rays[i].direction[0] + y * rays[i].direction[1] + z * rays[i].direction[2];
+      from[a][i] = x * ray[0][i] + y * ray[1][i] + z * ray[2][i] + w;
+      along[a][i] = x * ray[3][i] + y * ray[4][i] + z * ray[5][i];
     }
-  }
-  for (int i = 0; i < n; ++i) {
-    first[i] = rays[i].t_min;
-    last[i] = rays[i].t_max;
   }
 }
 
-/* Computes the length of each ray's longest component. Returns 0 if stratus_ray_usable() holds for all rays. */
-static double measure(const stratus_hit_chunk* chunk, const double* restrict first, const double* restrict last, double* restrict most)
+/* Converts a block of rays to places at .. at + BLOCK - 1 of the chunk. Returns 0 if stratus_ray_usable() holds for all of them. */
+static inline double prepare_block(const stratus_hit_batch* batch, const stratus_ray* rays, stratus_hit_chunk* chunk, int at)
 {
-  const int n = chunk->count;
-  double wrong = 0.0;
+  double ray[8][BLOCK], from[3][BLOCK], along[3][BLOCK], most[BLOCK], first[BLOCK], last[BLOCK], wrong = 0.0;
+  const double slack = 8.0 * (double)batch->slack;
+  take_block(rays, ray);
+  transform(batch->to_voxels, ray, from, along);
 #pragma omp simd reduction(+ : wrong)
-  for (int i = 0; i < n; ++i) {
-    const double longest = larger(larger(fabs(chunk->along[0][i]), fabs(chunk->along[1][i])), fabs(chunk->along[2][i]));
-    const double sum =
-      chunk->from[0][i] + chunk->from[1][i] + chunk->from[2][i] + chunk->along[0][i] + chunk->along[1][i] + chunk->along[2][i];
-    most[i] = longest;
-    wrong += 0.0 * (sum + first[i]) + (longest >= STRATUS_RAY_SHORTEST ? 0.0 : 1.0) + (last[i] == last[i] ? 0.0 : 1.0);
+  for (int i = 0; i < BLOCK; ++i) {
+    const double longest = larger(larger(fabs(along[0][i]), fabs(along[1][i])), fabs(along[2][i]));
+    const double sum = from[0][i] + from[1][i] + from[2][i] + along[0][i] + along[1][i] + along[2][i];
+    wrong += 0.0 * (sum + ray[6][i]) + (longest >= STRATUS_RAY_SHORTEST ? 0.0 : 1.0) + (ray[7][i] == ray[7][i] ? 0.0 : 1.0);
+    most[i] = 1.0 / longest;
+    first[i] = ray[6][i] * longest;
+    last[i] = smaller(ray[7][i], 1e300) * longest;
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = batch->lo[a], hi = batch->hi[a];
+    float* restrict const d = chunk->d[a] + at, * restrict const inverse = chunk->inverse[a] + at;
+    EACH_RAY
+    {
+      const float unit = (float)(along[a][i] * most[i]);
+      const float used = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit, one_over = 1.0f / used;
+      /* The slack keeps a ray that runs within a face of the box inside the box all the way, not only from t = 0 on. */
+      const double hair = fabsf(unit) < 1e-30f ? slack : 0.0;
+      const double t0 = (lo - hair - from[a][i]) * (double)one_over, t1 = (hi + hair - from[a][i]) * (double)one_over;
+      const double enter = smaller(t0, t1), leave = larger(t0, t1);
+      first[i] = larger(first[i], enter - HAIR * fabs(enter) - slack);
+      last[i] = smaller(last[i], leave + HAIR * fabs(leave));
+      d[i] = used;
+      inverse[i] = one_over;
+    }
+  }
+  EACH_RAY
+  {
+    const double length = last[i] - first[i];
+    chunk->end[at + i] = length + slack >= 0.0 ? (float)(smaller(length, 1e30) + slack) : -1.0f;
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = batch->lo[a], inside = batch->hi[a] - 0.5; /* in the last voxel */
+    EACH_RAY
+    {
+      const double p = from[a][i] + first[i] * (along[a][i] * most[i]);
+      chunk->o[a][at + i] = (float)p;
+      chunk->cell[a][at + i] = (int)smaller(larger(p, lo), inside);
+    }
   }
   return wrong;
 }
@@ -75,54 +138,22 @@ static int find_bad(const stratus_hit_batch* batch, const stratus_ray* rays, int
  * hair early. It only sets where the walk begins; a voxel met there by mistake is rejected when its hit is computed. */
 static bool prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad)
 {
-  double first[STRATUS_HIT_CHUNK], last[STRATUS_HIT_CHUNK], most[STRATUS_HIT_CHUNK];
-  const int n = count;
-  const double slack = 8.0 * (double)batch->slack;
+  double wrong = 0.0;
+  int i = 0;
   chunk->count = count;
-  transform(batch, rays, chunk, first, last);
-  if (!(measure(chunk, first, last, most) == 0.0)) {
+  for (; i + BLOCK <= count; i += BLOCK) {
+    wrong += prepare_block(batch, rays + i, chunk, i);
+  }
+  if (i < count) { /* repeat the last ray to fill the block */
+    stratus_ray rest[BLOCK];
+    for (int k = 0; k < BLOCK; ++k) {
+      rest[k] = rays[i + k < count ? i + k : count - 1];
+    }
+    wrong += prepare_block(batch, rest, chunk, i);
+  }
+  if (!(wrong == 0.0)) {
     *bad = find_bad(batch, rays, count);
     return false;
-  }
-  EACH_RAY
-  {
-    first[i] = first[i] * most[i];
-    last[i] = smaller(last[i], 1e300) * most[i];
-    most[i] = 1.0 / most[i];
-  }
-  for (int a = 0; a < 3; ++a) {
-    const double lo = batch->lo[a], hi = batch->hi[a];
-    const double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
-    float* restrict const d = chunk->d[a], * restrict const inverse = chunk->inverse[a];
-    EACH_RAY
-    {
-      const float unit = (float)(along[i] * most[i]);
-      d[i] = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit;
-      inverse[i] = 1.0f / d[i];
-      /* The slack keeps a ray that runs within a face of the box inside the box all the way, not only from t = 0 on. */
-      const double hair = fabsf(unit) < 1e-30f ? slack : 0.0;
-      const double t0 = (lo - hair - from[i]) * (double)inverse[i], t1 = (hi + hair - from[i]) * (double)inverse[i];
-      const double enter = smaller(t0, t1), leave = larger(t0, t1);
-      first[i] = larger(first[i], enter - HAIR * fabs(enter) - slack);
-      last[i] = smaller(last[i], leave + HAIR * fabs(leave));
-    }
-  }
-  EACH_RAY
-  {
-    const double length = last[i] - first[i];
-    chunk->end[i] = length + slack >= 0.0 ? (float)(smaller(length, 1e30) + slack) : -1.0f;
-  }
-  for (int a = 0; a < 3; ++a) {
-    const double lo = batch->lo[a], inside = batch->hi[a] - 0.5; /* in the last voxel */
-    const double* restrict const from = chunk->from[a], * restrict const along = chunk->along[a];
-    float* restrict const o = chunk->o[a];
-    int* restrict const cell = chunk->cell[a];
-    EACH_RAY
-    {
-      const double p = from[i] + first[i] * (along[i] * most[i]);
-      o[i] = (float)p;
-      cell[i] = (int)smaller(larger(p, lo), inside);
-    }
   }
   return true;
 }
@@ -167,6 +198,7 @@ static inline vint expand_int(vint old, vmask mask, const int* lanes, int count,
 typedef struct stream {
   stratus_hit_chunk* chunk;
   int* next; /* next ray of the chunk, shared by all packets */
+  int last;  /* the ray that they end before */
   vint id;   /* ray in each lane, -1: none */
 } stream;
 
@@ -221,7 +253,7 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
   for (int axis = 0; axis < 3; ++axis) {
     scatter(c->cell[axis], s->id, k->cell[axis], ended);
   }
-  const int first = *s->next, left = c->count - first, places = m_count(free), count = left < places ? left : places;
+  const int first = *s->next, left = s->last - first, places = m_count(free), count = left < places ? left : places;
   const vmask fresh = first_lanes(free, count, lanes);
   s->id = vi_select(free, vi_set(-1), s->id);
   s->id = vi_select(fresh, expand_int(zero, fresh, lanes, count, numbers) + vi_set(first), s->id);
@@ -250,38 +282,32 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
 static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
 {
   const int live = m_count(k->live);
-  if (live == STRATUS_WIDTH || (live > 0 && (*s->next >= s->chunk->count || STRATUS_WIDTH - live < IDLE))) {
+  if (live == STRATUS_WIDTH || (live > 0 && (*s->next >= s->last || STRATUS_WIDTH - live < IDLE))) {
     return true;
   }
   do {
     refill(a, s, k);
-  } while (!m_any(k->live) && *s->next < s->chunk->count);
+  } while (!m_any(k->live) && *s->next < s->last);
   return m_any(k->live);
 }
 
 /* Packets walked in turn. A step is a chain of dependent loads and sums, and while one packet waits the next computes. */
 #define PACKETS 2
 
-/* Cache lines of the next chunk's rays prefetched per step. Without them each chunk would begin by waiting for memory. */
-#define LINES 4
-
+/* Walks the chunk's rays first .. last - 1 in packets. */
 static inline __attribute__((always_inline)) void walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
-  stratus_hit_chunk* chunk, const int octants, const int entry_bytes, const int cell_log2)
+  stratus_hit_chunk* chunk, int first, int last, const int octants, const int entry_bytes, const int cell_log2)
 {
   const stratus_tree* tree = batch->tree;
   stream s[PACKETS];
   stratus_hit_packet k[PACKETS];
-  int next = 0;
+  int next = first, asked = first;
   memset(k, 0, sizeof k);
   for (int p = 0; p < PACKETS; ++p) {
-    s[p] = (stream){ .chunk = chunk, .next = &next, .id = vi_set(-1) };
+    s[p] = (stream){ .chunk = chunk, .next = &next, .last = last, .id = vi_set(-1) };
   }
-  const char* const ahead = chunk->ahead;
-  size_t asked = 0;
   for (bool busy = true; busy;) {
-    for (int line = 0; line < LINES && asked < chunk->ahead_bytes; ++line, asked += 64) {
-      __builtin_prefetch(ahead + asked);
-    }
+    asked = stratus_hit_fetch(chunk, asked, last);
     busy = false;
     for (int p = 0; p < PACKETS; ++p) {
       busy |= keep_busy(a, &s[p], &k[p]);
@@ -295,6 +321,20 @@ static inline __attribute__((always_inline)) void walk_field(const stratus_hit_b
   }
 }
 
+static void walk_packets(const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, int first, int last)
+{
+  if (!a->octants && a->cell_log2) {
+    walk_field(batch, a, chunk, first, last, 0, 2, 2);
+  } else if (!a->octants) {
+    walk_field(batch, a, chunk, first, last, 0, 2, 0);
+  } else if (a->entry_bytes == 2) {
+    walk_field(batch, a, chunk, first, last, 1, 2, 2);
+  } else {
+    walk_field(batch, a, chunk, first, last, 1, 3, 2);
+  }
+}
+
+/* Rays that follow each other go in beams where these are narrow, the others in packets. */
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
 {
   const stratus_tree* tree = batch->tree;
@@ -306,14 +346,17 @@ static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
     .entry_bytes = tree->entry_bytes,
     .cell_log2 = tree->cell_log2,
     .slack = batch->slack };
-  if (!tree->octants && tree->cell_log2) {
-    walk_field(batch, &a, chunk, 0, 2, 2);
-  } else if (!tree->octants) {
-    walk_field(batch, &a, chunk, 0, 2, 0);
-  } else if (tree->entry_bytes == 2) {
-    walk_field(batch, &a, chunk, 1, 2, 2);
-  } else {
-    walk_field(batch, &a, chunk, 1, 3, 2);
+  int waiting = 0; /* the first ray that is neither in a beam nor walked */
+  for (int first = 0; a.cell_log2 && first + BEAM <= chunk->count; first += BEAM) {
+    if (beam_walk(batch, &a, first, chunk)) {
+      if (waiting < first) {
+        walk_packets(batch, &a, chunk, waiting, first);
+      }
+      waiting = first + BEAM;
+    }
+  }
+  if (waiting < chunk->count) {
+    walk_packets(batch, &a, chunk, waiting, chunk->count);
   }
 }
 
@@ -327,12 +370,10 @@ static void finish(const stratus_hit_batch* batch, const stratus_ray* rays, cons
     if (chunk->state[i] == STRATUS_HIT_NONE) {
       continue;
     }
-    const double from[3] = { chunk->from[0][i], chunk->from[1][i], chunk->from[2][i] };
-    const double along[3] = { chunk->along[0][i], chunk->along[1][i], chunk->along[2][i] };
-    const int voxel[3] = { chunk->cell[0][i], chunk->cell[1][i], chunk->cell[2][i] };
     bool certain = chunk->state[i] == STRATUS_HIT_VOXEL;
     if (certain) {
-      stratus_hit_of_voxel(batch, &rays[i], from, along, voxel, hit);
+      const int voxel[3] = { chunk->cell[0][i], chunk->cell[1][i], chunk->cell[2][i] };
+      stratus_hit_of_voxel(batch, &rays[i], voxel, hit);
       certain = hit->t < INFINITY;
     }
     if (!certain) {

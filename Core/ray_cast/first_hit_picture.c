@@ -12,8 +12,10 @@
 
 #include <string.h>
 
-/* Side of a tile in pixels. Rays are ordered by tile, so that the rays of a packet lie close together. */
-#define TILE 4
+/* Side of a tile in pixels. Rays are ordered by tile, so that the 64 of a tile go through the tree as one beam. */
+#define TILE 8
+/* x of a pixel that a ray only fills its tile's place for. */
+#define NO_PIXEL UINT32_MAX
 /* Enough rays to keep all threads or the device busy, few enough for their caches. */
 #define BATCH_RAYS 32768
 
@@ -106,27 +108,39 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   return ray->t_min <= ray->t_max && meets(frame, ray);
 }
 
-/* Stores the rays of one row of tiles from index `at` on; returns their count. */
+/* Stores the rays of one row of tiles from index `at` on, those of a whole tile if one of them can meet a voxel; returns their count. */
 static size_t make_row(first_hit_frame* frame, int tile_row, size_t at)
 {
   size_t count = 0;
   for (int x0 = frame->window[0]; x0 < frame->window[1]; x0 += TILE) {
-    for (int y = tile_row * TILE; y < (tile_row + 1) * TILE; ++y) {
-      for (int x = x0; x < x0 + TILE; ++x) {
-        const bool inside = x < frame->window[1] && y >= frame->window[2] && y < frame->window[3];
-        if (inside && make_ray(frame, (uint32_t)x, (uint32_t)y, &frame->rays[at + count], &frame->pixels[at + count])) {
-          ++count;
-        }
+    bool any = false;
+    for (int i = 0; i < TILE * TILE; ++i) {
+      const int x = x0 + i % TILE, y = tile_row * TILE + i / TILE;
+      const bool inside = x < frame->window[1] && y >= frame->window[2] && y < frame->window[3];
+      stratus_ray* const ray = &frame->rays[at + count + (size_t)i];
+      stratus_first_hit_pixel* const pixel = &frame->pixels[at + count + (size_t)i];
+      if (inside && make_ray(frame, (uint32_t)x, (uint32_t)y, ray, pixel)) {
+        any = true;
+      } else {
+        *ray = (stratus_ray){ .direction = { 1.0 }, .t_max = -1.0 };
+        pixel->x = NO_PIXEL;
       }
     }
+    count += any ? TILE * TILE : 0;
   }
   return count;
+}
+
+/* Most rays of a row of tiles. */
+static size_t row_rays(const first_hit_frame* frame)
+{
+  return (size_t)((frame->window[1] - frame->window[0] + TILE - 1) / TILE) * TILE * TILE;
 }
 
 /* Stores the rays of a batch without gaps; returns their count. counts: scratch, one for each row. */
 static size_t make_batch(const stratus_context* context, first_hit_frame* frame, int first, int rows, size_t* counts)
 {
-  const size_t pitch = (size_t)(frame->window[1] - frame->window[0]) * TILE;
+  const size_t pitch = row_rays(frame);
 #pragma omp parallel for schedule(dynamic) num_threads(context->threads)
   for (int row = 0; row < rows; ++row) {
     counts[row] = make_row(frame, first + row, (size_t)row * pitch);
@@ -154,10 +168,14 @@ static void shade(const first_hit_frame* frame, size_t ray, const stratus_hit* h
 static void shade_batch(const stratus_context* context, const first_hit_frame* frame, size_t count, stratus_ray_cast_report* report)
 {
   const stratus_image* image = frame->image;
-  uint64_t samples = 0, lookups = 0, differing = 0;
-#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : samples, lookups, differing)
+  uint64_t rays = 0, samples = 0, lookups = 0, differing = 0;
+#pragma omp parallel for schedule(static) num_threads(context->threads) reduction(+ : rays, samples, lookups, differing)
   for (size_t ray = 0; ray < count; ++ray) {
     const stratus_hit* hit = &frame->hits[ray];
+    if (frame->pixels[ray].x == NO_PIXEL) {
+      continue;
+    }
+    ++rays;
     const size_t at = (size_t)frame->pixels[ray].y * (size_t)image->width + frame->pixels[ray].x;
     float depth, plain_depth, plain_rgba[4];
     shade(frame, ray, hit, image->rgba + 4 * at, &depth);
@@ -177,7 +195,7 @@ static void shade_batch(const stratus_context* context, const first_hit_frame* f
       differing += memcmp(plain_rgba, image->rgba + 4 * at, sizeof plain_rgba) != 0 || memcmp(&plain_depth, &depth, sizeof depth) != 0;
     }
   }
-  report->rays += count;
+  report->rays += rays;
   report->samples += samples;
   report->lookups += lookups;
   report->differing_pixels += differing;
@@ -211,8 +229,9 @@ static stratus_status draw(stratus_context* context, first_hit_frame* frame, str
   if (width <= 0 || last <= first) {
     return STRATUS_OK;
   }
-  const int fitting = BATCH_RAYS / (width * TILE), rows = fitting < 1 ? 1 : fitting < last - first ? fitting : last - first;
-  const size_t most = (size_t)width * TILE * (size_t)rows;
+  const size_t row = row_rays(frame);
+  const int fitting = (int)(BATCH_RAYS / row), rows = fitting < 1 ? 1 : fitting < last - first ? fitting : last - first;
+  const size_t most = row * (size_t)rows;
   TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->rays, &rays));
   TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->pixels, &pixels));
   TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->hits, &hits));
@@ -224,10 +243,10 @@ static stratus_status draw(stratus_context* context, first_hit_frame* frame, str
   frame->pixels = pixels;
   frame->hits = hits;
   frame->plain_hits = plain_hits;
-  for (int row = first; row < last; row += rows) {
-    const int left = last - row;
-    TRY_CLEANUP(stratus_progress(context, "first hits", (double)(row - first) / (last - first)));
-    TRY_CLEANUP(draw_batch(context, frame, row, left < rows ? left : rows, counts, report));
+  for (int r = first; r < last; r += rows) {
+    const int left = last - r;
+    TRY_CLEANUP(stratus_progress(context, "first hits", (double)(r - first) / (last - first)));
+    TRY_CLEANUP(draw_batch(context, frame, r, left < rows ? left : rows, counts, report));
   }
   status = stratus_progress(context, "first hits", 1.0);
 cleanup:

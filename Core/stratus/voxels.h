@@ -50,7 +50,7 @@ typedef struct stratus_hit {
   int32_t face;
   /* World, length 1: the outward normal of that face. If the ray begins inside, the reverse of its direction. */
   float normal[3];
-  uint32_t visited; /* number of nodes visited, plus steps in distance fields */
+  uint32_t visited; /* number of nodes visited, plus steps in distance fields; of a beam, the ray's share */
 } stratus_hit;
 
 /* Finds the first effective voxel along each of `count` rays, by a plain walk from voxel to voxel in double precision on one thread. It is

@@ -19,8 +19,7 @@ namespace bench {
 
 namespace {
 
-constexpr int width = 512; // of a picture, in pixels
-constexpr int packet = 16, tile = 4;
+constexpr int packet = 16, tile = 4; // a packet is a tile of 4 x 4 pixels
 
 struct brick {
   uint64_t mask;
@@ -303,12 +302,7 @@ void embree_hits::prepare(const voxel_rays& from)
       this->rays[r].inverse[a] = 1.0f / this->rays[r].direction[a];
     }
   }
-  this->order.resize(count);
-  for (size_t r = 0; r < count; ++r) { // a packet is a tile of 4 x 4 pixels
-    const size_t lane = r % packet, number = r / packet, across = width / tile;
-    const size_t x = number % across * tile + lane % tile, y = number / across * tile + lane / tile;
-    this->order[r] = static_cast<uint32_t>(from.coherent ? y * width + x : r);
-  }
+  this->order = tile_order(from, tile);
 }
 
 void embree_hits::trace_packets()

@@ -28,6 +28,9 @@ struct tree_numbers {
   double bytes = -1.0, nodes = -1.0, depth = -1.0, sah = -1.0; // -1: unknown
 };
 
+// The numbers of a picture's rays tile by tile, each of tile x tile pixels; of other rays as they come.
+std::vector<uint32_t> tile_order(const voxel_rays& rays, size_t tile);
+
 // One method on one set. build() rebuilds everything from the list with 2 threads. trace() traces the prepared rays on one thread.
 class first_hits
 {

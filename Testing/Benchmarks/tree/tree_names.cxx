@@ -55,21 +55,25 @@ public:
   }
   void prepare(const voxel_rays& r) override
   {
-    this->rays = &r.rays;
+    this->order = tile_order(r, 8);
+    this->rays.clear();
+    for (const uint32_t number : this->order) {
+      this->rays.push_back(r.rays[number]);
+    }
     this->found.resize(r.rays.size());
   }
   void trace() override
   {
-    check_status(this->tracer.get(),
-      stratus_tree_first_hit(this->tracer.get(), this->tree, this->rays->data(), this->rays->size(), this->found.data()));
+    check_status(
+      this->tracer.get(), stratus_tree_first_hit(this->tracer.get(), this->tree, this->rays.data(), this->rays.size(), this->found.data()));
   }
   std::vector<voxel_hit> hits() const override
   {
     std::vector<voxel_hit> result(this->found.size());
     for (size_t i = 0; i < result.size(); ++i) {
       if (this->found[i].voxel[0] >= 0) {
-        result[i].t = this->found[i].t;
-        std::copy(this->found[i].voxel, this->found[i].voxel + 3, result[i].voxel);
+        result[this->order[i]].t = this->found[i].t;
+        std::copy(this->found[i].voxel, this->found[i].voxel + 3, result[this->order[i]].voxel);
       }
     }
     return result;
@@ -80,7 +84,8 @@ private:
   context_pointer builder, tracer;
   stratus_tree_options tree_options = stratus_tree_options_default();
   stratus_tree* tree = nullptr;
-  const std::vector<stratus_ray>* rays = nullptr;
+  std::vector<uint32_t> order;
+  std::vector<stratus_ray> rays;
   std::vector<stratus_hit> found;
 };
 
@@ -99,6 +104,18 @@ bool parse_tree(const std::string& name, stratus_tree_method& method, int& leaf)
   return false;
 }
 } // namespace
+
+std::vector<uint32_t> tile_order(const voxel_rays& rays, size_t tile)
+{
+  constexpr size_t width = 512;
+  std::vector<uint32_t> order(rays.rays.size());
+  for (size_t r = 0; r < order.size(); ++r) {
+    const size_t lane = r % (tile * tile), number = r / (tile * tile), across = width / tile;
+    const size_t x = number % across * tile + lane % tile, y = number / across * tile + lane / tile;
+    order[r] = static_cast<uint32_t>(rays.coherent ? y * width + x : r);
+  }
+  return order;
+}
 
 context_pointer host_context(int threads)
 {

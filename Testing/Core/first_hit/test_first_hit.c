@@ -65,6 +65,93 @@ static void every_tree_hits_what_the_walk_hits(void** state)
   }
 }
 
+#define TILES 8 /* of 8 x 8 rays */
+
+/* Rays of a picture in tiles of 8 x 8: through a point in or before the set, or parallel, at any angle or along the axes, through corners
+ * of voxels or anywhere. Some begin late, end early, or are no rays at all, as those before which a picture has something opaque. */
+static void make_picture(const int64_t dimensions[3], uint32_t* random, stratus_ray rays[TILES * 64])
+{
+  const bool parallel = next_random(random) % 2, aligned = next_random(random) % 3 == 0, limited = next_random(random) % 3 == 0;
+  const double pitch = aligned && next_random(random) % 2 ? 0.5 : 0.02 + 1.5 * unit_random(random) * unit_random(random);
+  double eye[3], forward[3], right[3] = { 0 }, up[3] = { 0 }, away = 0.0;
+  const int axis = (int)(next_random(random) % 3);
+  for (int a = 0; a < 3; ++a) {
+    eye[a] = floor(unit_random(random) * (double)dimensions[a] * 2.0) / 2.0;
+    forward[a] = aligned ? (a == axis) : unit_random(random) - 0.5;
+    away = fmax(away, (double)dimensions[a]);
+  }
+  for (int a = 0; a < 3; ++a) {
+    forward[a] *= next_random(random) % 2 ? 1.0 : -1.0;
+    eye[a] += (next_random(random) % 4 == 0 ? 0.0 : -1.5 * away * forward[a]) + (aligned ? 0.0 : unit_random(random));
+  }
+  right[(axis + 1) % 3] = pitch;
+  up[(axis + 2) % 3] = pitch;
+  for (int i = 0; i < TILES * 64; ++i) {
+    const int x = i / 64 * 8 + i % 8 - TILES * 4, y = i % 64 / 8 - 4;
+    rays[i] = (stratus_ray){ .t_max = INFINITY };
+    for (int a = 0; a < 3; ++a) {
+      const double offset = x * right[a] + y * up[a];
+      rays[i].origin[a] = eye[a] + (parallel ? offset : 0.0);
+      rays[i].direction[a] = forward[a] + (parallel ? 0.0 : offset / (1.5 * away));
+    }
+    if (limited && next_random(random) % 3 == 0) {
+      rays[i].t_min = 4.0 * unit_random(random);
+      rays[i].t_max = next_random(random) % 4 ? rays[i].t_min + 3.0 * unit_random(random) : -INFINITY;
+    }
+  }
+}
+
+/* Steps that the rays take, each in a call of its own. */
+static uint64_t steps_alone(stratus_context* context, const stratus_tree* tree, const stratus_ray* rays)
+{
+  uint64_t steps = 0;
+  for (int i = 0; i < TILES * 64; ++i) {
+    stratus_hit hit;
+    assert_int_equal(stratus_tree_first_hit(context, tree, rays + i, 1, &hit), STRATUS_OK);
+    steps += hit.visited;
+  }
+  return steps;
+}
+
+/* Rays that run side by side go in beams. They hit what each of them hits alone, in fewer steps. */
+static void beams_hit_what_the_walk_hits(void** state)
+{
+  (void)state;
+  static stratus_ray rays[TILES * 64];
+  static stratus_hit hits[TILES * 64];
+  for (int isa = 0; isa <= 2; ++isa) {
+    uint32_t random = 11;
+    uint64_t steps = 0, alone = 0;
+    stratus_context* context = open_context(isa, 1);
+    for (int round = 0; round < 60; ++round) {
+      int64_t dimensions[3];
+      for (int a = 0; a < 3; ++a) {
+        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 4 == 0 ? 9 : 120));
+      }
+      const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.0003 : round % 5 == 2 ? 0.01 : unit_random(&random);
+      stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 4 == 3 ? 6 : 0, &random);
+      stratus_tree_options options = stratus_tree_options_default();
+      stratus_tree* tree = NULL;
+      options.method = round % 3 ? STRATUS_TREE_OCTANT : STRATUS_TREE_DISTANCE;
+      assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+      for (int picture = 0; picture < 8; ++picture) {
+        make_picture(dimensions, &random, rays);
+        compare_hits(context, voxels, tree, rays, TILES * 64);
+        assert_int_equal(stratus_tree_first_hit(context, tree, rays, TILES * 64, hits), STRATUS_OK);
+        for (int i = 0; i < TILES * 64; ++i) {
+          steps += hits[i].visited;
+        }
+        alone += steps_alone(context, tree, rays);
+      }
+      stratus_tree_destroy(tree);
+      stratus_voxels_destroy(voxels);
+    }
+    print_message("%llu steps, %llu alone\n", (unsigned long long)steps, (unsigned long long)alone);
+    assert_true(steps < alone / 2);
+    stratus_context_destroy(context);
+  }
+}
+
 static void long_rows_and_both_entry_sizes_hit_right(void** state)
 {
   (void)state;
@@ -273,7 +360,7 @@ static void rays_that_are_none_are_refused(void** state)
 
 int test_first_hit(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(every_tree_hits_what_the_walk_hits),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(every_tree_hits_what_the_walk_hits), cmocka_unit_test(beams_hit_what_the_walk_hits),
     cmocka_unit_test(long_rows_and_both_entry_sizes_hit_right), cmocka_unit_test(bits_do_not_depend_on_threads),
     cmocka_unit_test(far_rays_large_coordinates_and_small_voxels_hit), cmocka_unit_test(no_voxel_no_hit),
     cmocka_unit_test(rays_that_are_none_are_refused) };
