@@ -20,9 +20,7 @@
 #include "first_hit.h"
 #include "tree_fields.h"
 
-#ifndef BEAM
-#define BEAM 64
-#endif
+#define BEAM 64 /* rays; a tile of 8 x 8 pixels */
 #define BEAM_PARTS (BEAM / STRATUS_WIDTH)
 /* A wider beam leaps seldom, and rays of it have little in common. */
 #define BEAM_WIDEST 2.875f
@@ -359,17 +357,6 @@ static inline __attribute__((always_inline)) uint32_t beam_least(
   return least;
 }
 
-/* Returns where the beam leaves the cells that lie before `layer` along its axis and before two borders across it. */
-static inline float beam_leaves(const hit_beam* beam, int layer, const int across[2])
-{
-  float s = (float)layer;
-  for (int side = 0; side < 2; ++side) {
-    const float leave = beam->begin + ((float)across[side] - beam->border[side + 2]) * beam->inverse[side];
-    s = leave < s ? leave : s;
-  }
-  return s;
-}
-
 static inline __attribute__((always_inline)) void beam_run(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
   const stratus_hit_chunk* c, const hit_beam* beam, beam_rays* rays, int* looks, const int octants, const int entry_bytes)
 {
@@ -386,10 +373,14 @@ static inline __attribute__((always_inline)) void beam_run(const stratus_hit_bat
     const int64_t first = beam->origin + layer * beam->step[0] + cells[0] * beam->step[1] + cells[1] * beam->step[2];
     /* The leap of the nearest cell may be so long that all that the beam touches is known to be empty. */
     uint32_t code = beam_code(beam, beam_entry(batch->tree, first, entry_bytes), octants, entry_bytes);
-    int leap = octants ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code;
+    const int leap = octants ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code;
     *looks += 1;
     if (code > 0 && cells[2] - cells[0] < leap && cells[3] - cells[1] < leap) {
-      s = beam_leaves(beam, layer + leap, (const int[2]){ cells[0] + leap, cells[1] + leap });
+      s = (float)(layer + leap);
+      for (int side = 0; side < 2; ++side) {
+        const float leave = beam->begin + ((float)(cells[side] + leap) - beam->border[side + 2]) * beam->inverse[side];
+        s = leave < s ? leave : s;
+      }
       s = s > border ? s : border;
       continue;
     }
@@ -402,10 +393,8 @@ static inline __attribute__((always_inline)) void beam_run(const stratus_hit_bat
       s = border;
       continue;
     }
-    /* These cells, and as many more behind them along each axis, are empty. */
-    leap = octants ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code;
-    s = beam_leaves(beam, layer + leap, (const int[2]){ cells[2] + leap, cells[3] + leap });
-    s = s > border ? s : border;
+    /* So many cells from each of these on are empty. No slope is above 1, so that the beam cannot leave them on a side before. */
+    s = (float)(layer + (octants ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code));
   }
 }
 

@@ -72,7 +72,8 @@ static void every_tree_hits_what_the_walk_hits(void** state)
 static void make_picture(const int64_t dimensions[3], uint32_t* random, stratus_ray rays[TILES * 64])
 {
   const bool parallel = next_random(random) % 2, aligned = next_random(random) % 3 == 0, limited = next_random(random) % 3 == 0;
-  const double pitch = aligned && next_random(random) % 2 ? 0.5 : 0.02 + 1.5 * unit_random(random) * unit_random(random);
+  const double fine = 0.02 + 1.5 * unit_random(random) * unit_random(random), wide = 1.0 + 0.2 * unit_random(random);
+  const double pitch = aligned && next_random(random) % 2 ? 0.5 : next_random(random) % 2 ? wide : fine;
   double eye[3], forward[3], right[3] = { 0 }, up[3] = { 0 }, away = 0.0;
   const int axis = (int)(next_random(random) % 3);
   for (int a = 0; a < 3; ++a) {
@@ -126,9 +127,9 @@ static void beams_hit_what_the_walk_hits(void** state)
     for (int round = 0; round < 60; ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
-        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 4 == 0 ? 9 : 120));
+        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 4 == 0 ? 9 : 150));
       }
-      const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.0003 : round % 5 == 2 ? 0.01 : unit_random(&random);
+      const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.0003 : round % 5 == 2 ? 0.002 : unit_random(&random);
       stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 4 == 3 ? 6 : 0, &random);
       stratus_tree_options options = stratus_tree_options_default();
       stratus_tree* tree = NULL;
