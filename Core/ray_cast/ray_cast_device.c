@@ -115,12 +115,13 @@ static const char* obstacle(const stratus_ray_caster* caster)
   return NULL;
 }
 
-/* Whether the frame has nothing of what kernels read by RAY_RARE(). Its kernel is then built without that, in half the time. */
-static bool is_plain(const stratus_ray_cast_arguments* a)
+/* Returns what the frame has of that which few frames have. */
+static int rarities(const stratus_ray_cast_arguments* a)
 {
-  return !a->crop.regions && !a->crop.clip_count && !a->crop.has_piece && !a->lattice.jitter && !a->values.has_hidden &&
-    !a->values.nearest && !a->map.tree && a->media.components <= 1 && a->media.label_count <= 0 && !a->table.has_opaque && !a->table.cut &&
-    !a->table.jumps;
+  return (a->crop.regions ? RAY_REGIONS : 0) | (a->crop.clip_count ? RAY_CLIP : 0) | (a->crop.has_piece ? RAY_PIECE : 0) |
+    (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
+    (a->map.tree ? RAY_TREE : 0) | (a->media.components > 1 ? RAY_COMPONENTS : 0) | (a->media.label_count > 0 ? RAY_LABELS : 0) |
+    (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) | (a->table.jumps ? RAY_JUMPS : 0);
 }
 
 static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, int type,
@@ -137,10 +138,9 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
   char defines[256];
   int used = snprintf(defines, sizeof defines,
     "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d "
-    "-DSTRATUS_ARGUMENTS_BYTES=%zu%s%s",
+    "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s",
     type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1, TILE,
-    sizeof(stratus_ray_cast_arguments), stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1",
-    is_plain(arguments) ? " -DRAY_PLAIN=1" : "");
+    sizeof(stratus_ray_cast_arguments), rarities(arguments), stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
   }

@@ -2,10 +2,12 @@
  * Finds how far a ray of each octant may leap from a cell. Cells are bits, 64 per word. A leap of n is free if no bit is set among the n^3
  * cells that begin with the cell; a few shifts and ORs along each axis decide that for a whole word. Leaps are tried from short to long,
  * and a code is the number of the longest free one. tree_octants_isa.c does the work on bits. */
+#include "threads.h"
 #include "tree_fields.h"
 
 #include <string.h>
 
+#define WORD_NS 30.0 /* of one thread for a word of 64 cells and each bit of the codes */
 #define ROOM_GRIDS 5 /* grids that stratus_find_leaps needs beside its arguments */
 
 /* Sets the bits of the occupied cells, and the bits of the empty ones. */
@@ -40,7 +42,7 @@ stratus_status stratus_tree_octants(stratus_context* context, const stratus_voxe
   uint64_t* const occupied = memory;
   uint64_t *const empty = occupied + n, *const planes = empty + n, *const room = planes + 8 * bits * n;
   mark_bits(voxels, shape, node, field, &grid, occupied, empty);
-  const int threads = n > 256 ? context->threads : 1;
+  const int threads = stratus_threads_for(context, WORD_NS * bits * (double)n);
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp for schedule(dynamic, 1)

@@ -4,6 +4,10 @@
 
 #include <string.h>
 
+/* Nanoseconds of one thread for a possible brick, and for one with voxels. */
+#define MASK_NS 1.0
+#define BRICK_NS 3.0
+
 /* ---------------------------------------------------------------- construction */
 
 stratus_status stratus_voxels_create_empty(stratus_context* context, const int64_t dimensions[3], stratus_voxels** out)
@@ -37,10 +41,10 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
 }
 
 /* Counts the bricks that hold a voxel: start[row] is their number in all rows of masks before. */
-static void count_rows(const stratus_voxels* voxels, const uint64_t* masks, int64_t* start)
+static void count_rows(const stratus_voxels* voxels, const uint64_t* masks, int threads, int64_t* start)
 {
   const int64_t n = voxels->bricks_along[0], rows = voxels->bricks_along[1] * voxels->bricks_along[2];
-#pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
+#pragma omp parallel for schedule(static) num_threads(threads)
   for (int64_t row = 0; row < rows; ++row) {
     const uint64_t* mask = masks + row * n;
     int64_t count = 0;
@@ -55,10 +59,10 @@ static void count_rows(const stratus_voxels* voxels, const uint64_t* masks, int6
   }
 }
 
-static void write_rows(stratus_voxels* voxels, const uint64_t* masks, const int64_t* start)
+static void write_rows(stratus_voxels* voxels, const uint64_t* masks, int threads, const int64_t* start)
 {
   const int64_t n = voxels->bricks_along[0], ny = voxels->bricks_along[1], rows = ny * voxels->bricks_along[2];
-#pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
+#pragma omp parallel for schedule(static) num_threads(threads)
   for (int64_t row = 0; row < rows; ++row) {
     stratus_brick* brick = voxels->bricks + start[row];
     for (int64_t i = 0; i < n && brick < voxels->bricks + start[row + 1]; ++i) {
@@ -73,14 +77,15 @@ stratus_status stratus_voxels_take_masks(stratus_voxels* voxels, const uint64_t*
 {
   stratus_context* context = voxels->context;
   const size_t rows = (size_t)(voxels->bricks_along[1] * voxels->bricks_along[2]);
+  const int threads = stratus_threads_for(context, MASK_NS * (double)rows * (double)voxels->bricks_along[0]);
   stratus_status status;
   void *start = NULL, *bricks;
   TRY_CLEANUP(stratus_allocate(context, rows + 1, sizeof(int64_t), &start));
-  count_rows(voxels, masks, start);
+  count_rows(voxels, masks, threads, start);
   voxels->brick_count = ((int64_t*)start)[rows];
   TRY_CLEANUP(stratus_allocate(context, (size_t)voxels->brick_count, sizeof(stratus_brick), &bricks));
   voxels->bricks = bricks;
-  write_rows(voxels, masks, start);
+  write_rows(voxels, masks, threads, start);
   stratus_voxels_measure(voxels);
 cleanup:
   stratus_release(context, start);
@@ -127,7 +132,8 @@ static void widen(const stratus_brick* brick, int64_t lo[3], int64_t hi[3])
 void stratus_voxels_measure(stratus_voxels* voxels)
 {
   int64_t count = 0, lo[3] = { INT64_MAX, INT64_MAX, INT64_MAX }, hi[3] = { 0, 0, 0 };
-#pragma omp parallel num_threads(voxels->context->threads) reduction(+ : count)
+  const int threads = stratus_threads_for(voxels->context, BRICK_NS * (double)voxels->brick_count);
+#pragma omp parallel num_threads(threads) reduction(+ : count)
   {
     int64_t low[3] = { INT64_MAX, INT64_MAX, INT64_MAX }, high[3] = { 0, 0, 0 };
 #pragma omp for schedule(static) nowait

@@ -4,6 +4,7 @@
 #ifndef STRATUS_VOXELS_BUILD_H
 #define STRATUS_VOXELS_BUILD_H
 
+#include "threads.h"
 #include "voxels.h"
 
 /* ---- voxels.c */

@@ -8,8 +8,7 @@
 /* A field is used up to so many bytes, and beyond if it has at most so many bricks for each listed voxel. */
 #define FIELD_BYTES_MAX ((size_t)32 << 20)
 #define FIELD_BRICKS_A_VOXEL 32
-/* A thread pays for its start and its waiting with some thousand voxels, on a busy machine with far more. */
-#define VOXELS_A_THREAD (1 << 14)
+#define VOXEL_NS 5.0 /* of one thread for a voxel */
 #define DIGIT_BITS 11
 #define DIGITS (1 << DIGIT_BITS)
 
@@ -251,8 +250,7 @@ stratus_status stratus_voxels_create_list(
   }
   TRY(check_list(context, dimensions, positions, count, out));
   TRY(stratus_voxels_create_empty(context, dimensions, &voxels));
-  const int64_t pays = list.count / VOXELS_A_THREAD;
-  const int threads = pays < context->threads ? (pays > 1 ? (int)pays : 1) : context->threads;
+  const int threads = stratus_threads_for(context, VOXEL_NS * (double)list.count);
   const int64_t outside = first_outside(voxels, &list, threads);
   if (outside < list.count) {
     const int32_t* p = positions + 3 * outside;

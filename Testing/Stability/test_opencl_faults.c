@@ -237,6 +237,16 @@ static void every_job_survives_a_fault_at_any_call(void** state)
   assert_int_equal(allocator.live, 0);
 }
 
+/* Once there is a queue, what a device is called is only asked to keep a program on disk; without an answer it is not kept. */
+static bool asks_for_a_key(int64_t n)
+{
+  bool queue = false;
+  for (int64_t c = 0; c < n; ++c) {
+    queue = queue || strcmp(faults->trace[c], "clCreateCommandQueue") == 0;
+  }
+  return queue && (strcmp(faults->trace[n], "clGetDeviceInfo") == 0 || strcmp(faults->trace[n], "clGetPlatformInfo") == 0);
+}
+
 /* The fault may meet the search for devices, their properties, context and queue, and programs. */
 static void a_context_is_made_and_draws_or_says_what_failed(void** state)
 {
@@ -273,7 +283,7 @@ static void a_context_is_made_and_draws_or_says_what_failed(void** state)
         /* The device's name is for people: where it cannot be had, the device is an unnamed one. A device may not know of doubles. */
         const bool known = strcmp(stratus_context_device(context), "unnamed device") == 0 ||
           (faults->error == CL_INVALID_VALUE && !context->device->has_double);
-        if (n >= 0 && met && !known && !without) {
+        if (n >= 0 && met && !known && !without && !asks_for_a_key(n)) {
           fail_msg("fault %d at call %d (%s) goes unnoticed", fault, (int)n, faults->trace[n]);
         }
       }

@@ -128,7 +128,7 @@ INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
     for (int axis = 0; axis < 3; ++axis) {
       block[axis] = cell_inside(a, w, axis) >> vi_set(a->map.block_log2);
     }
-    if (RAY_RARE(a->map.tree)) {
+    if (RAY_RARE(RAY_TREE, a->map.tree)) {
       byte = tree_bytes(a, map, block, need);
     } else {
       byte = gather_map(map, block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant, need);

@@ -61,7 +61,7 @@ INLINE void RAY_NAME(voxel_gradient)(
 INLINE void RAY_NAME(ray_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
 {
-  if (RAY_RARE(a->values.nearest)) {
+  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
     RAY_NAME(voxel_gradient)(a, values, x, mask, g);
     return;
   }

@@ -72,10 +72,10 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global c
   packet_nothing(&k);
   if (!packet_outside(a, x, y)) {
     stratus_crop crop;
-    const int pieces = RAY_RARE(a->crop.regions) ? CROP_PIECES : 1;
+    const int pieces = RAY_RARE(RAY_REGIONS, a->crop.regions) ? CROP_PIECES : 1;
     RAY_NAME(ray_load)(a, opaque_depth, x, y, &k, &crop);
     for (int piece = 0; piece < pieces; ++piece) {
-      if (RAY_RARE(a->crop.regions)) {
+      if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
         crop_enter(a, &crop, piece, &k);
       }
       if (m_any(k.live)) {
@@ -157,7 +157,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global c
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
   const int x1 = min(x0 + RAY_TILE, a->picture.width), y1 = min(y0 + RAY_TILE, a->picture.height);
-  const int pieces = RAY_RARE(a->crop.regions) ? CROP_PIECES : 1;
+  const int pieces = RAY_RARE(RAY_REGIONS, a->crop.regions) ? CROP_PIECES : 1;
   vint taken = vi_set(0), skipped = vi_set(0), lookups = vi_set(0);
   uint rays = 0;
   for (int y = y0; y < y1; y += PACKET_Y) {
@@ -174,7 +174,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global c
         }
       }
       for (int piece = 0; piece < pieces; ++piece) {
-        for (int i = 0; RAY_RARE(a->crop.regions) && i < PACKETS_TOGETHER; ++i) {
+        for (int i = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && i < PACKETS_TOGETHER; ++i) {
           crop_enter(a, &crop[i], piece, &k[i]);
         }
 #if PACKETS_TOGETHER == 2

@@ -40,7 +40,7 @@ INLINE vfloat RAY_NAME(ray_value)(
     }
   }
   vfloat value;
-  if (RAY_RARE(a->values.nearest)) {
+  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
     const vfloat half_one = v_set(0.5f);
     value = RAY_NAME(fetch_nearest)(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
   } else {
@@ -50,7 +50,7 @@ INLINE vfloat RAY_NAME(ray_value)(
     RAY_NAME(fetch_cell)(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
-  if (RAY_RARE(a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
+  if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
     value = ray_hide(a, hidden, x, mask, value);
   }
   return value;
@@ -77,7 +77,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     }
     const vint index = block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant;
     vint byte;
-    if (RAY_RARE(a->map.tree)) {
+    if (RAY_RARE(RAY_TREE, a->map.tree)) {
       byte = tree_bytes(a, map, block, need);
     } else {
       byte = gather_map(map, index, need);
@@ -250,7 +250,7 @@ INLINE void RAY_NAME(ray_load)(
       fz[lane] = lx < a->picture.width && ly < a->picture.height ? opaque_depth[(size_t)ly * (size_t)a->picture.width + (size_t)lx] : 1.0f;
     }
   }
-  if (RAY_RARE(a->lattice.jitter)) {
+  if (RAY_RARE(RAY_JITTER, a->lattice.jitter)) {
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->lattice.seed);
     }
@@ -262,7 +262,7 @@ INLINE void RAY_NAME(ray_load)(
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
-  if (RAY_RARE(a->crop.regions)) {
+  if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
     crop_begin(a, &rays, k, crop);
   }
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES

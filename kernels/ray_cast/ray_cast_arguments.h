@@ -10,14 +10,25 @@
 
 #define STRATUS_CLIP_MAX 6
 
-/* What few frames have: crop regions, clip planes, pieces, jitter, hidden or nearest values, a tree for a map, several components, labels,
- * functions that are opaque, cut or jump. A device builds a kernel without these for other frames (RAY_PLAIN), in half the time.
- * is_plain() in ray_cast_device.c names the same fields. */
-#ifdef RAY_PLAIN
-#define RAY_RARE(field) 0
-#else
-#define RAY_RARE(field) (field)
+/* What few frames have. A device builds its kernel with what the frame has of these (RAY_HAS), which takes half of the time of all of them.
+ * rarities() in ray_cast_device.c tells what a frame has. */
+#define RAY_REGIONS 0x001    /* crop regions */
+#define RAY_CLIP 0x002       /* clip planes */
+#define RAY_PIECE 0x004      /* a piece of a volume */
+#define RAY_JITTER 0x008     /* a lattice of its own for each ray */
+#define RAY_HIDDEN 0x010     /* hidden values or cells */
+#define RAY_NEAREST 0x020    /* nearest values */
+#define RAY_TREE 0x040       /* a tree in the map's place */
+#define RAY_COMPONENTS 0x080 /* several components */
+#define RAY_LABELS 0x100     /* a label for each value */
+#define RAY_OPAQUE 0x200     /* functions that are opaque somewhere, */
+#define RAY_CUT 0x400        /* transparent beyond their ends, */
+#define RAY_JUMPS 0x800      /* or that jump */
+#ifndef RAY_HAS
+#define RAY_HAS 0xfff
 #endif
+/* A field of the arguments, which is 0 where the frame has none of `what`. */
+#define RAY_RARE(what, field) (RAY_HAS & (what) ? (field) : 0)
 
 /* has_hidden: what the hidden bytes hold. The mask comes first, a byte for each value, 0 where it hides the value; then a byte for each
  * cell, 1 where the cell is hidden. */

@@ -28,7 +28,7 @@ INLINE vfloat cell_within(const cell_way* c, vfloat value) { return v_min(v_max(
 /* Lanes whose cell is not hidden. */
 INLINE vmask cell_not_hidden(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vint cell[3], vmask mask)
 {
-  if ((RAY_RARE(a->values.has_hidden) & HIDDEN_CELLS) && m_any(mask)) {
+  if ((RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) && m_any(mask)) {
     const vfloat x[3] = { v_from_int(cell[0]), v_from_int(cell[1]), v_from_int(cell[2]) };
     mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_CELLS, x, mask, v_set(0.0f)));
   }
@@ -127,12 +127,12 @@ INLINE void cell_integrate_parts(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   const vfloat one = v_set(1.0f), share = v_reciprocal(pieces), step = (value - front) * share, part = scale * share;
   vfloat piece = one, sum[4], width;
   table_end begin, end;
-  table_end_at(&a->table, sums, front, from, RAY_RARE(a->table.jumps) ? mask : m_none(), &begin);
+  table_end_at(&a->table, sums, front, from, RAY_RARE(RAY_JUMPS, a->table.jumps) ? mask : m_none(), &begin);
   do {
     const vmask ends = v_le(pieces, piece);
     const vfloat at = v_select(ends, value, v_fma(step, piece, front));
     const vint to = vi_select(ends, last, table_entry(&a->table, sums, at));
-    if (RAY_RARE(a->table.jumps)) {
+    if (RAY_RARE(RAY_JUMPS, a->table.jumps)) {
       table_end_at(&a->table, sums, at, to, mask, &end);
       width = sums_from_to(&a->table, &begin, &end, sum);
       begin = end;
@@ -157,11 +157,11 @@ INLINE vmask cell_lanes_apart(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 {
   const vfloat scale = v_set(a->table.scale), offset = v_set(a->table.offset);
   vmask apart = m_none();
-  if (RAY_RARE(a->table.has_opaque)) {
+  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) {
     vint first;
     apart = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), from, last, mask & v_lt(v_set(0.0f), length), &first);
   }
-  if (RAY_RARE(a->table.cut)) {
+  if (RAY_RARE(RAY_CUT, a->table.cut)) {
     const vfloat lowest = v_fma(v_min(front, value), scale, offset), highest = v_fma(v_max(front, value), scale, offset);
     apart = apart | (mask & (v_lt(lowest, v_set(0.0f)) | v_lt(v_set(a->table.last + 1.0f), highest)));
   }
@@ -178,7 +178,7 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
   const vint from = entry_in_cell(&a->table, sums, v_to_int(front_place), front, mask);
   const vint last = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
-  if (RAY_RARE(a->table.has_opaque | a->table.cut)) {
+  if (RAY_RARE(RAY_OPAQUE | RAY_CUT, a->table.has_opaque | a->table.cut)) {
     const vmask apart = cell_lanes_apart(a, sums, mask, front, from, value, last, length);
     if (m_any(apart)) {
       k->front = front;
@@ -187,7 +187,7 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
     }
   }
   vfloat sum[4], width, across;
-  if (RAY_RARE(a->table.jumps)) {
+  if (RAY_RARE(RAY_JUMPS, a->table.jumps)) {
     table_end begin, end;
     table_end_at(&a->table, sums, front, from, mask, &begin);
     table_end_at(&a->table, sums, value, last, mask, &end);
@@ -333,11 +333,11 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   (void)rough;
-  if (!RAY_RARE(a->values.nearest)) {
+  if (!RAY_RARE(RAY_NEAREST, a->values.nearest)) {
     RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
     return;
   }
-  const int halves = (RAY_RARE(a->values.has_hidden) & HIDDEN_CELLS) && !a->values.clamp;
+  const int halves = (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) && !a->values.clamp;
   const vfloat scale = v_set(halves ? 2.0f : 1.0f), shift = v_set(halves ? 0.0f : 0.5f), shrink = v_set(halves ? 0.5f : 1.0f);
   const vfloat p[3] = { k->p[0], k->p[1], k->p[2] }, d[3] = { k->d[0], k->d[1], k->d[2] },
                inverse[3] = { k->inverse[0], k->inverse[1], k->inverse[2] };

@@ -96,7 +96,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vint entry = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
   vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front, begin = k->front;
-  if (RAY_RARE(a->table.cut)) { /* what lies beyond the table is transparent, and has no part in the means */
+  if (RAY_RARE(RAY_CUT, a->table.cut)) { /* what lies beyond the table is transparent, and has no part in the means */
     const vfloat from = v_clamp(v_fma(k->front, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
                  to = v_clamp(v_fma(value, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f);
     const vmask beyond_table = mask & (v_lt(v_min(from, to), zero) | v_lt(v_set(a->table.last + 1.0f), v_max(from, to)));
@@ -110,7 +110,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   }
   vint opaque_entry = front;
   vmask opaque = m_none();
-  if (RAY_RARE(a->table.has_opaque)) {
+  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) {
     opaque = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), front, entry, mask & v_lt(zero, weight), &opaque_entry);
     if (m_any(opaque)) { /* the segment is cut before the opaque entry, which is composited behind it */
       const vint before = vi_max(opaque_entry, front) - vi_min(opaque_entry, front);

@@ -41,7 +41,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
       x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
-  if (RAY_RARE(a->values.has_hidden) & HIDDEN_BY_MASK) {
+  if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_BY_MASK) {
     mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_BY_MASK, x, mask, v_set(0.0f)));
   }
   if (a->light.on) {
@@ -95,7 +95,7 @@ INLINE void RAY_NAME(surface_visit)(
   RAY_NAME(fetch_cell)(a, values, inside[0], inside[1], inside[2], k->live, v);
   k->samples -= mask_int(k->live);
   vmask crosses = surface_crosses(a, v, k->live);
-  if (RAY_RARE(a->values.has_hidden & HIDDEN_CELLS) && m_any(crosses)) {
+  if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden & HIDDEN_CELLS) && m_any(crosses)) {
     vfloat x[3];
     for (int axis = 0; axis < 3; ++axis) {
       x[axis] = v_from_int(inside[axis]);

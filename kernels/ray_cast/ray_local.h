@@ -54,7 +54,7 @@ INLINE void local_find(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
 INLINE void local_composite(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value, vfloat length, vfloat s)
 {
-  if (RAY_RARE(a->table.has_opaque | a->table.cut)) {
+  if (RAY_RARE(RAY_OPAQUE | RAY_CUT, a->table.has_opaque | a->table.cut)) {
     cell_integrate(a, sums, k, mask, value, value, length, s);
     return;
   }

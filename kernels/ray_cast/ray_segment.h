@@ -149,7 +149,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   }
   k->last = segment_behind(v_min(k->end, most));
   k->i = vi_set(0);
-  if (RAY_RARE(a->crop.has_piece)) { /* segments whose middle lies in [piece_begin, piece_end) */
+  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) { /* segments whose middle lies in [piece_begin, piece_end) */
     const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f),
                  to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
     const vint i0 = v_to_int(from), i1 = v_to_int(to);

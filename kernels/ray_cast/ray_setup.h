@@ -94,7 +94,7 @@ INLINE void ray_setup_part(
     const real k = a->camera.parallel ? r_add(near_k, extent) : r_div(r_mul(near_k, far_k), r_sub(far_k, extent));
     end = r_min(end, r_mul(k, samples_per_k));
   }
-  for (int plane = 0; plane < RAY_RARE(a->crop.clip_count); ++plane) {
+  for (int plane = 0; plane < RAY_RARE(RAY_CLIP, a->crop.clip_count); ++plane) {
     real step[3];
     for (int axis = 0; axis < 3; ++axis) {
       step[axis] = r_mul(direction[axis], k_per_sample);
@@ -114,7 +114,7 @@ INLINE void ray_setup_part(
     ray_clip_slab(origin[axis], inverse[axis], a->crop.box[0][axis], a->crop.box[1][axis], &begin, &end);
   }
   real shift = zero;
-  if (RAY_RARE(a->lattice.jitter)) { /* the same line, with its origin moved against the ray by `shift` samples */
+  if (RAY_RARE(RAY_JITTER, a->lattice.jitter)) { /* the same line, with its origin moved against the ray by `shift` samples */
     shift = r_load(w);
     begin = r_add(begin, shift);
     end = r_add(end, shift);
@@ -129,13 +129,13 @@ INLINE void ray_setup_part(
   const real first = r_floor(begin);
   r_store(rays->begin + part, r_sub(begin, first));
   r_store(rays->end + part, r_sub(end, first));
-  r_store(rays->first + part, RAY_RARE(a->lattice.jitter) ? r_sub(first, shift) : first);
-  for (int side = 0; RAY_RARE(a->crop.regions) && side < 6; ++side) {
+  r_store(rays->first + part, RAY_RARE(RAY_JITTER, a->lattice.jitter) ? r_sub(first, shift) : first);
+  for (int side = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && side < 6; ++side) {
     const int axis = side / 2;
     const real crossing = r_mul(r_sub(r_of(a->crop.plane[axis][side % 2]), origin[axis]), inverse[axis]);
     r_store(rays->crossing[axis][side % 2] + part, r_sub(crossing, first));
   }
-  if (RAY_RARE(a->crop.has_piece)) {
+  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) {
     real piece_begin = r_neg(one), piece_end = r_add(r_sub(end, first), one);
     piece_begin = r_add(piece_begin, first);
     piece_end = r_add(piece_end, first);

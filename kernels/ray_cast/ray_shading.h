@@ -210,9 +210,9 @@ OUTLINE void RAY_NAME(ray_shade)(
   k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
   k->fresh = m_none();
 #else
-  if (RAY_RARE(a->media.components > 1)) {
+  if (RAY_RARE(RAY_COMPONENTS, a->media.components > 1)) {
     RAY_NAME(shade_components)(a, table, k, sample);
-  } else if (RAY_RARE(a->media.label_count > 0)) {
+  } else if (RAY_RARE(RAY_LABELS, a->media.label_count > 0)) {
     RAY_NAME(shade_labels)(a, table, k, sample);
   } else {
     const vint entry = table_entry(&a->table, table, value);
