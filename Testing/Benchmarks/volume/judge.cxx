@@ -202,10 +202,10 @@ void measure_result(const references& source, const std::vector<std::vector<floa
   r.max_error = floats ? in_float.largest : in_bytes.largest;
 }
 
-// Returns "~0.01@device" of stratus:octant~0.01@device. Only pictures of one tolerance and device are compared.
+// Returns "/2~0.01@device" of stratus:octant/2~0.01@device. Only pictures of the same rays, tolerance and device are compared.
 std::string how(const std::string& method)
 {
-  return method.substr(std::min(method.find_first_of("~@"), method.size()));
+  return method.substr(std::min(method.find_first_of("/~@"), method.size()));
 }
 } // namespace
 
@@ -285,7 +285,7 @@ void judge::measure(std::vector<result>& results)
 void judge::compare(std::vector<result>& results)
 {
   const state& j = *this->State;
-  std::map<std::string, std::vector<picture>> none; // by tolerance and device
+  std::map<std::string, std::vector<picture>> none; // by rays, tolerance and device
   for (const result& r : results) {
     if (r.method.rfind("stratus:none", 0) == 0 && r.judged) {
       none[how(r.method)] = r.pictures;
