@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <unistd.h>
+#include <string>
 
 namespace bench {
 
@@ -68,18 +68,6 @@ bool jumps(const std::vector<double>& points, size_t width)
     }
   }
   return false;
-}
-
-// Shows on a terminal which reference is being drawn.
-void show(const scene& s, double step, int view)
-{
-  if (isatty(STDERR_FILENO)) {
-    std::fprintf(stderr, "\r\033[K");
-    if (view < views) {
-      std::fprintf(stderr, "  reference of %s, steps of 1/%d voxel, view %d of %d", s.name.c_str(),
-        static_cast<int>(std::lround(1.0 / step)), view + 1, views);
-    }
-  }
 }
 
 class references
@@ -214,6 +202,7 @@ struct judge::state {
   const scene& Scene;
   effort How;
   references Source;
+  const progress& Told;
   double Step; // of Fine; 0: nothing is drawn yet
   std::vector<std::vector<float>> Coarse, Fine;
   double Agreement; // dB, of Fine with Coarse
@@ -226,7 +215,9 @@ double judge::state::draw(double step)
 {
   error self;
   for (int view = 0; view < views; ++view) {
-    show(this->Scene, step, view);
+    this->Told.tell(this->Scene.name,
+      "reference in steps of 1/" + std::to_string(std::lround(1.0 / step)) + " voxel, view " + std::to_string(view + 1) + " of " +
+        std::to_string(views));
     const size_t v = static_cast<size_t>(view);
     this->Coarse[v].swap(this->Fine[v]);
     this->Fine[v] = this->Source.make(view, step);
@@ -234,13 +225,12 @@ double judge::state::draw(double step)
       self.add(this->Coarse[v].data(), this->Fine[v].data(), this->Fine[v].size() / 4);
     }
   }
-  show(this->Scene, step, views);
   this->Step = step;
   return self.psnr();
 }
 
-judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache)
-    : State(new state{ context, s, how, references(context, s, how.size, cache), 0.0, {}, {}, 0.0 })
+judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& told)
+    : State(new state{ context, s, how, references(context, s, how.size, cache), told, 0.0, {}, {}, 0.0 })
 {
   this->State->Coarse.resize(views);
   this->State->Fine.resize(views);

@@ -152,7 +152,7 @@ void run_scene(
 {
   const bench::scene scene = bench::make_scene(context, source);
   std::vector<bench::result> results;
-  bench::judge judge(context, scene, o.how, o.cache);
+  bench::judge judge(context, scene, o.how, o.cache, progress);
   double fixed_point = 0.0;
   for (const std::string& method : o.methods) {
     progress.at(scene.name, method);
