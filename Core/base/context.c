@@ -134,7 +134,7 @@ stratus_status stratus_context_create(const stratus_context_options* options, st
 void stratus_context_destroy(stratus_context* context)
 {
   if (context) {
-    stratus_device_close(context->device);
+    (void)stratus_device_close(context->device);
     const stratus_context_options options = context->options;
     options.release(options.allocator_user, context);
   }

@@ -245,14 +245,12 @@ stratus_status stratus_device_open(stratus_context* context, const char* selecto
   return index < 0 ? no_such_device(context, &list, selector) : stratus_device_open_id(context, list.ids[index], device);
 }
 
-void stratus_device_close(stratus_device* device)
+cl_int stratus_device_close(stratus_device* device)
 {
   if (!device) {
-    return;
+    return CL_SUCCESS;
   }
-  if (device->queue) {
-    clFinish(device->queue);
-  }
+  const cl_int error = device->queue ? clFinish(device->queue) : CL_SUCCESS;
   stratus_device_programs_release(device);
   if (device->queue) {
     clReleaseCommandQueue(device->queue);
@@ -261,6 +259,7 @@ void stratus_device_close(stratus_device* device)
     clReleaseContext(device->context);
   }
   stratus_release(device->owner, device);
+  return error;
 }
 
 const char* stratus_device_label(const stratus_device* device)

@@ -16,7 +16,8 @@
 /* Opens a device. selector: a decimal index, or a part of a name in any case. */
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
 stratus_status stratus_device_open_id(stratus_context* context, cl_device_id id, stratus_device** device);
-void stratus_device_close(stratus_device* device); /* takes NULL */
+/* Takes NULL. Returns how its queue ended, as OpenCL tells: the only news of a device that is lost after its last result was read. */
+cl_int stratus_device_close(stratus_device* device);
 
 /* Lists the devices that "auto" may take, and returns how many they are: GPUs, and with `processors` CPUs, too. */
 int stratus_device_candidates(bool processors, cl_device_id ids[STRATUS_DEVICES_MAX]);

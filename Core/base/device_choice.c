@@ -29,7 +29,11 @@ static stratus_status measure(stratus_context* context, void* job, double* numbe
   status = stratus_calibration_picture(&scratch, rgba, numbers);
 cleanup:
   stratus_release(&scratch, rgba);
-  stratus_device_close(scratch.device);
+  const cl_int end = stratus_device_close(scratch.device);
+  if (status == STRATUS_OK && end != CL_SUCCESS) {
+    status =
+      stratus_fail(&scratch, STRATUS_DEVICE_ERROR, "clFinish failed behind the picture: %s (%d)", stratus_device_error_name(end), end);
+  }
   if (status != STRATUS_OK) {
     (void)stratus_fail(context, status, "%s", scratch.message);
   }

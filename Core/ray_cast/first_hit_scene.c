@@ -48,12 +48,24 @@ static stratus_status make_kept(stratus_ray_caster* caster)
 
 /* ---- what changed */
 
+/* Which voxels show is decided in doubles; their colours and normals are of the floats that rays read. */
+static stratus_status check_values(stratus_context* context, const stratus_volume* volume)
+{
+  const double bias = stratus_volume_bias(volume);
+  return volume->type != STRATUS_FLOAT64 || stratus_volume_floats_differ(volume, bias) ? STRATUS_OK
+                                                                                       : stratus_volume_check_floats(context, volume, bias);
+}
+
 static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer)
 {
   struct stratus_first_hit* kept = caster->first_hit;
   stratus_transfer* copy = NULL;
-  if (stratus_volume_same_data(&kept->volume, volume) && kept->transfer && stratus_transfer_same_opacity(kept->transfer, transfer)) {
+  const bool same = kept->transfer && stratus_volume_same_data(&kept->volume, volume);
+  if (same && stratus_transfer_same_opacity(kept->transfer, transfer)) {
     return STRATUS_OK;
+  }
+  if (!same) {
+    TRY(check_values(caster->context, volume));
   }
   TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
   stratus_first_hit_release(caster);

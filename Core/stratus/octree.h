@@ -88,8 +88,8 @@ STRATUS_API stratus_status stratus_octree_create(stratus_context* context, const
 /* Destroys a tree. Destroy its views first. */
 STRATUS_API void stratus_octree_destroy(stratus_octree* octree);
 
-/* Inserts `count` objects, all or none. bounds: 6*count numbers. ids: receives `count` ids. The root doubles its size until it holds every
- * object. */
+/* Inserts `count` objects, all or none. bounds: 6*count numbers. ids: receives `count` ids, which mean nothing if the call fails. The root
+ * doubles its size until it holds every object. */
 STRATUS_API stratus_status stratus_octree_insert(stratus_octree* octree, const double* bounds, size_t count, uint32_t* ids);
 /* The same for turned boxes: 12 numbers each, the centre and three half edges, orthogonal or not. */
 STRATUS_API stratus_status stratus_octree_insert_oriented(stratus_octree* octree, const double* boxes, size_t count, uint32_t* ids);

@@ -68,6 +68,9 @@ stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tre
 size_t stratus_tree_memory(const stratus_tree* tree);
 /* tree_arrays_check.c: checks that nodes, bricks, fields and masks refer only to each other. The header must have been checked before. */
 stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus_tree* tree);
+/* tree_bytes.c: writes size and checksum into the header of a saved tree of more than 24 bytes, whatever else it says: fuzzers mend by it
+ * what they have changed. */
+void stratus_tree_seal(void* bytes, size_t size);
 /* tree_bytes.c: returns whether the tree's dimensions are those of a tree of this volume. */
 bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
 

@@ -106,6 +106,14 @@ size_t stratus_tree_bytes(const stratus_tree* tree)
   return array_sizes(&h, sizes);
 }
 
+void stratus_tree_seal(void* bytes, size_t size)
+{
+  const size_t from = offsetof(header, version);
+  const uint64_t length = size, sum = checksum((unsigned char*)bytes + from, size - from);
+  memcpy((unsigned char*)bytes + offsetof(header, size), &length, sizeof length);
+  memcpy((unsigned char*)bytes + offsetof(header, checksum), &sum, sizeof sum);
+}
+
 void stratus_tree_save(const stratus_tree* tree, void* bytes)
 {
   if (!tree || !bytes) {
@@ -115,8 +123,8 @@ void stratus_tree_save(const stratus_tree* tree, void* bytes)
   const void* const arrays[ARRAYS] = { tree->nodes, tree->bricks, tree->fields, tree->entries, tree->rows, tree->masks };
   size_t sizes[ARRAYS];
   unsigned char* p = bytes;
-  h.size = array_sizes(&h, sizes);
-  memset(p, 0, h.size);
+  const size_t size = array_sizes(&h, sizes);
+  memset(p, 0, size);
   p += sizeof h;
   for (int i = 0; i < ARRAYS; ++i) {
     if (arrays[i]) {
@@ -125,9 +133,7 @@ void stratus_tree_save(const stratus_tree* tree, void* bytes)
     p += (sizes[i] + 7) / 8 * 8;
   }
   memcpy(bytes, &h, sizeof h);
-  const size_t from = offsetof(header, version);
-  h.checksum = checksum((unsigned char*)bytes + from, h.size - from);
-  memcpy(bytes, &h, sizeof h);
+  stratus_tree_seal(bytes, size);
 }
 
 /* ---------------------------------------------------------------- loading */

@@ -269,6 +269,20 @@ bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b)
     a->cell_ghosts == b->cell_ghosts && a->revision == b->revision;
 }
 
+bool stratus_volume_floats_differ(const stratus_volume* volume, double bias)
+{
+  const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  float first = NAN;
+  for (size_t i = 0; i < count; ++i) {
+    const float value = stratus_volume_fetch(volume, bias, i);
+    if (isfinite(value) && isfinite(first) && value != first) {
+      return true;
+    }
+    first = isfinite(value) ? value : first;
+  }
+  return false;
+}
+
 /* Asked where all fetched values are the same: of a constant volume, or because floats cannot hold what sets the values apart. One value
  * beyond floats on either side, however often it is there, is a fill value. */
 stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias)

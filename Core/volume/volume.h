@@ -14,6 +14,8 @@
  * fetched values is the fetched range. */
 /* Returns 0 for narrow types. For wide ones it returns the finite value of least magnitude among some thousand, 0 if there is none. */
 double stratus_volume_bias(const stratus_volume* volume);
+/* Returns whether any two finite fetched values differ. It stops at the first two. */
+bool stratus_volume_floats_differ(const stratus_volume* volume, double bias);
 stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias);
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Gives the number of cells between value positions along each axis: dimensions-1, at least 0. */

@@ -30,6 +30,7 @@ public:
 private:
   static int64_t Write(
     exr_const_context_t, void* self, const void* buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t) noexcept;
+  static exr_result_t Compress(exr_encode_pipeline_t* pipeline) noexcept;
   static void Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept;
   void Check(exr_result_t result) const;
   void ReleasePipeline();
@@ -37,6 +38,7 @@ private:
 
   exr_context_t Context = nullptr;
   exr_encode_pipeline_t Pipeline = {};
+  exr_result_t (*OwnCompress)(exr_encode_pipeline_t*) = nullptr; // OpenEXR's
   int Part = 0;
   char Message[256] = "";
   bool OutOfMemory = false;
@@ -104,6 +106,17 @@ void Encoder::Tell(exr_const_context_t context, exr_result_t, const char* messag
   }
 }
 
+// OpenEXR (3.1.5) keeps what it has compressed where that is as long as before, but readers take a chunk of that length for one that is not
+// compressed.
+exr_result_t Encoder::Compress(exr_encode_pipeline_t* pipeline) noexcept
+{
+  const exr_result_t result = static_cast<Encoder*>(pipeline->encoding_user_data)->OwnCompress(pipeline);
+  if (result == EXR_ERR_SUCCESS && pipeline->compressed_bytes == pipeline->packed_bytes) {
+    std::memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, pipeline->packed_bytes);
+  }
+  return result;
+}
+
 void Encoder::Check(exr_result_t result) const
 {
   if (result == EXR_ERR_OUT_OF_MEMORY || this->OutOfMemory) {
@@ -148,6 +161,9 @@ void Encoder::WriteChunk(int top, int width, const std::vector<float>& values, c
   }
   if (first) {
     this->Check(exr_encoding_choose_default_routines(this->Context, this->Part, &this->Pipeline));
+    this->Pipeline.encoding_user_data = this;
+    this->OwnCompress = this->Pipeline.compress_fn;
+    this->Pipeline.compress_fn = Encoder::Compress;
   }
   this->Check(exr_encoding_run(this->Context, this->Part, &this->Pipeline));
 }

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <locale>
+#include <sstream>
 #include <system_error>
 
 namespace {
@@ -193,7 +195,9 @@ double vtkStratusTetGenInput::GetReal(const char* name)
   double value = 0.0;
   const std::errc error = Parse(token, value);
   if (error == std::errc::result_out_of_range) { // a number too small for double is 0, one too large stays an error
-    value = std::strtod(std::string(token).c_str(), nullptr);
+    std::istringstream stream{ std::string(token) };
+    stream.imbue(std::locale::classic()); // strtod() would look for the decimal comma of the process's locale
+    stream >> value;
   }
   if (error == std::errc::invalid_argument || (error == std::errc::result_out_of_range && !(std::abs(value) < 1.0))) {
     this->Fail(std::string(name) + " is '" + Shown(token) + "', it must be a number of double precision");

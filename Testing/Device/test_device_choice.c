@@ -96,7 +96,7 @@ static stratus_calibration of_device(cl_device_id id)
 
 static void forget_choice(void)
 {
-  stratus_device_close(context->device);
+  (void)stratus_device_close(context->device);
   context->device = NULL;
   lines[0] = '\0';
 }

@@ -44,7 +44,7 @@ static void surfaces_and_their_light_have_order_2(void** state)
   for (int parallel = 0; parallel < 2; ++parallel) {
     double places[2][CONVERGENCE_LEVELS], lights[2][CONVERGENCE_LEVELS];
     const analytic_scene s = ball_of(*state, parallel, true);
-    const double alpha = analytic_at(analytic_band, 5, 2, 1, CONTOUR);
+    const double alpha = linear_between(analytic_band, 5, 2, 1, CONTOUR);
     for (int level = 0; level < CONVERGENCE_LEVELS; ++level) {
       const int cells = CELLS_LEAST << level;
       const stratus_volume volume = analytic_volume(s.field, cells, 0.0);
@@ -70,7 +70,7 @@ static void surfaces_and_their_light_have_order_2(void** state)
         (void)meet_ball(&s, &r, 1.0 / cells, &lagging);
         const double behind = ceil(place * cells) / cells;
         /* the far side of a sphere is lit as the near side: a + (1 - a) a of both */
-        const double red = alpha * (2.0 - alpha) * analytic_at(analytic_color, 3, 4, 1, CONTOUR);
+        const double red = alpha * (2.0 - alpha) * linear_between(analytic_color, 3, 4, 1, CONTOUR);
         squares[0] += ((double)depth[i] - place) * ((double)depth[i] - place);
         squares[1] += (behind - place) * (behind - place);
         squares[2] += ((double)rgba[4 * i] - red * light) * ((double)rgba[4 * i] - red * light);

@@ -8,25 +8,15 @@
 #include "calibration.h"
 #include "device_jobs.h"
 #include "faulty_allocator.h"
-#include "opencl_faults_load.h"
+#include "opencl_tries.h"
 
 #include <stdio.h>
 
-#define NAMES_MAX 64
 #define SHORT_CALLS 4 /* of a job, for each kind of fault, without STRATUS_LONG */
 
-static opencl_faults* faults;
 static faulty_allocator allocator;
-static const char* seen[NAMES_MAX]; /* functions of OpenCL that were called */
-static bool refused[NAMES_MAX];     /* those of them that failed at least once */
-static int64_t tries, without_it;
+static int64_t without_it;
 static uint64_t right_colors; /* of the job */
-
-/* The calls of a run without fault. */
-static struct {
-  int64_t count;
-  const char* names[OPENCL_TRACE_MAX];
-} usual;
 
 static const int errors[] = { CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_HOST_MEMORY,
   CL_INVALID_COMMAND_QUEUE, CL_INVALID_VALUE, CL_BUILD_PROGRAM_FAILURE, -9999 };
@@ -34,67 +24,6 @@ static const int errors[] = { CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_M
 static bool is_memory(int error)
 {
   return error == CL_OUT_OF_RESOURCES || error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_HOST_MEMORY;
-}
-
-static void note_calls(int64_t from, int64_t to, bool as_refused)
-{
-  for (int64_t c = from; c < to && c < OPENCL_TRACE_MAX; ++c) {
-    int i = 0;
-    while (i < NAMES_MAX && seen[i] && strcmp(seen[i], faults->trace[c]) != 0) {
-      ++i;
-    }
-    assert_in_range(i, 0, NAMES_MAX - 1);
-    seen[i] = faults->trace[c];
-    refused[i] |= as_refused;
-  }
-}
-
-static void keep_usual(void)
-{
-  usual.count = faults->calls;
-  assert_in_range(usual.count, 1, OPENCL_TRACE_MAX);
-  memcpy(usual.names, faults->trace, (size_t)usual.count * sizeof *usual.names);
-}
-
-/* The next call to fail after call n: the next one, or without STRATUS_LONG the next that is the first of its function, or every `step`th.
- * Beyond the usual ones any: the run then ends. */
-static int64_t next_call(int64_t n, int64_t step)
-{
-  for (++n; !long_run() && n < usual.count && n % step != 0; ++n) {
-    int64_t earlier = 0;
-    while (strcmp(usual.names[earlier], usual.names[n]) != 0) {
-      ++earlier;
-    }
-    if (earlier == n) {
-      break;
-    }
-  }
-  return n;
-}
-
-static void begin_fault(opencl_fault fault, int64_t at, int error)
-{
-  faults->fault = fault;
-  faults->error = error;
-  faults->calls = 0;
-  faults->refused = 0;
-  faults->first = -1;
-  faults->at = at;
-  ++tries;
-}
-
-/* Ends the fault. Returns whether it met a call. */
-static bool end_fault(void)
-{
-  const bool met = faults->refused > 0;
-  note_calls(0, faults->calls, false);
-  if (faults->first >= 0) {
-    note_calls(faults->first, faults->first + 1, true);
-  }
-  faults->at = -1;
-  assert_string_equal(faults->misuse, "");
-  assert_int_equal(faults->pending, 0);
-  return met;
 }
 
 static stratus_context* open_context(bool as_gpu)
@@ -335,31 +264,64 @@ static void a_program_that_does_not_compile_says_so(void** state)
   }
 }
 
+static stratus_status take_forever(stratus_context* context, void* job, double* numbers)
+{
+  (void)context;
+  (void)job;
+  numbers[0] = 1e9; /* milliseconds that any device beats */
+  return STRATUS_OK;
+}
+
+/* Makes a context of a host so slow that "auto" takes any device that works. */
+static stratus_context* open_slow_host(void)
+{
+  const stratus_context_options options = faulty_options(&allocator, "host");
+  stratus_context* context = NULL;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  stratus_calibration_forget();
+  stratus_calibration host = stratus_calibration_of_host(context, STRATUS_CALIBRATION_HOST, 1);
+  assert_int_equal(stratus_calibrate(context, &host, take_forever, NULL), STRATUS_OK);
+  return context;
+}
+
 /* "auto" leaves out a device that fails, whatever it fails at, and then the host draws. */
 static void a_device_that_fails_is_left_out_by_auto(void** state)
 {
   bool met = true;
   (void)state;
-  for (int64_t n = -1; met; n = next_call(n, OPENCL_TRACE_MAX)) {
-    const stratus_context_options options = faulty_options(&allocator, "host");
-    stratus_context* context = NULL;
-    assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-    stratus_calibration_forget();
+  for (int64_t n = -1; met || n < usual.count; n = next_call(n, OPENCL_TRACE_MAX)) {
+    stratus_context* context = open_slow_host();
     begin_fault(n % 2 ? OPENCL_FAULT_VANISH : OPENCL_FAULT_ALL, n, n < 0 ? 0 : errors[n % 6]);
     assert_int_equal(stratus_device_choose(context, "auto", true), STRATUS_OK);
     met = end_fault() || n < 0;
     if (n < 0) {
+      assert_non_null(context->device);
       keep_usual();
     } else {
-      /* A device that vanishes once it was measured, as its queue ends, is taken: the first picture tells. */
-      const bool after =
-        faults->fault == OPENCL_FAULT_VANISH && faults->first >= 0 && strcmp(faults->trace[faults->first], "clFinish") == 0;
-      assert_true(!met || !context->device || after);
+      assert_true(!met || !context->device);
     }
     stratus_context_destroy(context);
     assert_int_equal(faults->live, 0);
     assert_int_equal(allocator.live, 0);
   }
+  stratus_calibration_forget();
+}
+
+/* Every picture is drawn and read; then the device is gone, which only the end of its queue tells. */
+static void a_device_lost_behind_its_measurement_is_left_out_by_auto(void** state)
+{
+  stratus_context* context = open_slow_host();
+  (void)state;
+  begin_fault(OPENCL_FAULT_VANISH, -1, CL_DEVICE_NOT_AVAILABLE);
+  faults->at_first = "clFinish";
+  assert_int_equal(stratus_device_choose(context, "auto", true), STRATUS_OK);
+  assert_true(end_fault());
+  assert_string_equal(faults->trace[faults->first], "clFinish");
+  assert_null(context->device);
+  assert_string_equal(stratus_context_message(context), "");
+  stratus_context_destroy(context);
+  assert_int_equal(faults->live, 0);
+  assert_int_equal(allocator.live, 0);
   stratus_calibration_forget();
 }
 
@@ -389,6 +351,7 @@ int test_opencl_faults(void)
     cmocka_unit_test_prestate(every_job_survives_a_fault_at_any_call, &no),
     cmocka_unit_test_prestate(every_job_survives_a_fault_at_any_call, &yes),
     cmocka_unit_test(a_device_that_fails_is_left_out_by_auto),
+    cmocka_unit_test(a_device_lost_behind_its_measurement_is_left_out_by_auto),
     cmocka_unit_test(each_function_that_the_core_calls_has_failed),
   };
   if (setenv("STRATUS_CACHE_DIR", "", 1) != 0) { /* each choice measures */

@@ -5,6 +5,7 @@
 #ifndef STRATUS_TESTING_CONVERGENCE_H
 #define STRATUS_TESTING_CONVERGENCE_H
 
+#include "linear_between.h"
 #include "stratus.h"
 
 #include <math.h>
@@ -62,19 +63,6 @@ static inline double field_ball(const double p[3])
   return 1.0 - sqrt(x * x + y * y + z * z) / 0.45;
 }
 
-static inline double analytic_at(const double* points, size_t count, size_t width, size_t component, double x)
-{
-  size_t i = 0;
-  while (i + 1 < count && points[(i + 1) * width] <= x) {
-    ++i;
-  }
-  const double* p = points + i * width;
-  if (i + 1 == count || x <= p[0]) {
-    return p[component];
-  }
-  return p[component] + (x - p[0]) / (p[width] - p[0]) * (p[width + component] - p[component]);
-}
-
 /* The ray through u, v in -1..1, of a direction of length 1, and its part within the unit cube; from > to where it misses it. */
 typedef struct analytic_ray {
   double origin[3], along[3], from, to;
@@ -128,13 +116,13 @@ static inline void analytic_integrate(const analytic_scene* s, const analytic_ra
     for (int a = 0; a < 3; ++a) {
       p[a] = r->origin[a] + (r->from + (i + at) * h) * r->along[a];
     }
-    const double x = s->field(p), opacity = analytic_at(t->opacity, t->opacity_count, 2, 1, x);
+    const double x = s->field(p), opacity = linear_between(t->opacity, t->opacity_count, 2, 1, x);
     if (opacity == 0.0) {
       continue;
     }
     const double alpha = -expm1(log1p(-opacity) * h / t->unit_distance), light = s->lit ? analytic_light(s->field, p, r->along, lag) : 1.0;
     for (size_t c = 0; c < 3; ++c) {
-      rgba[c] += (1.0 - rgba[3]) * alpha * light * analytic_at(t->color, t->color_count, 4, c + 1, x);
+      rgba[c] += (1.0 - rgba[3]) * alpha * light * linear_between(t->color, t->color_count, 4, c + 1, x);
     }
     rgba[3] += (1.0 - rgba[3]) * alpha;
   }

@@ -48,16 +48,20 @@ static inline uint64_t job_sum(uint64_t sum, const void* bytes, size_t size)
   return sum;
 }
 
+/* Defines what opens a job that keeps a caster. */
+#define JOB_OPEN(name, caster)                                                                                                             \
+  static stratus_status name(stratus_context* context, int number, void** kept)                                                            \
+  {                                                                                                                                        \
+    caster* made = NULL;                                                                                                                   \
+    (void)number;                                                                                                                          \
+    const stratus_status status = caster##_create(context, &made);                                                                         \
+    *kept = made;                                                                                                                          \
+    return status;                                                                                                                         \
+  }
+
 /* ---- pictures of volumes: number is the setting */
 
-static stratus_status job_picture_open(stratus_context* context, int number, void** kept)
-{
-  stratus_ray_caster* caster = NULL;
-  (void)number;
-  const stratus_status status = stratus_ray_caster_create(context, &caster);
-  *kept = caster;
-  return status;
-}
+JOB_OPEN(job_picture_open, stratus_ray_caster)
 
 static void job_picture_close(void* kept)
 {
@@ -151,14 +155,7 @@ static stratus_status job_tree(stratus_context* context, int method, void* kept,
 
 /* ---- tetrahedra */
 
-static stratus_status job_tetra_open(stratus_context* context, int number, void** kept)
-{
-  stratus_tetra_caster* caster = NULL;
-  (void)number;
-  const stratus_status status = stratus_tetra_caster_create(context, &caster);
-  *kept = caster;
-  return status;
-}
+JOB_OPEN(job_tetra_open, stratus_tetra_caster)
 
 static void job_tetra_close(void* kept)
 {

@@ -30,6 +30,9 @@ static cl_int count_call(const char* name, call_kind kind, bool* lost)
     faults->trace[number] = name;
   }
   ++faults->calls;
+  if (faults->at < 0 && faults->at_first && strcmp(name, faults->at_first) == 0) {
+    faults->at = number;
+  }
   *lost = faults->at >= 0 && number >= faults->at;
   if (*lost &&
     (faults->fault == OPENCL_FAULT_ALL || (faults->fault == OPENCL_FAULT_ONCE && number == faults->at) ||

@@ -17,7 +17,8 @@ typedef enum opencl_fault {
 
 /* Calls that release are never counted nor refused, but with FAULT_ALL and FAULT_VANISH they return the error after they have released. */
 typedef struct opencl_faults {
-  int64_t at; /* number of the first call to fail, from 0; negative: none fails */
+  int64_t at;           /* number of the first call to fail, from 0; negative: none fails */
+  const char* at_first; /* a function whose first call sets `at` to its number where that is negative; NULL: none */
   opencl_fault fault;
   int error;
   int64_t calls;                       /* counted since this was last set to 0 */

@@ -99,13 +99,13 @@ static int64_t past_block(const reference_field* f, const ray* r, const double p
   return leave < 0.0 || next > i ? next : i + 1;
 }
 
-/* Returns the opacity of a step, and finds its colour, with shading or several components. parts, c: one field and one cell per component.
- */
+/* Returns the opacity of a step, and finds its colour, with shading or several components. parts, c, gradients: one per
+ * component. */
 static double look(const reference_scene* scene, const reference_field* parts, const ray* r, double s, const double p[3], reference_cell* c,
-  double step, double rgb[3])
+  reference_gradients* gradients, double step, double rgb[3])
 {
   const reference_field* f = parts;
-  reference_place place;
+  reference_place place = { .gradients = gradients };
   double values[REFERENCE_COMPONENTS_MAX], tau = 0.0, glow[3];
   memcpy(place.to_index, f->to_index, sizeof place.to_index);
   memcpy(place.direction, r->direction, sizeof place.direction);
@@ -181,10 +181,12 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
   const int64_t count = (int64_t)ceil(length / longest_step);
   const double step = length / (double)count;
   reference_cell c[REFERENCE_COMPONENTS_MAX];
+  reference_gradients gradients[REFERENCE_COMPONENTS_MAX];
   reference_field parts[REFERENCE_COMPONENTS_MAX];
   stratus_volume views[REFERENCE_COMPONENTS_MAX];
   for (int i = 0; i < reference_components(scene->volume); ++i) {
     c[i] = (reference_cell){ .at = { -1, -1, -1 } };
+    memcpy(gradients[i].at, c[i].at, sizeof gradients[i].at);
     parts[i] = *f;
     views[i] = reference_component(scene->volume, i);
     parts[i].volume = views + i;
@@ -205,7 +207,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
     }
     ++i;
     double rgb[3];
-    const double kept = look(scene, parts, r, s, p, c, step, rgb);
+    const double kept = look(scene, parts, r, s, p, c, gradients, step, rgb);
     if (kept > 0.0) {
       for (int a = 0; a < 3; ++a) {
         sum[a] += left * kept * rgb[a];

@@ -79,21 +79,36 @@ static double difference(const stratus_volume* volume, const int64_t at[3], int 
 }
 
 /* Finds the gradient in values per voxel: interpolates the differences at the corners of the cell around p. */
-static void gradient_at(const stratus_volume* volume, const double p[3], bool linear, double g[3])
+static void gradient_at(const stratus_volume* volume, const double p[3], bool linear, reference_gradients* kept, double g[3])
 {
+  const int corners = linear ? 8 : 1;
+  int64_t lower[3];
+  double t[3];
+  for (int a = 0; a < 3; ++a) {
+    lower[a] = (int64_t)floor(linear ? p[a] : p[a] + 0.5);
+    t[a] = linear ? p[a] - (double)lower[a] : 0.0;
+  }
+  if (memcmp(kept->at, lower, sizeof lower) != 0) {
+    memcpy(kept->at, lower, sizeof lower);
+    for (int corner = 0; corner < corners; ++corner) {
+      int64_t at[3];
+      for (int a = 0; a < 3; ++a) {
+        at[a] = lower[a] + (corner >> a & 1);
+        at[a] = at[a] < volume->dimensions[a] ? at[a] : volume->dimensions[a] - 1;
+      }
+      for (int a = 0; a < 3; ++a) {
+        kept->corner[corner][a] = difference(volume, at, a);
+      }
+    }
+  }
   memset(g, 0, 3 * sizeof *g);
-  for (int corner = 0; corner < 8; ++corner) {
-    int64_t at[3];
+  for (int corner = 0; corner < corners; ++corner) {
     double weight = 1.0;
     for (int a = 0; a < 3; ++a) {
-      const int64_t lower = (int64_t)floor(linear ? p[a] : p[a] + 0.5);
-      const double t = linear ? p[a] - (double)lower : 0.0;
-      at[a] = lower + (corner >> a & 1);
-      weight *= corner >> a & 1 ? t : 1.0 - t;
-      at[a] = at[a] < volume->dimensions[a] ? at[a] : volume->dimensions[a] - 1;
+      weight *= corner >> a & 1 ? t[a] : 1.0 - t[a];
     }
     for (int a = 0; weight > 0.0 && a < 3; ++a) {
-      g[a] += weight * difference(volume, at, a);
+      g[a] += weight * kept->corner[corner][a];
     }
   }
 }
@@ -177,7 +192,7 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
   }
   if (scene->shading || transfer->gradient_count > 0) {
     const stratus_volume view = reference_component(scene->volume, shown);
-    gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, g);
+    gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
   }
   const double depth = weight * depth_of(opacity) * gradient_factor(scene->volume, transfer, g) / transfer->unit_distance;
   if (scene->shading) {

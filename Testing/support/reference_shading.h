@@ -8,12 +8,19 @@
 
 #define REFERENCE_COMPONENTS_MAX 4
 
+/* The gradients at the corners of the cell that was asked last, in values per voxel: a ray takes many samples in each cell. */
+typedef struct reference_gradients {
+  int64_t at[3]; /* lower corner; -1: of no cell yet */
+  double corner[8][3];
+} reference_gradients;
+
 /* The position of a sample, and the direction of its ray. */
 typedef struct reference_place {
-  double index[3];       /* index coordinates, clamped to the values' positions */
-  double world[3];       /* world position */
-  double direction[3];   /* of the ray, in the world, of length 1 */
-  double to_index[3][3]; /* world vectors to index vectors */
+  double index[3];                /* index coordinates, clamped to the values' positions */
+  double world[3];                /* world position */
+  double direction[3];            /* of the ray, in the world, of length 1 */
+  double to_index[3][3];          /* world vectors to index vectors */
+  reference_gradients* gradients; /* one for each component, which the ray keeps */
 } reference_place;
 
 /* Returns 1 if the scene has light, gradient opacity, several components or labels. */

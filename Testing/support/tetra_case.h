@@ -4,6 +4,7 @@
 #ifndef STRATUS_TESTING_TETRA_CASE_H
 #define STRATUS_TESTING_TETRA_CASE_H
 
+#include "linear_between.h"
 #include "stratus.h"
 
 #include <math.h>
@@ -163,19 +164,6 @@ typedef struct tetra_stretch {
   double from, to, first, last;
 } tetra_stretch;
 
-static inline double tetra_function(const double* points, size_t count, size_t width, size_t component, double x)
-{
-  size_t i = 0;
-  while (i + 1 < count && points[(i + 1) * width] <= x) {
-    ++i;
-  }
-  const double* p = points + i * width;
-  if (i + 1 == count || x <= p[0]) {
-    return p[component];
-  }
-  return p[component] + (x - p[0]) / (p[width] - p[0]) * (p[width + component] - p[component]);
-}
-
 static inline int tetra_nearer(const void* a, const void* b)
 {
   const double d = ((const tetra_stretch*)a)->from - ((const tetra_stretch*)b)->from;
@@ -271,7 +259,7 @@ static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, 
   enum { STEPS = 200 };
   for (int i = 0; i < STEPS; ++i) {
     const double t = (i + 0.5) / STEPS, x = s->first + t * (s->last - s->first);
-    const double a = tetra_function(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
+    const double a = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
     if (a == 0.0) {
       continue;
     }
@@ -280,7 +268,7 @@ static inline void tetra_integrate(const tetra_case* c, const tetra_stretch* s, 
       *depth = (s->from + t * (s->to - s->from)) * length;
     }
     for (size_t k = 0; k < 3; ++k) {
-      rgba[k] += (1.0 - rgba[3]) * alpha * tetra_function(c->transfer.color, c->transfer.color_count, 4, k + 1, x);
+      rgba[k] += (1.0 - rgba[3]) * alpha * linear_between(c->transfer.color, c->transfer.color_count, 4, k + 1, x);
     }
     rgba[3] += (1.0 - rgba[3]) * alpha;
   }
@@ -361,9 +349,9 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
       }
     }
     if (c->options.mode == STRATUS_TETRA_MAXIMUM && count > 0) {
-      out[3] = tetra_function(c->transfer.opacity, c->transfer.opacity_count, 2, 1, largest);
+      out[3] = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, largest);
       for (size_t i = 0; i < 3; ++i) {
-        out[i] = out[3] * tetra_function(c->transfer.color, c->transfer.color_count, 4, i + 1, largest);
+        out[i] = out[3] * linear_between(c->transfer.color, c->transfer.color_count, 4, i + 1, largest);
       }
     }
     if (depth) {

@@ -118,6 +118,8 @@ std::string default_reference_cache();
 bool load_picture(const std::string& path, std::vector<float>& rgba);
 void save_picture(const std::string& path, const std::vector<float>& rgba); // writes the whole file or none
 
+class progress;
+
 // ---- judge.cxx
 
 // The reference pictures of one scene, which are refined as far as the results that they are compared with ask for. They are drawn at some
@@ -125,7 +127,7 @@ void save_picture(const std::string& path, const std::vector<float>& rgba); // w
 class judge
 {
 public:
-  judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache);
+  judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& told);
   ~judge();
   void measure(std::vector<result>& results); // fills errors
   void compare(std::vector<result>& results); // fills differing_pixels
@@ -222,7 +224,8 @@ class progress
 public:
   progress(size_t scenes, size_t methods);
   ~progress();
-  void at(const std::string& scene, const std::string& method); // which is about to be measured
+  void at(const std::string& scene, const std::string& method);       // which is about to be measured
+  void tell(const std::string& scene, const std::string& what) const; // what is done for it
   void end_scene(const std::string& scene);
 
 private:

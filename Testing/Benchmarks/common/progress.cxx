@@ -54,13 +54,18 @@ void progress::clear() const
 void progress::at(const std::string& scene, const std::string& method)
 {
   ++this->Method;
+  this->tell(scene, method);
+}
+
+void progress::tell(const std::string& scene, const std::string& what) const
+{
   if (!this->Terminal) {
     return;
   }
   const char* whole = std::getenv(whole_variable);
   const size_t done = this->Scene * this->Methods + this->Method - 1, all = this->Scenes * this->Methods;
   const double spent = now_ms() - this->Start;
-  std::fprintf(this->Terminal, "\r\033[K  %s, %s (%zu of %zu)", scene.c_str(), method.c_str(), this->Method, this->Methods);
+  std::fprintf(this->Terminal, "\r\033[K  %s, %s (%zu of %zu)", scene.c_str(), what.c_str(), this->Method, this->Methods);
   if (whole) {
     std::fprintf(this->Terminal, "; %s", whole);
   } else if (done > 0 && all > done) {

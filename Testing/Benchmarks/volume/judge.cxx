@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <unistd.h>
+#include <string>
 
 namespace bench {
 
@@ -68,18 +68,6 @@ bool jumps(const std::vector<double>& points, size_t width)
     }
   }
   return false;
-}
-
-// Shows on a terminal which reference is being drawn.
-void show(const scene& s, double step, int view)
-{
-  if (isatty(STDERR_FILENO)) {
-    std::fprintf(stderr, "\r\033[K");
-    if (view < views) {
-      std::fprintf(stderr, "  reference of %s, steps of 1/%d voxel, view %d of %d", s.name.c_str(),
-        static_cast<int>(std::lround(1.0 / step)), view + 1, views);
-    }
-  }
 }
 
 class references
@@ -202,10 +190,10 @@ void measure_result(const references& source, const std::vector<std::vector<floa
   r.max_error = floats ? in_float.largest : in_bytes.largest;
 }
 
-// Returns "~0.01@device" of stratus:octant~0.01@device. Only pictures of one tolerance and device are compared.
+// Returns "/2~0.01@device" of stratus:octant/2~0.01@device. Only pictures of the same rays, tolerance and device are compared.
 std::string how(const std::string& method)
 {
-  return method.substr(std::min(method.find_first_of("~@"), method.size()));
+  return method.substr(std::min(method.find_first_of("/~@"), method.size()));
 }
 } // namespace
 
@@ -214,6 +202,7 @@ struct judge::state {
   const scene& Scene;
   effort How;
   references Source;
+  const progress& Told;
   double Step; // of Fine; 0: nothing is drawn yet
   std::vector<std::vector<float>> Coarse, Fine;
   double Agreement; // dB, of Fine with Coarse
@@ -226,7 +215,9 @@ double judge::state::draw(double step)
 {
   error self;
   for (int view = 0; view < views; ++view) {
-    show(this->Scene, step, view);
+    this->Told.tell(this->Scene.name,
+      "reference in steps of 1/" + std::to_string(std::lround(1.0 / step)) + " voxel, view " + std::to_string(view + 1) + " of " +
+        std::to_string(views));
     const size_t v = static_cast<size_t>(view);
     this->Coarse[v].swap(this->Fine[v]);
     this->Fine[v] = this->Source.make(view, step);
@@ -234,13 +225,12 @@ double judge::state::draw(double step)
       self.add(this->Coarse[v].data(), this->Fine[v].data(), this->Fine[v].size() / 4);
     }
   }
-  show(this->Scene, step, views);
   this->Step = step;
   return self.psnr();
 }
 
-judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache)
-    : State(new state{ context, s, how, references(context, s, how.size, cache), 0.0, {}, {}, 0.0 })
+judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& told)
+    : State(new state{ context, s, how, references(context, s, how.size, cache), told, 0.0, {}, {}, 0.0 })
 {
   this->State->Coarse.resize(views);
   this->State->Fine.resize(views);
@@ -285,7 +275,7 @@ void judge::measure(std::vector<result>& results)
 void judge::compare(std::vector<result>& results)
 {
   const state& j = *this->State;
-  std::map<std::string, std::vector<picture>> none; // by tolerance and device
+  std::map<std::string, std::vector<picture>> none; // by rays, tolerance and device
   for (const result& r : results) {
     if (r.method.rfind("stratus:none", 0) == 0 && r.judged) {
       none[how(r.method)] = r.pictures;

@@ -39,9 +39,21 @@ bool parse_dress(const std::string& whole, std::string& name, dress& d)
   return d.gradient || d.samples || d.axes || d.outline;
 }
 
-// stratus:STRUCTURE[~TOLERANCE][@host|@device]
+// Takes "/PIXELS", the pixels from ray to ray, from the front of a text. Returns false for others than 2 and 4.
+bool take_pixels(std::string& text, int& pixels)
+{
+  if (text.compare(0, 1, "/") != 0) {
+    return true;
+  }
+  pixels = text.compare(1, 1, "2") == 0 ? 2 : text.compare(1, 1, "4") == 0 ? 4 : 0;
+  text = text.substr(std::min<size_t>(2, text.size()));
+  return pixels > 0;
+}
+
+// stratus:STRUCTURE[/PIXELS][~TOLERANCE][@host|@device]
 struct stratus_method {
   int structure = 0;
+  int image = 1;         // pixels from ray to ray
   std::string tolerance; // a number, or `fixedpoint`; empty: the default
   std::string device;
 };
@@ -54,9 +66,12 @@ bool parse_stratus(const std::string& name, stratus_method& m)
   }
   const size_t at = std::min(name.find('@'), name.size());
   const size_t about = std::min(name.find('~'), at);
+  const size_t slash = std::min(name.find('/'), about);
   const std::string where = name.substr(std::min(at + 1, name.size()));
-  const auto found = std::find(std::begin(structures), std::end(structures), name.substr(8, about - 8));
-  if (found == std::end(structures) || (at < name.size() && where != "host" && where != "device")) {
+  const auto found = std::find(std::begin(structures), std::end(structures), name.substr(8, slash - 8));
+  std::string pixels = name.substr(slash, about - slash);
+  if (found == std::end(structures) || !take_pixels(pixels, m.image) || !pixels.empty() ||
+    (at < name.size() && where != "host" && where != "device")) {
     return false;
   }
   m.structure = static_cast<int>(found - std::begin(structures));
@@ -75,6 +90,7 @@ vtkSmartPointer<vtkVolumeMapper> make_stratus(const stratus_method& m, double fi
   auto mapper = vtkSmartPointer<vtkStratusVolumeMapper>::New();
   mapper->SetStructure(m.structure);
   mapper->SetDevice(m.device.c_str());
+  mapper->SetImageSampleDistance(m.image);
   if (!m.tolerance.empty()) {
     mapper->SetImageErrorTolerance(m.tolerance == "fixedpoint" ? fixed_point_error : std::atof(m.tolerance.c_str()));
   }
@@ -85,7 +101,7 @@ vtkSmartPointer<vtkVolumeMapper> make_stratus(const stratus_method& m, double fi
 struct peer_method {
   std::string name;
   double step = 1.0; // in voxels
-  int image = 1;     // pixels from ray to ray; vtk:fixedpoint alone has another than 1
+  int image = 1;     // pixels from ray to ray; of peers, vtk:fixedpoint alone has another than 1
 };
 
 // Returns false for other names.
@@ -99,9 +115,8 @@ bool parse_peer(const std::string& whole, peer_method& m)
   }
   m.name = *found;
   std::string rest = whole.substr(m.name.size());
-  if (m.name == "vtk:fixedpoint" && rest.compare(0, 2, "/2") == 0) {
-    m.image = 2;
-    rest = rest.substr(2);
+  if (m.name == "vtk:fixedpoint" && !take_pixels(rest, m.image)) {
+    return false;
   }
   if (rest.empty()) {
     return true;
@@ -206,6 +221,8 @@ std::vector<std::string> curve_methods(bool quick)
   };
   if (quick) {
     add("stratus:auto", { "~0.1", "~0.01", "~0.001", "~0.0001" });
+    add("stratus:auto/2", { "~0.3", "~0.1" });
+    add("stratus:auto/4", { "~0.3" });
     add("stratus:none", { "~0.01", "~0.0001" });
     add("stratus:auto@device", { "" });
     add("vtk:fixedpoint", { ":2", "", ":0.5" });
@@ -215,6 +232,8 @@ std::vector<std::string> curve_methods(bool quick)
     return methods;
   }
   add("stratus:auto", { "~0.1", "~0.03", "~0.01", "~0.003", "~0.001", "~0.0003", "~0.0001", "~0.00003", "~0.00001" });
+  add("stratus:auto/2", { "~0.3", "~0.1", "~0.03" });
+  add("stratus:auto/4", { "~0.3", "~0.1" });
   for (const char* structure : structures) {
     if (std::string(structure) != "auto") {
       add(std::string("stratus:") + structure, { "~0.01", "~0.001", "~0.0001" });
@@ -237,9 +256,9 @@ void check_method(const std::string& whole)
   const bool dressed = parse_dress(whole, name, d) && (name == whole || name != "floor");
   if (!dressed || (!parse_stratus(name, ours) && !parse_peer(name, peer) && name != "floor")) {
     throw failure("unknown method '" + whole +
-      "'; known: stratus:none|block|distance|octant|hybrid|auto with ~TOLERANCE or ~fixedpoint or neither, and @host or @device or "
-      "neither, "
-      "vtk:fixedpoint, vtk:fixedpoint/2 (rays every 2 pixels), vtk:gpu and openvdb, each with :STEP (.01 to 100 voxels) or without, floor; "
+      "'; known: stratus:none|block|distance|octant|hybrid|auto with /2 or /4 (rays every 2 or 4 pixels) or neither, ~TOLERANCE or "
+      "~fixedpoint or neither, and @host or @device or neither, vtk:fixedpoint with /2 or /4 or neither, vtk:gpu and openvdb, each with "
+      ":STEP (.01 to 100 voxels) or without, floor; "
       "all but floor with +ordinary, +gradient, +samples, +axes or +outline");
   }
 }

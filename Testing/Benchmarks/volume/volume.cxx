@@ -19,10 +19,10 @@ const char* const help = R"(stratus-bench volume [options]
                             headlight; default: all of these but haze and cloud-N, cloud+shade, and ../shared/data/isabel_02.vti, plain and
                             lit, where it is
   --size N                  N x N pixels (default 512)
-  --method M,...            stratus:none|block|distance|octant|hybrid|auto, with ~TOLERANCE behind it, a number, or ~fixedpoint, which is
-                            the root mean square error that vtk:fixedpoint has in this run, and with @host or @device (the first OpenCL
-                            device) behind that; vtk:fixedpoint, vtk:fixedpoint/2 (rays every 2 pixels), vtk:gpu, openvdb, each with
-                            :STEP in voxels behind it (default 1); floor; each but floor with a window behind it: +gradient
+  --method M,...            stratus:none|block|distance|octant|hybrid|auto, with /2 or /4 (rays every 2 or 4 pixels) behind it, then
+                            ~TOLERANCE, a number, or ~fixedpoint, which is the root mean square error that vtk:fixedpoint has in this
+                            run, then @host or @device (the first OpenCL device); vtk:fixedpoint, with /2 or /4, vtk:gpu, openvdb, each
+                            with :STEP in voxels behind it (default 1); floor; each but floor with a window behind it: +gradient
                             (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
                             (default: all methods, stratus:auto and vtk:fixedpoint in ordinary windows, too)
   --curves, --quick-curves  methods over their settings: ours over tolerances, peers over steps
@@ -152,7 +152,7 @@ void run_scene(
 {
   const bench::scene scene = bench::make_scene(context, source);
   std::vector<bench::result> results;
-  bench::judge judge(context, scene, o.how, o.cache);
+  bench::judge judge(context, scene, o.how, o.cache, progress);
   double fixed_point = 0.0;
   for (const std::string& method : o.methods) {
     progress.at(scene.name, method);

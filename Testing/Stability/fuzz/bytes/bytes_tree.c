@@ -3,9 +3,10 @@
  * was loaded. */
 #include "bytes.h"
 #include "stratus.h"
-#include "tree_checksum.h"
+#include "tree.h"
 
 #include <math.h>
+#include <string.h>
 
 #define MEND 1  /* flag: length and checksum are put right */
 #define EDITS 2 /* flag: edits of five bytes (place, place, kind, value, value), not a tree */
@@ -114,9 +115,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     memcpy(bytes, data + 1, length);
   }
   if (flags & MEND && length > 24) {
-    const uint64_t whole = length, sum = fuzz_tree_checksum(bytes + 24, length - 24);
-    memcpy(bytes + 8, &whole, sizeof whole);
-    memcpy(bytes + 16, &sum, sizeof sum);
+    stratus_tree_seal(bytes, length);
   }
   unsigned char* exact = malloc(length); /* a cut must end where the address sanitizer sees it */
   memcpy(exact, bytes, length);
