@@ -147,22 +147,15 @@ stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size
       gone.push_back(id);
     }
   }
-  std::vector<Slot> slots;
-  std::vector<size_t> places; // in ids
+  std::vector<size_t> added; // in ids
   for (size_t i = first; i < newEnd; ++i) {
     const auto found = known.find(props[i]);
-    if (found != known.end()) {
-      ids[i - first] = found->second;
-      known.erase(found);
+    if (found == known.end()) {
+      added.push_back(i - first);
       continue;
     }
-    Slot slot;
-    slot.Prop = props[i];
-    watch.Changed(props[i], slot.Watched); // before the bounds, so that a change in between is found at the next look
-    Ask(props[i], slot.Bounds, slot.Share);
-    ++this->Asked;
-    slots.push_back(slot);
-    places.push_back(i - first);
+    ids[i - first] = found->second;
+    known.erase(found);
   }
   for (const auto& entry : known) {
     gone.push_back(entry.second);
@@ -171,7 +164,7 @@ stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size
   for (const uint32_t id : gone) {
     this->Slots[id] = Slot();
   }
-  TRY(this->Insert(slots, places, ids));
+  TRY(this->Insert(props + first, added, watch, ids));
   this->Order.erase(this->Order.begin() + static_cast<ptrdiff_t>(first), this->Order.begin() + static_cast<ptrdiff_t>(oldEnd));
   this->Order.insert(this->Order.begin() + static_cast<ptrdiff_t>(first), ids.begin(), ids.end());
   for (size_t i = first; i < this->Order.size(); ++i) {
@@ -180,27 +173,40 @@ stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size
   return STRATUS_OK;
 }
 
-stratus_status vtkStratusCulledList::Insert(const std::vector<Slot>& slots, const std::vector<size_t>& places, std::vector<uint32_t>& ids)
+// Asks for the bounds of props[i] for each i of `added`, and sets ids[i].
+stratus_status vtkStratusCulledList::Insert(
+  vtkProp** props, const std::vector<size_t>& added, vtkStratusBoundsWatch& watch, std::vector<uint32_t>& ids)
 {
-  if (slots.empty()) {
+  if (added.empty()) {
     return STRATUS_OK;
   }
-  std::vector<double> bounds;
-  std::vector<uint32_t> made(slots.size());
-  for (const Slot& slot : slots) {
-    bounds.insert(bounds.end(), slot.Bounds, slot.Bounds + 6);
+  struct Told {
+    float Share;
+    vtkStratusBoundsWatch::State Watched;
+  };
+  std::vector<Told> told(added.size());
+  std::vector<double> bounds(6 * added.size());
+  std::vector<uint32_t> made(added.size());
+  for (size_t i = 0; i < added.size(); ++i) {
+    Ask(props[added[i]], &bounds[6 * i], told[i].Share);
+    watch.Asked(told[i].Watched);
   }
-  TRY(stratus_octree_insert(this->Octree, bounds.data(), slots.size(), made.data()));
+  this->Asked += added.size();
+  TRY(stratus_octree_insert(this->Octree, bounds.data(), added.size(), made.data()));
   const size_t limit = stratus_octree_id_limit(this->Octree);
   if (this->Slots.size() < limit) {
     this->Slots.resize(limit);
     this->Positions.resize(limit);
     this->Seen.resize((limit + 63) / 64, 0);
   }
-  for (size_t i = 0; i < slots.size(); ++i) {
-    this->Slots[made[i]] = slots[i];
+  for (size_t i = 0; i < added.size(); ++i) {
+    Slot& slot = this->Slots[made[i]];
+    slot.Prop = props[added[i]];
+    slot.Share = told[i].Share;
+    slot.Watched = told[i].Watched;
+    std::copy(&bounds[6 * i], &bounds[6 * i] + 6, slot.Bounds);
     SetBit(this->Seen, made[i]); // so that ClearTimes() clears its render time if the first look does not see it
-    ids[places[i]] = made[i];
+    ids[added[i]] = made[i];
   }
   return STRATUS_OK;
 }
@@ -212,11 +218,17 @@ stratus_status vtkStratusCulledList::Refresh(vtkStratusBoundsWatch& watch, bool 
   for (const uint32_t id : this->Order) {
     Slot& slot = this->Slots[id];
     vtkProp* prop = slot.Prop;
-    if (!prop || (!watch.Changed(prop, slot.Watched) && !askAll)) {
+    if (!prop || watch.IsAsked(slot.Watched)) {
+      continue;
+    }
+    if (askAll) {
+      slot.Watched = vtkStratusBoundsWatch::State(); // its sources may be others by now
+    } else if (!watch.Changed(prop, slot.Watched)) {
       continue;
     }
     double now[6];
     Ask(prop, now, slot.Share);
+    watch.Asked(slot.Watched);
     ++this->Asked;
     if (!Same(now, slot.Bounds)) {
       std::copy(now, now + 6, slot.Bounds);

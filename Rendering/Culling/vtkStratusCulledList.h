@@ -57,7 +57,7 @@ private:
 
   stratus_status Match(vtkProp** props, size_t count, vtkStratusBoundsWatch& watch);
   stratus_status Replace(vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch);
-  stratus_status Insert(const std::vector<Slot>& slots, const std::vector<size_t>& places, std::vector<uint32_t>& ids);
+  stratus_status Insert(vtkProp** props, const std::vector<size_t>& added, vtkStratusBoundsWatch& watch, std::vector<uint32_t>& ids);
   stratus_status Refresh(vtkStratusBoundsWatch& watch, bool askAll);
   void Mark(const stratus_octree_visible& visible);
   void ClearTimes();
