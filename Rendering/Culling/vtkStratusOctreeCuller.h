@@ -172,8 +172,8 @@ public:
   /**
    * Writes the nodes of a renderer's octree, each as one polyline in world coordinates, parents before children. Cell data: "Level" (int, 0
    * at the root; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split" (unsigned
-   * char) and "Objects" (vtkIdType: props in the node's own list). After the first frame it is one node without extent. Returns false and
-   * leaves the output unchanged for a renderer that this culler has not served.
+   * char) and "Objects" (vtkIdType: props in the node's own list). Until a frame does not ask all props, it is one node without extent.
+   * Returns false and leaves the output unchanged for a renderer that this culler has not served.
    */
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 
