@@ -33,8 +33,8 @@ public:
     std::vector<Producer*> Inputs;
   };
 
-  // State of one prop: when its bounds were asked for, and from where they come. Times older than Before show that a source has not changed
-  // since; asking may execute the pipeline, so that its data may be as young as After.
+  // State of one prop: when its bounds were asked for, and from where they come. A source has not changed since if it is no newer
+  // than Before; asking may execute the pipeline, so that data may be as new as After.
   struct State {
     vtkMTimeType Before = 0, After = 0;
     vtkMTimeType Newest = 0;    // of all sources at the last look; 0 after bounds were asked for

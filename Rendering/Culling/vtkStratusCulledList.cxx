@@ -60,16 +60,14 @@ void Ask(vtkProp* prop, double bounds[6], float& share)
 // only its address is used.
 void FetchAhead(vtkProp** props, size_t count, size_t place)
 {
+  for (size_t at = 0; place + Ahead < count && at < sizeof(vtkActor); at += CacheLine) {
+    const void* memory = reinterpret_cast<const void*>(reinterpret_cast<uintptr_t>(props[place + Ahead]) + at);
 #if defined(__GNUC__)
-  if (place + Ahead < count) {
-    const uintptr_t address = reinterpret_cast<uintptr_t>(props[place + Ahead]);
-    for (size_t at = 0; at < sizeof(vtkActor); at += CacheLine) {
-      __builtin_prefetch(reinterpret_cast<const void*>(address + at));
-    }
-  }
+    __builtin_prefetch(memory);
 #else
-  (void)props, (void)count, (void)place;
+    (void)memory;
 #endif
+  }
 }
 
 void SetBit(std::vector<uint64_t>& bits, size_t bit)
@@ -213,20 +211,16 @@ stratus_status vtkStratusCulledList::Insert(
   }
   std::vector<double> bounds(6 * added.size());
   std::vector<uint32_t> ids(added.size());
-  size_t next = this->Slots.size();
-  if (this->Free.size() < added.size()) {
-    this->Slots.resize(next + added.size() - this->Free.size());
-    this->Seen.resize((this->Slots.size() + 63) / 64, 0);
+  const size_t fresh = added.size() - std::min(added.size(), this->Free.size());
+  for (size_t i = fresh; i-- > 0;) {
+    this->Free.push_back(static_cast<uint32_t>(this->Slots.size() + i));
   }
+  this->Slots.resize(this->Slots.size() + fresh);
+  this->Seen.resize((this->Slots.size() + 63) / 64, 0);
   for (size_t i = 0; i < added.size(); ++i) {
-    uint32_t number = static_cast<uint32_t>(next);
-    if (this->Free.empty()) {
-      ++next;
-    } else {
-      number = this->Free.back();
-      this->Free.pop_back();
-    }
+    const uint32_t number = this->Free.back();
     Slot& slot = this->Slots[number];
+    this->Free.pop_back();
     FetchAhead(props, count, added[i]);
     Ask(props[added[i]], &bounds[6 * i], slot.Share);
     watch.Asked(slot.Watched);
@@ -253,19 +247,18 @@ stratus_status vtkStratusCulledList::Refresh(vtkProp** props, vtkStratusBoundsWa
   std::vector<double> bounds;
   for (size_t i = 0; i < this->Order.size(); ++i) {
     Slot& slot = this->Slots[this->Order[i]];
-    vtkProp* prop = props[i];
     if (watch.IsAsked(slot.Watched)) {
       continue;
     }
     if (askAll) {
       FetchAhead(props, this->Order.size(), i);
       slot.Watched = vtkStratusBoundsWatch::State(); // its sources may be others by now
-    } else if (!watch.Changed(prop, slot.Watched)) {
+    } else if (!watch.Changed(props[i], slot.Watched)) {
       continue;
     }
     double before[6], now[6];
     TRY(stratus_octree_bounds(this->Octree, slot.Id, before));
-    Ask(prop, now, slot.Share);
+    Ask(props[i], now, slot.Share);
     watch.Asked(slot.Watched);
     ++this->Asked;
     if (!Same(now, before)) {
