@@ -275,13 +275,13 @@ static stratus_status look(
   stratus_octree_walk walk = { .self = &look, .mask = planes_that_cut(tree, plan), .children = look_at_children, .divides = look_divides };
   walk.boxes_stick_out = tree->options.placement == STRATUS_OCTREE_TOUCHING;
   walk.test_whole = walk.boxes_stick_out && options->exact;
-  walk.budget = tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;
+  walk.budget = options->hold ? 0 : tree->options.split_budget > 0 ? tree->options.split_budget : INT64_MAX;
   uint64_t splits = 0, handed_down = 0;
   ++tree->clock;
-  if (walk.mask || tree->options.stop == STRATUS_OCTREE_STOP_STATIC) {
+  if (!options->hold && (walk.mask || tree->options.stop == STRATUS_OCTREE_STOP_STATIC)) {
     stratus_octree_make_root(tree);
   }
-  if (tree->options.stop == STRATUS_OCTREE_STOP_STATIC && tree->changed) {
+  if (!options->hold && tree->options.stop == STRATUS_OCTREE_STOP_STATIC && tree->changed) {
     TRY(stratus_octree_split_all(view, &splits, &handed_down));
     tree->changed = false;
   }
@@ -301,7 +301,7 @@ static stratus_status look(
   result->nodes_tested = walk.nodes_tested;
   result->splits = splits + walk.splits;
   result->objects_handed_down = handed_down + walk.handed_down;
-  return collapse_unseen(tree, &result->collapses);
+  return options->hold ? STRATUS_OK : collapse_unseen(tree, &result->collapses);
 }
 
 stratus_status stratus_octree_cull(

@@ -119,6 +119,7 @@ STRATUS_API void stratus_octree_view_destroy(stratus_octree_view* view);
 typedef struct stratus_octree_cull_options {
   int exact;    /* 1: also tests separating axes, so that no object beyond the frustum's edges is kept. Default 0. */
   int coverage; /* 1: fills coverage and depth. Default 0. */
+  int hold;     /* 1: the tree stays as it is, for a call that has no time to split nodes; a later call splits them. Default 0. */
 } stratus_octree_cull_options;
 
 typedef struct stratus_octree_visible {

@@ -181,8 +181,9 @@ static bool SaveTree(Plant& plant, const char* file)
 {
   vtkNew<vtkPolyData> boxes;
   vtkStratusOctreeCuller* culler = vtkStratusOctreeCuller::Install(plant.Renderer);
-  culler->SetLeafProps(16); // more cells than are worth their while, so that there is something to see
-  plant.Renderer->GetRenderWindow()->Render();
+  culler->SetLeafProps(16);                    // more cells than are worth their while, so that there is something to see
+  plant.Renderer->GetRenderWindow()->Render(); // asks the parts for their bounds
+  plant.Renderer->GetRenderWindow()->Render(); // splits the octree
   if (!culler->GetBoxes(plant.Renderer, boxes)) {
     return false;
   }

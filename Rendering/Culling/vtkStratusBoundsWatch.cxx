@@ -7,6 +7,7 @@
 #include "vtkMapper.h"
 #include "vtkNew.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkTimeStamp.h"
 
 #include <algorithm>
 #include <typeinfo>
@@ -15,6 +16,14 @@ namespace {
 template <class T> std::type_index TypeOf(const T& object)
 {
   return std::type_index(typeid(object));
+}
+
+// Every modification in the process takes the next number, and so does this.
+vtkMTimeType Now()
+{
+  vtkTimeStamp stamp;
+  stamp.Modified();
+  return stamp.GetMTime();
 }
 
 bool Among(const std::vector<std::type_index>& types, std::type_index type)
@@ -37,42 +46,47 @@ vtkStratusBoundsWatch::vtkStratusBoundsWatch()
 void vtkStratusBoundsWatch::NextLook()
 {
   ++this->Look;
+  this->Start = Now();
   if (this->Producers.size() > this->SweepAt) {
     this->Sweep();
   }
 }
 
-bool vtkStratusBoundsWatch::Changed(vtkProp* prop, State& state)
+void vtkStratusBoundsWatch::Asked(State& state) const
 {
-  if (state.Known) {
-    // vtkProp3D's time, not vtkActor's: colours and textures change no bounds, and each costs one more memory access.
-    const vtkMTimeType own = static_cast<vtkActor*>(prop)->vtkProp3D::GetMTime();
-    if (own == state.Own) {
-      const vtkMTimeType newest = this->Newest(*state.Mapper);
-      const bool changed = newest != state.Newest;
-      state.Newest = newest;
-      return changed;
-    }
-  }
-  this->Resolve(prop, state);
-  return true;
+  state.Before = this->Start;
+  state.After = Now();
+  state.Newest = 0;
 }
 
-void vtkStratusBoundsWatch::Resolve(vtkProp* prop, State& state)
+bool vtkStratusBoundsWatch::Changed(vtkProp* prop, State& state)
 {
-  state = State();
-  if (!Among(this->Actors, TypeOf(*prop))) {
-    return;
+  if (!state.Mapper && !Among(this->Actors, TypeOf(*prop))) {
+    return true;
   }
   vtkActor* actor = static_cast<vtkActor*>(prop);
-  vtkMapper* mapper = actor->GetMapper();
-  if (!mapper || !Among(this->Mappers, TypeOf(*mapper))) {
-    return;
+  // vtkProp3D's time, not vtkActor's: colours and textures change no bounds, and each costs one more memory access.
+  if (actor->vtkProp3D::GetMTime() > state.Before) {
+    state.Mapper = nullptr; // maybe it has another mapper now
+    return true;
   }
-  state.Known = true;
-  state.Own = actor->vtkProp3D::GetMTime();
-  state.Mapper = this->Find(mapper, true);
-  state.Newest = this->Newest(*state.Mapper);
+  state.Mapper = state.Mapper ? state.Mapper : this->Resolve(actor);
+  if (!state.Mapper) {
+    return true;
+  }
+  this->Read(*state.Mapper);
+  // Between looks that ask for nothing, times are compared for equality, because the object with the newest time may go.
+  const vtkMTimeType newest = std::max(state.Mapper->Newest, state.Mapper->Data);
+  const bool same = state.Newest == 0 || state.Newest == newest;
+  state.Newest = newest;
+  return !same || state.Mapper->Newest > state.Before || state.Mapper->Data > state.After;
+}
+
+// Returns NULL if it is not known from where the bounds come.
+vtkStratusBoundsWatch::Producer* vtkStratusBoundsWatch::Resolve(vtkActor* actor)
+{
+  vtkMapper* mapper = actor->GetMapper();
+  return mapper && Among(this->Mappers, TypeOf(*mapper)) ? this->Find(mapper, true) : nullptr;
 }
 
 // Forgets algorithms that are gone. Pointers to them may remain in actors and algorithms that were connected to them. Those have been
@@ -112,10 +126,10 @@ void vtkStratusBoundsWatch::Collect(Producer& producer)
   producer.Own = producer.Mapper ? algorithm->vtkObject::GetMTime() : algorithm->GetMTime();
 }
 
-vtkMTimeType vtkStratusBoundsWatch::Newest(Producer& producer)
+void vtkStratusBoundsWatch::Read(Producer& producer)
 {
   if (producer.Look == this->Look) {
-    return producer.Newest;
+    return;
   }
   producer.Look = this->Look;
   vtkAlgorithm* algorithm = producer.Algorithm;
@@ -124,14 +138,13 @@ vtkMTimeType vtkStratusBoundsWatch::Newest(Producer& producer)
   if (own != producer.Own) {
     this->Collect(producer);
   }
-  vtkMTimeType newest = own;
+  producer.Newest = own;
   for (Producer* input : producer.Inputs) {
-    newest = std::max(newest, this->Newest(*input));
+    this->Read(*input);
+    producer.Newest = std::max(producer.Newest, input->Newest);
   }
-  if (producer.Mapper && algorithm->GetNumberOfInputConnections(0) > 0) {
-    if (vtkDataObject* data = algorithm->GetInputDataObject(0, 0)) {
-      newest = std::max(newest, data->GetMTime());
-    }
+  if (producer.Mapper) {
+    vtkDataObject* data = algorithm->GetNumberOfInputConnections(0) > 0 ? algorithm->GetInputDataObject(0, 0) : nullptr;
+    producer.Data = data ? data->GetMTime() : 0;
   }
-  return producer.Newest = newest;
 }

@@ -14,6 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
+class vtkActor;
 class vtkProp;
 
 class VTK_STRATUS_PRIVATE vtkStratusBoundsWatch
@@ -25,32 +26,38 @@ public:
   // per look.
   struct Producer {
     vtkWeakPointer<vtkAlgorithm> Algorithm;
-    bool Mapper = false; // the times of its input data count, too, because data may be edited in place
+    bool Mapper = false; // its input data may be edited in place, so that their time counts, too
     vtkMTimeType Own = 0, Newest = 0;
+    vtkMTimeType Data = 0; // of a mapper's input data
     uint64_t Look = 0;
     std::vector<Producer*> Inputs;
   };
 
-  // State of one prop. Times are compared for equality, not for order, because the object with the newest time may go.
+  // State of one prop: when its bounds were asked for, and from where they come. A source has not changed since if it is no newer
+  // than Before; asking may execute the pipeline, so that data may be as new as After.
   struct State {
-    bool Known = false; // false: the bounds are asked for at each look
-    vtkMTimeType Own = 0, Newest = 0;
-    Producer* Mapper = nullptr;
+    vtkMTimeType Before = 0, After = 0;
+    vtkMTimeType Newest = 0;    // of all sources at the last look; 0 after bounds were asked for
+    Producer* Mapper = nullptr; // NULL until a look needs it after the prop was modified
   };
 
   // Starts a look, one pass over the props that reads all times anew.
   void NextLook();
-  // Returns whether the bounds may have changed since the last call with this state.
+  // Notes that the prop's bounds have been asked for. It looks at nothing, so that a look visits a prop or its sources, not both.
+  void Asked(State& state) const;
+  bool IsAsked(const State& state) const { return state.Before == this->Start; } // in this look
+  // Returns whether the bounds may have changed since they were asked for: true, too, where the sources are not known.
   bool Changed(vtkProp* prop, State& state);
 
 private:
-  void Resolve(vtkProp* prop, State& state);
+  Producer* Resolve(vtkActor* actor);
   Producer* Find(vtkAlgorithm* algorithm, bool mapper);
-  vtkMTimeType Newest(Producer& producer);
+  void Read(Producer& producer);
   void Collect(Producer& producer);
   void Sweep();
 
   uint64_t Look = 1;
+  vtkMTimeType Start = 0; // of the look
   size_t SweepAt = 1024;
   std::unordered_map<vtkAlgorithm*, Producer> Producers;
   std::vector<std::type_index> Actors, Mappers;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCulledList.h"
 
+#include "vtkActor.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkIdTypeArray.h"
@@ -28,6 +29,8 @@ namespace {
 // Shares that vtkFrustumCoverageCuller allots: little to a prop without bounds, such as a title, and less to a point.
 constexpr float ShareWithoutBounds = 1e-3f;
 constexpr double ShareOfPoint = 1e-4;
+constexpr size_t CacheLine = 64;
+constexpr size_t Ahead = 4; // props
 
 bool Same(const double a[6], const double b[6])
 {
@@ -49,6 +52,21 @@ void Ask(vtkProp* prop, double bounds[6], float& share)
     share = -1.0f;
   } else {
     std::fill(bounds, bounds + 6, std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+// Fetches the memory of the prop that comes `Ahead` places after `place` into the processor's cache: as much as an actor takes.
+// VTK's objects lie scattered, and waiting for them is a good part of a pass over many. The prop itself may be of any class and size, since
+// only its address is used.
+void FetchAhead(vtkProp** props, size_t count, size_t place)
+{
+  for (size_t at = 0; place + Ahead < count && at < sizeof(vtkActor); at += CacheLine) {
+    const void* memory = reinterpret_cast<const void*>(reinterpret_cast<uintptr_t>(props[place + Ahead]) + at);
+#if defined(__GNUC__)
+    __builtin_prefetch(memory);
+#else
+    (void)memory;
+#endif
   }
 }
 
@@ -77,6 +95,7 @@ void vtkStratusCulledList::Close()
   this->Order.clear();
   this->Positions.clear();
   this->Slots.clear();
+  this->Free.clear();
   this->Seen.clear();
 }
 
@@ -104,13 +123,14 @@ stratus_octree_statistics vtkStratusCulledList::GetStatistics() const
 
 // ---- the renderer's list
 
-stratus_status vtkStratusCulledList::Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll)
+stratus_status vtkStratusCulledList::Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll, bool initialized)
 {
   watch.NextLook();
   this->Asked = 0;
+  this->Initialized = initialized;
   stratus_status status = this->Match(props, static_cast<size_t>(count), watch);
-  if (status == STRATUS_OK && (ask || askAll)) {
-    status = this->Refresh(watch, askAll);
+  if (status == STRATUS_OK && (ask || askAll) && this->Asked < this->Order.size()) {
+    status = this->Refresh(props, watch, askAll);
   }
   if (status != STRATUS_OK) {
     this->Close();
@@ -139,89 +159,111 @@ stratus_status vtkStratusCulledList::Match(vtkProp** props, size_t count, vtkStr
 stratus_status vtkStratusCulledList::Replace(vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch)
 {
   std::unordered_map<vtkProp*, uint32_t> known;
-  std::vector<uint32_t> gone, ids(newEnd - first);
+  std::vector<uint32_t> gone, slots(newEnd - first);
   for (size_t i = first; i < oldEnd; ++i) {
-    const uint32_t id = this->Order[i];
-    vtkProp* prop = this->Slots[id].Prop;
-    if (!prop || !known.emplace(prop, id).second) {
-      gone.push_back(id);
+    const uint32_t slot = this->Order[i];
+    vtkProp* prop = this->Slots[slot].Prop;
+    if (!prop || !known.emplace(prop, slot).second) {
+      gone.push_back(slot);
     }
   }
-  std::vector<Slot> slots;
-  std::vector<size_t> places; // in ids
+  std::vector<size_t> added; // in slots
   for (size_t i = first; i < newEnd; ++i) {
     const auto found = known.find(props[i]);
-    if (found != known.end()) {
-      ids[i - first] = found->second;
-      known.erase(found);
+    if (found == known.end()) {
+      added.push_back(i - first);
       continue;
     }
-    Slot slot;
-    slot.Prop = props[i];
-    watch.Changed(props[i], slot.Watched); // before the bounds, so that a change in between is found at the next look
-    Ask(props[i], slot.Bounds, slot.Share);
-    ++this->Asked;
-    slots.push_back(slot);
-    places.push_back(i - first);
+    slots[i - first] = found->second;
+    known.erase(found);
   }
   for (const auto& entry : known) {
     gone.push_back(entry.second);
   }
-  TRY(stratus_octree_remove(this->Octree, gone.data(), gone.size()));
-  for (const uint32_t id : gone) {
-    this->Slots[id] = Slot();
-  }
-  TRY(this->Insert(slots, places, ids));
+  TRY(this->Remove(gone));
+  TRY(this->Insert(props + first, newEnd - first, added, watch, slots));
   this->Order.erase(this->Order.begin() + static_cast<ptrdiff_t>(first), this->Order.begin() + static_cast<ptrdiff_t>(oldEnd));
-  this->Order.insert(this->Order.begin() + static_cast<ptrdiff_t>(first), ids.begin(), ids.end());
+  this->Order.insert(this->Order.begin() + static_cast<ptrdiff_t>(first), slots.begin(), slots.end());
   for (size_t i = first; i < this->Order.size(); ++i) {
-    this->Positions[this->Order[i]] = static_cast<uint32_t>(i);
+    this->Positions[this->Slots[this->Order[i]].Id] = static_cast<uint32_t>(i);
   }
   return STRATUS_OK;
 }
 
-stratus_status vtkStratusCulledList::Insert(const std::vector<Slot>& slots, const std::vector<size_t>& places, std::vector<uint32_t>& ids)
+stratus_status vtkStratusCulledList::Remove(const std::vector<uint32_t>& gone)
 {
-  if (slots.empty()) {
+  std::vector<uint32_t> ids;
+  for (const uint32_t slot : gone) {
+    ids.push_back(this->Slots[slot].Id);
+    this->Slots[slot] = Slot();
+  }
+  this->Free.insert(this->Free.end(), gone.begin(), gone.end());
+  return stratus_octree_remove(this->Octree, ids.data(), ids.size());
+}
+
+// Asks for the bounds of props[i] for each i of `added`, and sets slots[i]. All that needs the prop's memory is done beside asking, which
+// brings it into the processor's cache.
+stratus_status vtkStratusCulledList::Insert(
+  vtkProp** props, size_t count, const std::vector<size_t>& added, vtkStratusBoundsWatch& watch, std::vector<uint32_t>& slots)
+{
+  if (added.empty()) {
     return STRATUS_OK;
   }
-  std::vector<double> bounds;
-  std::vector<uint32_t> made(slots.size());
-  for (const Slot& slot : slots) {
-    bounds.insert(bounds.end(), slot.Bounds, slot.Bounds + 6);
+  std::vector<double> bounds(6 * added.size());
+  std::vector<uint32_t> ids(added.size());
+  const size_t fresh = added.size() - std::min(added.size(), this->Free.size());
+  for (size_t i = fresh; i-- > 0;) {
+    this->Free.push_back(static_cast<uint32_t>(this->Slots.size() + i));
   }
-  TRY(stratus_octree_insert(this->Octree, bounds.data(), slots.size(), made.data()));
-  const size_t limit = stratus_octree_id_limit(this->Octree);
-  if (this->Slots.size() < limit) {
-    this->Slots.resize(limit);
-    this->Positions.resize(limit);
-    this->Seen.resize((limit + 63) / 64, 0);
+  this->Slots.resize(this->Slots.size() + fresh);
+  this->Seen.resize((this->Slots.size() + 63) / 64, 0);
+  for (size_t i = 0; i < added.size(); ++i) {
+    const uint32_t number = this->Free.back();
+    Slot& slot = this->Slots[number];
+    this->Free.pop_back();
+    FetchAhead(props, count, added[i]);
+    Ask(props[added[i]], &bounds[6 * i], slot.Share);
+    watch.Asked(slot.Watched);
+    slot.Prop = props[added[i]];
+    slots[added[i]] = number;
+    if (this->Initialized) {
+      SetBit(this->Seen, number); // an earlier culler's render time counts, and ClearTimes() clears it if this look does not see the prop
+    } else {
+      props[added[i]]->SetRenderTimeMultiplier(0.0);
+    }
   }
-  for (size_t i = 0; i < slots.size(); ++i) {
-    this->Slots[made[i]] = slots[i];
-    SetBit(this->Seen, made[i]); // so that ClearTimes() clears its render time if the first look does not see it
-    ids[places[i]] = made[i];
+  this->Asked += added.size();
+  TRY(stratus_octree_insert(this->Octree, bounds.data(), added.size(), ids.data()));
+  this->Positions.resize(std::max(this->Positions.size(), stratus_octree_id_limit(this->Octree)));
+  for (size_t i = 0; i < added.size(); ++i) {
+    this->Slots[slots[added[i]]].Id = ids[i];
   }
   return STRATUS_OK;
 }
 
-stratus_status vtkStratusCulledList::Refresh(vtkStratusBoundsWatch& watch, bool askAll)
+stratus_status vtkStratusCulledList::Refresh(vtkProp** props, vtkStratusBoundsWatch& watch, bool askAll)
 {
   std::vector<uint32_t> moved;
   std::vector<double> bounds;
-  for (const uint32_t id : this->Order) {
-    Slot& slot = this->Slots[id];
-    vtkProp* prop = slot.Prop;
-    if (!prop || (!watch.Changed(prop, slot.Watched) && !askAll)) {
+  for (size_t i = 0; i < this->Order.size(); ++i) {
+    Slot& slot = this->Slots[this->Order[i]];
+    if (watch.IsAsked(slot.Watched)) {
       continue;
     }
-    double now[6];
-    Ask(prop, now, slot.Share);
+    if (askAll) {
+      FetchAhead(props, this->Order.size(), i);
+      slot.Watched = vtkStratusBoundsWatch::State(); // its sources may be others by now
+    } else if (!watch.Changed(props[i], slot.Watched)) {
+      continue;
+    }
+    double before[6], now[6];
+    TRY(stratus_octree_bounds(this->Octree, slot.Id, before));
+    Ask(props[i], now, slot.Share);
+    watch.Asked(slot.Watched);
     ++this->Asked;
-    if (!Same(now, slot.Bounds)) {
-      std::copy(now, now + 6, slot.Bounds);
+    if (!Same(now, before)) {
       bounds.insert(bounds.end(), now, now + 6);
-      moved.push_back(id);
+      moved.push_back(slot.Id);
     }
   }
   return moved.empty() ? STRATUS_OK : stratus_octree_move(this->Octree, moved.data(), bounds.data(), moved.size());
@@ -245,7 +287,7 @@ void vtkStratusCulledList::Mark(const stratus_octree_visible& visible)
 double vtkStratusCulledList::Time(const stratus_octree_visible& visible, size_t position, const Policy& policy, double& depth)
 {
   const uint32_t rank = this->Ranks[position];
-  const float share = this->Slots[visible.ids[rank]].Share;
+  const float share = this->Slots[this->Order[position]].Share;
   if (share >= 0.0f) {
     depth = -std::numeric_limits<double>::infinity(); // before all others, in the list's order
     return share;
@@ -266,8 +308,8 @@ void vtkStratusCulledList::ClearTimes()
 {
   for (size_t word = 0; word < this->Seen.size(); ++word) {
     uint64_t bits = this->SeenBefore[word] & ~this->Seen[word];
-    for (size_t id = 64 * word; bits != 0; ++id, bits >>= 1) {
-      vtkProp* prop = (bits & 1) != 0 ? this->Slots[id].Prop.GetPointer() : nullptr;
+    for (size_t slot = 64 * word; bits != 0; ++slot, bits >>= 1) {
+      vtkProp* prop = (bits & 1) != 0 ? this->Slots[slot].Prop.GetPointer() : nullptr;
       if (prop) {
         prop->SetRenderTimeMultiplier(0.0);
       }
@@ -275,22 +317,24 @@ void vtkStratusCulledList::ClearTimes()
   }
 }
 
-stratus_status vtkStratusCulledList::Cull(
-  const stratus_frustum& frustum, const Policy& policy, bool initialized, vtkProp** props, int& seen, double& total)
+stratus_status vtkStratusCulledList::Cull(const stratus_frustum& frustum, const Policy& policy, vtkProp** props, int& seen, double& total)
 {
   stratus_octree_cull_options options = {};
   options.exact = policy.Exact;
   options.coverage = 1;
+  options.hold = this->Asked > 0 && this->Asked == this->Order.size(); // all that vtkFrustumCoverageCuller would do is done already
   stratus_octree_visible visible;
   TRY(stratus_octree_cull(this->View, &frustum, &options, &visible));
   this->Mark(visible);
   this->Kept.clear();
   this->Rest.clear();
+  this->Kept.reserve(visible.count);
+  this->Rest.reserve(this->Order.size() - visible.count);
   total = 0.0;
   for (size_t position = 0; position < this->Order.size(); ++position) {
     Entry entry = { props[position], 0.0 };
     double time = GetBit(this->Marks, position) ? this->Time(visible, position, policy, entry.Depth) : 0.0;
-    time *= time > 0.0 && initialized ? entry.Prop->GetRenderTimeMultiplier() : 1.0;
+    time *= time > 0.0 && this->Initialized ? entry.Prop->GetRenderTimeMultiplier() : 1.0;
     if (!(time > 0.0)) {
       this->Rest.push_back(entry.Prop);
       continue;

@@ -30,10 +30,10 @@ public:
   // All of these return a status of the core. After a failure the list is empty and ready for the next call.
   stratus_status Open(stratus_context* context, const stratus_octree_options& options);
   // Makes the octree hold these props with their present bounds. The bounds of new props are always asked for. `ask`: also the bounds that
-  // the watch calls changed. `askAll`: all bounds.
-  stratus_status Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll);
+  // the watch calls changed. `askAll`: all bounds. `initialized`: render times that earlier cullers have set count.
+  stratus_status Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll, bool initialized);
   // Moves the visible props of the last look to the front. `seen` gets their number, `total` the sum of their render times.
-  stratus_status Cull(const stratus_frustum& frustum, const Policy& policy, bool initialized, vtkProp** props, int& seen, double& total);
+  stratus_status Cull(const stratus_frustum& frustum, const Policy& policy, vtkProp** props, int& seen, double& total);
   // Writes one polyline per node. `frustum` may be NULL.
   stratus_status Boxes(const stratus_frustum* frustum, vtkPolyData* output) const;
 
@@ -47,8 +47,8 @@ private:
   struct Slot {
     vtkWeakPointer<vtkProp> Prop;
     vtkStratusBoundsWatch::State Watched;
+    uint32_t Id = 0;     // of the octree
     float Share = -1.0f; // of render time, for props without usable bounds; -1: coverage tells it
-    double Bounds[6];
   };
   struct Entry {
     vtkProp* Prop;
@@ -57,8 +57,10 @@ private:
 
   stratus_status Match(vtkProp** props, size_t count, vtkStratusBoundsWatch& watch);
   stratus_status Replace(vtkProp** props, size_t first, size_t oldEnd, size_t newEnd, vtkStratusBoundsWatch& watch);
-  stratus_status Insert(const std::vector<Slot>& slots, const std::vector<size_t>& places, std::vector<uint32_t>& ids);
-  stratus_status Refresh(vtkStratusBoundsWatch& watch, bool askAll);
+  stratus_status Insert(
+    vtkProp** props, size_t count, const std::vector<size_t>& added, vtkStratusBoundsWatch& watch, std::vector<uint32_t>& slots);
+  stratus_status Remove(const std::vector<uint32_t>& gone);
+  stratus_status Refresh(vtkProp** props, vtkStratusBoundsWatch& watch, bool askAll);
   void Mark(const stratus_octree_visible& visible);
   void ClearTimes();
   double Time(const stratus_octree_visible& visible, size_t position, const Policy& policy, double& depth);
@@ -66,10 +68,12 @@ private:
   stratus_octree* Octree = nullptr;
   stratus_octree_view* View = nullptr;
   size_t Asked = 0;
-  std::vector<uint32_t> Order;            // ids in the order of the renderer's list
+  bool Initialized = false;
+  std::vector<uint32_t> Order;            // slots in the order of the renderer's list
   std::vector<uint32_t> Positions;        // in Order, by id
-  std::vector<Slot> Slots;                // by id
-  std::vector<uint64_t> Seen, SeenBefore; // one bit per id: the render time is not 0
+  std::vector<Slot> Slots;                // one a prop, and some free ones
+  std::vector<uint32_t> Free;             // slots
+  std::vector<uint64_t> Seen, SeenBefore; // one bit per slot: the render time is not 0
   std::vector<uint64_t> Marks;            // one bit per position: the octree finds the prop visible
   std::vector<uint32_t> Ranks;            // by position, if marked: the index among the visible
   std::vector<Entry> Kept;

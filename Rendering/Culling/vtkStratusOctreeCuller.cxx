@@ -226,14 +226,14 @@ stratus_status vtkStratusOctreeCuller::Internals::Cull(vtkStratusOctreeCuller* s
   }
   const vtkMTimeType modified = self->GetMTime();
   if (status == STRATUS_OK) {
-    status = served.List.Look(propList, listLength, this->Watch, !self->StaticProps, modified != served.Asked);
+    status = served.List.Look(propList, listLength, this->Watch, !self->StaticProps, modified != served.Asked, initialized);
     served.Asked = modified;
     self->NumberOfPropsAsked = static_cast<vtkIdType>(served.List.GetNumberOfPropsAsked());
   }
   if (status == STRATUS_OK) {
     const int sign = self->SortingStyle == SORT_NONE ? 0 : self->SortingStyle == SORT_FRONT_TO_BACK ? 1 : -1;
     const vtkStratusCulledList::Policy policy = { self->MinimumCoverage, self->MaximumCoverage, sign, self->Exact };
-    status = served.List.Cull(frustum, policy, initialized, propList, listLength, total);
+    status = served.List.Cull(frustum, policy, propList, listLength, total);
   }
   if (status != STRATUS_OK) {
     served.List.Close();

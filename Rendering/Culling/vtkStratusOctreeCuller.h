@@ -8,7 +8,9 @@
  * frustum's border runs (Li & Huang 2024). It asks an actor for its bounds only after one of their sources was modified: the actor, its
  * mapper, the data, or any algorithm upstream. The sources are known of a vtkActor with a vtkPolyDataMapper or a vtkDataSetMapper, but not
  * of derived classes; all other props (volumes, assemblies, followers ...) are asked in every frame. So a prop that was added, moved,
- * hidden, removed or given new data is right in the next frame, visible or not.
+ * hidden, removed or given new data is right in the next frame, visible or not. A frame visits a prop for its bounds or, in the frame
+ * after, for their sources, not both; and a frame that asks all props, such as the first, splits no node. So no frame does much more than
+ * the vtkFrustumCoverageCuller does in every frame.
  *
  * A prop is kept if its box reaches into each of the camera's six half-spaces, with the window widened by Margin pixels. Props without
  * bounds and props with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
@@ -170,8 +172,8 @@ public:
   /**
    * Writes the nodes of a renderer's octree, each as one polyline in world coordinates, parents before children. Cell data: "Level" (int, 0
    * at the root; the scalars), "Visibility" (unsigned char: 0 outside the camera's frustum, 1 at its border, 2 inside), "Split" (unsigned
-   * char) and "Objects" (vtkIdType: props in the node's own list). Returns false and leaves the output unchanged for a renderer that this
-   * culler has not served.
+   * char) and "Objects" (vtkIdType: props in the node's own list). Until a frame does not ask all props, it is one node without extent.
+   * Returns false and leaves the output unchanged for a renderer that this culler has not served.
    */
   bool GetBoxes(vtkRenderer* renderer, vtkPolyData* output);
 

@@ -90,7 +90,9 @@ static size_t see(
 {
   double inside[3];
   const stratus_frustum frustum = random_frustum(context, random, s->scale, inside);
-  const stratus_octree_cull_options options = { .exact = (int)random_below(random, 2), .coverage = (int)random_below(random, 2) };
+  const stratus_octree_cull_options options = {
+    .exact = (int)random_below(random, 2), .coverage = (int)random_below(random, 2), .hold = random_below(random, 4) == 0
+  };
   stratus_octree_visible ours, theirs;
   bool shown[OBJECTS_MOST] = { false };
   size_t seen = 0;

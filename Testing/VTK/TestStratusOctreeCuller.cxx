@@ -294,8 +294,11 @@ void TestBoxes()
   w.Renderer->GetActiveCamera()->SetPosition(5, 5, 9);
   w.Renderer->GetActiveCamera()->SetFocalPoint(9, 5, 0);
   w.Renderer->GetActiveCamera()->SetClippingRange(0.1, 100);
-  w.Draw();
   vtkNew<vtkPolyData> boxes;
+  w.Draw();
+  CHECK(w.Culler->GetNumberOfNodes(w.Renderer) == 1, "a frame that asks all props splits %d nodes",
+    int(w.Culler->GetNumberOfNodes(w.Renderer)));
+  w.Draw();
   CHECK(w.Culler->GetBoxes(w.Renderer, boxes), "no boxes");
   CHECK(boxes->GetNumberOfCells() == w.Culler->GetNumberOfNodes(w.Renderer) && boxes->GetNumberOfCells() > 8, "%d boxes",
     int(boxes->GetNumberOfCells()));

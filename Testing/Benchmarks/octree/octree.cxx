@@ -37,7 +37,9 @@ cull_ms: median over a path's frames, from a tree that has not been looked at; c
 processor time, else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own
 size. nodes, bytes, depth: at the path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to the
 depth that the pixel one reached. visible: mean of the frames. With actors cull_ms is the whole of Cull(), its look for changes included,
-and frame_ms the median of up to 24 frames of the path, 512 x 384; frame_best_ms, frame_worst_ms: the fastest and the slowest of them.
+cull_first_ms that of a culler's first frame, and frame_ms the median of up to 24 frames of the path, 512 x 384; frame_best_ms,
+frame_worst_ms: the fastest and the slowest of them; frame_cpu_ms, frame_cpu_worst_ms: processor time of all threads, median and most.
+Methods take turns frame by frame.
 added_bytes: of the tree, in percent of what a list of its objects takes. wrong_culls, false_keeps (percent of what was kept): against
 faces cut by the planes, at 5 frames.
 )";

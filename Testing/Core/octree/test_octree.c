@@ -67,7 +67,7 @@ static void every_tree_shows_what_the_linear_list_shows(void** state)
     for (int frame = 0; frame < 30; ++frame) {
       double inside[3];
       const stratus_frustum frustum = random_frustum(context, &random, scale, inside);
-      const stratus_octree_cull_options exact = { .exact = frame % 2 };
+      const stratus_octree_cull_options exact = { .exact = frame % 2, .hold = frame % 5 == 3 };
       stratus_octree_visible a, b;
       assert_int_equal(stratus_octree_cull(view, &frustum, &exact, &a), STRATUS_OK);
       assert_int_equal(stratus_octree_cull(all, &frustum, &exact, &b), STRATUS_OK);

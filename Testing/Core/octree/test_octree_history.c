@@ -67,7 +67,7 @@ static void change(stratus_octree* tree, mirror* m, uint32_t* random)
 static void assert_shows(stratus_octree_view* view, const mirror* m, stratus_context* context, uint32_t* random, int touching)
 {
   const stratus_frustum frustum = random_frustum(context, random, 1.0, NULL);
-  const stratus_octree_cull_options options = { .exact = touching };
+  const stratus_octree_cull_options options = { .exact = touching, .hold = random_below(random, 4) == 0 };
   stratus_octree_visible visible;
   assert_int_equal(stratus_octree_cull(view, &frustum, &options, &visible), STRATUS_OK);
   uint32_t* ids = sorted_ids(&visible);
@@ -243,6 +243,55 @@ static void queries_find_what_loops_find(void** state)
   stratus_context_destroy(context);
 }
 
+/* A call that holds the tree neither splits nor merges a node, and sees what the next one sees, which splits them. */
+static void held_trees_stay_as_they_are(void** state)
+{
+  enum { COUNT = 2000 };
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  const stratus_octree_cull_options hold = { .hold = 1 };
+  for (int stop = STRATUS_OCTREE_STOP_PIXELS; stop <= STRATUS_OCTREE_STOP_STATIC; ++stop) {
+    const stratus_octree_options options = small_leaves(STRATUS_OCTREE_ENCLOSING, (stratus_octree_stop)stop);
+    stratus_octree* tree = NULL;
+    stratus_octree_view* view = NULL;
+    double(*boxes)[6] = malloc(COUNT * sizeof *boxes);
+    uint32_t *ids = malloc(COUNT * sizeof *ids), random = 3;
+    for (int i = 0; i < COUNT; ++i) {
+      random_bounds(&random, 1.0, boxes[i]);
+    }
+    assert_int_equal(stratus_octree_create(context, &options, &tree), STRATUS_OK);
+    assert_int_equal(stratus_octree_view_create(tree, &view), STRATUS_OK);
+    assert_int_equal(stratus_octree_insert(tree, boxes[0], COUNT, ids), STRATUS_OK);
+    uint64_t splits = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      const stratus_frustum frustum = random_frustum(context, &random, 1.0, NULL);
+      stratus_octree_visible held, free_to_split;
+      stratus_octree_statistics before, after;
+      stratus_octree_get_statistics(tree, &before);
+      assert_int_equal(stratus_octree_cull(view, &frustum, &hold, &held), STRATUS_OK);
+      stratus_octree_get_statistics(tree, &after);
+      assert_int_equal(held.splits + held.collapses + held.objects_handed_down, 0);
+      assert_memory_equal(&before, &after, sizeof before);
+      uint32_t* seen = sorted_ids(&held);
+      const size_t count = held.count;
+      assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &free_to_split), STRATUS_OK);
+      assert_int_equal(free_to_split.count, count);
+      uint32_t* expected = sorted_ids(&free_to_split);
+      assert_memory_equal(seen, expected, count * sizeof *seen);
+      splits += free_to_split.splits;
+      free(seen);
+      free(expected);
+    }
+    assert_true(splits > 8);
+    assert_int_equal(stratus_octree_check(tree), STRATUS_OK);
+    stratus_octree_view_destroy(view);
+    stratus_octree_destroy(tree);
+    free(boxes);
+    free(ids);
+  }
+  stratus_context_destroy(context);
+}
+
 int test_octree_history(void)
 {
   const struct CMUnitTest tests[] = {
@@ -250,6 +299,7 @@ int test_octree_history(void)
     cmocka_unit_test(changes_of_a_loose_tree_of_few_levels),
     cmocka_unit_test(changes_of_a_touching_tree),
     cmocka_unit_test(queries_find_what_loops_find),
+    cmocka_unit_test(held_trees_stay_as_they_are),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
