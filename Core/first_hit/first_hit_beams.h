@@ -62,25 +62,24 @@ typedef struct beam_brick {
 /* Finds the axis and the octant of the chunk's rays from `first` on. Returns how many live, or -1 unless these have the same. */
 static inline int beam_direction(const stratus_hit_chunk* c, int first, hit_beam* beam)
 {
-  int octants_and = 7, octants_or = 0, axes_and = 7, live = 0;
-#pragma omp simd reduction(& : octants_and, axes_and) reduction(| : octants_or) reduction(+ : live)
-  for (int i = first; i < first + BEAM; ++i) {
-    const int lives = c->end[i] >= 0.0f;
-    const int octant = (c->d[0][i] > 0.0f ? 1 : 0) | (c->d[1][i] > 0.0f ? 2 : 0) | (c->d[2][i] > 0.0f ? 4 : 0);
-    const int axes = (fabsf(c->d[0][i]) >= 1.0f ? 1 : 0) | (fabsf(c->d[1][i]) >= 1.0f ? 2 : 0) | (fabsf(c->d[2][i]) >= 1.0f ? 4 : 0);
-    octants_and &= lives ? octant : 7;
-    octants_or |= lives ? octant : 0;
-    axes_and &= lives ? axes : 7;
-    live += lives;
+  int live = 0, up[3] = { 0 }, down[3] = { 0 }, shorter[3] = { 0 };
+  for (int i = first; i < first + BEAM; i += STRATUS_WIDTH) {
+    const vmask lives = v_le(v_set(0.0f), v_load(c->end + i));
+    live += m_count(lives);
+    for (int axis = 0; axis < 3; ++axis) {
+      const vfloat d = v_load(c->d[axis] + i);
+      const vmask rises = v_lt(v_set(0.0f), d);
+      up[axis] |= m_any(lives & rises);
+      down[axis] |= m_any(m_andnot(lives, rises));
+      shorter[axis] |= m_any(lives & v_lt(v_abs(d), v_set(1.0f)));
+    }
   }
-  if (live > 0 && (octants_and != octants_or || axes_and == 0)) {
-    return -1;
-  }
-  beam->octant = octants_or;
-  beam->axis = axes_and & 1 ? 0 : axes_and & 2 ? 1 : 2;
+  beam->axis = !shorter[0] ? 0 : !shorter[1] ? 1 : 2;
+  beam->octant = (up[0] ? 1 : 0) | (up[1] ? 2 : 0) | (up[2] ? 4 : 0);
   beam->across[0] = beam->axis == 0 ? 1 : 0;
   beam->across[1] = beam->axis == 2 ? 1 : 2;
-  return live;
+  const bool mixed = (up[0] && down[0]) || (up[1] && down[1]) || (up[2] && down[2]) || shorter[beam->axis];
+  return live > 0 && mixed ? -1 : live;
 }
 
 /* Places the beam in the field. */
