@@ -98,40 +98,61 @@ static inline void beam_place(const stratus_hit_arguments* a, hit_beam* beam)
   beam->last = (four_int){ p, q, p, q };
 }
 
+/* The least number of a vector's lanes. */
+static inline float beam_lowest(vfloat v)
+{
+#if STRATUS_ISA == 2
+  return _mm512_reduce_min_ps(v);
+#else
+  float x[STRATUS_WIDTH];
+  v_store(x, v);
+  for (int half = STRATUS_WIDTH / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) {
+      x[i] = x[i + half] < x[i] ? x[i + half] : x[i];
+    }
+  }
+  return x[0];
+#endif
+}
+
 /* Finds the borders of a beam. Returns false if it would be wide. */
 static inline bool beam_borders(const stratus_hit_arguments* a, const stratus_hit_chunk* c, hit_beam* beam)
 {
   const float cell = 1.0f / STRATUS_BRICK;
   const int m = beam->axis, first = beam->first;
-  float base[3], sign[3], begin = INFINITY, end = 0.0f;
+  float base[3], sign[3];
   for (int axis = 0; axis < 3; ++axis) {
     sign[axis] = beam->up[axis] ? 1.0f : -1.0f;
     base[axis] = (float)(beam->up[axis] ? -(a->at[axis] * STRATUS_BRICK) : (a->at[axis] + a->cells[axis]) * STRATUS_BRICK);
   }
-  const float *const o = c->o[m] + first, *const length = c->end + first;
-#pragma omp simd reduction(min : begin) reduction(max : end)
-  for (int i = 0; i < BEAM; ++i) {
-    const float from = base[m] + sign[m] * o[i];
-    begin = length[i] >= 0.0f && from < begin ? from : begin;
-    end = length[i] >= 0.0f && from + length[i] > end ? from + length[i] : end;
+  const vfloat most = v_set(INFINITY), least = v_set(-INFINITY);
+  vfloat begins = most, ends = least, ahead[BEAM_PARTS]; /* how far a ray begins along the axis */
+  vmask lives[BEAM_PARTS];
+  for (int part = 0; part < BEAM_PARTS; ++part) {
+    const vfloat length = v_load(c->end + first + part * STRATUS_WIDTH);
+    ahead[part] = v_set(base[m]) + v_set(sign[m]) * v_load(c->o[m] + first + part * STRATUS_WIDTH);
+    lives[part] = v_le(v_set(0.0f), length);
+    begins = v_min(begins, v_select(lives[part], ahead[part], most));
+    ends = v_max(ends, v_select(lives[part], ahead[part] + length, least));
   }
-  begin = begin > 0.0f ? begin : 0.0f;
+  const float begin = fmaxf(beam_lowest(begins), 0.0f), end = -beam_lowest(v_set(0.0f) - ends);
   beam->begin = begin * cell;
   beam->end = end * cell < (float)a->cells[m] ? end * cell : (float)a->cells[m];
   bool narrow = true;
   for (int side = 0; side < 2; ++side) {
     const int n = beam->across[side];
-    const float *const p = c->o[n] + first, *const d = c->d[n] + first;
-    float lo = INFINITY, hi = -INFINITY, lo_slope = INFINITY, hi_slope = 0.0f;
-#pragma omp simd reduction(min : lo, lo_slope) reduction(max : hi, hi_slope)
-    for (int i = 0; i < BEAM; ++i) {
-      const bool lives = length[i] >= 0.0f;
-      const float slope = sign[n] * d[i], at = base[n] + sign[n] * p[i] - (base[m] + sign[m] * o[i] - begin) * slope;
-      lo = lives && at < lo ? at : lo;
-      hi = lives && at > hi ? at : hi;
-      lo_slope = lives && slope < lo_slope ? slope : lo_slope;
-      hi_slope = lives && slope > hi_slope ? slope : hi_slope;
+    vfloat low = most, high = least, low_slope = most, high_slope = least;
+    for (int part = 0; part < BEAM_PARTS; ++part) {
+      const int i = first + part * STRATUS_WIDTH;
+      const vfloat slope = v_set(sign[n]) * v_load(c->d[n] + i);
+      const vfloat at = v_set(base[n]) + v_set(sign[n]) * v_load(c->o[n] + i) - (ahead[part] - v_set(begin)) * slope;
+      low = v_min(low, v_select(lives[part], at, most));
+      high = v_max(high, v_select(lives[part], at, least));
+      low_slope = v_min(low_slope, v_select(lives[part], slope, most));
+      high_slope = v_max(high_slope, v_select(lives[part], slope, least));
     }
+    const float lo = beam_lowest(low), hi = -beam_lowest(v_set(0.0f) - high), lo_slope = beam_lowest(low_slope),
+                hi_slope = -beam_lowest(v_set(0.0f) - high_slope);
     /* A border's position is computed in a few roundings more than a ray's. */
     beam->border[side] = (lo - 2.0f * a->slack) * cell;
     beam->border[side + 2] = (hi + 2.0f * a->slack) * cell;
@@ -403,9 +424,8 @@ static inline void beam_store(const hit_beam* beam, const beam_rays* rays, int l
   const vint zero = vi_set(0);
   const int last = beam->first + BEAM, share = live > 0 ? looks / live : 0;
   int i = beam->first;
-#pragma omp simd
-  for (int ray = beam->first; ray < last; ++ray) {
-    c->visited[ray] = c->end[ray] >= 0.0f ? share : 0;
+  for (int ray = beam->first; ray < last; ray += STRATUS_WIDTH) {
+    vi_store(c->visited + ray, vi_select(v_le(v_set(0.0f), v_load(c->end + ray)), vi_set(share), zero));
   }
   while (i < last - 1 && !(c->end[i] >= 0.0f)) {
     ++i;
