@@ -4,6 +4,7 @@
 #ifndef STRATUS_BASE_H
 #define STRATUS_BASE_H
 
+#include "build_report.h"
 #include "cache_folder.h"
 #include "stratus/camera.h"
 
@@ -19,6 +20,7 @@ struct stratus_context {
   stratus_device* device; /* NULL: the host draws */
   int isa;                /* best instruction set that host code may use: 2 AVX-512, 1 AVX2, 0 any; tests lower it */
   stratus_program_statistics programs;
+  stratus_build_report report;
   char program_folder[STRATUS_CACHE_PATH]; /* of built OpenCL programs; "": they are not kept */
   char device_name[256];
   char message[1024];

@@ -240,8 +240,10 @@ stratus_status stratus_device_run(
   for (unsigned d = 0; d < dimensions && d < 3; ++d) {
     rounded[d] = (global[d] + local[d] - 1) / local[d] * local[d];
   }
-  return CALL(context, device, "clEnqueueNDRangeKernel",
-    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL));
+  TRY(CALL(context, device, "clEnqueueNDRangeKernel",
+    clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL)));
+  ++context->report.launched;
+  return STRATUS_OK;
 }
 
 stratus_status stratus_device_launch(stratus_context* context, const char* source, const char* defines, const char* name,

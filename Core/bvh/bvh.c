@@ -73,6 +73,7 @@ stratus_status stratus_bvh_create(
   void* pairs = NULL;
 
   TRY(check_input(context, boxes, count, options, bvh));
+  const stratus_stage stage = stratus_stage_begin(context);
   build.max_depth = options->max_depth;
   TRY_CLEANUP(stratus_bvh_sort_boxes(&build, boxes));
   if (count > 1) {
@@ -85,6 +86,7 @@ stratus_status stratus_bvh_create(
   stratus_release(context, build.codes); /* the layout does not use them, and it needs memory */
   build.codes = NULL;
   TRY_CLEANUP(stratus_bvh_layout(&build, options->leaf_boxes, bvh));
+  stratus_stage_end(context, &stage, "hierarchy", bvh->node_count * sizeof *bvh->nodes + count * sizeof *bvh->order);
 
 cleanup:
   stratus_release(context, build.boxes);

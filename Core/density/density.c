@@ -78,6 +78,7 @@ stratus_status stratus_density_create(
   stratus_context* context, const stratus_brick* bricks, int64_t count, double bandwidth, int exact, stratus_density** out)
 {
   void* memory;
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "density", 0.0));
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_density), &memory));
   stratus_density* density = memory;
@@ -86,6 +87,7 @@ stratus_status stratus_density_create(
   density->exact = exact;
   stratus_status status = fill_density(context, bricks, count, density);
   if (status == STRATUS_OK) {
+    stratus_stage_end(context, &stage, "density", (size_t)(exact ? density->start[count] : count) * sizeof *density->of);
     status = stratus_progress(context, "density", 1.0);
   }
   if (status != STRATUS_OK) {

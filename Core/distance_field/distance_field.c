@@ -126,6 +126,14 @@ cleanup:
   return status;
 }
 
+static size_t bytes_of(const stratus_field* field)
+{
+  const size_t voxels = (size_t)field->n[0] * (size_t)field->n[1] * (size_t)field->n[2];
+  const size_t words = (size_t)field->set.n[1] * (size_t)field->set.n[2] * (size_t)field->set.words;
+  return (field->values ? voxels * (size_t)field->bytes : 0) + (field->nearest ? voxels * sizeof *field->nearest : 0) +
+    words * sizeof *field->set.bits;
+}
+
 stratus_status stratus_field_create(stratus_context* context, const stratus_voxels* voxels, const stratus_field_options* options,
   stratus_field** out, stratus_field_report* report)
 {
@@ -156,7 +164,9 @@ stratus_status stratus_field_create(stratus_context* context, const stratus_voxe
   field->is_signed = options->is_signed;
   field->effective = voxels->count;
   memcpy(field->n, n, sizeof field->n);
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY_CLEANUP(build(context, voxels, options, count, field, &told));
+  stratus_stage_end(context, &stage, "distance field", bytes_of(field));
   TRY_CLEANUP(stratus_progress(context, "distance field", 1.0));
   told.build_ms = stratus_now_ms() - start;
   if (report) {

@@ -208,9 +208,13 @@ stratus_status stratus_partition_create(
   partition->context = context;
   partition->options = options ? *options : defaults;
   stratus_status status = STRATUS_OK;
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY_CLEANUP(take_mesh(partition, mesh));
   TRY_CLEANUP(cut_levels(partition));
   TRY_CLEANUP(make_result(partition));
+  stratus_stage_end(context, &stage, "partition",
+    (size_t)partition->cell_count * (4 * sizeof *partition->vertices + sizeof *partition->cells + sizeof *partition->leaf) +
+      (size_t)partition->point_count * 3 * sizeof *partition->points + (size_t)partition->node_count * sizeof *partition->tree);
   *out = partition;
   return STRATUS_OK;
 

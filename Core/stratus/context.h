@@ -81,6 +81,27 @@ typedef struct stratus_program_statistics {
 /* Fills in the context's statistics; zeros for NULL. */
 STRATUS_API void stratus_context_get_programs(const stratus_context* context, stratus_program_statistics* statistics);
 
+/* A stage of building: all that was done under one name at one place since the report was started. */
+typedef struct stratus_build_stage {
+  /* "value ranges", "occupancy", "distance map", "effective voxels", "density", "tree shape", "tree leaves" (bricks and fields),
+   * "hierarchy", "distance field", "partition", "visibility order", "visibility signs", "visibility peeling". A constant. */
+  const char* name;
+  const char* where; /* stratus_context_device() if the device ran kernels for it, else "host"; valid as long as the context */
+  double ms;         /* on the clock, without that of stages within it; a program that is compiled for it counts */
+  uint64_t bytes;    /* of what it made */
+  uint64_t kernels;  /* launched; 0 on the host */
+} stratus_build_stage;
+
+/* A report has no more stages than this. */
+#define STRATUS_BUILD_STAGES_MAX 32
+
+/* Starts the context's report anew. All later calls that create value ranges, occupancy, distance maps, voxels, trees, distance fields,
+ * partitions and visibility orders, or sort these, add to it; what fails does not. A new context's report is empty. Takes NULL. */
+STRATUS_API void stratus_context_start_build_report(stratus_context* context);
+/* Copies the report's first `capacity` stages, in the order in which they first ended: a stage comes behind those within it. Returns the
+ * number of all its stages; 0 for NULL. stages may be NULL. */
+STRATUS_API int stratus_context_get_build_report(const stratus_context* context, stratus_build_stage* stages, int capacity);
+
 /* Returns the number of OpenCL devices of all platforms, in the order in which the loader lists them; 0 if there is no platform. */
 STRATUS_API int stratus_device_count(void);
 /* Copies the name of device `index`, 0..count-1, cut to `capacity` bytes. A larger index gives STRATUS_NO_DEVICE. */

@@ -155,6 +155,7 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
   if (options->method >= STRATUS_TREE_SAH) {
     return hierarchy(context, voxels, options, tree);
   }
+  const stratus_stage shape_stage = stratus_stage_begin(context);
   if (options->method == STRATUS_TREE_DISTANCE || options->method == STRATUS_TREE_OCTANT) {
     TRY_CLEANUP(whole_shape(context, voxels, &shape));
   } else {
@@ -164,7 +165,11 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
     }
     TRY_CLEANUP(stratus_hybrid_tree_shape(context, voxels, &capped, &shape, &tree->statistics));
   }
+  stratus_stage_end(
+    context, &shape_stage, "tree shape", shape.node_count * sizeof *shape.nodes + (size_t)voxels->brick_count * sizeof *shape.order);
+  const stratus_stage leaves_stage = stratus_stage_begin(context);
   TRY_CLEANUP(fill_leaves(context, voxels, &shape, tree));
+  stratus_stage_end(context, &leaves_stage, "tree leaves", stratus_tree_memory(tree));
 
 cleanup:
   stratus_release(context, shape.nodes);

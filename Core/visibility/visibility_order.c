@@ -127,6 +127,7 @@ stratus_status stratus_visibility_order_create(
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "order is NULL");
   }
   const double begin = stratus_now_ms();
+  const stratus_stage stage = stratus_stage_begin(context);
   void* memory = NULL;
   TRY(stratus_mesh_check(context, mesh));
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_visibility_order), &memory));
@@ -145,6 +146,7 @@ stratus_status stratus_visibility_order_create(
     return status;
   }
   order->build_ms = stratus_now_ms() - begin;
+  stratus_stage_end(context, &stage, "visibility order", (size_t)order->bytes);
   *out = order;
   return STRATUS_OK;
 }
@@ -289,16 +291,20 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
     .bytes = order->bytes,
     .build_ms = order->build_ms };
   const double begin = stratus_now_ms();
+  const stratus_stage signs_stage = stratus_stage_begin(context);
   if (stratus_order_signs_on_device(order)) {
     TRY(stratus_order_find_signs_on_device(order, &view, &found.exact_signs));
   } else {
     found.exact_signs = stratus_order_find_signs(order, &view);
   }
+  stratus_stage_end(context, &signs_stage, "visibility signs", (size_t)order->cell_count * sizeof *order->state);
   const double signs_end = stratus_now_ms();
   TRY(stratus_progress(context, "visibility order", 0.5));
+  const stratus_stage peel_stage = stratus_stage_begin(context);
   const bool leaves_changed = stratus_order_sort_leaves(order, &view), gaps = order->gap_begin[order->leaf_count] > 0;
   if (leaves_changed || !sorted || order->relations_changed || gaps || order->result.forced > 0) {
     peel_leaves(order, peeling, &found);
+    stratus_stage_end(context, &peel_stage, "visibility peeling", (size_t)order->cell_count * sizeof *order->cells);
   } else { /* all relations are those of the last view, and there are no gaps, where relations are not compared */
     found.reused = 1;
     found.layers = order->result.layers;

@@ -79,6 +79,7 @@ stratus_status stratus_distance_map_create(
       context, STRATUS_INVALID_ARGUMENT, "distance kind %d outside %d..%d", (int)kind, STRATUS_DISTANCE_BLOCK, STRATUS_DISTANCE_OCTANT);
   }
   const size_t maps = kind == STRATUS_DISTANCE_OCTANT ? 8 : 1;
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "distance map", 0.0));
   TRY(stratus_allocate_zero(context, 1, sizeof *map, &memory));
   map = memory;
@@ -89,6 +90,7 @@ stratus_status stratus_distance_map_create(
   TRY_CLEANUP(allocate_map(context, map, maps));
   TRY_CLEANUP(fill_map(context, occupancy, map));
   fill_padding(map, maps);
+  stratus_stage_end(context, &stage, "distance map", map->bytes_size);
   TRY_CLEANUP(stratus_progress(context, "distance map", 1.0));
   *out = map;
   map = NULL;

@@ -96,6 +96,11 @@ static void test_rows(
   }
 }
 
+static void end_stage(stratus_context* context, const stratus_stage* stage, const stratus_occupancy* occupancy)
+{
+  stratus_stage_end(context, stage, "occupancy", (size_t)(occupancy->blocks[0] * occupancy->blocks[1] * occupancy->blocks[2]));
+}
+
 static stratus_status create_empty(stratus_context* context, const int64_t blocks[3], int block_size, stratus_occupancy** out)
 {
   void* memory;
@@ -120,6 +125,7 @@ stratus_status stratus_occupancy_build(
   stratus_status status = STRATUS_OK;
   stratus_occupancy* occupancy = NULL;
 
+  const stratus_stage stage = stratus_stage_begin(context);
   gaps = gaps && stratus_shown_meets(shown, ranges->whole_lo, ranges->whole_hi);
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
@@ -129,6 +135,7 @@ stratus_status stratus_occupancy_build(
   } else {
     test_rows(context, ranges, shown, gaps, occupancy);
   }
+  end_stage(context, &stage, occupancy);
   TRY_CLEANUP(stratus_progress(context, "occupancy", 1.0));
   *out = occupancy;
   occupancy = NULL;
@@ -202,6 +209,7 @@ stratus_status stratus_occupancy_create_between(
   }
   const stratus_criterion criterion = { .lower = lower, .upper = upper };
   TRY(stratus_criterion_check(context, &criterion));
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
   find_ends(ranges, lower, upper, &first, &last);
@@ -211,6 +219,7 @@ stratus_status stratus_occupancy_create_between(
     occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
   }
   test_rows(context, NULL, NULL, false, occupancy); /* updates the count and the bounds */
+  end_stage(context, &stage, occupancy);
   const stratus_status status = stratus_progress(context, "occupancy", 1.0);
   if (status != STRATUS_OK) {
     stratus_occupancy_destroy(occupancy);

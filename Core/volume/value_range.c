@@ -348,6 +348,7 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   ranges->wide = stratus_type_is_wide(volume->type);
   ranges->integer = stratus_type_is_integer(volume->type);
 
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));
   TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
@@ -360,6 +361,8 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
     flag_hidden(volume, hidden, ranges);
   }
   reduce_whole(context, ranges);
+  stratus_stage_end(context, &stage, "value ranges",
+    (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]) * (sizeof *ranges->lo + sizeof *ranges->hi + sizeof *ranges->gaps));
   TRY_CLEANUP(stratus_progress(context, "value ranges", 1.0));
   *out = ranges;
   ranges = NULL;

@@ -156,6 +156,11 @@ void stratus_voxels_measure(stratus_voxels* voxels)
   }
 }
 
+void stratus_voxels_end_stage(const stratus_voxels* voxels, const stratus_stage* stage)
+{
+  stratus_stage_end(voxels->context, stage, "effective voxels", (size_t)voxels->brick_count * sizeof *voxels->bricks);
+}
+
 /* ---------------------------------------------------------------- queries */
 
 void stratus_voxels_destroy(stratus_voxels* voxels)

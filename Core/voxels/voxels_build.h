@@ -15,5 +15,7 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
 stratus_status stratus_voxels_take_masks(stratus_voxels* voxels, const uint64_t* masks);
 /* Sets each brick's count, and the total count and bounds, from bricks that have their places and masks. */
 void stratus_voxels_measure(stratus_voxels* voxels);
+/* Ends the stage that made the set. */
+void stratus_voxels_end_stage(const stratus_voxels* voxels, const stratus_stage* stage);
 
 #endif

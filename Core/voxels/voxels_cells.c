@@ -74,9 +74,11 @@ stratus_status stratus_voxels_create_cells(
   if (!out) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "voxels is NULL");
   }
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY_CLEANUP(stratus_value_range_create(context, volume, STRATUS_BRICK, &ranges));
   TRY_CLEANUP(stratus_volume_hash(context, volume, &hash));
   TRY_CLEANUP(create_from_ranges(context, volume, ranges, criterion, hash, out));
+  stratus_voxels_end_stage(*out, &stage);
 cleanup:
   stratus_value_range_destroy(ranges);
   return status;

@@ -249,6 +249,7 @@ stratus_status stratus_voxels_create_list(
     return STRATUS_INVALID_ARGUMENT;
   }
   TRY(check_list(context, dimensions, positions, count, out));
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_voxels_create_empty(context, dimensions, &voxels));
   const int threads = stratus_threads_for(context, VOXEL_NS * (double)list.count);
   const int64_t outside = first_outside(voxels, &list, threads);
@@ -264,6 +265,7 @@ stratus_status stratus_voxels_create_list(
   const size_t field = (size_t)(voxels->bricks_along[0] * voxels->bricks_along[1] * voxels->bricks_along[2]);
   const bool sparse = field > FIELD_BYTES_MAX / sizeof(uint32_t) && field / FIELD_BRICKS_A_VOXEL > count;
   TRY_CLEANUP(sparse ? take_by_sorting(voxels, &list) : take_by_field(voxels, &list, threads));
+  stratus_voxels_end_stage(voxels, &stage);
   *out = voxels;
   voxels = NULL;
 cleanup:

@@ -246,6 +246,7 @@ stratus_status stratus_voxels_create(
   if (!out) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "voxels is NULL");
   }
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "effective voxels", 0.0));
   TRY(stratus_voxels_create_empty(context, volume->dimensions, &voxels));
   stratus_volume_index_to_world(volume, voxels->index_to_world);
@@ -257,6 +258,7 @@ stratus_status stratus_voxels_create(
   s.masks = masks;
   TRY_CLEANUP(scan_rows(context, &s, &voxels->origin.hash));
   TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
+  stratus_voxels_end_stage(voxels, &stage);
   TRY_CLEANUP(stratus_progress(context, "effective voxels", 1.0));
   *out = voxels;
   voxels = NULL;

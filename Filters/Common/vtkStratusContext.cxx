@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusContext.h"
 
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
 #include <utility>
 
 vtkStratusContext::vtkStratusContext(std::function<bool(double)> progress) : Progress(std::move(progress)) {}
@@ -45,4 +51,41 @@ bool vtkStratusContext::Create(const std::string& device, int threads, std::stri
   this->Device = device;
   this->Threads = threads;
   return true;
+}
+
+bool vtkStratusContext::Prepare(int threads, std::string& error)
+{
+  return (this->Context && this->Threads == threads) || this->Create(this->Device, threads, error);
+}
+
+bool vtkStratusContext::SetDevice(const char* device, int threads, std::string& error)
+{
+  const std::string name = device && *device ? device : "auto";
+  return name != this->Device && this->Create(name, threads, error);
+}
+
+void vtkStratusContext::GetBuildReport(vtkTable* table) const
+{
+  stratus_build_stage stages[STRATUS_BUILD_STAGES_MAX];
+  const int count = stratus_context_get_build_report(this->Context, stages, STRATUS_BUILD_STAGES_MAX);
+  vtkNew<vtkStringArray> names, places;
+  vtkNew<vtkDoubleArray> milliseconds;
+  vtkNew<vtkIdTypeArray> bytes, kernels;
+  names->SetName("Stage");
+  places->SetName("Where");
+  milliseconds->SetName("Milliseconds");
+  bytes->SetName("Bytes");
+  kernels->SetName("Kernels");
+  for (int i = 0; i < count; ++i) {
+    names->InsertNextValue(stages[i].name);
+    places->InsertNextValue(stages[i].where);
+    milliseconds->InsertNextValue(stages[i].ms);
+    bytes->InsertNextValue(static_cast<vtkIdType>(stages[i].bytes));
+    kernels->InsertNextValue(static_cast<vtkIdType>(stages[i].kernels));
+  }
+  table->Initialize();
+  for (vtkAbstractArray* column : { static_cast<vtkAbstractArray*>(names), static_cast<vtkAbstractArray*>(places),
+         static_cast<vtkAbstractArray*>(milliseconds), static_cast<vtkAbstractArray*>(bytes), static_cast<vtkAbstractArray*>(kernels) }) {
+    table->AddColumn(column);
+  }
 }

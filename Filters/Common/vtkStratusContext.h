@@ -8,6 +8,8 @@
 #include <functional>
 #include <string>
 
+class vtkTable;
+
 class VTK_STRATUS_PRIVATE vtkStratusContext
 {
 public:
@@ -19,6 +21,13 @@ public:
 
   // Makes a new context for this device and number of threads. On failure the old context stays, and `error` lists the available devices.
   bool Create(const std::string& device, int threads, std::string& error);
+  // Makes a context of the device where there is none, or where its number of threads is another.
+  bool Prepare(int threads, std::string& error);
+  // Takes a device by its name; nullptr and "" are "auto". Returns whether it is another than before; if it does not exist, `error` says
+  // so.
+  bool SetDevice(const char* device, int threads, std::string& error);
+  // Writes the context's report to the table: "Stage", "Where", "Milliseconds", "Bytes", "Kernels".
+  void GetBuildReport(vtkTable* table) const;
   stratus_context* Get() const { return this->Context; }
   const std::string& GetDevice() const { return this->Device; }
   int GetThreads() const { return this->Threads; }

@@ -13,6 +13,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
@@ -42,6 +43,7 @@ public:
   vtkSmartPointer<vtkVolumeProperty> Property;
   vtkNew<vtkImageData> Last; // the last good output
   bool HasLast = false;
+  vtkNew<vtkTable> Report; // of the last good output
   stratus_occupancy* Occupancy = nullptr;
 
 private:
@@ -91,10 +93,11 @@ bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::str
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
   if (!this->Image.SetInput(input, array, association, error) || !this->CheckShown(error) ||
-    (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
+    !this->Context.Prepare(this->Filter->NumberOfThreads, error)) {
     return false;
   }
   stratus_context* context = this->Context.Get();
+  stratus_context_start_build_report(context);
   const stratus_distance_kind kinds[] = { STRATUS_DISTANCE_BLOCK, STRATUS_DISTANCE_FULL, STRATUS_DISTANCE_PAPER, STRATUS_DISTANCE_OCTANT };
   if (stratus_value_range_create(context, &this->Image.GetVolume(), this->Filter->BlockSize, &this->Ranges) != STRATUS_OK ||
     this->MakeOccupancy(context) != STRATUS_OK ||
@@ -102,6 +105,7 @@ bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::str
     error = stratus_context_message(context);
     return false;
   }
+  this->Context.GetBuildReport(this->Report);
   return true;
 }
 
@@ -172,6 +176,32 @@ vtkMTimeType vtkStratusDistanceMapFilter::GetMTime()
   return this->Internal->Property ? std::max(time, this->Internal->Property->GetMTime()) : time;
 }
 
+void vtkStratusDistanceMapFilter::SetDevice(const char* device)
+{
+  std::string error;
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
+    this->Modified();
+  } else if (!error.empty()) {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusDistanceMapFilter::GetDevice()
+{
+  return this->Internal->Context.GetDevice().c_str();
+}
+
+const char* vtkStratusDistanceMapFilter::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->Context.Prepare(this->NumberOfThreads, error) ? stratus_context_device(this->Internal->Context.Get()) : "";
+}
+
+vtkTable* vtkStratusDistanceMapFilter::GetBuildReport()
+{
+  return this->Internal->Report;
+}
+
 const char* vtkStratusDistanceMapFilter::GetKindAsString()
 {
   const char* const names[] = { "block", "full", "paper", "octant" };
@@ -236,5 +266,7 @@ void vtkStratusDistanceMapFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BlockSize: " << this->BlockSize << "\n";
   os << indent << "Kind: " << this->GetKindAsString() << "\n";
   os << indent << "Octant: " << this->Octant << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "OccupiedBlocks: " << this->OccupiedBlocks << "\n";
 }

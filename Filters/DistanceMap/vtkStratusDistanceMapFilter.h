@@ -25,6 +25,7 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkTable;
 class vtkVolumeProperty;
 
 class STRATUSFILTERSDISTANCEMAP_EXPORT vtkStratusDistanceMapFilter : public vtkImageAlgorithm
@@ -92,6 +93,33 @@ public:
 
   //@{
   /**
+   * Set/Get the device that builds: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an OpenCL device
+   * by its number or a part of its name. The output does not depend on it. A device that does not exist is an error that lists the existing
+   * ones, and the previous device and output stay. The host does what has no kernels or does not fit the device, and everything where the
+   * device is a processor. Default "auto".
+   */
+  virtual void SetDevice(const char* device);
+  virtual const char* GetDevice();
+  const char* GetDeviceName(); // the device in use, "" if there is none
+  //@}
+
+  //@{
+  /**
+   * Set/Get the number of threads of the host, 0..1024. 0 takes as many as OpenMP would. The output does not depend on it. Default 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  //@}
+
+  /**
+   * Get how the last output was built: a row for each stage, in the columns "Stage" (string), "Where" (string: the name of the device that
+   * ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes" (vtkIdType: of what the
+   * stage made) and "Kernels" (vtkIdType: how many the device ran). There are no rows before the first output.
+   */
+  vtkTable* GetBuildReport();
+
+  //@{
+  /**
    * Get the number of occupied blocks of the last output.
    */
   vtkGetMacro(OccupiedBlocks, vtkIdType);
@@ -110,6 +138,7 @@ protected:
   int BlockSize = 4;
   int Kind = FULL;
   int Octant = 7;
+  int NumberOfThreads = 0;
   vtkIdType OccupiedBlocks = 0;
 
 private:

@@ -18,6 +18,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
+#include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
@@ -48,6 +49,7 @@ public:
   vtkSmartPointer<vtkVolumeProperty> Property;
   vtkNew<vtkImageData> LastImage; // the last good outputs
   vtkNew<vtkPolyData> LastBoxes;
+  vtkNew<vtkTable> Report; // of the last good outputs
   bool HasLast = false;
   stratus_tree* Tree = nullptr;
   std::string Reason;
@@ -113,17 +115,19 @@ bool vtkStratusHybridTreeFilter::Internals::Build(vtkImageData* input, std::stri
   vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
   stratus_criterion criterion;
   if (!this->Image.SetInput(input, array, association, error) || !this->SetCriterion(criterion, error) ||
-    (!this->Context.Get() && !this->Context.Create("auto", 0, error))) {
+    !this->Context.Prepare(this->Filter->NumberOfThreads, error)) {
     return false;
   }
   stratus_context* context = this->Context.Get();
   const auto create = this->Filter->Purpose == FIRST_HITS ? stratus_voxels_create : stratus_voxels_create_cells;
   const stratus_tree_options options = this->GetOptions();
+  stratus_context_start_build_report(context);
   if (create(context, &this->Image.GetVolume(), &criterion, &this->Voxels) != STRATUS_OK ||
     stratus_tree_create(context, this->Voxels, &options, &this->Tree) != STRATUS_OK) {
     error = stratus_context_message(context);
     return false;
   }
+  this->Context.GetBuildReport(this->Report);
   return true;
 }
 
@@ -182,6 +186,32 @@ vtkMTimeType vtkStratusHybridTreeFilter::GetMTime()
 {
   const vtkMTimeType time = this->Superclass::GetMTime();
   return this->Internal->Property ? std::max(time, this->Internal->Property->GetMTime()) : time;
+}
+
+void vtkStratusHybridTreeFilter::SetDevice(const char* device)
+{
+  std::string error;
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
+    this->Modified();
+  } else if (!error.empty()) {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusHybridTreeFilter::GetDevice()
+{
+  return this->Internal->Context.GetDevice().c_str();
+}
+
+const char* vtkStratusHybridTreeFilter::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->Context.Prepare(this->NumberOfThreads, error) ? stratus_context_device(this->Internal->Context.Get()) : "";
+}
+
+vtkTable* vtkStratusHybridTreeFilter::GetBuildReport()
+{
+  return this->Internal->Report;
 }
 
 const char* vtkStratusHybridTreeFilter::GetMethodAsString()
@@ -271,6 +301,8 @@ void vtkStratusHybridTreeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Bandwidth: " << this->Bandwidth << "\n";
   os << indent << "ExactDensity: " << (this->ExactDensity ? "On" : "Off") << "\n";
   os << indent << "DensityPerNode: " << (this->DensityPerNode ? "On" : "Off") << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Tree: " << this->NumberOfVoxels << " voxels, " << this->NumberOfBricks << " bricks, " << this->NumberOfNodes
      << " nodes, " << this->NumberOfLeaves << " leaves (" << this->NumberOfFieldLeaves << " of distance fields), depth " << this->Depth
      << ", " << this->Bytes << " bytes, cost " << this->SurfaceAreaCost << ", " << this->BuildTime << " ms; " << this->GetReason() << "\n";

@@ -16,6 +16,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -35,6 +36,7 @@ public:
   {
   }
   vtkStratusContext Context;
+  vtkNew<vtkTable> Report; // of the last good output
 };
 
 namespace {
@@ -165,14 +167,39 @@ vtkStratusPartitionFilter::vtkStratusPartitionFilter() : Growth(std::numeric_lim
 
 vtkStratusPartitionFilter::~vtkStratusPartitionFilter() = default;
 
+void vtkStratusPartitionFilter::SetDevice(const char* device)
+{
+  std::string error;
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
+    this->Modified();
+  } else if (!error.empty()) {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusPartitionFilter::GetDevice()
+{
+  return this->Internal->Context.GetDevice().c_str();
+}
+
+const char* vtkStratusPartitionFilter::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->Context.Prepare(this->NumberOfThreads, error) ? stratus_context_device(this->Internal->Context.Get()) : "";
+}
+
+vtkTable* vtkStratusPartitionFilter::GetBuildReport()
+{
+  return this->Internal->Report;
+}
+
 int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputs[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
   std::string error;
   vtkStratusTetrahedra tetrahedra;
-  if (!CheckAttributes(input, error) || !tetrahedra.Set(input, error) ||
-    (!this->Internal->Context.Get() && !this->Internal->Context.Create("host", 0, error))) {
+  if (!CheckAttributes(input, error) || !tetrahedra.Set(input, error) || !this->Internal->Context.Prepare(this->NumberOfThreads, error)) {
     vtkErrorMacro(<< error);
     return 0;
   }
@@ -187,6 +214,7 @@ int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector
   const stratus_mesh mesh = tetrahedra.GetMesh();
   stratus_context* context = this->Internal->Context.Get();
   stratus_partition* partition = nullptr;
+  stratus_context_start_build_report(context);
   const stratus_status status = stratus_partition_create(context, &mesh, &options, &partition);
   if (status != STRATUS_OK) {
     if (status != STRATUS_CANCELLED) {
@@ -194,6 +222,7 @@ int vtkStratusPartitionFilter::RequestData(vtkInformation*, vtkInformationVector
     }
     return 0;
   }
+  this->Internal->Context.GetBuildReport(this->Internal->Report);
   stratus_partition_result cut;
   stratus_partition_get(partition, &cut);
   SetGeometry(cut, output);
@@ -227,6 +256,8 @@ void vtkStratusPartitionFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Imbalance: " << this->Imbalance << "\n";
   os << indent << "Rotations: " << this->Rotations << "\n";
   os << indent << "LeafCells: " << this->LeafCells << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfLeaves: " << this->NumberOfLeaves << "\n";
   os << indent << "LargestLeaf: " << this->LargestLeaf << "\n";
   os << indent << "NumberOfTetrahedra: " << this->NumberOfTetrahedra << "\n";

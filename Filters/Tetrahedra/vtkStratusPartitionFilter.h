@@ -22,6 +22,8 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkTable;
+
 class STRATUSFILTERSTETRAHEDRA_EXPORT vtkStratusPartitionFilter : public vtkUnstructuredGridAlgorithm
 {
 public:
@@ -90,6 +92,32 @@ public:
 
   //@{
   /**
+   * Set/Get the device that cuts: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an OpenCL device
+   * by its number or a part of its name. The output does not depend on it. A device that does not exist is an error that lists the existing
+   * ones, and the previous device and output stay. No stage has kernels: the host cuts. Default "auto".
+   */
+  virtual void SetDevice(const char* device);
+  virtual const char* GetDevice();
+  const char* GetDeviceName(); // the device in use, "" if there is none
+  //@}
+
+  //@{
+  /**
+   * Set/Get the number of threads of the host, 0..1024. 0 takes as many as OpenMP would. The output does not depend on it. Default 0.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  //@}
+
+  /**
+   * Get how the last output was built: a row for each stage, in the columns "Stage" (string), "Where" (string: the name of the device that
+   * ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes" (vtkIdType: of what the
+   * stage made) and "Kernels" (vtkIdType: how many the device ran). There are no rows before the first output.
+   */
+  vtkTable* GetBuildReport();
+
+  //@{
+  /**
    * Get statistics of the last output: the number of leaves, the cells of the largest leaf, and the number of tetrahedra before cutting.
    */
   vtkGetMacro(NumberOfLeaves, int);
@@ -110,6 +138,7 @@ protected:
   double Imbalance = 0.5;
   int Rotations = 0;
   vtkIdType LeafCells = 1024;
+  int NumberOfThreads = 0;
   int NumberOfLeaves = 0;
   vtkIdType LargestLeaf = 0;
   vtkIdType NumberOfTetrahedra = 0;

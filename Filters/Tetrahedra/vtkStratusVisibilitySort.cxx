@@ -10,6 +10,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkTable.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -20,8 +21,15 @@ vtkStandardNewMacro(vtkStratusVisibilitySort);
 class vtkStratusVisibilitySort::Internals
 {
 public:
-  explicit Internals(vtkStratusVisibilitySort* sort) : Sort(sort), Context([](double) { return false; }) {}
-  ~Internals() { this->Clear(); }
+  explicit Internals(vtkStratusVisibilitySort* sort) : Sort(sort), Context([](double) { return false; })
+  {
+    this->Context.OnRelease = [this] { this->Clear(); };
+  }
+  ~Internals()
+  {
+    this->Clear();
+    this->Context.OnRelease = nullptr;
+  }
 
   bool Build(vtkUnstructuredGrid* grid, std::string& error);
   bool Run(std::string& error);
@@ -42,18 +50,19 @@ public:
   vtkMTimeType Built = 0;
   vtkIdType Next = 0, Count = 0;
   vtkNew<vtkIdTypeArray> Cells;
+  vtkNew<vtkTable> Report; // of the last traversal
 };
 
 bool vtkStratusVisibilitySort::Internals::Build(vtkUnstructuredGrid* grid, std::string& error)
 {
-  const bool context_is_right = this->Context.Get() && this->Context.GetThreads() == this->Sort->NumberOfThreads;
-  if (this->Order && context_is_right && this->Grid == grid && this->Built == grid->GetMTime()) {
+  if (!this->Context.Prepare(this->Sort->NumberOfThreads, error)) {
+    return false;
+  }
+  stratus_context_start_build_report(this->Context.Get());
+  if (this->Order && this->Grid == grid && this->Built == grid->GetMTime()) {
     return true;
   }
   this->Clear();
-  if (!context_is_right && !this->Context.Create("host", this->Sort->NumberOfThreads, error)) {
-    return false;
-  }
   if (!this->Mesh.Set(grid, error)) {
     return false;
   }
@@ -102,12 +111,39 @@ bool vtkStratusVisibilitySort::Internals::Run(std::string& error)
     error = stratus_context_message(this->Context.Get());
     return false;
   }
+  this->Context.GetBuildReport(this->Report);
   return true;
 }
 
 vtkStratusVisibilitySort::vtkStratusVisibilitySort() : Internal(new Internals(this)) {}
 
 vtkStratusVisibilitySort::~vtkStratusVisibilitySort() = default;
+
+void vtkStratusVisibilitySort::SetDevice(const char* device)
+{
+  std::string error;
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
+    this->Modified();
+  } else if (!error.empty()) {
+    vtkErrorMacro(<< error);
+  }
+}
+
+const char* vtkStratusVisibilitySort::GetDevice()
+{
+  return this->Internal->Context.GetDevice().c_str();
+}
+
+const char* vtkStratusVisibilitySort::GetDeviceName()
+{
+  std::string error;
+  return this->Internal->Context.Prepare(this->NumberOfThreads, error) ? stratus_context_device(this->Internal->Context.Get()) : "";
+}
+
+vtkTable* vtkStratusVisibilitySort::GetBuildReport()
+{
+  return this->Internal->Report;
+}
 
 void vtkStratusVisibilitySort::InitTraversal()
 {
@@ -155,6 +191,7 @@ void vtkStratusVisibilitySort::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Peeling: " << (this->Peeling == LAYERS ? "layers" : "nearest") << "\n";
+  os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfLeaves: " << this->NumberOfLeaves << "\n";
   os << indent << "NumberOfCycles: " << this->NumberOfCycles << "\n";

@@ -23,6 +23,8 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkTable;
+
 class STRATUSFILTERSTETRAHEDRA_EXPORT vtkStratusVisibilitySort : public vtkVisibilitySort
 {
 public:
@@ -47,6 +49,18 @@ public:
    */
   vtkSetClampMacro(Peeling, int, NEAREST, LAYERS);
   vtkGetMacro(Peeling, int);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the device that finds the signs of faces: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host",
+   * or an OpenCL device by its number or a part of its name. The order does not depend on it. A device that does not exist is an error that
+   * lists the existing ones, and the previous device and order stay. The host does all else, the signs of meshes that are small or do not
+   * fit the device, and everything where the device is a processor. Default "auto".
+   */
+  virtual void SetDevice(const char* device);
+  virtual const char* GetDevice();
+  const char* GetDeviceName(); // the device in use, "" if there is none
   //@}
 
   //@{
@@ -76,6 +90,13 @@ public:
   vtkGetMacro(BuildMilliseconds, double);
   vtkGetMacro(SortMilliseconds, double);
   //@}
+
+  /**
+   * Get the stages of the last traversal: a row for each, in the columns "Stage" (string), "Where" (string: the name of the device that ran
+   * kernels for it, else "host"), "Milliseconds" (double: on the clock), "Bytes" (vtkIdType: of what the stage made) and "Kernels"
+   * (vtkIdType: how many the device ran). There are no rows before the first traversal, nor of what was reused.
+   */
+  vtkTable* GetBuildReport();
 
 protected:
   vtkStratusVisibilitySort();

@@ -48,14 +48,10 @@ void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)
 
 void vtkStratusTetrahedraMapper::SetDevice(const char* device)
 {
-  const std::string name = device && *device ? device : "auto";
-  if (name == this->Internal->Context.GetDevice()) {
-    return;
-  }
   std::string error;
-  if (this->Internal->Context.Create(name, this->NumberOfThreads, error)) {
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
     this->Modified();
-  } else {
+  } else if (!error.empty()) {
     vtkErrorMacro(<< error);
   }
 }

@@ -88,8 +88,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
 {
-  const int threads = this->Mapper->NumberOfThreads;
-  if ((!this->Context.Get() || this->Context.GetThreads() != threads) && !this->Context.Create(this->Context.GetDevice(), threads, error)) {
+  if (!this->Context.Prepare(this->Mapper->NumberOfThreads, error)) {
     return false;
   }
   if (!this->Caster && stratus_tetra_caster_create(this->Context.Get(), &this->Caster) != STRATUS_OK) {

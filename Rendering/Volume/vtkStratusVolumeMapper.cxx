@@ -49,14 +49,10 @@ void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 
 void vtkStratusVolumeMapper::SetDevice(const char* device)
 {
-  const std::string name = device && *device ? device : "auto";
-  if (name == this->Internal->Context.GetDevice()) {
-    return;
-  }
   std::string error;
-  if (this->Internal->SetDevice(name, error)) {
+  if (this->Internal->Context.SetDevice(device, this->NumberOfThreads, error)) {
     this->Modified();
-  } else {
+  } else if (!error.empty()) {
     vtkErrorMacro(<< error);
   }
 }

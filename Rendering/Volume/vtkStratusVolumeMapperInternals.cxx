@@ -56,15 +56,9 @@ bool vtkStratusVolumeMapper::Internals::OnProgress(double fraction)
   return window && window->CheckAbortStatus();
 }
 
-bool vtkStratusVolumeMapper::Internals::SetDevice(const std::string& device, std::string& error)
-{
-  return this->Context.Create(device, this->Mapper->NumberOfThreads, error);
-}
-
 bool vtkStratusVolumeMapper::Internals::PrepareContext(std::string& error)
 {
-  const int threads = this->Mapper->NumberOfThreads;
-  if ((!this->Context.Get() || this->Context.GetThreads() != threads) && !this->Context.Create(this->Context.GetDevice(), threads, error)) {
+  if (!this->Context.Prepare(this->Mapper->NumberOfThreads, error)) {
     return false;
   }
   if (!this->Caster && stratus_ray_caster_create(this->Context.Get(), &this->Caster) != STRATUS_OK) {

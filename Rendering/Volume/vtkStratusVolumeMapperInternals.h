@@ -27,7 +27,6 @@ public:
   // Makes the context and the caster where there are none, or where the number of threads has changed.
   bool PrepareContext(std::string& error);
   // Replaces the device and its context. On failure both stay as they are.
-  bool SetDevice(const std::string& device, std::string& error);
 
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);

@@ -41,6 +41,26 @@ def switches(thing, name, effect):
         check(effect() == (on if value else off), f"Set{name}({value})")
 
 
+def reports(thing, update, stages):
+    """The device's setters, and the report's columns as Python sees them."""
+    errors = []
+    tag = thing.AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    kept = thing.GetNumberOfThreads()
+    clamps(thing, "NumberOfThreads", 0, 1024)
+    thing.SetNumberOfThreads(2)
+    thing.SetDevice("no such device")
+    check(len(errors) == 1 and thing.GetDevice() == "auto", f"no such device is {len(errors)} errors and device {thing.GetDevice()}")
+    thing.SetDevice("host")
+    check(thing.GetDevice() == "host" and thing.GetDeviceName().endswith("2 threads)"), f"the host is {thing.GetDeviceName()}")
+    update()
+    table = thing.GetBuildReport()
+    rows = [[table.GetColumnByName(name).GetValue(i) for name in ("Stage", "Where", "Kernels")] for i in range(table.GetNumberOfRows())]
+    check(rows == [[stage, "host", 0] for stage in stages], f"stages {rows}")
+    thing.RemoveObserver(tag)
+    thing.SetNumberOfThreads(kept)
+    thing.SetDevice("auto")
+
+
 def voxels():
     """Two balls, of which one is twice the other, and scattered voxels between."""
     n = 48
@@ -126,6 +146,8 @@ def trees():
     check(built() != strict and tree.GetPurpose() == tree.RAY_CASTING, "cells and voxels make one tree")
     clamps(tree, "Purpose", tree.RAY_CASTING, tree.FIRST_HITS)
     clamps(tree, "Method", tree.HYBRID, tree.K_MEANS)
+    tree.SetMethodToLBVH()
+    reports(tree, built, ["effective voxels", "hierarchy"])
 
 
 def distances():
@@ -154,6 +176,7 @@ def distances():
     check(0 < filter.GetOccupiedBlocks() < occupied, f"{filter.GetOccupiedBlocks()} of {occupied} blocks below the upper threshold")
     clamps(filter, "Kind", filter.BLOCK, filter.OCTANT)
     clamps(filter, "Octant", 0, 7)
+    reports(filter, blocks, ["value ranges", "occupancy", "distance map"])
 
 
 def grid(dimensions, transform):
@@ -214,6 +237,7 @@ def partitions():
         getattr(cut, "Set" + name)(good)
     errors.clear()
     check(leaves() == 2 and not errors, "and good values are none")
+    reports(cut, leaves, ["partition"])
 
 
 def orders():
@@ -240,7 +264,7 @@ def orders():
     sort.SetPeeling(sort.NEAREST)
     check(order() == nearest, "nearest again")
     clamps(sort, "Peeling", sort.NEAREST, sort.LAYERS)
-    clamps(sort, "NumberOfThreads", 0, 1024)
+    reports(sort, order, ["visibility order", "visibility signs", "visibility peeling"])
 
 
 def culled():

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Measures the stages of building: their time, the bytes of what they make, and the kernels that they launch. */
+#ifndef STRATUS_BUILD_REPORT_H
+#define STRATUS_BUILD_REPORT_H
+
+#include "stratus/context.h"
+
+/* A part of every context. */
+typedef struct stratus_build_report {
+  stratus_build_stage stages[STRATUS_BUILD_STAGES_MAX];
+  int count;
+  uint64_t launched; /* kernels since the context was made, in stages or not */
+  /* Sums over all stages that have ended since the context was made. A stage subtracts what they grew by, for that belongs to the stages
+   * within it. */
+  double ended_ms;
+  uint64_t ended_kernels;
+} stratus_build_report;
+
+/* What the sums were when a stage began. */
+typedef struct stratus_stage {
+  double start_ms, ended_ms;
+  uint64_t launched, ended_kernels;
+} stratus_stage;
+
+/* Begins a stage. One that fails needs no end: it is not reported, and its time and kernels count for the stage around it. */
+stratus_stage stratus_stage_begin(const stratus_context* context);
+/* Ends a stage and adds it to the context's report. name: a constant; one stage has one name in all its calls. bytes: of what it made. */
+void stratus_stage_end(stratus_context* context, const stratus_stage* stage, const char* name, size_t bytes);
+
+#endif
