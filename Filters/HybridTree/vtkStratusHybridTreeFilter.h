@@ -167,6 +167,16 @@ public:
 
   //@{
   /**
+   * Set/Get whether AGGLOMERATIVE takes the sum of a box's edges for the distance of the two clusters in it, instead of its surface area as
+   * published. Default off.
+   */
+  vtkSetClampMacro(AgglomerativeByEdges, vtkTypeBool, 0, 1);
+  vtkGetMacro(AgglomerativeByEdges, vtkTypeBool);
+  vtkBooleanMacro(AgglomerativeByEdges, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
    * Get statistics of the last tree built: voxels that it holds, bricks that hold any, nodes, leaves, leaves of distance fields, depth of
    * the deepest leaf, bytes, cost by the surface area heuristic, build time in milliseconds, and a sentence on what decided its shape.
    */
@@ -209,6 +219,7 @@ protected:
   double Bandwidth = 0.0;
   vtkTypeBool ExactDensity = 0;
   vtkTypeBool DensityPerNode = 0;
+  vtkTypeBool AgglomerativeByEdges = 0;
 
   vtkIdType NumberOfVoxels = 0;
   vtkIdType NumberOfBricks = 0;
