@@ -15,7 +15,7 @@ static std::string method_names()
   for (int i = 0; i < STRATUS_TREE_METHODS; ++i) {
     names += std::string(i ? ", " : "") + stratus_tree_method_name(static_cast<stratus_tree_method>(i));
   }
-  return names;
+  return names + ", ac-edges";
 }
 
 std::string help()
@@ -251,7 +251,8 @@ void set_method(options& o, const std::string&, const std::string& value)
   if (o.command == "render") {
     o.tetra_method = tetra_method_named(value);
   } else {
-    o.method = method_named(value);
+    o.agglomerative_by_edges = value == "ac-edges";
+    o.method = o.agglomerative_by_edges ? STRATUS_TREE_AC : method_named(value);
   }
 }
 

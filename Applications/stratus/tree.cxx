@@ -41,6 +41,7 @@ tree_pointer build(const cli::context& core, const cli::options& o, const cli::i
   const voxels_pointer owner(voxels, &stratus_voxels_destroy);
   stratus_tree_options options = stratus_tree_options_default();
   options.method = o.method;
+  options.agglomerative_by_edges = o.agglomerative_by_edges ? 1 : 0;
   stratus_tree* tree = nullptr;
   core.check(stratus_tree_create(core, voxels, &options, &tree), "tree");
   return tree_pointer(tree, &stratus_tree_destroy);

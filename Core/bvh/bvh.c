@@ -32,6 +32,9 @@ static stratus_status check_input(
   if (options->max_depth < 1 || options->max_depth > 64) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "max_depth %d outside 1..64", options->max_depth);
   }
+  if (options->measure != STRATUS_BVH_SURFACE && options->measure != STRATUS_BVH_EDGES) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "measure %d outside 0..1", (int)options->measure);
+  }
   uint32_t unsound = count;
 #pragma omp parallel for schedule(static) num_threads(context->threads) reduction(min : unsound)
   for (uint32_t i = 0; i < count; ++i) {
@@ -75,6 +78,7 @@ stratus_status stratus_bvh_create(
   TRY(check_input(context, boxes, count, options, bvh));
   const stratus_stage stage = stratus_stage_begin(context);
   build.max_depth = options->max_depth;
+  build.measure = options->measure;
   TRY_CLEANUP(stratus_bvh_sort_boxes(&build, boxes));
   if (count > 1) {
     TRY_CLEANUP(stratus_progress(context, "hierarchy", 0.2));

@@ -42,12 +42,16 @@ typedef struct stratus_box {
   int32_t lo[3], hi[3]; /* [lo, hi) in voxels */
 } stratus_box;
 
+/* Distance of two clusters: the size of their union, as its surface area or the sum of its edges. */
+typedef enum stratus_bvh_measure { STRATUS_BVH_SURFACE, STRATUS_BVH_EDGES } stratus_bvh_measure;
+
 typedef struct stratus_bvh_options {
   stratus_tree_method method; /* STRATUS_TREE_SAH to STRATUS_TREE_KMEANS */
   int leaf_boxes;             /* most boxes in a leaf, 1..64 */
   /* 1..64. A node at this depth becomes a leaf where leaf_boxes allows it. Otherwise it is split at the median of the boxes' Morton order,
    * and its depth is not limited. */
   int max_depth;
+  stratus_bvh_measure measure; /* of STRATUS_TREE_AC; the other methods ignore it */
 } stratus_bvh_options;
 
 /* Builds a hierarchy by any of these methods: 1 <= count < 2^29, lo < hi, coordinates within 2^28 (bvh.c). Boxes may overlap and repeat.

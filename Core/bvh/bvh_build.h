@@ -22,6 +22,7 @@ typedef struct stratus_bvh_build {
   stratus_context* context;
   uint32_t count; /* number of boxes; builders are called with at least 2 */
   int max_depth;  /* below this depth the layout splits at the median, whatever the builder's split */
+  stratus_bvh_measure measure;
   stratus_box* boxes;
   uint32_t* number;        /* index in the caller's boxes, for each rank */
   uint64_t* codes;         /* Morton code, for each rank */
@@ -67,9 +68,6 @@ stratus_status stratus_bvh_items_create(const stratus_bvh_build* build, stratus_
  * as in a pair. One thread of a parallel region calls this function. */
 void stratus_bvh_split_items(
   stratus_bvh_item* items, uint32_t begin, uint32_t end, int depth, int max_depth, stratus_bvh_pair* pairs, uint32_t* child);
-
-/* Distance of two clusters: the size of their union, as its surface area or the sum of its edges. */
-typedef enum stratus_bvh_measure { STRATUS_BVH_SURFACE, STRATUS_BVH_EDGES } stratus_bvh_measure;
 
 /* Merges clusters that are each other's nearest, beginning with `count` >= 2 boxes. Fills count - 1 pairs, whose leaves are indices in
  * `boxes`. Ties go to boxes with near indices, so the boxes' order should keep neighbours together. */

@@ -43,6 +43,9 @@ typedef struct stratus_tree_options {
   /* 1: the density is summed voxel by voxel. 0: bricks are weights. Default 0; hybrid-paper always 1. */
   int exact_density;
   int density_per_node; /* 1: each node has a bandwidth and density of its own, as in the paper; default 0, hybrid-paper 1 */
+  /* ac: the distance of two clusters is the surface area of their union's box, as published (0, default), or the sum of its edges (1),
+   * which makes cheaper trees where voxels fill volumes rather than surfaces. */
+  int agglomerative_by_edges;
 } stratus_tree_options;
 
 STRATUS_API stratus_tree_options stratus_tree_options_default(void);

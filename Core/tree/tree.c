@@ -48,7 +48,8 @@ static stratus_status check_options(stratus_context* context, const stratus_tree
   TRY(check_number(context, "emptiness of a distance field", o->field_emptiness, 1, 1e18));
   TRY(check_number(context, "uniformity", o->uniform, 0, 1e18));
   TRY(check_number(context, "the paper's threshold", o->paper_threshold, 0, 1e18));
-  return check_number(context, "bandwidth", o->bandwidth, 0, 1e9);
+  TRY(check_number(context, "bandwidth", o->bandwidth, 0, 1e9));
+  return check_number(context, "agglomeration by edges", o->agglomerative_by_edges, 0, 1);
 }
 
 /* ---------------------------------------------------------------- shapes */
@@ -77,7 +78,10 @@ static stratus_status whole_shape(stratus_context* context, const stratus_voxels
 static stratus_status hierarchy(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree* tree)
 {
-  const stratus_bvh_options wanted = { .method = options->method, .leaf_boxes = options->leaf_voxels, .max_depth = options->max_depth };
+  const stratus_bvh_options wanted = { .method = options->method,
+    .leaf_boxes = options->leaf_voxels,
+    .max_depth = options->max_depth,
+    .measure = options->agglomerative_by_edges ? STRATUS_BVH_EDGES : STRATUS_BVH_SURFACE };
   stratus_status status = STRATUS_OK;
   stratus_bvh bvh = { 0 };
   stratus_box* boxes = NULL;

@@ -168,6 +168,16 @@ public:
 
   //@{
   /**
+   * Set/Get whether AGGLOMERATIVE takes the sum of a box's edges for the distance of the two clusters in it, instead of its surface area as
+   * published. Default off.
+   */
+  vtkSetClampMacro(AgglomerativeByEdges, vtkTypeBool, 0, 1);
+  vtkGetMacro(AgglomerativeByEdges, vtkTypeBool);
+  vtkBooleanMacro(AgglomerativeByEdges, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
    * Set/Get the device that builds: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an OpenCL device
    * by its number or a part of its name. The output does not depend on it. A device that does not exist is an error that lists the existing
    * ones, and the previous device and output stay. The host does what has no kernels or does not fit the device, and everything where the
@@ -237,6 +247,7 @@ protected:
   double Bandwidth = 0.0;
   vtkTypeBool ExactDensity = 0;
   vtkTypeBool DensityPerNode = 0;
+  vtkTypeBool AgglomerativeByEdges = 0;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfVoxels = 0;

@@ -72,7 +72,7 @@ static void a_lost_device_is_a_clean_error(void** state)
 {
   uint32_t random = 3;
   stratus_box* boxes = make_boxes(BOXES_RANDOM, 200, &random);
-  const stratus_bvh_options options = { STRATUS_TREE_LBVH, 1, 64 };
+  const stratus_bvh_options options = { STRATUS_TREE_LBVH, 1, 64, STRATUS_BVH_SURFACE };
   stratus_bvh right = make_bvh(host_context, STRATUS_TREE_LBVH, boxes, 200, 1, 64), bvh;
   int64_t calls = 0;
   (void)state;

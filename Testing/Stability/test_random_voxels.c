@@ -24,6 +24,7 @@ static stratus_tree_options choose_tree(stratus_tree_method method, uint32_t* ra
   options.bandwidth = bandwidths[next_random(random) % 5];
   options.exact_density = next_random(random) % 4 == 0;
   options.density_per_node = next_random(random) % 4 == 0;
+  options.agglomerative_by_edges = next_random(random) % 2 == 0;
   return options;
 }
 

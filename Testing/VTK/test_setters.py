@@ -102,6 +102,8 @@ def trees():
         hierarchy = tree.GetMethod() >= tree.SAH
         check((tree.GetNumberOfLeaves() == tree.GetNumberOfVoxels()) == hierarchy, f"{name}: {tree.GetNumberOfLeaves()} leaves")
     check(len(seen) == 11 and len(set(seen.values())) == 11, "eleven methods, eleven trees")
+    tree.SetMethodToAgglomerative()
+    switches(tree, "AgglomerativeByEdges", built)
     tree.SetMethodToSAH()
     tree.SetLeafVoxels(8)
     built()

@@ -77,15 +77,21 @@ static inline stratus_box* make_boxes(box_set set, uint32_t count, uint32_t* ran
   return boxes;
 }
 
+static inline stratus_bvh make_bvh_by(
+  stratus_context* context, const stratus_bvh_options* options, const stratus_box* boxes, uint32_t count)
+{
+  stratus_bvh bvh = { .nodes = NULL };
+  if (stratus_bvh_create(context, boxes, count, options, &bvh) != STRATUS_OK) {
+    fail_msg("method %d, %u boxes: %s", (int)options->method, count, stratus_context_message(context));
+  }
+  return bvh;
+}
+
 static inline stratus_bvh make_bvh(
   stratus_context* context, stratus_tree_method method, const stratus_box* boxes, uint32_t count, int leaf_boxes, int max_depth)
 {
-  stratus_bvh bvh = { .nodes = NULL };
-  const stratus_bvh_options options = { method, leaf_boxes, max_depth };
-  if (stratus_bvh_create(context, boxes, count, &options, &bvh) != STRATUS_OK) {
-    fail_msg("method %d, %u boxes: %s", (int)method, count, stratus_context_message(context));
-  }
-  return bvh;
+  const stratus_bvh_options options = { .method = method, .leaf_boxes = leaf_boxes, .max_depth = max_depth };
+  return make_bvh_by(context, &options, boxes, count);
 }
 
 static inline void assert_same_bvh(const stratus_bvh* a, const stratus_bvh* b, uint32_t count)

@@ -19,16 +19,25 @@ bool has_bricks(stratus_tree_method m)
   return m == STRATUS_TREE_HYBRID || m == STRATUS_TREE_HYBRID_PAPER;
 }
 
+// Whether a method's tree is more than one distance field.
+bool has_leaves(stratus_tree_method m)
+{
+  return m != STRATUS_TREE_DISTANCE && m != STRATUS_TREE_OCTANT;
+}
+
+const char* const by_edges = "stratus:ac-edges"; // agglomerative clustering by the sum of edges
+
+std::string name_of(stratus_tree_method m)
+{
+  return std::string("stratus:") + stratus_tree_method_name(m);
+}
+
 class stratus_hits : public first_hits
 {
 public:
-  // leaf: most bricks, or voxels, of a leaf; 0: the default
-  stratus_hits(const voxel_set& s, stratus_tree_method m, int leaf) : set(s), builder(host_context(2)), tracer(host_context(1))
+  stratus_hits(const voxel_set& s, const stratus_tree_options& o)
+      : set(s), builder(host_context(2)), tracer(host_context(1)), tree_options(o)
   {
-    this->tree_options.method = m;
-    if (leaf > 0) {
-      (has_bricks(m) ? this->tree_options.leaf_bricks : this->tree_options.leaf_voxels) = leaf;
-    }
   }
   ~stratus_hits() override { stratus_tree_destroy(this->tree); }
   void build() override
@@ -82,26 +91,44 @@ public:
 private:
   const voxel_set& set;
   context_pointer builder, tracer;
-  stratus_tree_options tree_options = stratus_tree_options_default();
+  stratus_tree_options tree_options;
   stratus_tree* tree = nullptr;
   std::vector<uint32_t> order;
   std::vector<stratus_ray> rays;
   std::vector<stratus_hit> found;
 };
 
-// stratus:METHOD[:LEAF]. A tree that is one distance field has no leaves to size.
-bool parse_tree(const std::string& name, stratus_tree_method& method, int& leaf)
+// stratus:METHOD[:LEAF], or stratus:ac-edges[:LEAF]. A tree that is one distance field has no leaves to size.
+bool parse_tree(const std::string& name, stratus_tree_options& options)
 {
   const std::string family = family_of(name);
   const bool sized = family != name;
-  leaf = sized ? std::atoi(name.c_str() + family.size() + 1) : 0;
-  for (int m = 0; m < STRATUS_TREE_METHODS && name.rfind("stratus:", 0) == 0; ++m) {
-    method = static_cast<stratus_tree_method>(m);
-    if (family.substr(8) == stratus_tree_method_name(method)) {
-      return !sized || (leaf >= 1 && leaf <= 64 && method != STRATUS_TREE_DISTANCE && method != STRATUS_TREE_OCTANT);
+  const int leaf = sized ? std::atoi(name.c_str() + family.size() + 1) : 0;
+  options = stratus_tree_options_default();
+  options.agglomerative_by_edges = family == by_edges;
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    options.method = static_cast<stratus_tree_method>(m);
+    if ((options.agglomerative_by_edges ? "stratus:ac" : family) == name_of(options.method)) {
+      if (sized) {
+        (has_bricks(options.method) ? options.leaf_bricks : options.leaf_voxels) = leaf;
+      }
+      return !sized || (leaf >= 1 && leaf <= 64 && has_leaves(options.method));
     }
   }
   return false;
+}
+
+// All names of our trees, without sizes of leaves.
+std::vector<std::string> tree_names()
+{
+  std::vector<std::string> names;
+  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
+    names.push_back(name_of(static_cast<stratus_tree_method>(m)));
+    if (m == STRATUS_TREE_AC) {
+      names.push_back(by_edges);
+    }
+  }
+  return names;
 }
 } // namespace
 
@@ -139,35 +166,32 @@ void check_status(stratus_context* context, stratus_status status)
 
 std::vector<std::string> all_tree_methods()
 {
-  std::vector<std::string> names;
-  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
-    names.push_back(std::string("stratus:") + stratus_tree_method_name(static_cast<stratus_tree_method>(m)));
-  }
+  std::vector<std::string> names = tree_names();
   names.insert(names.end(), std::begin(peers), std::end(peers));
   return names;
 }
 
 bool is_slow_tree(const std::string& method)
 {
-  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", "stratus:dpc", "stratus:kmeans" };
+  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", by_edges, "stratus:dpc", "stratus:kmeans" };
   return std::any_of(std::begin(slow), std::end(slow), [&](const char* name) { return family_of(method) == name; });
 }
 
 std::vector<std::string> tree_curve_methods(bool quick)
 {
   std::vector<std::string> names;
-  for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
-    const auto method = static_cast<stratus_tree_method>(m);
-    const std::string name = std::string("stratus:") + stratus_tree_method_name(method);
+  for (const std::string& name : tree_names()) {
+    stratus_tree_options options;
+    parse_tree(name, options);
     if (quick && is_slow_tree(name)) {
       continue;
     }
-    if (method == STRATUS_TREE_DISTANCE || method == STRATUS_TREE_OCTANT) {
+    if (!has_leaves(options.method)) {
       names.push_back(name);
       continue;
     }
     for (const char* leaf :
-      has_bricks(method) ? std::array<const char*, 3>{ ":1", ":4", ":16" } : std::array<const char*, 3>{ ":1", ":2", ":4" }) {
+      has_bricks(options.method) ? std::array<const char*, 3>{ ":1", ":4", ":16" } : std::array<const char*, 3>{ ":1", ":2", ":4" }) {
       names.push_back(name + leaf);
     }
   }
@@ -183,18 +207,16 @@ std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& m
   if (method.rfind("embree:", 0) == 0) {
     return make_embree_hits(set, method.substr(7));
   }
-  stratus_tree_method m;
-  int leaf = 0;
-  if (parse_tree(method, m, leaf)) {
-    return std::make_unique<stratus_hits>(set, m, leaf);
+  stratus_tree_options options;
+  if (parse_tree(method, options)) {
+    return std::make_unique<stratus_hits>(set, options);
   }
   throw failure("unknown method " + method);
 }
 
 bool is_tree_method(const std::string& name)
 {
-  stratus_tree_method m;
-  int leaf = 0;
-  return parse_tree(name, m, leaf) || std::find(std::begin(peers), std::end(peers), name) != std::end(peers);
+  stratus_tree_options options;
+  return parse_tree(name, options) || std::find(std::begin(peers), std::end(peers), name) != std::end(peers);
 }
 } // namespace bench

@@ -180,7 +180,7 @@ static void bad_input_is_refused(void** state)
 {
   stratus_context* context = make_context("host", 2);
   stratus_box boxes[4] = { unit_box(0, 0, 0), unit_box(1, 0, 0), unit_box(0, 4, 0), unit_box(9, 0, 0) };
-  const stratus_bvh_options good = { STRATUS_TREE_SAH, 1, 64 };
+  const stratus_bvh_options good = { STRATUS_TREE_SAH, 1, 64, STRATUS_BVH_SURFACE };
   stratus_bvh bvh, untouched;
   (void)state;
   memset(&bvh, 0x55, sizeof bvh);
@@ -196,11 +196,21 @@ static void bad_input_is_refused(void** state)
   REFUSED(stratus_bvh_create(context, boxes, 4, &good, NULL), "NULL");
   REFUSED(stratus_bvh_create(context, boxes, 0, &good, &bvh), "0 boxes outside 1..");
   REFUSED(stratus_bvh_create(context, boxes, 1u << 29, &good, &bvh), "536870912 boxes");
-  const stratus_bvh_options bad[] = { { STRATUS_TREE_HYBRID, 1, 64 }, { STRATUS_TREE_OCTANT, 1, 64 }, { (stratus_tree_method)11, 1, 64 },
-    { STRATUS_TREE_SAH, 0, 64 }, { STRATUS_TREE_SAH, 65, 64 }, { STRATUS_TREE_SAH, 1, 0 }, { STRATUS_TREE_SAH, 1, 65 } };
-  static const char* const words[] = { "method 0", "method 3", "method 11", "leaf_boxes 0", "leaf_boxes 65", "max_depth 0",
-    "max_depth 65" };
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+  static const char* const words[] = { "method 0", "method 3", "method 11", "leaf_boxes 0", "leaf_boxes 65", "max_depth 0", "max_depth 65",
+    "measure 2" };
+  stratus_bvh_options bad[8];
+  for (int i = 0; i < 8; ++i) {
+    bad[i] = good;
+  }
+  bad[0].method = STRATUS_TREE_HYBRID;
+  bad[1].method = STRATUS_TREE_OCTANT;
+  bad[2].method = (stratus_tree_method)11;
+  bad[3].leaf_boxes = 0;
+  bad[4].leaf_boxes = 65;
+  bad[5].max_depth = 0;
+  bad[6].max_depth = 65;
+  bad[7].measure = (stratus_bvh_measure)2;
+  for (size_t i = 0; i < 8; ++i) {
     REFUSED(stratus_bvh_create(context, boxes, 4, bad + i, &bvh), words[i]);
   }
   for (int a = 0; a < 3; ++a) {
@@ -244,7 +254,7 @@ static void memory_refused_at_any_request_is_a_clean_error(void** state)
   for (int method = STRATUS_TREE_SAH; method <= STRATUS_TREE_KMEANS; ++method) {
     faulty_allocator allocator = { 0 };
     stratus_context_options context_options = faulty_options(&allocator, "host");
-    const stratus_bvh_options options = { (stratus_tree_method)method, 2, 8 };
+    const stratus_bvh_options options = { (stratus_tree_method)method, 2, 8, STRATUS_BVH_SURFACE };
     stratus_context* context = NULL;
     assert_int_equal(stratus_context_create(&context_options, &context, NULL, 0), STRATUS_OK);
     const int64_t live = allocator.live;
@@ -298,7 +308,7 @@ static void a_build_can_be_cancelled(void** state)
   options.progress_user = &left;
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   for (int calls = 1; calls <= 2; ++calls) {
-    const stratus_bvh_options how = { STRATUS_TREE_PLOC, 1, 64 };
+    const stratus_bvh_options how = { STRATUS_TREE_PLOC, 1, 64, STRATUS_BVH_SURFACE };
     stratus_bvh bvh;
     left = calls;
     assert_int_equal(stratus_bvh_create(context, boxes, 200, &how, &bvh), STRATUS_CANCELLED);

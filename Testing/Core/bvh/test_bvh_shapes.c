@@ -146,6 +146,48 @@ static void agglomerative_clustering_is_the_greedy_one(void** state)
   assert_true(all_ties > 1000); /* as in lattices: else the order of equals was not tried */
 }
 
+/* The shape with masks by the caller's numbers instead of ranks. */
+static shape by_number(const shape* ranks, const stratus_bvh_build* build)
+{
+  shape s = { .count = ranks->count };
+  for (int m = 0; m < s.count; ++m) {
+    s.masks[m] = 0;
+    for (uint32_t rank = 0; rank < build->count; ++rank) {
+      s.masks[m] |= (ranks->masks[m] >> rank & 1) << build->number[rank];
+    }
+  }
+  return s;
+}
+
+static void the_measure_asked_for_is_the_one_merged_by(void** state)
+{
+  uint32_t random = 5;
+  int ties = 0, differ = 0;
+  (void)state;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    for (int set = 0; set < BOX_SETS; ++set) {
+      const uint32_t count = (uint32_t)random_below(&random, BOXES_MAX - 1) + 2;
+      stratus_box* boxes = make_boxes((box_set)set, count, &random);
+      stratus_bvh_build build = sorted(boxes, count);
+      double cost[2];
+      for (int measure = STRATUS_BVH_SURFACE; measure <= STRATUS_BVH_EDGES; ++measure) {
+        const stratus_bvh_options options = { STRATUS_TREE_AC, 1, 64, (stratus_bvh_measure)measure };
+        stratus_bvh bvh = make_bvh_by(context, &options, boxes, count);
+        const shape ranks = greedy_shape(build.boxes, count, options.measure, &ties);
+        shape s = { .count = 0 }, greedy = by_number(&ranks, &build);
+        (void)mask_of(&bvh, 0, &s);
+        assert_same_shape(&s, &greedy);
+        cost[measure] = stratus_bvh_sah(bvh.nodes, bvh.node_count);
+        stratus_bvh_release(context, &bvh);
+      }
+      differ += cost[STRATUS_BVH_SURFACE] != cost[STRATUS_BVH_EDGES];
+      release(&build);
+      free(boxes);
+    }
+  }
+  assert_true(differ > 20); /* else the two measures were not told apart */
+}
+
 static void few_boxes_make_the_greedy_tree_by_ploc_and_k_means(void** state)
 {
   uint32_t random = 2;
@@ -333,6 +375,7 @@ int test_bvh_shapes(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(agglomerative_clustering_is_the_greedy_one),
+    cmocka_unit_test(the_measure_asked_for_is_the_one_merged_by),
     cmocka_unit_test(few_boxes_make_the_greedy_tree_by_ploc_and_k_means),
     cmocka_unit_test(lbvh_parts_at_the_highest_bit),
     cmocka_unit_test(every_split_by_surface_area_is_the_best),

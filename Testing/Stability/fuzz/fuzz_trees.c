@@ -84,6 +84,7 @@ static stratus_tree_options choose_options(fuzz* f)
     o.bandwidth = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, 1.0, 10.0);
     o.exact_density = fuzz_flag(f);
     o.density_per_node = fuzz_flag(f);
+    o.agglomerative_by_edges = fuzz_flag(f);
   }
   return o;
 }
