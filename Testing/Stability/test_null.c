@@ -65,6 +65,8 @@ static void contexts(void)
   TAKES(stratus_context_get_programs(NULL, NULL));
   assert_string_equal((remember("stratus_context_message("), stratus_context_message(NULL)), "no context");
   assert_string_equal((remember("stratus_context_device("), stratus_context_device(NULL)), "");
+  TAKES(stratus_context_start_build_report(NULL));
+  GIVES(0, stratus_context_get_build_report(NULL, NULL, 3));
   GIVES(0, stratus_context_on_device(NULL));
   GIVES(0, stratus_context_threads(NULL));
   IS_SILENT(stratus_device_name(0, NULL, 8));
