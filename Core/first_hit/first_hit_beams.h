@@ -393,9 +393,9 @@ static inline __attribute__((always_inline)) void beam_run(const stratus_hit_bat
     const int64_t first = beam->origin + layer * beam->step[0] + cells[0] * beam->step[1] + cells[1] * beam->step[2];
     /* The leap of the nearest cell may be so long that all that the beam touches is known to be empty. */
     uint32_t code = beam_code(beam, beam_entry(batch->tree, first, entry_bytes), octants, entry_bytes);
-    const int leap = octants ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code;
+    const int leap = octants && code > 0 ? stratus_leap_of_code(entry_bytes, (int)code) : (int)code;
     *looks += 1;
-    if (code > 0 && cells[2] - cells[0] < leap && cells[3] - cells[1] < leap) {
+    if (cells[2] - cells[0] < leap && cells[3] - cells[1] < leap) {
       s = (float)(layer + leap);
       for (int side = 0; side < 2; ++side) {
         const float leave = beam->begin + ((float)(cells[side] + leap) - beam->border[side + 2]) * beam->inverse[side];
