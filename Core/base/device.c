@@ -204,6 +204,7 @@ static stratus_status describe(stratus_context* context, stratus_device* device)
   }
   device->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   device->has_double = doubles != 0;
+  device->builds = !device->is_cpu;
   device->shares_memory = device->is_cpu || unified;
   device->borrow_alignment = device->is_cpu || align_bits / 8 < BORROW_ALIGNMENT ? BORROW_ALIGNMENT : align_bits / 8;
   device->largest_allocation = largest > SIZE_MAX ? SIZE_MAX : (size_t)largest;
@@ -242,7 +243,12 @@ stratus_status stratus_device_open(stratus_context* context, const char* selecto
   const device_list list = list_devices();
   const int index = select_device(&list, selector);
   *device = NULL;
-  return index < 0 ? no_such_device(context, &list, selector) : stratus_device_open_id(context, list.ids[index], device);
+  if (index < 0) {
+    return no_such_device(context, &list, selector);
+  }
+  TRY(stratus_device_open_id(context, list.ids[index], device));
+  (*device)->builds = true;
+  return STRATUS_OK;
 }
 
 cl_int stratus_device_close(stratus_device* device)
@@ -355,5 +361,5 @@ stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, si
 
 bool stratus_device_builds(const stratus_context* context)
 {
-  return context->device && !stratus_device_is_cpu(context->device);
+  return context->device && context->device->builds;
 }

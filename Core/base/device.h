@@ -24,7 +24,8 @@ int stratus_device_candidates(bool processors, cl_device_id ids[STRATUS_DEVICES_
 /* Writes a device's name and its driver's version. */
 void stratus_device_describe(cl_device_id id, char* text, size_t capacity);
 
-/* True if the context's device builds structures. A CPU's OpenCL does not: the host builds them faster. */
+/* True if the context's device builds structures: a device that was asked for by name, and a GPU that "auto" took. A CPU's OpenCL that
+ * stands for a GPU in tests of "auto" does not: the host builds faster on the same cores. */
 bool stratus_device_builds(const stratus_context* context);
 
 const char* stratus_device_label(const stratus_device* device);

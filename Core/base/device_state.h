@@ -29,6 +29,7 @@ struct stratus_device {
   size_t largest_allocation;
   size_t borrow_alignment;
   bool is_cpu, has_double, shares_memory;
+  bool builds;        /* structures */
   int64_t calls_left; /* OpenCL calls until every one fails with `injected`; negative: none fails */
   cl_int injected;
   char label[192];

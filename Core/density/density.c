@@ -85,6 +85,7 @@ stratus_status stratus_density_create(
   density->context = context;
   density->bandwidth = bandwidth;
   density->exact = exact;
+  density->count = count;
   stratus_status status = fill_density(context, bricks, count, density);
   if (status == STRATUS_OK) {
     stratus_stage_end(context, &stage, "density", (size_t)(exact ? density->start[count] : count) * sizeof *density->of);

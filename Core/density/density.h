@@ -12,6 +12,7 @@ typedef struct stratus_density {
   double bandwidth;
   /* 1: of[] holds one density for each voxel (bricks in order, bits ascending). 0: one for each brick, at the brick's middle. */
   int exact;
+  int64_t count; /* of bricks */
   float* of;
   int64_t* start; /* exact: of[start[b]] is the first voxel of brick b; brick_count + 1 entries. NULL if not exact. */
 } stratus_density;
@@ -35,6 +36,27 @@ typedef struct stratus_density_borders {
   int32_t position[3][2];
   double fall[3][2];
 } stratus_density_borders;
+/* What the derivatives at a plane on a line through the peak are made of: sums over the voxels within the bandwidth of the plane's point. D
+ * is twice the offset along the line, q the squared distance across it. All are whole numbers. */
+typedef struct stratus_density_line {
+  double count;       /* voxels */
+  double curvature;   /* sum of 3 D^2 + 4 q */
+  double slope;       /* sum of D */
+  double slope_cubic; /* sum of D (D^2 + 4 q) */
+} stratus_density_line;
+
+/* Returns the index of the first plane of `axis` among the lines of a box: planes lo[0]..hi[0], then those of y and z. axis 3: their
+ * number. */
+size_t stratus_density_line_start(const int32_t lo[3], const int32_t hi[3], int axis);
+/* Returns whether the sums take a brick's voxels as one mass at its middle. */
+bool stratus_density_takes_whole_bricks(double bandwidth, int exact);
+/* Fills the sums of all planes of the three lines. */
+void stratus_density_sum_lines(const stratus_brick* bricks, const uint32_t* which, int64_t count, double bandwidth, int exact,
+  const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_line* lines);
+/* Finds the borders from the sums. voxels: the number of voxels that the sums were made of. */
+void stratus_density_scan_lines(stratus_density_line* lines, int64_t voxels, double bandwidth, const int32_t peak[3], const int32_t lo[3],
+  const int32_t hi[3], stratus_density_borders* borders);
+/* Does both. */
 stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
   double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders);
 

@@ -105,19 +105,12 @@ stratus_status stratus_density_at(stratus_context* context, const stratus_voxels
  * the squared distance across it. Multiplied by 4 h^2, the sums above become sums of integers, exact in double, and h^2 times their
  * number. The order of bricks therefore changes nothing. */
 
-typedef struct line_sums {
-  double count;       /* voxels in reach */
-  double curvature;   /* sum of 3 D^2 + 4 q */
-  double slope;       /* sum of D */
-  double slope_cubic; /* sum of D (D^2 + 4 q) */
-} line_sums;
-
 typedef struct line {
   int axis;
   double reach; /* squared reach in doubled coordinates: 4 h^2 */
   int32_t peak[3];
   int32_t lo, hi; /* first and last plane */
-  line_sums* planes;
+  stratus_density_line* planes;
 } line;
 
 /* Adds a mass at the doubled coordinates `at` to all planes in reach. */
@@ -134,7 +127,7 @@ static void add_mass(const line* line, const int32_t at[3], double mass)
   for (int32_t p = first; p <= last; ++p) {
     const double along = 2.0 * p - 1.0 - at[line->axis], squared = along * along;
     if (squared + across < line->reach) {
-      line_sums* sums = line->planes + (p - line->lo);
+      stratus_density_line* sums = line->planes + (p - line->lo);
       sums->count += mass;
       sums->curvature += mass * (3.0 * squared + across);
       sums->slope += mass * along;
@@ -164,13 +157,13 @@ static void add_bricks(const line* line, const stratus_brick* bricks, const uint
 /* Magnitude of the first derivative, without its factor 4 c / (n h^5), times 8 h^2. bend_at() has the sign of the second derivative. */
 static double fall_at(const line* line, int32_t plane)
 {
-  const line_sums* sums = line->planes + (plane - line->lo);
+  const stratus_density_line* sums = line->planes + (plane - line->lo);
   return fabs(line->reach * sums->slope - sums->slope_cubic);
 }
 
 static double bend_at(const line* line, int32_t plane)
 {
-  const line_sums* sums = line->planes + (plane - line->lo);
+  const stratus_density_line* sums = line->planes + (plane - line->lo);
   return sums->curvature - line->reach * sums->count;
 }
 
@@ -194,25 +187,46 @@ static void scan_side(const line* line, int side, int32_t* position, double* fal
   }
 }
 
-stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
-  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders)
+bool stratus_density_takes_whole_bricks(double bandwidth, int exact)
 {
-  int32_t longest = 0;
-  int64_t voxels = 0;
-  void* memory;
+  return !exact && bandwidth >= SMALL_BANDWIDTH;
+}
+
+size_t stratus_density_line_start(const int32_t lo[3], const int32_t hi[3], int axis)
+{
+  size_t start = 0;
+  for (int a = 0; a < axis; ++a) {
+    start += (size_t)(hi[a] - lo[a]) + 1;
+  }
+  return start;
+}
+
+void stratus_density_sum_lines(const stratus_brick* bricks, const uint32_t* which, int64_t count, double bandwidth, int exact,
+  const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_line* lines)
+{
+  memset(lines, 0, sizeof *lines * stratus_density_line_start(lo, hi, 3));
   for (int a = 0; a < 3; ++a) {
-    longest = hi[a] - lo[a] > longest ? hi[a] - lo[a] : longest;
+    const line line = { .axis = a,
+      .reach = 4.0 * bandwidth * bandwidth,
+      .peak = { peak[0], peak[1], peak[2] },
+      .lo = lo[a],
+      .hi = hi[a],
+      .planes = lines + stratus_density_line_start(lo, hi, a) };
+    add_bricks(&line, bricks, which, count, stratus_density_takes_whole_bricks(bandwidth, exact));
   }
-  for (int64_t i = 0; i < count; ++i) {
-    voxels += bricks[which ? (int64_t)which[i] : i].count;
-  }
-  memset(borders, 0, sizeof *borders);
-  TRY(stratus_allocate(context, (size_t)longest + 1, sizeof(line_sums), &memory));
+}
+
+void stratus_density_scan_lines(stratus_density_line* lines, int64_t voxels, double bandwidth, const int32_t peak[3], const int32_t lo[3],
+  const int32_t hi[3], stratus_density_borders* borders)
+{
   const double h2 = bandwidth * bandwidth, unit = DENSITY_CONSTANT / ((double)(voxels ? voxels : 1) * h2 * bandwidth);
   for (int a = 0; a < 3; ++a) {
-    line line = { .axis = a, .reach = 4.0 * h2, .peak = { peak[0], peak[1], peak[2] }, .lo = lo[a], .hi = hi[a], .planes = memory };
-    memset(memory, 0, sizeof(line_sums) * (size_t)(hi[a] - lo[a] + 1));
-    add_bricks(&line, bricks, which, count, !exact && bandwidth >= SMALL_BANDWIDTH);
+    const line line = { .axis = a,
+      .reach = 4.0 * h2,
+      .peak = { peak[0], peak[1], peak[2] },
+      .lo = lo[a],
+      .hi = hi[a],
+      .planes = lines + stratus_density_line_start(lo, hi, a) };
     for (int side = 0; side < 2; ++side) {
       double fall;
       scan_side(&line, side, &borders->position[a][side], &fall);
@@ -220,6 +234,19 @@ stratus_status stratus_density_find_borders(stratus_context* context, const stra
       borders->fall[a][side] = fall * 4.0 * unit / h2 / (2.0 * line.reach);
     }
   }
+}
+
+stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
+  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders)
+{
+  int64_t voxels = 0;
+  void* memory;
+  for (int64_t i = 0; i < count; ++i) {
+    voxels += bricks[which ? (int64_t)which[i] : i].count;
+  }
+  TRY(stratus_allocate(context, stratus_density_line_start(lo, hi, 3), sizeof(stratus_density_line), &memory));
+  stratus_density_sum_lines(bricks, which, count, bandwidth, exact, peak, lo, hi, memory);
+  stratus_density_scan_lines(memory, voxels, bandwidth, peak, lo, hi, borders);
   stratus_release(context, memory);
   return STRATUS_OK;
 }

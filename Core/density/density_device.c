@@ -42,7 +42,10 @@ static stratus_status run_sums(stratus_context* context, const density_plan* pla
     const int64_t items[3] = { count * STRATUS_DEVICE_GROUP, 1, 1 };
     return stratus_device_launch(context, "density", "", "exact", exact, COUNT_OF(exact), items);
   }
-  return stratus_device_launch(context, "density", "", "binned", binned, COUNT_OF(binned), (const int64_t[]){ count, 1, 1 });
+  /* A processor has few items at work, and saves searches by longer runs. */
+  const int run = stratus_device_is_cpu(context->device) ? 16 : 1;
+  return stratus_device_launch(context, "density", run == 16 ? "-DRUN=16" : "-DRUN=1", "binned", binned, COUNT_OF(binned),
+    (const int64_t[]){ (count + run - 1) / run, 1, 1 });
 }
 
 stratus_status stratus_device_density(

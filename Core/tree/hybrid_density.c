@@ -20,15 +20,15 @@ static stratus_status make_own(hybrid_build* build, const hybrid_node* node)
   }
   stratus_density_destroy(build->density);
   build->density = NULL;
+  TRY(build->sums->order(build, node->first, node->count));
   for (uint32_t i = 0; i < node->count; ++i) {
-    build->gathered[i] = build->voxels->bricks[build->shape->order[node->first + i]];
+    build->gathered[i] = *hybrid_brick(build, node, i);
   }
   build->bandwidth = wanted;
   if (wanted <= 0.0) {
     TRY(stratus_density_bandwidth_of(build->context, build->gathered, node->count, &build->bandwidth, NULL));
   }
-  return stratus_density_create(
-    build->context, build->gathered, node->count, build->bandwidth, build->paper || build->options->exact_density, &build->density);
+  return stratus_density_create(build->context, build->gathered, node->count, build->bandwidth, hybrid_exact(build), &build->density);
 }
 
 /* Computes one density for the whole tree, at the first node that needs it. */
@@ -40,141 +40,138 @@ static stratus_status make_common(hybrid_build* build)
     TRY(stratus_density_bandwidth_of(build->context, voxels->bricks, voxels->brick_count, &build->bandwidth, NULL));
   }
   return stratus_density_create(
-    build->context, voxels->bricks, voxels->brick_count, build->bandwidth, build->paper || build->options->exact_density, &build->density);
+    build->context, voxels->bricks, voxels->brick_count, build->bandwidth, hybrid_exact(build), &build->density);
 }
 
-static const stratus_brick* bricks_of(const hybrid_build* build, const hybrid_node* node, const uint32_t** which)
+stratus_status stratus_hybrid_measure(hybrid_build* build, hybrid_work* const* works, uint32_t count)
 {
-  *which = build->gathered ? NULL : build->shape->order + node->first;
-  return build->gathered ? build->gathered : build->voxels->bricks;
-}
-
-/* Computes the deviations of eq. 8. */
-static void find_deviations(const hybrid_build* build, const hybrid_node* node, hybrid_view* view)
-{
-  const uint32_t* which;
-  const stratus_brick* bricks = bricks_of(build, node, &which);
-  double sum[3] = { 0.0, 0.0, 0.0 };
-  int64_t voxels = 0;
-  for (uint32_t i = 0; i < node->count; ++i) {
-    const stratus_brick* b = bricks + (which ? which[i] : i);
-    voxels += b->count;
-    for (uint64_t bits = b->mask; bits; bits &= bits - 1) {
-      const int bit = __builtin_ctzll(bits);
-      const double x = STRATUS_BRICK * b->at[0] + (bit & 3) - view->peak[0], y = STRATUS_BRICK * b->at[1] + (bit >> 2 & 3) - view->peak[1],
-                   z = STRATUS_BRICK * b->at[2] + (bit >> 4) - view->peak[2];
-      sum[0] += x * x;
-      sum[1] += y * y;
-      sum[2] += z * z;
-    }
-  }
-  for (int a = 0; a < 3; ++a) {
-    view->deviation[a] = sqrt(sum[a] / (double)voxels);
-  }
-}
-
-stratus_status stratus_hybrid_measure(hybrid_build* build, const hybrid_node* node, hybrid_view* view)
-{
-  const uint32_t* which;
-  if (build->options->density_per_node || build->paper) {
-    TRY(make_own(build, node));
-  } else if (!build->density) {
+  const bool own = build->options->density_per_node || build->paper;
+  if (!own && count && !build->density) {
     TRY(make_common(build));
   }
-  if (build->statistics->bandwidth <= 0.0) {
-    build->statistics->bandwidth = build->bandwidth;
+  for (uint32_t w = 0; w < count; ++w) {
+    if (own) {
+      TRY(make_own(build, &works[w]->node));
+      TRY(build->sums->peaks(build, works + w, 1, true));
+    }
+    works[w]->measured = true;
+    works[w]->bandwidth = build->bandwidth;
+    if (build->statistics->bandwidth <= 0.0) {
+      build->statistics->bandwidth = build->bandwidth;
+    }
   }
-  const stratus_brick* bricks = bricks_of(build, node, &which);
-  stratus_density_peak(build->density, bricks, which, node->count, view->peak);
-  find_deviations(build, node, view);
-  return STRATUS_OK;
+  return own || !count ? STRATUS_OK : build->sums->peaks(build, works, count, false);
 }
 
-double stratus_hybrid_unevenness(const hybrid_node* node, const hybrid_view* view, int paper)
+double stratus_hybrid_unevenness(const hybrid_work* work, int paper)
 {
   double least = INFINITY, most = 0.0;
   for (int a = 0; a < 3; ++a) {
-    const double deviation = view->deviation[a] / (paper ? 1.0 : (double)STRATUS_BRICK * (node->hi[a] - node->lo[a]));
-    least = fmin(least, deviation);
-    most = fmax(most, deviation);
+    const double deviation = sqrt(work->squares[a] / (double)work->voxels); /* eq. 8, voxels */
+    const double relative = deviation / (paper ? 1.0 : (double)STRATUS_BRICK * (work->node.hi[a] - work->node.lo[a]));
+    least = fmin(least, relative);
+    most = fmax(most, relative);
   }
   return most - least;
 }
 
-/* Takes the plane between bricks nearest to `position` (voxels) if it divides the node and is cheaper than *best. */
-static void offer(const hybrid_build* build, const hybrid_node* node, int axis, int32_t position, hybrid_plane* best)
+/* Offers the plane between bricks nearest to `position` (voxels) if it divides the node. */
+static void offer(hybrid_work* work, int32_t position)
 {
   const int32_t brick = (position + STRATUS_BRICK / 2) / STRATUS_BRICK;
-  if (brick > node->lo[axis] && brick < node->hi[axis]) {
-    const double cost = stratus_hybrid_plane_cost(build, node, axis, brick);
-    if (cost < best->cost) {
-      *best = (hybrid_plane){ axis, brick, cost };
-    }
+  if (brick > work->node.lo[work->axis] && brick < work->node.hi[work->axis]) {
+    work->offered[work->offers++] = brick;
   }
 }
 
-/* Offers both borders of the peak's cluster. */
-static stratus_status offer_cluster(hybrid_build* build, const hybrid_node* node, const hybrid_view* view, int axis, hybrid_plane* best)
+static int32_t extent_of(const hybrid_work* work)
 {
-  const int32_t start = STRATUS_BRICK * node->lo[axis], extent = STRATUS_BRICK * (node->hi[axis] - node->lo[axis]);
-  const uint32_t* which;
-  const stratus_brick* bricks = bricks_of(build, node, &which);
-  int64_t voxels = 0;
-  int32_t lo, hi, clusters;
-  memset(build->counts, 0, sizeof *build->counts * (size_t)extent);
-  for (uint32_t i = 0; i < node->count; ++i) {
-    const stratus_brick* b = bricks + (which ? which[i] : i);
-    voxels += b->count;
-    for (uint64_t bits = b->mask; bits; bits &= bits - 1) {
-      build->counts[STRATUS_BRICK * b->at[axis] - start + (__builtin_ctzll(bits) >> 2 * axis & 3)]++;
-    }
-  }
-  const int32_t eps = (int32_t)fmin(fmax(floor(build->bandwidth + 0.5), 1.0), STRATUS_AXIS_MAX);
-  const double even = (double)voxels * fmin((2.0 * eps + 1.0) / extent, 1.0);
-  const int64_t least = (int64_t)fmax(ceil(0.5 * even), 1.0);
-  if (stratus_dbscan_counts(build->counts, extent, eps, least, view->peak[axis] - start, &lo, &hi, &clusters)) {
-    offer(build, node, axis, start + lo, best);
-    offer(build, node, axis, start + hi, best);
-  }
-  return STRATUS_OK;
+  return STRATUS_BRICK * (work->node.hi[work->axis] - work->node.lo[work->axis]);
 }
 
-stratus_status stratus_hybrid_plane_density(
-  hybrid_build* build, const hybrid_node* node, const hybrid_view* view, hybrid_plane* plane, int* clustered)
+/* Finds the axis and the side of the steepest fall of each node's density, and its border. */
+static stratus_status find_falls(hybrid_build* build, hybrid_work* const* works, uint32_t count)
 {
-  const stratus_tree_node* box = build->shape->nodes + node->number;
-  const uint32_t* which;
-  const stratus_brick* bricks = bricks_of(build, node, &which);
-  stratus_density_borders borders;
-  int axis = -1, steepest = 0;
-  double fall = 0.0;
+  size_t size = 0;
   void* memory;
-  if (!build->counts) {
-    int64_t longest = 0;
-    for (int a = 0; a < 3; ++a) {
-      longest = build->voxels->bricks_along[a] > longest ? build->voxels->bricks_along[a] : longest;
+  for (uint32_t w = 0; w < count; ++w) {
+    works[w]->at = size;
+    size += stratus_density_line_start(works[w]->lo, works[w]->hi, 3);
+  }
+  TRY(stratus_allocate(build->context, size, sizeof(stratus_density_line), &memory));
+  stratus_density_line* const lines = memory;
+  const stratus_status status = build->sums->lines(build, works, count, lines, size);
+  for (uint32_t w = 0; w < count && status == STRATUS_OK; ++w) {
+    hybrid_work* work = works[w];
+    stratus_density_borders borders;
+    double fall = 0.0;
+    stratus_density_scan_lines(lines + work->at, work->voxels, work->bandwidth, work->peak, work->lo, work->hi, &borders);
+    work->axis = -1;
+    for (int i = 0; i < 6; ++i) {
+      if (borders.fall[i / 2][i % 2] > fall) {
+        fall = borders.fall[i / 2][i % 2];
+        work->axis = i / 2;
+        work->side = i % 2;
+        work->border = borders.position[i / 2][i % 2];
+      }
     }
-    TRY(stratus_allocate(build->context, (size_t)(STRATUS_BRICK * longest), sizeof *build->counts, &memory));
-    build->counts = memory;
   }
-  *plane = (hybrid_plane){ .axis = -1, .cost = INFINITY };
-  *clustered = 0;
-  TRY(stratus_density_find_borders(build->context, bricks, which, node->count, build->bandwidth,
-    build->paper || build->options->exact_density, view->peak, box->lo, box->hi, &borders));
-  for (int i = 0; i < 6; ++i) {
-    if (borders.fall[i / 2][i % 2] > fall) {
-      fall = borders.fall[i / 2][i % 2];
-      axis = i / 2;
-      steepest = i % 2;
+  stratus_release(build->context, memory);
+  return status;
+}
+
+/* Offers both borders of each peak's cluster. */
+static stratus_status offer_clusters(hybrid_build* build, hybrid_work* const* works, uint32_t count)
+{
+  size_t size = 0;
+  void* memory;
+  for (uint32_t w = 0; w < count; ++w) {
+    works[w]->at = size;
+    size += (size_t)extent_of(works[w]);
+  }
+  TRY(stratus_allocate(build->context, size, sizeof(int64_t), &memory));
+  int64_t* const counts = memory;
+  const stratus_status status = build->sums->histograms(build, works, count, counts, size);
+  for (uint32_t w = 0; w < count && status == STRATUS_OK; ++w) {
+    hybrid_work* work = works[w];
+    const int32_t start = STRATUS_BRICK * work->node.lo[work->axis], extent = extent_of(work);
+    int32_t lo, hi, clusters;
+    const int32_t eps = (int32_t)fmin(fmax(floor(work->bandwidth + 0.5), 1.0), STRATUS_AXIS_MAX);
+    const double even = (double)work->voxels * fmin((2.0 * eps + 1.0) / extent, 1.0);
+    const int64_t least = (int64_t)fmax(ceil(0.5 * even), 1.0);
+    work->offers = 0;
+    if (stratus_dbscan_counts(counts + work->at, extent, eps, least, work->peak[work->axis] - start, &lo, &hi, &clusters)) {
+      offer(work, start + lo);
+      offer(work, start + hi);
+    }
+    work->clustered = work->offers > 0;
+    if (!work->clustered) {
+      offer(work, work->border);
     }
   }
-  if (axis < 0) {
-    return STRATUS_OK;
+  stratus_release(build->context, memory);
+  return status;
+}
+
+stratus_status stratus_hybrid_planes_density(hybrid_build* build, hybrid_work* const* works, uint32_t count)
+{
+  stratus_status status = STRATUS_OK;
+  uint32_t falling = 0;
+  void* memory;
+  TRY(stratus_allocate(build->context, count, sizeof *works, &memory));
+  hybrid_work** const list = memory;
+  TRY_CLEANUP(find_falls(build, works, count));
+  for (uint32_t w = 0; w < count; ++w) {
+    if (works[w]->axis >= 0) {
+      list[falling++] = works[w];
+    }
   }
-  TRY(offer_cluster(build, node, view, axis, plane));
-  *clustered = plane->axis >= 0;
-  if (!*clustered) {
-    offer(build, node, axis, borders.position[axis][steepest], plane);
+  TRY_CLEANUP(offer_clusters(build, list, falling));
+  TRY_CLEANUP(build->sums->sides(build, list, falling));
+  for (uint32_t w = 0; w < falling; ++w) {
+    list[w]->plane = stratus_hybrid_plane_offered(list[w]);
   }
-  return STRATUS_OK;
+cleanup:
+  stratus_release(build->context, memory);
+  return status;
 }

@@ -4,6 +4,9 @@
 #ifndef GROUP
 #define GROUP 64 /* work items of a group, which has one brick: an item for each of its voxels */
 #endif
+#ifndef RUN
+#define RUN 1 /* bricks of an item, where a brick has one sum */
+#endif
 
 typedef struct brick {
   ulong mask;
@@ -80,23 +83,36 @@ __kernel void exact(__global const brick* bricks, ulong count, __global const ul
   sums[start[b] + popcount(bricks[b].mask & ((1UL << bit) - 1))] = sum;
 }
 
-/* One item does one brick, as if all of its voxels lay in one place: neighbours weigh by their distance in bricks. */
+/* One item does RUN bricks, as if all voxels of a brick lay in one place: neighbours weigh by their distance in bricks. Its bricks are in
+ * ascending order, and so are the first bricks in reach of them in a row at a fixed offset: one search finds the row for all of them. */
 __kernel void binned(__global const brick* bricks, ulong count, int reach, __global const uint* table, __global ulong* sums)
 {
-  const ulong b = get_global_id(0);
-  if (b >= count) {
+  const ulong first = get_global_id(0) * RUN;
+  if (first >= count) {
     return;
   }
-  const int n = reach + 1;
-  ulong sum = 0;
+  const int n = reach + 1, run = (int)min((ulong)RUN, count - first);
+  ulong own[RUN];
+  for (int r = 0; r < RUN; ++r) {
+    own[r] = 0;
+  }
   for (int dz = -reach; dz <= reach; ++dz) {
     for (int dy = -reach; dy <= reach; ++dy) {
       __global const uint* weights = table + ((int)abs(dz) * n + (int)abs(dy)) * n;
-      const ulong first = place((long)bricks[b].x - reach, (long)bricks[b].y + dy, (long)bricks[b].z + dz);
-      for (ulong j = first_brick(bricks, count, first); j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; ++j) {
-        sum += (ulong)bricks[j].count * weights[abs((int)bricks[j].x - (int)bricks[b].x)];
+      ulong j = first_brick(bricks, count, place((long)bricks[first].x - reach, (long)bricks[first].y + dy, (long)bricks[first].z + dz));
+      for (int r = 0; r < run; ++r) {
+        const brick b = bricks[first + r];
+        const ulong from = place((long)b.x - reach, (long)b.y + dy, (long)b.z + dz);
+        while (j < count && place_of(bricks, j) < from) {
+          ++j;
+        }
+        for (ulong i = j; i < count && place_of(bricks, i) <= from + 2 * (ulong)reach; ++i) {
+          own[r] += (ulong)bricks[i].count * weights[abs((int)bricks[i].x - (int)b.x)];
+        }
       }
     }
   }
-  sums[b] = sum;
+  for (int r = 0; r < run; ++r) {
+    sums[first + r] = own[r];
+  }
 }
