@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Sums of the hybrid tree's builder on the context's OpenCL device: those of hybrid_host.c, one launch for all nodes of a batch. Bricks and
  * their order stay on the device while the tree grows; what comes back are the sums. */
-#include "device.h"
+#include "device_frame.h"
 #include "hybrid_tree.h"
 
 #include <stdio.h>
@@ -13,18 +13,12 @@
 #define GROUP_CHUNK 512
 #define ITEM_CHUNK 4096
 
-/* A buffer that grows on demand, and is kept from call to call. */
-typedef struct device_array {
-  cl_mem buffer;
-  size_t bytes;
-} device_array;
-
 typedef struct hybrid_device {
   bool processor;
   cl_mem bricks, order, divided;
   cl_mem densities, start;
   const stratus_density* density; /* whose numbers the two buffers above hold */
-  device_array slots, chunks, peaks, sums;
+  stratus_device_slot slots, chunks, peaks, sums;
   stratus_hybrid_slot* slot; /* of a batch's nodes */
   size_t slot_max;
   stratus_hybrid_chunk* chunk;
@@ -59,17 +53,9 @@ static stratus_status make_buffer(stratus_context* context, size_t bytes, cl_mem
   return stratus_device_buffer(context, CL_MEM_READ_WRITE, bytes, NULL, false, buffer);
 }
 
-static stratus_status reserve(stratus_context* context, device_array* array, size_t bytes)
+static stratus_status reserve(stratus_context* context, stratus_device_slot* slot, size_t bytes)
 {
-  cl_mem buffer;
-  if (bytes <= array->bytes) {
-    return STRATUS_OK;
-  }
-  bytes = bytes < 2 * array->bytes ? 2 * array->bytes : bytes;
-  TRY(make_buffer(context, bytes, &buffer));
-  stratus_device_buffer_release(array->buffer);
-  *array = (device_array){ buffer, bytes };
-  return STRATUS_OK;
+  return stratus_slot_reserve(context, slot, CL_MEM_READ_WRITE, bytes);
 }
 
 static stratus_status reserve_host(stratus_context* context, void** array, size_t* capacity, size_t count, size_t size)
@@ -104,8 +90,8 @@ void stratus_hybrid_device_destroy(hybrid_build* build)
 {
   hybrid_device* const d = build->device;
   if (d) {
-    const cl_mem buffers[] = { d->bricks, d->order, d->divided, d->densities, d->start, d->slots.buffer, d->chunks.buffer, d->peaks.buffer,
-      d->sums.buffer };
+    const cl_mem buffers[] = { d->bricks, d->order, d->divided, d->densities, d->start, d->slots.memory, d->chunks.memory, d->peaks.memory,
+      d->sums.memory };
     for (size_t i = 0; i < COUNT_OF(buffers); ++i) {
       stratus_device_buffer_release(buffers[i]);
     }
@@ -139,7 +125,7 @@ static stratus_status launch(
 static stratus_status clear(const hybrid_build* build, const char* name, size_t count, size_t numbers)
 {
   const cl_ulong things = count;
-  const stratus_kernel_argument arguments[] = { ARGUMENT(build->device->sums.buffer), ARGUMENT(things) };
+  const stratus_kernel_argument arguments[] = { ARGUMENT(build->device->sums.memory), ARGUMENT(things) };
   return launch(build, name, arguments, COUNT_OF(arguments), build->device->processor ? numbers : (numbers + GROUP - 1) / GROUP);
 }
 
@@ -190,16 +176,16 @@ static stratus_status begin(const hybrid_build* build, hybrid_work* const* works
   }
   TRY(reserve(context, &d->slots, count * sizeof *d->slot));
   TRY(reserve(context, &d->chunks, chunks * sizeof *d->chunk));
-  TRY(stratus_device_write(context, d->slots.buffer, 0, count * sizeof *d->slot, d->slot));
-  return stratus_device_write(context, d->chunks.buffer, 0, chunks * sizeof *d->chunk, d->chunk);
+  TRY(stratus_device_write(context, d->slots.memory, 0, count * sizeof *d->slot, d->slot));
+  return stratus_device_write(context, d->chunks.memory, 0, chunks * sizeof *d->chunk, d->chunk);
 }
 
 /* Launches a kernel over the chunks whose arguments are bricks, order, slots, chunks and `result`. */
 static stratus_status run(const hybrid_build* build, const char* name, cl_mem result)
 {
   const hybrid_device* d = build->device;
-  const stratus_kernel_argument arguments[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.buffer),
-    ARGUMENT(d->chunks.buffer), ARGUMENT(result) };
+  const stratus_kernel_argument arguments[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.memory),
+    ARGUMENT(d->chunks.memory), ARGUMENT(result) };
   return launch(build, name, arguments, COUNT_OF(arguments), d->chunk_count);
 }
 
@@ -235,9 +221,9 @@ static stratus_status find_peaks(const hybrid_build* build, bool own)
   const cl_int exact = build->density->exact, of_node = own;
   const cl_mem start = d->start ? d->start : d->densities;
   for (cl_int axis = 3; axis >= 0; --axis) {
-    const stratus_kernel_argument arguments[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.buffer),
-      ARGUMENT(d->chunks.buffer), ARGUMENT(d->densities), ARGUMENT(start), ARGUMENT(exact), ARGUMENT(of_node), ARGUMENT(axis),
-      ARGUMENT(d->peaks.buffer) };
+    const stratus_kernel_argument arguments[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.memory),
+      ARGUMENT(d->chunks.memory), ARGUMENT(d->densities), ARGUMENT(start), ARGUMENT(exact), ARGUMENT(of_node), ARGUMENT(axis),
+      ARGUMENT(d->peaks.memory) };
     TRY(launch(build, "peaks", arguments, COUNT_OF(arguments), d->chunk_count));
   }
   return STRATUS_OK;
@@ -248,13 +234,13 @@ static stratus_status read_peaks(const hybrid_build* build, hybrid_work* const* 
   const hybrid_device* d = build->device;
   uint32_t(*const peak)[4] = memory;
   int64_t(*const squares)[4] = memory;
-  TRY(stratus_device_read(build->context, d->peaks.buffer, 0, count * sizeof *peak, peak));
+  TRY(stratus_device_read(build->context, d->peaks.memory, 0, count * sizeof *peak, peak));
   for (uint32_t w = 0; w < count; ++w) {
     for (int a = 0; a < 3; ++a) {
       works[w]->peak[a] = (int32_t)peak[w][1 + a];
     }
   }
-  TRY(stratus_device_read(build->context, d->sums.buffer, 0, count * sizeof *squares, squares));
+  TRY(stratus_device_read(build->context, d->sums.memory, 0, count * sizeof *squares, squares));
   for (uint32_t w = 0; w < count; ++w) {
     for (int a = 0; a < 3; ++a) {
       works[w]->squares[a] = (double)squares[w][a];
@@ -283,11 +269,11 @@ static stratus_status peaks(hybrid_build* build, hybrid_work* const* works, uint
   for (uint32_t w = 0; w < count; ++w) {
     memcpy((uint32_t*)memory + 4 * w, (const uint32_t[4]){ 0, UINT32_MAX, UINT32_MAX, UINT32_MAX }, 4 * sizeof(uint32_t));
   }
-  TRY_CLEANUP(stratus_device_write(context, d->peaks.buffer, 0, (size_t)count * 4 * sizeof(uint32_t), memory));
+  TRY_CLEANUP(stratus_device_write(context, d->peaks.memory, 0, (size_t)count * 4 * sizeof(uint32_t), memory));
   TRY_CLEANUP(find_peaks(build, own));
   TRY_CLEANUP(clear(build, "clear", (size_t)count * 8, (size_t)count * 8));
-  const stratus_kernel_argument squares[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->chunks.buffer),
-    ARGUMENT(d->peaks.buffer), ARGUMENT(d->sums.buffer) };
+  const stratus_kernel_argument squares[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->chunks.memory),
+    ARGUMENT(d->peaks.memory), ARGUMENT(d->sums.memory) };
   TRY_CLEANUP(launch(build, "squares", squares, COUNT_OF(squares), d->chunk_count));
   TRY_CLEANUP(read_peaks(build, works, count, memory));
 cleanup:
@@ -319,8 +305,8 @@ static stratus_status lines(hybrid_build* build, hybrid_work* const* works, uint
   TRY(begin(build, works, count, false));
   TRY(reserve(build->context, &d->sums, size * sizeof *to));
   TRY(clear(build, "clear", size * 8, size * 8));
-  TRY(run(build, "lines", d->sums.buffer));
-  TRY(stratus_device_read(build->context, d->sums.buffer, 0, size * sizeof *to, to));
+  TRY(run(build, "lines", d->sums.memory));
+  TRY(stratus_device_read(build->context, d->sums.memory, 0, size * sizeof *to, to));
   for (size_t i = 0; i < size; ++i) {
     int64_t sums[4];
     memcpy(sums, &to[i], sizeof sums);
@@ -338,8 +324,8 @@ static stratus_status histograms(hybrid_build* build, hybrid_work* const* works,
   TRY(begin(build, works, count, false));
   TRY(reserve(build->context, &d->sums, size * sizeof(uint32_t)));
   TRY(clear(build, "clear", size, size));
-  TRY(run(build, "histograms", d->sums.buffer));
-  TRY(stratus_device_read(build->context, d->sums.buffer, 0, size * sizeof(uint32_t), counts));
+  TRY(run(build, "histograms", d->sums.memory));
+  TRY(stratus_device_read(build->context, d->sums.memory, 0, size * sizeof(uint32_t), counts));
   for (size_t i = size; i-- > 0;) { /* from the last on, so that none is overwritten before it is widened */
     uint32_t narrow;
     memcpy(&narrow, (const uint8_t*)counts + i * sizeof narrow, sizeof narrow);
@@ -362,9 +348,9 @@ static stratus_status sides(hybrid_build* build, hybrid_work* const* works, uint
   TRY(begin(build, works, count, false));
   TRY(reserve(build->context, &d->sums, bins * sizeof(hybrid_bin)));
   TRY(clear(build, "clear_bins", bins, bins * sizeof(hybrid_bin) / sizeof(int32_t)));
-  TRY(run(build, "sides", d->sums.buffer));
+  TRY(run(build, "sides", d->sums.memory));
   TRY(stratus_allocate(build->context, bins, sizeof(hybrid_bin), &memory));
-  TRY_CLEANUP(stratus_device_read(build->context, d->sums.buffer, 0, bins * sizeof(hybrid_bin), memory));
+  TRY_CLEANUP(stratus_device_read(build->context, d->sums.memory, 0, bins * sizeof(hybrid_bin), memory));
   for (uint32_t w = 0; w < count; ++w) {
     memcpy(works[w]->sides, (const hybrid_bin*)memory + 4 * w, sizeof works[w]->sides);
   }
@@ -382,8 +368,8 @@ static stratus_status bins(hybrid_build* build, hybrid_work* const* works, uint3
   TRY(begin(build, works, count, false));
   TRY(reserve(build->context, &d->sums, size * sizeof *to));
   TRY(clear(build, "clear_bins", size, size * sizeof *to / sizeof(int32_t)));
-  TRY(run(build, "bins", d->sums.buffer));
-  return stratus_device_read(build->context, d->sums.buffer, 0, size * sizeof *to, to);
+  TRY(run(build, "bins", d->sums.memory));
+  return stratus_device_read(build->context, d->sums.memory, 0, size * sizeof *to, to);
 }
 
 /* ---------------------------------------------------------------- division */
@@ -398,8 +384,8 @@ static stratus_status place_chunks(const hybrid_build* build, hybrid_work* const
 {
   hybrid_device* const d = build->device;
   stratus_context* context = build->context;
-  TRY(run(build, "count_below", d->sums.buffer));
-  TRY(stratus_device_read(context, d->sums.buffer, 0, d->chunk_count * sizeof *below, below));
+  TRY(run(build, "count_below", d->sums.memory));
+  TRY(stratus_device_read(context, d->sums.memory, 0, d->chunk_count * sizeof *below, below));
   for (uint32_t w = 0; w < count; ++w) {
     works[w]->child[0] = (hybrid_node){ .first = works[w]->node.first };
   }
@@ -418,7 +404,7 @@ static stratus_status place_chunks(const hybrid_build* build, hybrid_work* const
       high += d->chunk[c].count - below[c];
     }
   }
-  return stratus_device_write(context, d->chunks.buffer, 0, d->chunk_count * sizeof *d->chunk, d->chunk);
+  return stratus_device_write(context, d->chunks.memory, 0, d->chunk_count * sizeof *d->chunk, d->chunk);
 }
 
 static stratus_status divide(hybrid_build* build, hybrid_work* const* works, uint32_t count)
@@ -437,12 +423,12 @@ static stratus_status divide(hybrid_build* build, hybrid_work* const* works, uin
   TRY(stratus_allocate(context, bytes, 1, &memory));
   TRY_CLEANUP(place_chunks(build, works, count, memory));
   TRY_CLEANUP(clear(build, "clear_boxes", count, box_bytes / sizeof(int32_t)));
-  const stratus_kernel_argument all[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.buffer), ARGUMENT(d->chunks.buffer),
-    ARGUMENT(d->divided), ARGUMENT(d->sums.buffer) };
+  const stratus_kernel_argument all[] = { ARGUMENT(d->bricks), ARGUMENT(d->order), ARGUMENT(d->slots.memory), ARGUMENT(d->chunks.memory),
+    ARGUMENT(d->divided), ARGUMENT(d->sums.memory) };
   TRY_CLEANUP(launch(build, "divide", all, COUNT_OF(all), d->chunk_count));
-  const stratus_kernel_argument kept[] = { ARGUMENT(d->divided), ARGUMENT(d->chunks.buffer), ARGUMENT(d->order) };
+  const stratus_kernel_argument kept[] = { ARGUMENT(d->divided), ARGUMENT(d->chunks.memory), ARGUMENT(d->order) };
   TRY_CLEANUP(launch(build, "keep", kept, COUNT_OF(kept), d->chunk_count));
-  TRY_CLEANUP(stratus_device_read(context, d->sums.buffer, 0, box_bytes, memory));
+  TRY_CLEANUP(stratus_device_read(context, d->sums.memory, 0, box_bytes, memory));
   for (uint32_t w = 0; w < count; ++w) {
     for (int side = 0; side < 2; ++side) {
       const child_box* box = (const child_box*)memory + 2 * w + side;

@@ -285,9 +285,15 @@ stratus_status stratus_tree_make_fields(
   tree->rows = memory;
   TRY(stratus_allocate(context, tree->mask_count, sizeof *tree->masks, &memory));
   tree->masks = memory;
+  const bool on_device = stratus_tree_fields_on_device(context, voxels, tree);
+  if (on_device) {
+    TRY(stratus_device_tree_fields(context, voxels, shape, tree));
+  }
   for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&shape->nodes[n]) == STRATUS_NODE_FIELD) {
-      TRY(make_field(context, voxels, shape, &shape->nodes[n], tree, &tree->fields[f], &mask));
+      if (!on_device) {
+        TRY(make_field(context, voxels, shape, &shape->nodes[n], tree, &tree->fields[f], &mask));
+      }
       tree->nodes[n].first = f++;
     }
   }

@@ -16,6 +16,13 @@ static inline int32_t stratus_leap_of_code(int bits, int code)
 stratus_status stratus_tree_octants(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree);
 
+/* ---- tree_fields_device.c: gives the same bytes */
+/* Returns whether the context's device makes the fields: it builds, the fields have a leap for each octant, and they fit. */
+bool stratus_tree_fields_on_device(const stratus_context* context, const stratus_voxels* voxels, const stratus_tree* tree);
+/* Fills entries, rows and masks. A field's bricks in the order must ascend. */
+stratus_status stratus_device_tree_fields(
+  stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape, stratus_tree* tree);
+
 /* ---- tree_octants_isa.c, for each instruction set */
 
 /* A grid of cells as bits, 64 a word: rows[0]*rows[1] rows of `words` words, x fastest. Bits beyond a row's end are 0. */

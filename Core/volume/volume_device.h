@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Builders of a volume's structures on the context's OpenCL device. Their results equal the host's to the bit. A CPU's OpenCL is slower
- * than the host, so that only GPUs build (stratus_device_builds()); tests call the builders on any device. Each fills arrays that its
- * caller allocated. */
+ * Builders of a volume's structures on the context's OpenCL device, for contexts where stratus_device_builds(). Their results equal the
+ * host's to the bit. Each fills arrays that its caller allocated. */
 #ifndef STRATUS_VOLUME_DEVICE_H
 #define STRATUS_VOLUME_DEVICE_H
 

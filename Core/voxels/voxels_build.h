@@ -7,6 +7,31 @@
 #include "threads.h"
 #include "voxels.h"
 
+/* End of an interval in the type in which values are compared: their own, or double for 64-bit integers, as everywhere else. */
+typedef union stratus_bound {
+  int64_t i; /* of integers of at most 32 bits */
+  double d;  /* of all other types */
+} stratus_bound;
+
+typedef struct stratus_bounds {
+  stratus_bound lo, hi;
+} stratus_bounds;
+
+/* What makes a value effective: to lie in one of the intervals, and not to be hidden. */
+typedef struct stratus_scan {
+  const stratus_volume* volume;
+  const stratus_bounds* intervals;
+  int64_t count;
+  const uint8_t* ghosts; /* one byte of flags for each value; NULL if there are none */
+  uint8_t hidden;        /* flags that exclude a value */
+} stratus_scan;
+
+/* ---- voxels_device.c: gives the same bricks */
+/* Returns whether the context's device makes the set: it builds, and can hold a layer of values and all masks. */
+bool stratus_voxels_on_device(const stratus_context* context, const stratus_volume* volume, const stratus_voxels* voxels);
+/* Sets brick_count and bricks of a set that is empty. The caller measures it. */
+stratus_status stratus_device_voxels(stratus_context* context, const stratus_scan* scan, stratus_voxels* voxels);
+
 /* ---- voxels.c */
 
 /* Creates an empty set. It checks the dimensions: 1..2^18 along each axis. */

@@ -8,20 +8,24 @@
 
 #include <string.h>
 
-/* A block with gaps counts if anything shows at all, as in stratus_occupancy_build(). */
+/* A block with gaps counts if anything shows at all. */
 static stratus_status mark_blocks(const stratus_voxels* voxels, const stratus_value_range* ranges, uint64_t* masks)
 {
+  stratus_context* context = voxels->context;
   const int64_t count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
   const stratus_fetching fetching = stratus_value_range_fetching(ranges);
   stratus_origin origin = voxels->origin;
+  stratus_occupancy* occupancy = NULL;
   stratus_shown shown;
-  TRY(stratus_shown_create(voxels->context, &fetching, &(stratus_intervals){ origin.intervals, origin.interval }, &shown));
-  const bool any = stratus_shown_meets(&shown, ranges->whole_lo, ranges->whole_hi);
-#pragma omp parallel for schedule(static) num_threads(voxels->context->threads)
+  TRY(stratus_shown_create(context, &fetching, &(stratus_intervals){ origin.intervals, origin.interval }, &shown));
+  const stratus_status status = stratus_occupancy_build(context, ranges, &shown, true, &occupancy);
+  stratus_release(context, shown.of);
+  TRY(status);
+#pragma omp parallel for schedule(static) num_threads(context->threads)
   for (int64_t b = 0; b < count; ++b) {
-    masks[b] = (any && ranges->gaps[b]) || stratus_shown_meets(&shown, ranges->lo[b], ranges->hi[b]) ? ~UINT64_C(0) : 0;
+    masks[b] = occupancy->occupied[b] ? ~UINT64_C(0) : 0;
   }
-  stratus_release(voxels->context, shown.of);
+  stratus_occupancy_destroy(occupancy);
   return STRATUS_OK;
 }
 

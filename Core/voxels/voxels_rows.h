@@ -4,10 +4,10 @@
  *   TYPE     the type of the values
  *   AS       the type in which they are compared
  *   NAME(f)  f with the type in its name
- *   BOUND    the member of `bounds`
+ *   BOUND    the member of `stratus_bound`
  * Every comparison is exact, and false for NaN. */
 
-static void NAME(mark)(const void* row, int64_t n, const bounds* intervals, int64_t count, uint8_t* restrict flags)
+static void NAME(mark)(const void* row, int64_t n, const stratus_bounds* intervals, int64_t count, uint8_t* restrict flags)
 {
   const TYPE* restrict values = row;
   for (int64_t b = 0; b < count; ++b) {

@@ -9,16 +9,6 @@
 
 #define WORD 64 /* flags in a word: those of 16 bricks' rows of four */
 
-/* End of an interval in the type in which values are compared: their own, or double for 64-bit integers, as everywhere else. */
-typedef union bound {
-  int64_t i;
-  double d;
-} bound;
-
-typedef struct bounds {
-  bound lo, hi;
-} bounds;
-
 #define TYPE int8_t
 #define AS int8_t
 #define NAME(f) f##_int8
@@ -80,7 +70,7 @@ typedef struct bounds {
 #include "voxels_rows.h"
 #include "volume_hash.h"
 
-typedef void (*mark_function)(const void*, int64_t, const bounds*, int64_t, uint8_t*);
+typedef void (*mark_function)(const void*, int64_t, const stratus_bounds*, int64_t, uint8_t*);
 
 static mark_function mark_of(stratus_type type)
 {
@@ -92,7 +82,7 @@ static mark_function mark_of(stratus_type type)
 /* ---------------------------------------------------------------- intervals in the values' type */
 
 /* Restricts lo..hi to integers within least..most; returns false if there is none. */
-static bool whole_bounds(double lo, double hi, double least, double most, bounds* result)
+static bool whole_bounds(double lo, double hi, double least, double most, stratus_bounds* result)
 {
   const double first = fmax(ceil(lo), least), last = fmin(floor(hi), most);
   if (!(first <= last)) {
@@ -104,7 +94,7 @@ static bool whole_bounds(double lo, double hi, double least, double most, bounds
 }
 
 /* Restricts lo..hi to finite floats; returns false if there is none. */
-static bool float_bounds(double lo, double hi, bounds* result)
+static bool float_bounds(double lo, double hi, stratus_bounds* result)
 {
   if (lo > FLT_MAX || hi < -FLT_MAX) {
     return false;
@@ -115,7 +105,7 @@ static bool float_bounds(double lo, double hi, bounds* result)
   return first <= last;
 }
 
-static bool bounds_of(stratus_type type, const double interval[2], bounds* result)
+static bool bounds_of(stratus_type type, const double interval[2], stratus_bounds* result)
 {
   static const struct {
     double least, most;
@@ -133,16 +123,6 @@ static bool bounds_of(stratus_type type, const double interval[2], bounds* resul
 }
 
 /* ---------------------------------------------------------------- rows */
-
-typedef struct scan {
-  const stratus_volume* volume;
-  const bounds* intervals;
-  int64_t count;
-  const uint8_t* ghosts; /* one byte of flags for each value; NULL if there are none */
-  uint8_t hidden;        /* flags that exclude a value */
-  uint64_t* masks;
-  int64_t bricks_along[3];
-} scan;
 
 /* Packs eight bytes of 0 or 1 into eight bits, the first byte into the lowest. */
 static uint64_t pack8(const uint8_t* flags)
@@ -171,12 +151,12 @@ static void add_row(const uint8_t* flags, int64_t bricks, int shift, uint64_t* m
 }
 
 /* Fills the masks of row (j, k) of bricks and returns the hash of its values. */
-static uint64_t scan_bricks(const scan* s, mark_function mark, int64_t j, int64_t k, void* room, uint8_t* flags)
+static uint64_t scan_bricks(
+  const stratus_scan* s, int64_t bricks, mark_function mark, int64_t j, int64_t k, void* room, uint8_t* flags, uint64_t* masks)
 {
   const int64_t* n = s->volume->dimensions;
-  uint64_t* masks = s->masks + (k * s->bricks_along[1] + j) * s->bricks_along[0];
   uint64_t hash = 0;
-  memset(masks, 0, (size_t)s->bricks_along[0] * sizeof *masks);
+  memset(masks, 0, (size_t)bricks * sizeof *masks);
   for (int64_t z = 4 * k; z < 4 * k + 4 && z < n[2]; ++z) {
     for (int64_t y = 4 * j; y < 4 * j + 4 && y < n[1]; ++y) {
       const void* row = stratus_volume_row(s->volume, y, z, room);
@@ -186,15 +166,17 @@ static uint64_t scan_bricks(const scan* s, mark_function mark, int64_t j, int64_
       for (int64_t i = 0; ghosts && i < n[0]; ++i) {
         flags[i] &= (ghosts[i] & s->hidden) == 0;
       }
-      add_row(flags, s->bricks_along[0], (int)((z % 4 * 4 + y % 4) * 4), masks);
+      add_row(flags, bricks, (int)((z % 4 * 4 + y % 4) * 4), masks);
     }
   }
   return hash;
 }
 
-static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* hash)
+/* Fills the masks of all bricks and the hash of all values, which are read once for both. */
+static stratus_status scan_rows(
+  stratus_context* context, const stratus_scan* s, const int64_t bricks_along[3], uint64_t* masks, uint64_t* hash)
 {
-  const int64_t ny = s->bricks_along[1], rows = ny * s->bricks_along[2];
+  const int64_t nx = bricks_along[0], ny = bricks_along[1], rows = ny * bricks_along[2];
   const size_t line = ((size_t)s->volume->dimensions[0] + WORD - 1) / WORD * WORD;
   const size_t room = s->volume->value_stride == 1 ? 0 : line * stratus_type_size(s->volume->type);
   const mark_function mark = mark_of(s->volume->type);
@@ -206,7 +188,7 @@ static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* has
     uint8_t* mine = (uint8_t*)memory + (size_t)omp_get_thread_num() * (room + line);
 #pragma omp for schedule(static)
     for (int64_t row = 0; row < rows; ++row) {
-      sum += scan_bricks(s, mark, row % ny, row / ny, mine, mine + room);
+      sum += scan_bricks(s, nx, mark, row % ny, row / ny, mine, mine + room, masks + row * nx);
     }
   }
   stratus_release(context, memory);
@@ -216,14 +198,14 @@ static stratus_status scan_rows(stratus_context* context, scan* s, uint64_t* has
 
 /* Takes the criterion's intervals that some value of the type can lie in. */
 static stratus_status take_intervals(
-  stratus_context* context, const stratus_criterion* criterion, scan* s, stratus_origin* origin, void** out)
+  stratus_context* context, const stratus_criterion* criterion, stratus_scan* s, stratus_origin* origin, void** out)
 {
   stratus_intervals list = { 0 };
   void* memory = NULL;
   TRY(stratus_intervals_create(context, criterion, &list));
-  const stratus_status status = stratus_allocate(context, (size_t)list.count, sizeof(bounds), &memory);
+  const stratus_status status = stratus_allocate(context, (size_t)list.count, sizeof(stratus_bounds), &memory);
   if (status == STRATUS_OK) {
-    bounds* intervals = memory;
+    stratus_bounds* intervals = memory;
     for (int64_t i = 0; i < list.count; ++i) {
       s->count += bounds_of(s->volume->type, list.of[i], intervals + s->count);
     }
@@ -235,12 +217,34 @@ static stratus_status take_intervals(
   return status;
 }
 
+static stratus_status scan_on_host(const stratus_scan* scan, stratus_voxels* voxels)
+{
+  stratus_context* context = voxels->context;
+  const int64_t* n = voxels->bricks_along;
+  void* masks;
+  TRY(stratus_allocate(context, (size_t)(n[0] * n[1] * n[2]), sizeof(uint64_t), &masks));
+  stratus_status status = scan_rows(context, scan, n, masks, &voxels->origin.hash);
+  if (status == STRATUS_OK) {
+    status = stratus_voxels_take_masks(voxels, masks);
+  }
+  stratus_release(context, masks);
+  return status;
+}
+
+static stratus_status scan_on_device(const stratus_scan* scan, stratus_voxels* voxels)
+{
+  TRY(stratus_volume_hash(voxels->context, scan->volume, &voxels->origin.hash));
+  TRY(stratus_device_voxels(voxels->context, scan, voxels));
+  stratus_voxels_measure(voxels);
+  return STRATUS_OK;
+}
+
 stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** out)
 {
   stratus_voxels* voxels = NULL;
   stratus_status status;
-  void *masks = NULL, *intervals = NULL;
+  void* intervals = NULL;
   TRY(stratus_volume_check(context, volume));
   TRY(stratus_criterion_check(context, criterion));
   if (!out) {
@@ -250,21 +254,17 @@ stratus_status stratus_voxels_create(
   TRY(stratus_progress(context, "effective voxels", 0.0));
   TRY(stratus_voxels_create_empty(context, volume->dimensions, &voxels));
   stratus_volume_index_to_world(volume, voxels->index_to_world);
-  scan s = { .volume = volume, .bricks_along = { voxels->bricks_along[0], voxels->bricks_along[1], voxels->bricks_along[2] } };
+  stratus_scan s = { .volume = volume };
   s.ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
   s.hidden = STRATUS_GHOST_DUPLICATE | (volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
   TRY_CLEANUP(take_intervals(context, criterion, &s, &voxels->origin, &intervals));
-  TRY_CLEANUP(stratus_allocate(context, (size_t)(s.bricks_along[0] * s.bricks_along[1] * s.bricks_along[2]), sizeof(uint64_t), &masks));
-  s.masks = masks;
-  TRY_CLEANUP(scan_rows(context, &s, &voxels->origin.hash));
-  TRY_CLEANUP(stratus_voxels_take_masks(voxels, masks));
+  TRY_CLEANUP(stratus_voxels_on_device(context, volume, voxels) ? scan_on_device(&s, voxels) : scan_on_host(&s, voxels));
   stratus_voxels_end_stage(voxels, &stage);
   TRY_CLEANUP(stratus_progress(context, "effective voxels", 1.0));
   *out = voxels;
   voxels = NULL;
 cleanup:
   stratus_release(context, intervals);
-  stratus_release(context, masks);
   stratus_voxels_destroy(voxels);
   return status;
 }

@@ -88,7 +88,7 @@ __kernel void peaks(__global const brick* bricks, __global const uint* order, __
   const int item = (int)get_local_id(0);
   const stratus_hybrid_chunk c = chunks[get_group_id(0)];
   __global uint* const node = peaks + 4 * c.slot;
-  const uint peak[4] = { node[0], 0, axis < 1 ? node[2] : 0, axis < 2 ? node[3] : 0 };
+  const uint peak[4] = { axis < 3 ? node[0] : 0, 0, axis < 1 ? node[2] : 0, axis < 2 ? node[3] : 0 }; /* what others do not write now */
   const uint none = axis == 3 ? 0 : UINT_MAX;
   if (item == 0) {
     best = none;
