@@ -247,7 +247,7 @@ stratus_status stratus_device_open(stratus_context* context, const char* selecto
     return no_such_device(context, &list, selector);
   }
   TRY(stratus_device_open_id(context, list.ids[index], device));
-  (*device)->builds = true;
+  (*device)->builds = (*device)->named = true;
   return STRATUS_OK;
 }
 
@@ -300,6 +300,7 @@ stratus_status stratus_device_buffer(
 {
   stratus_device* device = context->device;
   if (bytes > device->largest_allocation) {
+    device->failure = STRATUS_OUT_OF_MEMORY;
     return stratus_fail(context, STRATUS_OUT_OF_MEMORY, "a buffer of %zu bytes exceeds the largest allocation of %s, %zu bytes", bytes,
       device->label, device->largest_allocation);
   }

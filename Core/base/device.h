@@ -24,6 +24,10 @@ int stratus_device_candidates(bool processors, cl_device_id ids[STRATUS_DEVICES_
 /* Writes a device's name and its driver's version. */
 void stratus_device_describe(cl_device_id id, char* text, size_t capacity);
 
+/* Returns whether the host is to do what the context's device failed at with `status`: it has no memory for it, or it failed otherwise and
+ * "auto" took it. The reason goes to the log. A call of a device that was named fails, if not for want of memory. */
+bool stratus_device_hands_back(stratus_context* context, stratus_status status);
+
 /* True if the context's device builds structures: a device that was asked for by name, and a GPU that "auto" took. A CPU's OpenCL that
  * stands for a GPU in tests of "auto" does not: the host builds faster on the same cores. */
 bool stratus_device_builds(const stratus_context* context);

@@ -37,7 +37,7 @@ const char* stratus_device_error_name(int error)
   return "unknown OpenCL error";
 }
 
-stratus_status stratus_device_check(stratus_context* context, const stratus_device* device, const char* call, cl_int error)
+stratus_status stratus_device_check(stratus_context* context, stratus_device* device, const char* call, cl_int error)
 {
   if (error == CL_SUCCESS) {
     return STRATUS_OK;
@@ -46,8 +46,20 @@ stratus_status stratus_device_check(stratus_context* context, const stratus_devi
     clFinish(device->queue); /* the caller will release memory that launched kernels may still borrow */
   }
   const bool memory = error == CL_OUT_OF_RESOURCES || error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_HOST_MEMORY;
-  return stratus_fail(context, memory ? STRATUS_OUT_OF_MEMORY : STRATUS_DEVICE_ERROR, "%s failed on %s: %s (%d)", call, device->label,
-    stratus_device_error_name(error), error);
+  device->failure = memory ? STRATUS_OUT_OF_MEMORY : STRATUS_DEVICE_ERROR;
+  return stratus_fail(context, device->failure, "%s failed on %s: %s (%d)", call, device->label, stratus_device_error_name(error), error);
+}
+
+bool stratus_device_hands_back(stratus_context* context, stratus_status status)
+{
+  stratus_device* const device = context->device;
+  if (status == STRATUS_OK || device->failure != status || (status == STRATUS_DEVICE_ERROR && device->named)) {
+    return false;
+  }
+  device->failure = STRATUS_OK;
+  stratus_log(context, STRATUS_LOG_WARNING, "done on the host: %s", context->message);
+  context->message[0] = '\0';
+  return true;
 }
 
 cl_int stratus_device_next_error(stratus_device* device)

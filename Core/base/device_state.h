@@ -29,15 +29,17 @@ struct stratus_device {
   size_t largest_allocation;
   size_t borrow_alignment;
   bool is_cpu, has_double, shares_memory;
-  bool builds;        /* structures */
-  int64_t calls_left; /* OpenCL calls until every one fails with `injected`; negative: none fails */
+  bool builds;            /* structures */
+  bool named;             /* by the caller: its failures are errors, but for want of memory */
+  stratus_status failure; /* of the last call that failed, until stratus_device_hands_back() */
+  int64_t calls_left;     /* OpenCL calls until every one fails with `injected`; negative: none fails */
   cl_int injected;
   char label[192];
 };
 
 /* Returns STRATUS_OK for CL_SUCCESS. Otherwise it returns the status that stands for the error, with the names of call and error in the
  * message. */
-stratus_status stratus_device_check(stratus_context* context, const stratus_device* device, const char* call, cl_int error);
+stratus_status stratus_device_check(stratus_context* context, stratus_device* device, const char* call, cl_int error);
 /* Returns the error that a test injects into the next call, else CL_SUCCESS. */
 cl_int stratus_device_next_error(stratus_device* device);
 /* Checks an OpenCL call, which is evaluated only if no test injects an error. */

@@ -3,6 +3,7 @@
  * compute the same codes to the bit. The host's radix sort is stable, so that the order does not depend on the number of threads. */
 #include "bvh_build.h"
 
+#include "device.h"
 #include "morton.h"
 #include "radix_sort.h"
 
@@ -45,7 +46,10 @@ static stratus_status make_codes(stratus_bvh_build* build, const stratus_box* bo
   }
   *bits = 3 * axis_bits;
   if (stratus_device_takes_boxes(build->context, build->count)) {
-    return stratus_device_morton_codes(build->context, boxes, build->count, least, shift, build->codes);
+    const stratus_status status = stratus_device_morton_codes(build->context, boxes, build->count, least, shift, build->codes);
+    if (!stratus_device_hands_back(build->context, status)) {
+      return status;
+    }
   }
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
   for (uint32_t i = 0; i < build->count; ++i) {

@@ -37,10 +37,12 @@ static stratus_status sum_weights(
   }
   TRY_CLEANUP(stratus_density_plan_create(context, density->bandwidth, density->exact, &plan));
   if (stratus_device_builds(context) && stratus_device_takes_density(context, &plan, count, voxels)) {
-    TRY_CLEANUP(stratus_device_density(context, &plan, bricks, count, density->start, sums));
-  } else {
-    TRY_CLEANUP(stratus_density_rows(&plan, bricks, count, density->start, sums));
+    status = stratus_device_density(context, &plan, bricks, count, density->start, sums);
+    if (!stratus_device_hands_back(context, status)) {
+      goto cleanup;
+    }
   }
+  TRY_CLEANUP(stratus_density_rows(&plan, bricks, count, density->start, sums));
 
 cleanup:
   stratus_density_plan_release(&plan);

@@ -2,6 +2,7 @@
  * Distance fields: checks, the choice of the builder, and reading. */
 #include "distance_field.h"
 
+#include "device.h"
 #include "jump_flooding_passes.h"
 
 #include <string.h>
@@ -98,6 +99,17 @@ static bool make_uniform(const stratus_voxels* voxels, size_t count, stratus_fie
   return true;
 }
 
+static stratus_status fill_exact(stratus_context* context, const stratus_voxels* voxels, const stratus_bits* set, stratus_field* field)
+{
+  if (stratus_field_on_device(context, set->n, sizeof(int64_t))) {
+    const stratus_status status = stratus_device_field_exact(context, set, field);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+  }
+  return stratus_field_exact(context, voxels, set, field);
+}
+
 static stratus_status build(stratus_context* context, const stratus_voxels* voxels, const stratus_field_options* options, size_t count,
   stratus_field* field, stratus_field_report* report)
 {
@@ -115,10 +127,8 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
     TRY_CLEANUP(stratus_flood(context, &set, options, field, report));
     field->set = set;
     set.bits = NULL;
-  } else if (stratus_field_on_device(context, set.n, sizeof(int64_t))) {
-    TRY_CLEANUP(stratus_device_field_exact(context, &set, field));
   } else {
-    TRY_CLEANUP(stratus_field_exact(context, voxels, &set, field));
+    TRY_CLEANUP(fill_exact(context, voxels, &set, field));
   }
 
 cleanup:

@@ -9,6 +9,7 @@
  * The paper gives AJFA's rule without a threshold: the step falls more slowly after a good pass, faster after a poor one. Here a pass is
  * good if it shortened the distance by GOOD on average over all voxels that search, E1 (1 - E2). The next step is then 3/4 of this one,
  * else 1/2, never less. Passes of step 1 are repeated while more than AGAIN of the voxels come nearer. */
+#include "device.h"
 #include "jump_flooding_passes.h"
 
 #include <string.h>
@@ -170,8 +171,8 @@ static stratus_status run_plan(stratus_context* context, flooding* f, flood_plan
 }
 
 /* Floods for the nearest voxels of occupancy `sought`. The caller releases *nearest. */
-static stratus_status flood(stratus_context* context, const stratus_bits* set, int sought, const stratus_field_options* options,
-  uint32_t** nearest, stratus_field_report* report)
+static stratus_status flood_at(stratus_context* context, const stratus_bits* set, int sought, const stratus_field_options* options,
+  uint32_t** nearest, stratus_field_report* report, bool on_device)
 {
   stratus_status status = STRATUS_OK;
   flooding f = { .wide = 0 };
@@ -187,7 +188,7 @@ static stratus_status flood(stratus_context* context, const stratus_bits* set, i
   TRY_CLEANUP(stratus_allocate(context, count, sizeof(uint32_t), &memory));
   f.from = memory;
   seed(context, set, sought, &f);
-  if (stratus_field_on_device(context, f.n, sizeof(uint32_t))) {
+  if (on_device) {
     TRY_CLEANUP(stratus_flood_device_create(context, f.n, f.wide, f.from, &f.device));
   } else {
     TRY_CLEANUP(stratus_allocate(context, count, sizeof(uint32_t), &memory));
@@ -208,6 +209,20 @@ cleanup:
   stratus_release(context, f.to);
   stratus_release(context, f.rooms);
   return status;
+}
+
+static stratus_status flood(stratus_context* context, const stratus_bits* set, int sought, const stratus_field_options* options,
+  uint32_t** nearest, stratus_field_report* report)
+{
+  const stratus_field_report before = *report;
+  if (stratus_field_on_device(context, set->n, sizeof(uint32_t))) {
+    const stratus_status status = flood_at(context, set, sought, options, nearest, report, true);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+    *report = before;
+  }
+  return flood_at(context, set, sought, options, nearest, report, false);
 }
 
 /* Effective voxels take the result of the flooding for the other voxels. */

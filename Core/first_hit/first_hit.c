@@ -86,9 +86,11 @@ stratus_status stratus_tree_first_hit(
   }
   stratus_hit_batch_begin(tree, &batch);
   if (context->device && takes_packets(&batch)) {
-    return stratus_first_hit_device(context, tree, rays, count, hits);
-  }
-  if (context->device) {
+    const stratus_status status = stratus_first_hit_device(context, tree, rays, count, hits);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+  } else if (context->device) {
     stratus_log(context, STRATUS_LOG_INFO, "first hits: a tree of %u nodes is walked on the host", tree->node_count);
   }
   return run_host(context, &batch, rays, count, hits);

@@ -2,6 +2,7 @@
  * Renders a frame: checks the input, updates tables and structures, draws on device or host, audits and reports. */
 #include "ray_caster.h"
 
+#include "device.h"
 #include "first_hit_picture.h"
 #include "picture.h"
 #include "ray_cast_device.h"
@@ -86,11 +87,14 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   const stratus_ray_variant variant = stratus_ray_modes_variant(caster);
   const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, arguments, image, with_map);
   const int type = stratus_ray_fetch_type(&caster->traversed);
+  const stratus_ray_drawn none = { .count = 0 };
   if (caster->context->device) {
     bool drawn = false; /* all tiles, those before included */
-    TRY(stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn));
-    if (drawn) {
-      return STRATUS_OK;
+    const stratus_status status = stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn);
+    if (stratus_device_hands_back(caster->context, status)) {
+      before = &none; /* the device may have drawn on any tile */
+    } else if (status != STRATUS_OK || drawn) {
+      return status;
     }
   }
   return stratus_ray_cast_rest(caster->context, &frame, type, variant, before, counts);

@@ -3,6 +3,7 @@
  * reports. */
 #include "tetra_caster.h"
 
+#include "device.h"
 #include "picture.h"
 #include "camera.h"
 #include "mesh.h"
@@ -164,8 +165,11 @@ static stratus_status march_rays(
     caster->view.point_count };
   bool drawn = false;
   if (caster->context->device) {
-    TRY(stratus_tetra_march_device(
-      caster->context, &caster->device, &source, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms, &drawn));
+    const stratus_status status = stratus_tetra_march_device(
+      caster->context, &caster->device, &source, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms, &drawn);
+    if (!stratus_device_hands_back(caster->context, status)) {
+      TRY(status);
+    }
   }
   return drawn ? STRATUS_OK : stratus_tetra_march(caster->context, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms);
 }

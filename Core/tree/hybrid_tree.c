@@ -13,6 +13,7 @@
 #include "hybrid_tree.h"
 
 #include "density_plan.h"
+#include "device.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -269,45 +270,73 @@ static stratus_status grow_level(hybrid_build* build, const hybrid_node* nodes, 
   return STRATUS_OK;
 }
 
-static stratus_status grow_tree(hybrid_build* build)
+static stratus_status grow_from(hybrid_build* build, const hybrid_node* root)
 {
   stratus_status status = STRATUS_OK;
   uint32_t count = 1;
   void *nodes = NULL, *next = NULL, *room = NULL, *list = NULL;
-  hybrid_node root = { .count = (uint32_t)build->voxels->brick_count };
-  for (int a = 0; a < 3; ++a) {
-    root.lo[a] = (int32_t)(build->voxels->lo[a] / STRATUS_BRICK);
-    root.hi[a] = (int32_t)((build->voxels->hi[a] + STRATUS_BRICK - 1) / STRATUS_BRICK);
-    build->shape->nodes[0].lo[a] = (int32_t)build->voxels->lo[a];
-    build->shape->nodes[0].hi[a] = (int32_t)build->voxels->hi[a];
-  }
-  build->volume = volume_of(&root);
-  if (settles(build, &root)) {
-    return STRATUS_OK; /* most trees are one field */
-  }
-  TRY_CLEANUP(stratus_allocate(build->context, 1, sizeof(hybrid_node), &nodes));
-  *(hybrid_node*)nodes = root;
+  TRY_CLEANUP(stratus_allocate(build->context, 1, sizeof *root, &nodes));
+  *(hybrid_node*)nodes = *root;
   TRY_CLEANUP(stratus_allocate(build->context, BATCH_NODES, sizeof(hybrid_work), &room));
   TRY_CLEANUP(stratus_allocate(build->context, BATCH_NODES, sizeof(hybrid_work*), &list));
-  if (stratus_hybrid_on_device(build)) {
-    build->sums = &stratus_hybrid_sums_device;
-    TRY_CLEANUP(stratus_hybrid_device_create(build));
-  }
   while (count) {
-    TRY_CLEANUP(stratus_allocate(build->context, (size_t)count * 2, sizeof(hybrid_node), &next));
+    TRY_CLEANUP(stratus_allocate(build->context, (size_t)count * 2, sizeof *root, &next));
     TRY_CLEANUP(grow_level(build, nodes, count, room, list, next, &count));
     stratus_release(build->context, nodes);
     nodes = next;
     next = NULL;
   }
-  TRY_CLEANUP(build->sums->order(build, 0, root.count));
+  TRY_CLEANUP(build->sums->order(build, 0, root->count));
 cleanup:
-  stratus_hybrid_device_destroy(build);
   stratus_release(build->context, list);
   stratus_release(build->context, room);
   stratus_release(build->context, next);
   stratus_release(build->context, nodes);
   return status;
+}
+
+/* Makes the shape a single node of all bricks, in their order. */
+static void begin(hybrid_build* build)
+{
+  stratus_tree_statistics* s = build->statistics;
+  build->shape->node_count = 1;
+  for (uint32_t b = 0; b < (uint32_t)build->voxels->brick_count; ++b) {
+    build->shape->order[b] = b;
+  }
+  for (int a = 0; a < 3; ++a) {
+    build->shape->nodes[0].lo[a] = (int32_t)build->voxels->lo[a];
+    build->shape->nodes[0].hi[a] = (int32_t)build->voxels->hi[a];
+  }
+  s->bandwidth = 0.0;
+  s->dbscan_splits = s->density_splits = s->sah_splits = s->median_splits = 0;
+}
+
+static stratus_status grow_tree(hybrid_build* build)
+{
+  hybrid_node root = { .count = (uint32_t)build->voxels->brick_count };
+  for (int a = 0; a < 3; ++a) {
+    root.lo[a] = (int32_t)(build->voxels->lo[a] / STRATUS_BRICK);
+    root.hi[a] = (int32_t)((build->voxels->hi[a] + STRATUS_BRICK - 1) / STRATUS_BRICK);
+  }
+  build->volume = volume_of(&root);
+  begin(build);
+  if (settles(build, &root)) {
+    return STRATUS_OK; /* most trees are one field */
+  }
+  if (stratus_hybrid_on_device(build)) {
+    stratus_status status = stratus_hybrid_device_create(build);
+    build->sums = &stratus_hybrid_sums_device;
+    if (status == STRATUS_OK) {
+      status = grow_from(build, &root);
+    }
+    stratus_hybrid_device_destroy(build);
+    if (!stratus_device_hands_back(build->context, status)) {
+      return status;
+    }
+    build->sums = &stratus_hybrid_sums_host;
+    begin(build);
+  }
+  return grow_from(build, &root);
 }
 
 /* Numbers the nodes anew in the order of a walk that finishes the lower child first: what a ray visits together lies together. */
@@ -378,17 +407,11 @@ stratus_status stratus_hybrid_tree_shape(stratus_context* context, const stratus
       context, STRATUS_OVERFLOW, "%lld bricks: a tree takes at most %u", (long long)voxels->brick_count, STRATUS_NODE_COUNT_MAX);
   }
   *shape = (stratus_tree_shape){ .nodes = NULL };
-  statistics->bandwidth = 0.0;
-  statistics->dbscan_splits = statistics->density_splits = statistics->sah_splits = statistics->median_splits = 0;
   TRY_CLEANUP(stratus_allocate(context, bricks, sizeof *shape->order, &memory));
   shape->order = memory;
-  for (uint32_t b = 0; b < bricks; ++b) {
-    shape->order[b] = b;
-  }
   TRY_CLEANUP(stratus_allocate(context, bricks, sizeof *build.scratch, &memory));
   build.scratch = memory;
   TRY_CLEANUP(reserve_nodes(&build, 1));
-  shape->node_count = 1;
   TRY_CLEANUP(grow_tree(&build));
   TRY_CLEANUP(number_by_depth(&build));
   explain(&build);

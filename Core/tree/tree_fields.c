@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Leaves of distance fields: their layout, and fields of Chebyshev distances. tree_octants.c fills fields with a leap for each octant. */
+#include "device.h"
 #include "tree_fields.h"
 
 #include "stratus/distance_field.h"
@@ -285,13 +286,15 @@ stratus_status stratus_tree_make_fields(
   tree->rows = memory;
   TRY(stratus_allocate(context, tree->mask_count, sizeof *tree->masks, &memory));
   tree->masks = memory;
-  const bool on_device = stratus_tree_fields_on_device(context, voxels, tree);
-  if (on_device) {
-    TRY(stratus_device_tree_fields(context, voxels, shape, tree));
+  bool made = false;
+  if (stratus_tree_fields_on_device(context, voxels, tree)) {
+    const stratus_status status = stratus_device_tree_fields(context, voxels, shape, tree);
+    made = !stratus_device_hands_back(context, status);
+    TRY(made ? status : STRATUS_OK);
   }
   for (uint32_t n = 0; n < tree->node_count; ++n) {
     if (stratus_tree_node_kind(&shape->nodes[n]) == STRATUS_NODE_FIELD) {
-      if (!on_device) {
+      if (!made) {
         TRY(make_field(context, voxels, shape, &shape->nodes[n], tree, &tree->fields[f], &mask));
       }
       tree->nodes[n].first = f++;

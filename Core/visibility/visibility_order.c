@@ -3,6 +3,7 @@
  * finds the signs of all faces, and peels the leaves of the K-D tree, both in parallel. */
 #include "visibility_order.h"
 
+#include "device.h"
 #include "matrix.h"
 
 #include <omp.h>
@@ -257,6 +258,21 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
   result->layers = layers;
 }
 
+static stratus_status find_signs(stratus_visibility_order* order, const stratus_view* view, int64_t* exact)
+{
+  bool handed_back = false;
+  if (stratus_order_signs_on_device(order)) {
+    const stratus_status status = stratus_order_find_signs_on_device(order, view, exact);
+    handed_back = stratus_device_hands_back(order->context, status);
+    if (!handed_back) {
+      return status;
+    }
+  }
+  *exact = stratus_order_find_signs(order, view);
+  order->relations_changed = order->relations_changed || handed_back; /* the device may have changed some before it failed */
+  return STRATUS_OK;
+}
+
 stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera, const double matrix[16],
   stratus_peeling peeling, stratus_visibility_result* result)
 {
@@ -292,11 +308,7 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
     .build_ms = order->build_ms };
   const double begin = stratus_now_ms();
   const stratus_stage signs_stage = stratus_stage_begin(context);
-  if (stratus_order_signs_on_device(order)) {
-    TRY(stratus_order_find_signs_on_device(order, &view, &found.exact_signs));
-  } else {
-    found.exact_signs = stratus_order_find_signs(order, &view);
-  }
+  TRY(find_signs(order, &view, &found.exact_signs));
   stratus_stage_end(context, &signs_stage, "visibility signs", (size_t)order->cell_count * sizeof *order->state);
   const double signs_end = stratus_now_ms();
   TRY(stratus_progress(context, "visibility order", 0.5));

@@ -55,7 +55,10 @@ static stratus_status fill_map(stratus_context* context, const stratus_occupancy
     return STRATUS_OK;
   }
   if (stratus_device_builds(context) && stratus_device_takes_blocks(context, map->blocks)) {
-    return stratus_device_distance_map(context, occupancy, map);
+    const stratus_status status = stratus_device_distance_map(context, occupancy, map);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
   }
   return map->kind == STRATUS_DISTANCE_PAPER ? stratus_distance_paper(context, occupancy, map)
                                              : stratus_distance_sweep(context, occupancy, map);

@@ -129,12 +129,13 @@ stratus_status stratus_occupancy_build(
   gaps = gaps && stratus_shown_meets(shown, ranges->whole_lo, ranges->whole_hi);
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
+  bool tested = false;
   if (stratus_device_builds(context) && stratus_device_takes_blocks(context, ranges->blocks)) {
-    TRY_CLEANUP(stratus_device_occupancy(context, ranges, shown, gaps, occupancy));
-    test_rows(context, NULL, NULL, false, occupancy);
-  } else {
-    test_rows(context, ranges, shown, gaps, occupancy);
+    status = stratus_device_occupancy(context, ranges, shown, gaps, occupancy);
+    tested = !stratus_device_hands_back(context, status);
+    TRY_CLEANUP(tested ? status : STRATUS_OK);
   }
+  test_rows(context, tested ? NULL : ranges, shown, gaps && !tested, occupancy);
   end_stage(context, &stage, occupancy);
   TRY_CLEANUP(stratus_progress(context, "occupancy", 1.0));
   *out = occupancy;

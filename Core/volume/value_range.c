@@ -324,6 +324,17 @@ static stratus_status allocate_blocks(stratus_context* context, const stratus_vo
   return STRATUS_OK;
 }
 
+static stratus_status reduce(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+{
+  if (stratus_device_builds(context) && stratus_device_takes_volume(context, volume)) {
+    const stratus_status status = stratus_device_value_range(context, volume, ranges);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+  }
+  return reduce_on_host(context, volume, ranges);
+}
+
 stratus_status stratus_value_range_create(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
 {
   stratus_status status = STRATUS_OK;
@@ -352,11 +363,7 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));
   TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
-  if (stratus_device_builds(context) && stratus_device_takes_volume(context, volume)) {
-    TRY_CLEANUP(stratus_device_value_range(context, volume, ranges));
-  } else {
-    TRY_CLEANUP(reduce_on_host(context, volume, ranges));
-  }
+  TRY_CLEANUP(reduce(context, volume, ranges));
   if (hidden) {
     flag_hidden(volume, hidden, ranges);
   }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Effective voxels of a volume. Rows of values are compared with the criterion's intervals, which gives one byte for each value. The bytes
  * are packed into the masks of a row of bricks. */
+#include "device.h"
 #include "voxels_build.h"
 
 #include <float.h>
@@ -231,12 +232,20 @@ static stratus_status scan_on_host(const stratus_scan* scan, stratus_voxels* vox
   return status;
 }
 
-static stratus_status scan_on_device(const stratus_scan* scan, stratus_voxels* voxels)
+static stratus_status scan_values(const stratus_scan* scan, stratus_voxels* voxels)
 {
-  TRY(stratus_volume_hash(voxels->context, scan->volume, &voxels->origin.hash));
-  TRY(stratus_device_voxels(voxels->context, scan, voxels));
-  stratus_voxels_measure(voxels);
-  return STRATUS_OK;
+  stratus_context* context = voxels->context;
+  if (stratus_voxels_on_device(context, scan->volume, voxels)) {
+    const stratus_status status = stratus_device_voxels(context, scan, voxels);
+    if (status == STRATUS_OK) {
+      stratus_voxels_measure(voxels);
+      return stratus_volume_hash(context, scan->volume, &voxels->origin.hash);
+    }
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+  }
+  return scan_on_host(scan, voxels);
 }
 
 stratus_status stratus_voxels_create(
@@ -258,7 +267,7 @@ stratus_status stratus_voxels_create(
   s.ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
   s.hidden = STRATUS_GHOST_DUPLICATE | (volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
   TRY_CLEANUP(take_intervals(context, criterion, &s, &voxels->origin, &intervals));
-  TRY_CLEANUP(stratus_voxels_on_device(context, volume, voxels) ? scan_on_device(&s, voxels) : scan_on_host(&s, voxels));
+  TRY_CLEANUP(scan_values(&s, voxels));
   stratus_voxels_end_stage(voxels, &stage);
   TRY_CLEANUP(stratus_progress(context, "effective voxels", 1.0));
   *out = voxels;

@@ -9,6 +9,8 @@
 #include "tree_fields.h"
 #include "voxels_build.h"
 
+#define CALLS_MAX 1000000 /* of OpenCL, more than anything here needs */
+
 static voxel_set set;
 
 static void call(stratus_context* context, stratus_status status)
@@ -285,46 +287,81 @@ static void sums_beyond_whole_doubles_are_the_hosts(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* Whichever call the device fails at: an error that says so, nothing made, and the next attempt is right. */
-static void a_lost_device_is_a_clean_error(void** state)
+/* What becomes of a tree and of voxels when the device fails at a call: without memory, or, where "auto" took the device, whatever the
+ * reason, the host makes them; else the call is an error that says so, makes nothing, and the next one is right. */
+typedef struct failing_way {
+  bool named;
+  int error;
+  bool handed_back;
+} failing_way;
+
+static void fail_at_each_call(const failing_way* way, const stratus_voxels* voxels, const stratus_volume* volume)
 {
-  uint32_t random = 8;
-  sample_volume v = make_volume(STRATUS_UINT8, 9, 9, 9, 1, &random);
-  stratus_criterion criterion = stratus_criterion_default();
-  (void)state;
-  make_clusters(300, 2, tiny ? 30 : 400, &random);
-  stratus_voxels *voxels = make_voxels(host_context, &set), *scanned = NULL;
+  const stratus_criterion criterion = stratus_criterion_default();
   stratus_tree_options options = stratus_tree_options_default();
   stratus_tree *tree = NULL, *right = NULL;
+  stratus_voxels *scanned = NULL, *expected = NULL;
   options.field_emptiness = 4.0;
   options.max_depth = 6;
   call(host_context, stratus_tree_create(host_context, voxels, &options, &right));
+  call(host_context, stratus_voxels_create(host_context, volume, &criterion, &expected));
   call(device, stratus_tree_create(device, voxels, &options, &tree)); /* kernels are built */
   stratus_tree_destroy(tree);
-  int64_t calls = 0, failed = 0;
-  for (bool done = false; !done; calls += tiny ? 37 : 7) {
-    tree = NULL;
-    stratus_device_fail_after(device->device, calls, CL_OUT_OF_RESOURCES);
-    done = stratus_tree_create(device, voxels, &options, &tree) == STRATUS_OK;
-    stratus_device_fail_after(device->device, -1, CL_SUCCESS);
-    failed += !done;
-    assert_true(done || strstr(stratus_context_message(device), "CL_OUT_OF_RESOURCES"));
-  }
-  assert_true(failed > (tiny ? 2 : 10));
-  assert_same_tree(right, tree);
-  for (calls = 0;; ++calls) {
-    stratus_device_fail_after(device->device, calls, CL_OUT_OF_RESOURCES);
-    const stratus_status status = stratus_voxels_create(device, &v.view, &criterion, &scanned);
-    stratus_device_fail_after(device->device, -1, CL_SUCCESS);
-    if (status == STRATUS_OK) {
-      break;
-    }
-    assert_null(scanned);
-  }
-  assert_true(calls > 10);
+  call(device, stratus_voxels_create(device, volume, &criterion, &scanned));
   stratus_voxels_destroy(scanned);
+  stratus_device_fail_after(device->device, CALLS_MAX, CL_SUCCESS);
+  call(device, stratus_tree_create(device, voxels, &options, &tree));
   stratus_tree_destroy(tree);
+  const int64_t tree_calls = CALLS_MAX - device->device->calls_left;
+  stratus_device_fail_after(device->device, CALLS_MAX, CL_SUCCESS);
+  call(device, stratus_voxels_create(device, volume, &criterion, &scanned));
+  stratus_voxels_destroy(scanned);
+  const int64_t voxels_calls = CALLS_MAX - device->device->calls_left;
+  assert_true(tree_calls > 100 && voxels_calls > 10);
+  device->device->named = way->named;
+  for (int64_t n = 0; n < tree_calls; n += tiny ? 37 : 7) {
+    tree = NULL;
+    stratus_device_fail_after(device->device, n, way->error);
+    const stratus_status status = stratus_tree_create(device, voxels, &options, &tree);
+    stratus_device_fail_after(device->device, -1, CL_SUCCESS);
+    if (way->handed_back) {
+      call(device, status);
+      assert_same_tree(right, tree);
+      stratus_tree_destroy(tree);
+    } else {
+      assert_int_equal(status, STRATUS_DEVICE_ERROR);
+      assert_null(tree);
+      assert_non_null(strstr(stratus_context_message(device), stratus_device_error_name(way->error)));
+    }
+  }
+  for (int64_t n = 0; n < voxels_calls; ++n) {
+    scanned = NULL;
+    stratus_device_fail_after(device->device, n, way->error);
+    const stratus_status status = stratus_voxels_create(device, volume, &criterion, &scanned);
+    stratus_device_fail_after(device->device, -1, CL_SUCCESS);
+    assert_int_equal(status, way->handed_back ? STRATUS_OK : STRATUS_DEVICE_ERROR);
+    if (status == STRATUS_OK) {
+      assert_same_voxels(expected, scanned);
+    }
+    stratus_voxels_destroy(scanned);
+  }
+  device->device->named = true;
+  stratus_voxels_destroy(expected);
   stratus_tree_destroy(right);
+}
+
+static void the_host_takes_over_or_the_call_fails(void** state)
+{
+  static const failing_way ways[] = { { true, CL_DEVICE_NOT_AVAILABLE, false }, { true, CL_MEM_OBJECT_ALLOCATION_FAILURE, true },
+    { true, CL_OUT_OF_RESOURCES, true }, { false, CL_DEVICE_NOT_AVAILABLE, true }, { false, CL_BUILD_PROGRAM_FAILURE, true } };
+  uint32_t random = 8;
+  sample_volume v = make_volume(STRATUS_UINT8, 9, 9, 9, 1, &random);
+  (void)state;
+  make_clusters(300, 2, tiny ? 30 : 400, &random);
+  stratus_voxels* voxels = make_voxels(host_context, &set);
+  for (size_t w = 0; w < (tiny ? 1 : sizeof ways / sizeof *ways); ++w) {
+    fail_at_each_call(&ways[w], voxels, &v.view);
+  }
   stratus_voxels_destroy(voxels);
   free_volume(&v);
 }
@@ -342,7 +379,7 @@ int test_tree_device(void)
     cmocka_unit_test(leaps_cross_words),
     cmocka_unit_test(what_does_not_fit_is_built_on_the_host),
     cmocka_unit_test(sums_beyond_whole_doubles_are_the_hosts),
-    cmocka_unit_test(a_lost_device_is_a_clean_error),
+    cmocka_unit_test(the_host_takes_over_or_the_call_fails),
   };
   return cmocka_run_group_tests(tests, open_device, close_device);
 }
