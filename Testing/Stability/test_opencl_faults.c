@@ -344,7 +344,7 @@ static void each_function_that_the_core_calls_has_failed(void** state)
     }
   }
   print_message(
-    "%d functions of OpenCL, %d tries, %d of them drawn without what found no memory\n", functions, (int)tries, (int)without_it);
+    "%d functions of OpenCL, %d tries, %d of them done on the host for want of memory\n", functions, (int)tries, (int)without_it);
   assert_true(functions >= 16);
 }
 
