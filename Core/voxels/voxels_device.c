@@ -32,8 +32,8 @@ static size_t row_count(const stratus_voxels* voxels)
   return (size_t)voxels->bricks_along[1] * (size_t)voxels->bricks_along[2];
 }
 
-/* The type in which the kernel compares: see stratus_bound. */
-static const char* compared_as(stratus_type type)
+/* The type of an interval's ends on the device: see stratus_bound. */
+static const char* end_name(stratus_type type)
 {
   return type == STRATUS_FLOAT32 ? "float" : type < STRATUS_INT64 ? "long" : "double";
 }
@@ -41,7 +41,7 @@ static const char* compared_as(stratus_type type)
 bool stratus_voxels_on_device(const stratus_context* context, const stratus_volume* volume, const stratus_voxels* voxels)
 {
   const size_t largest = context->device ? stratus_device_largest_allocation(context->device) : 0;
-  return stratus_device_builds(context) && (compared_as(volume->type)[0] != 'd' || stratus_device_has_double(context->device)) &&
+  return stratus_device_builds(context) && (end_name(volume->type)[0] != 'd' || stratus_device_has_double(context->device)) &&
     STRATUS_BRICK * plane_bytes(volume) <= largest &&
     row_count(voxels) <= largest / sizeof(stratus_brick) / (size_t)voxels->bricks_along[0];
 }
@@ -96,8 +96,10 @@ static stratus_status fill_masks(const voxels_device* d, int64_t first, int64_t 
   const stratus_kernel_argument arguments[] = { ARGUMENT(numbers), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride),
     ARGUMENT(ghosts), ARGUMENT(hidden), ARGUMENT(d->intervals), ARGUMENT(intervals), ARGUMENT(bx), ARGUMENT(by), ARGUMENT(before),
     ARGUMENT(d->masks) };
-  TRY_CLEANUP(
-    stratus_device_launch(d->context, "voxels", d->defines, "masks", arguments, COUNT_OF(arguments), (const int64_t[]){ bx, by, layers }));
+  const bool by_rows = stratus_device_is_cpu(d->context->device);
+  const int64_t rows[3] = { by, layers, 1 }, bricks[3] = { bx, by, layers };
+  TRY_CLEANUP(stratus_device_launch(
+    d->context, "voxels", d->defines, by_rows ? "mask_rows" : "masks", arguments, COUNT_OF(arguments), by_rows ? rows : bricks));
 cleanup:
   stratus_device_buffer_release(numbers);
   stratus_device_buffer_release(ghosts);
@@ -158,7 +160,8 @@ stratus_status stratus_device_voxels(stratus_context* context, const stratus_sca
 {
   const stratus_type type = scan->volume->type;
   voxels_device d = { .context = context, .scan = scan, .voxels = voxels };
-  snprintf(d.defines, sizeof d.defines, "-DVALUE=%s -DAS=%s", name_of(type), compared_as(type));
+  snprintf(d.defines, sizeof d.defines, "-DVALUE=%s -DAS=%s -DEND=%s", name_of(type), end_name(type)[0] == 'd' ? "double" : name_of(type),
+    end_name(type));
   const stratus_status status = run(&d);
   if (status != STRATUS_OK) {
     stratus_slots_return(&d.bricks, 1);

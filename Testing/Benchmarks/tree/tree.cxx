@@ -23,6 +23,8 @@ const char* const help = R"(stratus-bench tree [options]
                      embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all; stratus:hybrid-paper, ac,
                      ac-edges, dpc and kmeans grow faster than n log n and take sets of up to 35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
+  --device NAME      builds of ours alone, stage by stage, on the host and on this OpenCL device (an index or a part of its name): ms,
+                     share, kernels (default methods: stratus:hybrid|hybrid-paper|distance|octant|lbvh)
   --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
   --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                      the rows before them tell where they come from, as in stratus-bench volume
@@ -39,9 +41,13 @@ constexpr int width = 512;
 constexpr size_t slow_most = 35000;
 constexpr double build_budget_ms = 20.0; // short builds are repeated within a round
 
+// Methods whose builds have stages that a device does.
+const std::vector<std::string> device_methods = { "stratus:hybrid", "stratus:hybrid-paper", "stratus:distance", "stratus:octant",
+  "stratus:lbvh" };
+
 struct options {
   std::vector<std::string> scenes, methods;
-  std::string csv = "-", chart;
+  std::string csv = "-", chart, device;
   int rounds = 0;
   bool append = false;
 };
@@ -72,6 +78,7 @@ struct tree_scene {
     stratus_voxel_scene_release(this->context.get(), this->listed);
   }
   void list_volume(const std::string& name);
+  void walk_plainly(); // fills voxels, rays and walk
 };
 
 void tree_scene::list_volume(const std::string& name)
@@ -102,6 +109,11 @@ tree_scene::tree_scene(const std::string& name)
     check_status(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
     this->set.positions = this->listed;
   }
+}
+
+void tree_scene::walk_plainly()
+{
+  stratus_context* c = this->context.get();
   check_status(c, stratus_voxels_create_list(c, this->set.dimensions, this->set.positions, this->set.count, &this->voxels));
   for (int kind = 0; kind < 2; ++kind) {
     this->rays[kind].coherent = kind == 0;
@@ -167,7 +179,8 @@ void add_rows(const std::string& scene, const std::string& method, const measure
 
 void run_scene(const std::string& name, const options& o, std::vector<row>& rows)
 {
-  const tree_scene scene(name);
+  tree_scene scene(name);
+  scene.walk_plainly();
   std::fprintf(stderr, "%s: %zu voxels\n%-22s %10s %10s %10s %12s %9s %5s %9s %6s %8s\n", name.c_str(), scene.set.count, "", "build_ms",
     "primary_ns", "random_ns", "bytes", "nodes", "depth", "sah", "wrong", "grazing");
   const int rounds = o.rounds ? o.rounds : scene.set.count > 5000000 ? 2 : 5;
@@ -192,6 +205,21 @@ void run_scene(const std::string& name, const options& o, std::vector<row>& rows
       median(m.trace_ns[0]), median(m.trace_ns[1]), m.numbers.bytes, m.numbers.nodes, m.numbers.depth, m.numbers.sah,
       static_cast<long long>(m.count.wrong), static_cast<long long>(m.count.grazing));
     add_rows(name, method, m, rows);
+  }
+}
+
+void run_device(const std::string& name, const options& o, std::vector<row>& rows)
+{
+  const tree_scene scene(name);
+  for (const std::string& method : o.methods) {
+    if (scene.set.count > slow_most && is_slow_tree(method)) {
+      continue;
+    }
+    try {
+      run_stages(scene.set, method, o.device, o.rounds ? o.rounds : 5, rows);
+    } catch (const failure& e) {
+      add_failure(name, method, e.what(), rows);
+    }
   }
 }
 
@@ -227,6 +255,8 @@ options parse(int argc, char* argv[])
       o.scenes = split(value);
     } else if (word == "--method") {
       o.methods = split(value);
+    } else if (word == "--device") {
+      o.device = value;
     } else if (word == "--rounds") {
       o.rounds = std::atoi(value.c_str());
       if (o.rounds < 1 || o.rounds > 1000) {
@@ -252,6 +282,12 @@ options parse(int argc, char* argv[])
     }
   }
   o.scenes = o.scenes.empty() ? scenes : o.scenes;
+  if (!o.device.empty()) {
+    o.methods = o.methods.empty() ? device_methods : o.methods;
+    for (const std::string& method : o.methods) {
+      tree_options_of(method);
+    }
+  }
   o.methods = o.methods.empty() ? all_tree_methods() : o.methods;
   return o;
 }
@@ -271,7 +307,7 @@ int tree_main(int argc, char* argv[])
   std::vector<row> rows;
   check_writable(o.csv);
   for (const std::string& name : o.scenes) {
-    run_scene(name, o, rows);
+    o.device.empty() ? run_scene(name, o, rows) : run_device(name, o, rows);
   }
   save_rows(o.csv, rows, "tree", o.append);
   if (!o.chart.empty()) {

@@ -49,6 +49,7 @@ struct context_deleter {
   void operator()(stratus_context* c) const { stratus_context_destroy(c); }
 };
 using context_pointer = std::unique_ptr<stratus_context, context_deleter>;
+context_pointer open_context(const char* device, int threads); // throws failure
 context_pointer host_context(int threads);
 void check_status(stratus_context* context, stratus_status status); // throws failure
 
@@ -57,6 +58,7 @@ std::vector<std::string> all_tree_methods();
 std::vector<std::string> tree_curve_methods(bool quick);
 bool is_tree_method(const std::string& name); // with or without a size of leaves
 bool is_slow_tree(const std::string& method);
+stratus_tree_options tree_options_of(const std::string& method); // of one of ours
 std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method);
 
 // ---- embree.cxx: low, medium, high; packet, bricks, with :low, :high or nothing (medium) behind
@@ -72,4 +74,8 @@ wrong_count count_wrong(
 
 // ---- tree.cxx
 int tree_main(int argc, char* argv[]);
+// ---- tree_stages.cxx: builds stage by stage, on the host and on a device; adds a row for each stage's times and kernels. Throws failure
+// if the two trees differ.
+void run_stages(const voxel_set& set, const std::string& method, const std::string& device, int rounds, std::vector<row>& rows);
+
 } // namespace bench

@@ -144,17 +144,31 @@ std::vector<uint32_t> tile_order(const voxel_rays& rays, size_t tile)
   return order;
 }
 
-context_pointer host_context(int threads)
+context_pointer open_context(const char* device, int threads)
 {
   stratus_context_options o = stratus_context_options_default();
   stratus_context* context = nullptr;
-  char message[512];
-  o.device = "host";
+  char message[1024];
+  o.device = device;
   o.threads = threads;
   if (stratus_context_create(&o, &context, message, sizeof message) != STRATUS_OK) {
     throw failure(message);
   }
   return context_pointer(context);
+}
+
+context_pointer host_context(int threads)
+{
+  return open_context("host", threads);
+}
+
+stratus_tree_options tree_options_of(const std::string& method)
+{
+  stratus_tree_options options;
+  if (!parse_tree(method, options)) {
+    throw failure(method + " is none of our trees");
+  }
+  return options;
 }
 
 void check_status(stratus_context* context, stratus_status status)
