@@ -2,6 +2,8 @@
  * A stable radix sort by bytes. The order is the same at any number of threads. */
 #include "radix_sort.h"
 
+#include "device.h"
+
 #include <omp.h>
 #include <string.h>
 
@@ -76,7 +78,7 @@ static bool run_pass(const digit_pass* p, int threads)
   return true;
 }
 
-stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits)
+static stratus_status sort_on_host(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits)
 {
   stratus_status status = STRATUS_OK;
   void *other_keys = NULL, *other_values = NULL, *places = NULL;
@@ -106,4 +108,15 @@ cleanup:
   stratus_release(context, other_values);
   stratus_release(context, places);
   return status;
+}
+
+stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits)
+{
+  if (stratus_radix_sort_on_device(context, count)) {
+    const stratus_status status = stratus_device_radix_sort(context, keys, values, count, bits);
+    if (!stratus_device_hands_back(context, status)) {
+      return status;
+    }
+  }
+  return sort_on_host(context, keys, values, count, bits);
 }
