@@ -7,9 +7,12 @@
 stratus_stage stratus_stage_begin(const stratus_context* context)
 {
   const stratus_build_report* report = &context->report;
-  return (stratus_stage){
-    .start_ms = stratus_now_ms(), .ended_ms = report->ended_ms, .launched = report->launched, .ended_kernels = report->ended_kernels
-  };
+  return (stratus_stage){ .start_ms = stratus_now_ms(),
+    .ended_ms = report->ended_ms,
+    .launched = report->launched,
+    .ended_kernels = report->ended_kernels,
+    .returned = report->returned,
+    .ended_returned = report->ended_returned };
 }
 
 /* Returns the report's stage of this name and place, or NULL where the report is full. */
@@ -32,15 +35,18 @@ void stratus_stage_end(stratus_context* context, const stratus_stage* stage, con
   stratus_build_report* report = &context->report;
   const double ms = stratus_now_ms() - stage->start_ms - (report->ended_ms - stage->ended_ms);
   const uint64_t kernels = report->launched - stage->launched - (report->ended_kernels - stage->ended_kernels);
-  stratus_build_stage* told = find_stage(report, name, kernels ? context->device_name : "host");
+  const uint64_t returned = report->returned - stage->returned - (report->ended_returned - stage->ended_returned);
+  const bool on_device = kernels && !returned; /* of what the host took over, the device's kernels made nothing */
+  stratus_build_stage* told = find_stage(report, name, on_device ? context->device_name : "host");
   if (told) {
     /* Differences of large sums may round below zero. */
     told->ms += ms > 0.0 ? ms : 0.0;
     told->bytes += bytes;
-    told->kernels += kernels;
+    told->kernels += on_device ? kernels : 0;
   }
   report->ended_ms += ms;
   report->ended_kernels += kernels;
+  report->ended_returned += returned;
 }
 
 void stratus_context_start_build_report(stratus_context* context)

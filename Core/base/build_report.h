@@ -10,16 +10,17 @@ typedef struct stratus_build_report {
   stratus_build_stage stages[STRATUS_BUILD_STAGES_MAX];
   int count;
   uint64_t launched; /* kernels since the context was made, in stages or not */
+  uint64_t returned; /* how often the host took over what the device had begun */
   /* Sums over all stages that have ended since the context was made. A stage subtracts what they grew by, for that belongs to the stages
    * within it. */
   double ended_ms;
-  uint64_t ended_kernels;
+  uint64_t ended_kernels, ended_returned;
 } stratus_build_report;
 
 /* What the sums were when a stage began. */
 typedef struct stratus_stage {
   double start_ms, ended_ms;
-  uint64_t launched, ended_kernels;
+  uint64_t launched, ended_kernels, returned, ended_returned;
 } stratus_stage;
 
 /* Begins a stage. One that fails needs no end: it is not reported, and its time and kernels count for the stage around it. */

@@ -57,6 +57,7 @@ bool stratus_device_hands_back(stratus_context* context, stratus_status status)
     return false;
   }
   device->failure = STRATUS_OK;
+  ++context->report.returned;
   stratus_log(context, STRATUS_LOG_WARNING, "done on the host: %s", context->message);
   context->message[0] = '\0';
   return true;

@@ -12,6 +12,7 @@ namespace bench {
 namespace {
 
 constexpr int64_t dense_most = int64_t(1) << 30;
+const char* const whole_build = "all"; // stages
 
 // Milliseconds of the rounds and the kernels of one stage.
 struct stage {
@@ -112,16 +113,17 @@ void print(const std::string& scene, const std::string& method, const std::strin
   const auto line = [&](const std::string& name, double host, double there, double kernels) {
     std::fprintf(stderr, "%-20s %10.3f %6.3f %10.3f %6.3f %7.0f %7.2f\n", name.c_str(), host, host / whole[0], there, there / whole[1],
       kernels, there / host);
-    rows.push_back({ scene, method, "host_ms:" + name, "ms", host });
-    rows.push_back({ scene, method, "device_ms:" + name, "ms", there });
-    rows.push_back({ scene, method, "kernels:" + name, "1", kernels });
+    const std::string told = name == whole_build ? method : method + " " + name;
+    rows.push_back({ scene, told, "host_ms", "ms", host });
+    rows.push_back({ scene, told, "device_ms", "ms", there });
+    rows.push_back({ scene, told, "kernels", "1", kernels });
   };
   double kernels = 0.0;
   for (const stage& s : all.all) {
     line(s.name, s.ms[0].empty() ? 0.0 : median(s.ms[0]), s.ms[1].empty() ? 0.0 : median(s.ms[1]), static_cast<double>(s.kernels));
     kernels += static_cast<double>(s.kernels);
   }
-  line("all", whole[0], whole[1], kernels);
+  line(whole_build, whole[0], whole[1], kernels);
 }
 
 } // namespace
