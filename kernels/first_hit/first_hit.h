@@ -191,19 +191,19 @@ INLINE void hit_step(CONSTANT stratus_hit_arguments* a, const stratus_hit_tables
     if (cell_log2 || kind == STRATUS_HIT_LEAVES) {
       const vint three = vi_set(3);
       const vint bit = (k->cell[0] & three) | (k->cell[1] & three) << vi_set(2) | (k->cell[2] & three) << vi_set(4);
-      const vint half = bit >> vi_set(5);
+      const vint upper = bit >> vi_set(5);
       vint word = vi_set(-1);
       if (cell_log2) {
         const vmask masked = occupied & in_field;
         const vint row_start = kind == STRATUS_HIT_LEAVES ? k->first_row : vi_set(a->row_start);
         const vint number = v_gather_ints(tables->rows, row + row_start, masked) +
           ((entry & vi_set(entry_bytes == 2 ? 0xffff : 0xffffff)) >> vi_set(entry_bytes));
-        word = v_gather_ints(tables->masks, number + number + half, masked);
+        word = v_gather_ints(tables->masks, number + number + upper, masked);
       }
       if (kind == STRATUS_HIT_LEAVES) {
         const vmask own = occupied & bricks;
         if (m_any(own)) {
-          word = vi_select(own, v_gather_ints(tables->bricks, (k->brick << vi_set(2)) + half, own), word);
+          word = vi_select(own, v_gather_ints(tables->bricks, (k->brick << vi_set(2)) + upper, own), word);
         }
       }
       found = m_andnot(occupied, vi_zero((word >> (bit & vi_set(31))) & one));
