@@ -285,11 +285,11 @@ INLINE void hit_seek(CONSTANT stratus_hit_arguments* a, const stratus_hit_tables
   }
 }
 
-/* The packet's next step: its leaves are walked until a quarter of its lanes seek another. */
+/* The packet's next step: its leaves are walked until half of its lanes seek another. */
 INLINE void hit_step_leaves(CONSTANT stratus_hit_arguments* a, const stratus_hit_tables* tables, stratus_hit_packet* k,
   stratus_hit_search* s, const int octants, const int entry_bytes, const int cell_log2)
 {
-  if (m_any(k->seeking) && (4 * m_count(k->seeking) >= STRATUS_WIDTH || !m_any(k->live))) {
+  if (m_any(k->seeking) && (2 * m_count(k->seeking) >= STRATUS_WIDTH || !m_any(k->live))) {
     hit_seek(a, tables, k, s);
   }
   if (m_any(k->live)) {
