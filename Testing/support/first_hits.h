@@ -101,7 +101,8 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
   }
   if (kind == 5) {
     ray.t_min = unit_random(random);
-    ray.t_max = ray.t_min + unit_random(random) * (double)dimensions[0];
+    ray.t_max =
+      ray.t_min + unit_random(random) * (double)dimensions[0] * (next_random(random) % 2 ? pow(10.0, -9.0 * unit_random(random)) : 1.0);
   }
   if (kind == 7 && next_random(random) % 8 == 0) {
     ray.t_max = -1e-6; /* an empty ray */
