@@ -26,7 +26,8 @@ static stratus_context* open_context(const char* device, bool as_gpu)
   return context;
 }
 
-/* Trees of one field and of many leaves, in each size of entries and cells; the last one, whose boxes may overlap, is walked on the host. */
+/* Trees of one field and of many leaves, in each size of entries and cells; the last one, whose boxes may overlap, is walked on the host.
+ */
 static const struct {
   stratus_tree_method method;
   double fill, emptiness;
