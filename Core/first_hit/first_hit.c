@@ -34,16 +34,10 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
   return true;
 }
 
-/* Packets walk a single distance field. Where every position is in doubt they would be a waste. */
-static bool takes_packets(const stratus_hit_batch* batch)
-{
-  return batch->tree->node_count == 1 && batch->tree->field_count == 1 && batch->slack <= 0.05f;
-}
-
 static stratus_status run_host(
   stratus_context* context, const stratus_hit_batch* batch, const stratus_ray* rays, size_t count, stratus_hit* hits)
 {
-  const stratus_hit_functions* functions = takes_packets(batch) ? stratus_hit_functions_for(context) : NULL;
+  const stratus_hit_functions* functions = stratus_hit_takes_packets(batch) ? stratus_hit_functions_for(context) : NULL;
   const int64_t chunks = (int64_t)((count + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK);
   const int threads = chunks < context->threads ? (int)chunks : context->threads;
   void* memory;
@@ -85,13 +79,14 @@ stratus_status stratus_tree_first_hit(
     return STRATUS_OK;
   }
   stratus_hit_batch_begin(tree, &batch);
-  if (context->device && takes_packets(&batch)) {
+  if (context->device && stratus_hit_takes_packets(&batch)) {
     const stratus_status status = stratus_first_hit_device(context, tree, rays, count, hits);
     if (!stratus_device_hands_back(context, status)) {
       return status;
     }
   } else if (context->device) {
-    stratus_log(context, STRATUS_LOG_INFO, "first hits: a tree of %u nodes is walked on the host", tree->node_count);
+    stratus_log(context, STRATUS_LOG_INFO, "first hits: rays are walked on the host, %s",
+      batch.slack > 0.05f ? "for the set is too long for floats" : "for the tree's boxes may overlap");
   }
   return run_host(context, &batch, rays, count, hits);
 }

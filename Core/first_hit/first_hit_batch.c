@@ -27,7 +27,7 @@ static void find_normals(const stratus_tree* tree, double normal[6][3])
 void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
 {
   int32_t most = 1;
-  *batch = (stratus_hit_batch){ .tree = tree, .mask_words = (const int32_t*)(const void*)tree->masks };
+  *batch = (stratus_hit_batch){ .tree = tree, .leaves = tree->node_count != 1 || tree->field_count != 1 };
   memcpy(batch->to_voxels, tree->world_to_index, sizeof batch->to_voxels);
   for (int a = 0; a < 3; ++a) {
     batch->to_voxels[4 * a + 3] += 0.5;
@@ -38,6 +38,29 @@ void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch)
   /* A float position results from a rounded start, direction and length: about five roundings of at most twice the longest edge. */
   batch->slack = 1.2e-7f * 8.0f * (float)most;
   find_normals(tree, batch->normal);
+}
+
+bool stratus_hit_takes_packets(const stratus_hit_batch* batch)
+{
+  const stratus_tree* tree = batch->tree;
+  const bool planes = tree->statistics.method == STRATUS_TREE_HYBRID || tree->statistics.method == STRATUS_TREE_HYBRID_PAPER;
+  return tree->node_count > 0 && (!batch->leaves || planes) && batch->slack <= 0.05f;
+}
+
+stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch)
+{
+  const stratus_tree* tree = batch->tree;
+  stratus_hit_arguments a = {
+    .octants = tree->octants, .entry_bytes = tree->entry_bytes, .cell_log2 = tree->cell_log2, .slack = batch->slack
+  };
+  if (!batch->leaves) {
+    for (int axis = 0; axis < 3; ++axis) {
+      a.at[axis] = tree->fields[0].at[axis];
+      a.cells[axis] = tree->fields[0].cells[axis];
+    }
+    a.row_start = (int)tree->fields[0].first_row;
+  }
+  return a;
 }
 
 const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context)

@@ -3,20 +3,25 @@
 #ifndef STRATUS_FIRST_HIT_BATCH_H
 #define STRATUS_FIRST_HIT_BATCH_H
 
+#include "first_hit_arguments.h"
 #include "instruction_set.h"
 #include "tree.h"
 
 /* Data that all rays of a batch need. In voxel coordinates voxel i is i .. i+1, so they are index coordinates + 1/2. */
 typedef struct stratus_hit_batch {
   const stratus_tree* tree;
-  double to_voxels[16];      /* rows of 4: world -> voxel coordinates */
-  double lo[3], hi[3];       /* of the root's box */
-  double normal[6][3];       /* of face 2*axis + upper, in world coordinates, of length 1 */
-  float slack;               /* greatest error of a float position */
-  const int32_t* mask_words; /* tree->masks as the kernel reads them */
+  double to_voxels[16]; /* rows of 4: world -> voxel coordinates */
+  double lo[3], hi[3];  /* of the root's box */
+  double normal[6][3];  /* of face 2*axis + upper, in world coordinates, of length 1 */
+  float slack;          /* greatest error of a float position */
+  bool leaves;          /* the tree is not one distance field */
 } stratus_hit_batch;
 
 void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch);
+/* Whether packets and beams may walk the tree: its siblings lie on two sides of a plane, and not every position is in doubt. */
+bool stratus_hit_takes_packets(const stratus_hit_batch* batch);
+/* What the kernels are told of a tree that packets may walk; `count` is 0. */
+stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch);
 
 #define STRATUS_HIT_CHUNK 512 /* rays that a thread takes at once: their state fits the second-level cache */
 
@@ -45,8 +50,8 @@ static inline int stratus_hit_fetch(const stratus_hit_chunk* chunk, int from, in
   return from;
 }
 
-/* first_hit_isa.c, for each instruction set. prepare converts rays to a chunk and returns false if ray *bad is unusable. walk traverses one
- * distance field. finish converts the chunk to hits. */
+/* first_hit_isa.c, for each instruction set. prepare converts rays to a chunk and returns false if ray *bad is unusable. walk traverses the
+ * tree. finish converts the chunk to hits. */
 typedef bool stratus_hit_prepare(const stratus_hit_batch* batch, const stratus_ray* rays, int count, stratus_hit_chunk* chunk, int* bad);
 typedef void stratus_hit_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk);
 typedef void stratus_hit_finish(const stratus_hit_batch* batch, const stratus_ray* rays, const stratus_hit_chunk* chunk, stratus_hit* hits);

@@ -442,32 +442,17 @@ static inline void beam_store(const hit_beam* beam, const beam_rays* rays, int l
   }
 }
 
-/* Walks BEAM rays of a chunk from `first` on, if they make a narrow beam or miss the field. Returns false if they do not. */
-static inline bool beam_walk(const stratus_hit_batch* batch, const stratus_hit_arguments* a, int first, stratus_hit_chunk* c)
+/* Walks the rays of a beam that was placed in a field. */
+static inline void beam_walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a, const stratus_hit_chunk* c,
+  const hit_beam* beam, beam_rays* rays, int* looks)
 {
-  hit_beam beam = { .first = first };
-  beam_rays rays;
-  int looks = 0;
-  const int live = beam_direction(c, first, &beam);
-  if (live < 0) {
-    return false;
+  if (!a->octants) {
+    beam_run(batch, a, c, beam, rays, looks, 0, 2);
+  } else if (a->entry_bytes == 2) {
+    beam_run(batch, a, c, beam, rays, looks, 1, 2);
+  } else {
+    beam_run(batch, a, c, beam, rays, looks, 1, 3);
   }
-  beam_place(a, &beam);
-  if (live > 0 && !beam_borders(a, c, &beam)) {
-    return false;
-  }
-  beam_take_rays(c, &beam, &rays);
-  if (live > 0) {
-    if (!a->octants) {
-      beam_run(batch, a, c, &beam, &rays, &looks, 0, 2);
-    } else if (a->entry_bytes == 2) {
-      beam_run(batch, a, c, &beam, &rays, &looks, 1, 2);
-    } else {
-      beam_run(batch, a, c, &beam, &rays, &looks, 1, 3);
-    }
-  }
-  beam_store(&beam, &rays, live, looks, c);
-  return true;
 }
 
 #endif

@@ -3,7 +3,6 @@
  * each batch; a device that shares memory with the host reads it in place. */
 #include "first_hit_batch.h"
 
-#include "first_hit_arguments.h"
 #include "device.h"
 
 #include <stdio.h>
@@ -15,7 +14,7 @@
 /* The kernel gets the arguments' size by a define and asserts it, too. */
 _Static_assert(_Alignof(stratus_hit_arguments) == sizeof(float), "arguments must be scalars of four bytes");
 
-typedef enum buffer_name { ARGUMENTS, ENTRIES, ROWS, MASKS, RAYS, RESULTS, BUFFERS } buffer_name;
+typedef enum buffer_name { ARGUMENTS, ENTRIES, ROWS, MASKS, NODES, FIELDS, BRICKS, RAYS, RESULTS, BUFFERS } buffer_name;
 
 typedef struct launch {
   stratus_context* context;
@@ -91,37 +90,37 @@ static stratus_status walk(launch* l, const stratus_ray* rays, int count, stratu
   return STRATUS_OK;
 }
 
+/* Makes a buffer of an array of the tree; of an empty one a few bytes, which are never read. */
+static stratus_status make_table(launch* l, buffer_name name, size_t bytes, const void* table)
+{
+  return stratus_device_buffer(l->context, CL_MEM_READ_ONLY, bytes ? bytes : 16, bytes ? table : NULL, bytes > 0, &l->buffers[name]);
+}
+
 static stratus_status begin(launch* l, size_t most)
 {
   const stratus_tree* tree = l->batch->tree;
-  const stratus_tree_field* field = &tree->fields[0];
   const stratus_device* device = l->context->device;
-  char defines[192];
+  const bool leaves = l->batch->leaves;
+  char defines[224];
   void* memory;
   l->packets = stratus_device_is_cpu(device);
-  l->arguments = (stratus_hit_arguments){ .at = { field->at[0], field->at[1], field->at[2] },
-    .cells = { field->cells[0], field->cells[1], field->cells[2] },
-    .row_start = (int)field->first_row,
-    .octants = tree->octants,
-    .entry_bytes = tree->entry_bytes,
-    .cell_log2 = tree->cell_log2,
-    .slack = l->batch->slack };
+  l->arguments = stratus_hit_arguments_of(l->batch);
   snprintf(defines, sizeof defines,
-    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d "
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_LEAVES=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d "
     "-DSTRATUS_ARGUMENTS_BYTES=%zu",
-    l->packets ? 16 : 1, tree->octants, tree->entry_bytes, tree->cell_log2, sizeof(stratus_hit_arguments));
+    l->packets ? 16 : 1, leaves, tree->octants, tree->entry_bytes, tree->cell_log2, sizeof(stratus_hit_arguments));
   TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;
   TRY(stratus_allocate(l->context, most, 13 * 4, &memory));
   l->words = memory;
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
-  TRY(stratus_device_buffer(
-    l->context, CL_MEM_READ_ONLY, (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4, tree->entries, true, &l->buffers[ENTRIES]));
-  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->row_count ? (size_t)tree->row_count * 4 : 16,
-    tree->row_count ? tree->rows : NULL, tree->row_count > 0, &l->buffers[ROWS]));
-  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, tree->mask_count ? (size_t)tree->mask_count * 8 : 16,
-    tree->mask_count ? tree->masks : NULL, tree->mask_count > 0, &l->buffers[MASKS]));
+  TRY(make_table(l, ENTRIES, tree->entry_count ? (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4 : 0, tree->entries));
+  TRY(make_table(l, ROWS, (size_t)tree->row_count * sizeof *tree->rows, tree->rows));
+  TRY(make_table(l, MASKS, (size_t)tree->mask_count * sizeof *tree->masks, tree->masks));
+  TRY(make_table(l, NODES, leaves ? (size_t)tree->node_count * sizeof *tree->nodes : 0, tree->nodes));
+  TRY(make_table(l, FIELDS, leaves ? (size_t)tree->field_count * sizeof *tree->fields : 0, tree->fields));
+  TRY(make_table(l, BRICKS, (size_t)tree->brick_count * sizeof *tree->bricks, tree->bricks));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, most * 13 * 4, NULL, false, &l->buffers[RAYS]));
   return stratus_device_buffer(l->context, CL_MEM_WRITE_ONLY, most * 5 * 4, NULL, false, &l->buffers[RESULTS]);
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits on the host, compiled for one instruction set, STRATUS_ISA. Rays are gathered in packets, packets walk the field, a lane whose
+ * First hits on the host, compiled for one instruction set, STRATUS_ISA. Rays are gathered in packets, packets walk the tree, a lane whose
  * ray has ended gets the next ray, and hits are computed in double precision. */
 #include "first_hit_batch.h"
 
-#include "first_hit.h"
-#include "first_hit_beams.h"
+#include "first_hit_beam_leaves.h"
+#include "first_hit_leaves.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -239,13 +239,15 @@ static inline vmask first_lanes(vmask mask, int count, int* lanes)
 #endif
 }
 
-/* Stores the results of lanes whose ray has ended, and gives those lanes the next rays. */
-static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
+/* Stores the results of lanes whose ray has ended, and gives those lanes the next rays. Without a search they begin in the field. */
+static inline __attribute__((always_inline)) void refill(
+  const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k, stratus_hit_search* search)
 {
   static const int numbers[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
   stratus_hit_chunk* const c = s->chunk;
   const vint zero = vi_set(0);
-  const vmask free = m_andnot(vi_ge(zero, zero), k->live), ended = free & vi_ge(s->id, zero);
+  const vmask busy = k->live | k->seeking;
+  const vmask free = m_andnot(vi_ge(zero, zero), busy), ended = free & vi_ge(s->id, zero);
   int lanes[STRATUS_WIDTH];
   const vint state = vi_select(k->doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_select(k->hit, vi_set(STRATUS_HIT_VOXEL), zero));
   scatter(c->state, s->id, state, ended);
@@ -272,80 +274,100 @@ static void refill(const stratus_hit_arguments* a, stream* s, stratus_hit_packet
   k->hit = m_none();
   k->doubtful = m_none();
   k->visited = vi_select(fresh, zero, k->visited);
-  k->live = k->live | (fresh & v_le(v_set(0.0f), k->end));
+  const vmask started = fresh & v_le(v_set(0.0f), k->end);
+  if (search) {
+    hit_begin(k, search, started);
+  } else {
+    k->live = k->live | started;
+  }
 }
 
 /* A lane whose ray has ended costs as much as a live one. This many may be idle before they get new rays. */
 #define IDLE (STRATUS_WIDTH / 4)
 
 /* Returns false once the packet's rays have ended and no ray is left. */
-static inline bool keep_busy(const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k)
+static inline __attribute__((always_inline)) bool keep_busy(
+  const stratus_hit_arguments* a, stream* s, stratus_hit_packet* k, stratus_hit_search* search)
 {
-  const int live = m_count(k->live);
+  const int live = m_count(k->live | k->seeking);
   if (live == STRATUS_WIDTH || (live > 0 && (*s->next >= s->last || STRATUS_WIDTH - live < IDLE))) {
     return true;
   }
   do {
-    refill(a, s, k);
-  } while (!m_any(k->live) && *s->next < s->last);
-  return m_any(k->live);
+    refill(a, s, k, search);
+  } while (!m_any(k->live | k->seeking) && *s->next < s->last);
+  return m_any(k->live | k->seeking);
 }
 
 /* Packets walked in turn. A step is a chain of dependent loads and sums, and while one packet waits the next computes. */
 #define PACKETS 2
 
-/* Walks the chunk's rays first .. last - 1 in packets. */
-static inline __attribute__((always_inline)) void walk_field(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
-  stratus_hit_chunk* chunk, int first, int last, const int octants, const int entry_bytes, const int cell_log2)
+static stratus_hit_tables tables_of(const stratus_tree* tree)
 {
-  const stratus_tree* tree = batch->tree;
+  return (stratus_hit_tables){ tree->entries, (const int*)tree->rows, (const int*)(const void*)tree->masks,
+    (const int*)(const void*)tree->nodes, (const int*)(const void*)tree->fields, (const int*)(const void*)tree->bricks };
+}
+
+/* Walks the chunk's rays first .. last - 1 in packets. */
+static inline __attribute__((always_inline)) void walk_rays(const stratus_hit_batch* batch, const stratus_hit_arguments* a,
+  stratus_hit_chunk* chunk, int first, int last, const int kind, const int octants, const int entry_bytes, const int cell_log2)
+{
+  const stratus_hit_tables tables = tables_of(batch->tree);
   stream s[PACKETS];
   stratus_hit_packet k[PACKETS];
+  stratus_hit_search search[PACKETS];
   int next = first, asked = first;
   memset(k, 0, sizeof k);
   for (int p = 0; p < PACKETS; ++p) {
     s[p] = (stream){ .chunk = chunk, .next = &next, .last = last, .id = vi_set(-1) };
+    search[p].top = search[p].node = search[p].count = search[p].first = search[p].key = search[p].number = vi_set(0);
   }
   for (bool busy = true; busy;) {
     asked = stratus_hit_fetch(chunk, asked, last);
     busy = false;
     for (int p = 0; p < PACKETS; ++p) {
-      busy |= keep_busy(a, &s[p], &k[p]);
+      busy |= keep_busy(a, &s[p], &k[p], kind == STRATUS_HIT_LEAVES ? &search[p] : NULL);
     }
     for (int p = 0; p < PACKETS; ++p) {
-      hit_step(a, tree->entries, (const int*)tree->rows, batch->mask_words, &k[p], octants, entry_bytes, cell_log2);
+      if (kind == STRATUS_HIT_LEAVES) {
+        hit_step_leaves(a, &tables, &k[p], &search[p], octants, entry_bytes, cell_log2);
+      } else {
+        hit_step(a, &tables, &k[p], kind, octants, entry_bytes, cell_log2);
+      }
     }
   }
   for (int p = 0; p < PACKETS; ++p) {
-    refill(a, &s[p], &k[p]);
+    refill(a, &s[p], &k[p], kind == STRATUS_HIT_LEAVES ? &search[p] : NULL);
+  }
+}
+
+static inline __attribute__((always_inline)) void walk_kind(
+  const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, int first, int last, const int kind)
+{
+  if (!a->octants && a->cell_log2) {
+    walk_rays(batch, a, chunk, first, last, kind, 0, 2, 2);
+  } else if (!a->octants) {
+    walk_rays(batch, a, chunk, first, last, kind, 0, 2, 0);
+  } else if (a->entry_bytes == 2) {
+    walk_rays(batch, a, chunk, first, last, kind, 1, 2, 2);
+  } else {
+    walk_rays(batch, a, chunk, first, last, kind, 1, 3, 2);
   }
 }
 
 static void walk_packets(const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, int first, int last)
 {
-  if (!a->octants && a->cell_log2) {
-    walk_field(batch, a, chunk, first, last, 0, 2, 2);
-  } else if (!a->octants) {
-    walk_field(batch, a, chunk, first, last, 0, 2, 0);
-  } else if (a->entry_bytes == 2) {
-    walk_field(batch, a, chunk, first, last, 1, 2, 2);
+  if (batch->leaves) {
+    walk_kind(batch, a, chunk, first, last, STRATUS_HIT_LEAVES);
   } else {
-    walk_field(batch, a, chunk, first, last, 1, 3, 2);
+    walk_kind(batch, a, chunk, first, last, STRATUS_HIT_FIELD);
   }
 }
 
 /* Rays that follow each other go in beams where these are narrow, the others in packets. */
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
 {
-  const stratus_tree* tree = batch->tree;
-  const stratus_tree_field* field = &tree->fields[0];
-  const stratus_hit_arguments a = { .at = { field->at[0], field->at[1], field->at[2] },
-    .cells = { field->cells[0], field->cells[1], field->cells[2] },
-    .row_start = (int)field->first_row,
-    .octants = tree->octants,
-    .entry_bytes = tree->entry_bytes,
-    .cell_log2 = tree->cell_log2,
-    .slack = batch->slack };
+  const stratus_hit_arguments a = stratus_hit_arguments_of(batch);
   int waiting = 0; /* the first ray that is neither in a beam nor walked */
   for (int first = 0; a.cell_log2 && first + BEAM <= chunk->count; first += BEAM) {
     if (beam_walk(batch, &a, first, chunk)) {

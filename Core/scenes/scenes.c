@@ -4,6 +4,7 @@
  * fused operations. A scene is never changed. */
 #include "stratus/scenes.h"
 #include "volume.h"
+#include "scenes_archipelago.h"
 #include "scenes_fields.h"
 #include "scenes_media.h"
 #include "scenes_transfers.h"
@@ -23,7 +24,7 @@ typedef struct recipe {
   double quantile;
   double top; /* upper end of the scalar range */
   double opacity;
-  void (*field)(const field_tables* tables, int j, int k, float* row); /* NULL: a single voxel is set */
+  void (*field)(const field_tables* tables, int j, int k, float* row); /* NULL: a single voxel is set, or an archipelago */
   /* Shades a row. threshold: the field's quantile; height: the field's maximum less the threshold. `values` may be `row`. */
   void (*shade)(int j, int k, const float* row, float threshold, float height, void* values);
 } recipe;
@@ -49,6 +50,7 @@ static const recipe recipes[] = {
   { "stripes", 1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, 0.0, 1.0,    0.0, stripes_field, stripes_shade },
   { "shell",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .05, 1.0,    0.0, fog_field,     shell_shade },
   { "plate",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .05, 1.0,    0.0, fog_field,     plate_shade },
+  { "archipelago-1024", 1, { ARCHIPELAGO_SIDE, ARCHIPELAGO_SIDE, ARCHIPELAGO_SIDE }, STRATUS_UINT8, 2, 0.0, 255.0, 0.5, NULL, NULL },
   { "labels",  1, { LABEL_SIDE, LABEL_SIDE, LABEL_SIDE }, STRATUS_UINT8, 1, 0.0, 10.0, 0.0, labels_field, labels_shade },
 };
 /* clang-format on */
@@ -147,6 +149,9 @@ static stratus_status fill_values(stratus_context* context, const recipe* recipe
   void* field = NULL;
   stratus_status status;
   const size_t count = (size_t)recipe->n[0] * (size_t)recipe->n[1] * (size_t)recipe->n[2];
+  if (strcmp(recipe->name, "archipelago-1024") == 0) {
+    return stratus_archipelago_fill(context, values);
+  }
   if (!recipe->field) {
     memset(values, 0, count);
     ((uint8_t*)values)[((size_t)131 * 256 + 120) * 256 + 140] = 255;
@@ -170,7 +175,7 @@ static void measure(stratus_scene* scene, int threads)
   const int64_t row = scene->volume.dimensions[0];
   const int64_t rows = scene->volume.dimensions[1] * scene->volume.dimensions[2];
   int64_t occupied = 0;
-  double slices[512] = { 0 }; /* sums in a fixed order, so that the mean does not depend on the number of threads */
+  double slices[ARCHIPELAGO_SIDE] = { 0 }; /* sums in a fixed order, so that the mean does not depend on the number of threads */
   const int64_t per_slice = scene->volume.dimensions[1];
 #pragma omp parallel for num_threads(threads) reduction(+ : occupied)
   for (int64_t k = 0; k < rows / per_slice; ++k) {
@@ -228,7 +233,7 @@ const char* stratus_scene_name(int index)
 
 static stratus_status find_recipe(stratus_context* context, const char* name, const recipe** result)
 {
-  char names[128] = "";
+  char names[192] = "";
   for (int i = 0; i < RECIPES; ++i) {
     if (name && strcmp(name, recipes[i].name) == 0) {
       *result = recipes + i;

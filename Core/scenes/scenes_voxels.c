@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, and solid cubes in
- * noise whose density has a given deviation. A set never changes. */
+ * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, solid cubes in noise
+ * whose density has a given deviation, and an archipelago of clouds. A set never changes. */
 #include "stratus/scenes.h"
+#include "scenes_archipelago.h"
+#include "scenes_random.h"
 #include "voxels.h"
 
 #include <stdio.h>
@@ -10,7 +12,6 @@
 #define RAYS_ACROSS 512
 #define LEAST_DIRECTION 1e-6f /* least magnitude of each component of a ray's direction */
 #define BLOBS_MAX 64
-#define TWO_PI 6.283185307179586
 #define DEVIATION_BLOCK 8
 #define BISECTIONS 24
 #define DEVIATION_VOXELS 20000
@@ -19,7 +20,7 @@ typedef struct recipe {
   const char* name;
   int n[3];
   int64_t voxels;
-  int blobs; /* number of blobs; 0: cubes in noise */
+  int blobs; /* number of blobs; 0: cubes in noise, or an archipelago, which has no `voxels` */
   double in_blobs, in_shells;
   double deviation; /* cubes in noise: standard deviation of the density of occupied blocks of 8^3, over .5 */
   uint64_t seed;
@@ -37,37 +38,10 @@ static const recipe recipes[] = {
   { "u640", { 256, 128, 256 }, DEVIATION_VOXELS, 0, 0, 0, .640, 4242 },
   { "1M",   { 512, 512, 512 },  1000000, 40, .60, .25, 0,   77 },
   { "10M",  { 1024, 1024, 1024 }, 10000000, 60, .60, .25, 0, 78 },
+  { "archipelago", { ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST }, 0, 0, 0, 0, 0, 0 },
 };
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
-
-/* ---------------------------------------------------------------- random numbers */
-
-/* A Weyl counter with mixed bits (Steele, Lea & Flood 2014). */
-static uint64_t random_bits(uint64_t* state)
-{
-  *state += UINT64_C(0x9e3779b97f4a7c15);
-  uint64_t z = *state;
-  z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-  z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-  return z ^ z >> 31;
-}
-
-static double random_unit(uint64_t* state)
-{
-  return (double)(random_bits(state) >> 11) * 0x1p-53;
-}
-
-static double random_normal(uint64_t* state)
-{
-  const double a = random_unit(state) + 1e-18, b = random_unit(state);
-  return sqrt(-2.0 * log(a)) * cos(TWO_PI * b);
-}
-
-static int random_below(uint64_t* state, int n)
-{
-  return (int)(random_bits(state) % (uint64_t)n);
-}
 
 /* ---------------------------------------------------------------- sets */
 
@@ -278,12 +252,28 @@ static void list_voxels(const bit_set* set, int32_t* positions)
   }
 }
 
+/* Makes a set that has a bit for each position. */
+static stratus_status make_set(stratus_context* context, const recipe* recipe, int32_t** positions, size_t* count)
+{
+  void *bits = NULL, *list = NULL;
+  stratus_status status;
+  bit_set set = { { recipe->n[0], recipe->n[1], recipe->n[2] }, NULL };
+  TRY_CLEANUP(stratus_allocate_zero(context, words_of(set.n), sizeof *set.bits, &bits));
+  set.bits = bits;
+  TRY_CLEANUP(recipe->blobs ? fill_mixture(context, recipe, &set) : fill_to_deviation(context, recipe, &set));
+  TRY_CLEANUP(stratus_allocate(context, 3 * (size_t)recipe->voxels, sizeof **positions, &list));
+  list_voxels(&set, list);
+  *positions = list;
+  *count = (size_t)recipe->voxels;
+cleanup:
+  stratus_release(context, bits);
+  return status;
+}
+
 stratus_status stratus_voxel_scene_create(
   stratus_context* context, const char* name, int64_t dimensions[3], int32_t** positions, size_t* count)
 {
   const recipe* recipe = NULL;
-  void *bits = NULL, *list = NULL;
-  stratus_status status;
   if (!context) {
     return STRATUS_INVALID_ARGUMENT;
   }
@@ -291,20 +281,11 @@ stratus_status stratus_voxel_scene_create(
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the address of dimensions, positions or count is NULL");
   }
   TRY(find_recipe(context, name, &recipe));
-  bit_set set = { { recipe->n[0], recipe->n[1], recipe->n[2] }, NULL };
-  TRY_CLEANUP(stratus_allocate_zero(context, words_of(set.n), sizeof *set.bits, &bits));
-  set.bits = bits;
-  TRY_CLEANUP(recipe->blobs ? fill_mixture(context, recipe, &set) : fill_to_deviation(context, recipe, &set));
-  TRY_CLEANUP(stratus_allocate(context, 3 * (size_t)recipe->voxels, sizeof **positions, &list));
-  list_voxels(&set, list);
+  TRY(recipe->voxels ? make_set(context, recipe, positions, count) : stratus_archipelago_list(context, positions, count));
   for (int a = 0; a < 3; ++a) {
     dimensions[a] = recipe->n[a];
   }
-  *positions = list;
-  *count = (size_t)recipe->voxels;
-cleanup:
-  stratus_release(context, bits);
-  return status;
+  return STRATUS_OK;
 }
 
 void stratus_voxel_scene_release(stratus_context* context, int32_t* positions)

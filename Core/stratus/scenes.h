@@ -30,6 +30,7 @@ typedef struct stratus_scene {
  * - bone and skin, a head of computed tomography (uint16): thin tissue and dense bone; a narrow window at the skin, between vertical steps;
  * - stripes, a constant opacity and 20 colours that meet in vertical steps;
  * - shell and plate, thin fog in 95 % of the voxels, and in it a thin opaque sphere, or a plate in .1 % of the blocks of 4^3 cells;
+ * - archipelago-1024, clouds of particles whose sizes and densities differ by orders of magnitude, in 1024^3 voxels (uint8, 1 GiB);
  * - labels 0 to 10 (uint8), each with an opacity and colour of its own in a window of width 1 between vertical steps. */
 STRATUS_EXPERIMENTAL int stratus_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_scene_name(int index); /* NULL for other indices */
@@ -39,7 +40,7 @@ STRATUS_EXPERIMENTAL void stratus_scene_destroy(stratus_context* context, stratu
  * deg, its elevation 25 deg, its azimuth 30 + 45 view deg about up_axis, its parallel scale .72 R. */
 STRATUS_EXPERIMENTAL stratus_status stratus_scene_camera(
   stratus_context* context, const double bounds[6], int up_axis, int view, int parallel, double aspect, stratus_camera* camera);
-/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M. */
+/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M archipelago, which is scattered over 4096^3 voxels. */
 STRATUS_EXPERIMENTAL int stratus_voxel_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_voxel_scene_name(int index); /* NULL for other indices */
 /* Makes *count triples in *positions. Free them with stratus_voxel_scene_release(). */

@@ -39,11 +39,22 @@ static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, 
   return true;
 }
 
+/* Returns whether a plane across an axis lies between the children of a node. First hits in hybrid trees rely on it. */
+static bool plane_between(const stratus_tree_node child[2])
+{
+  bool between = false;
+  for (int a = 0; a < 3; ++a) {
+    between |= child[0].hi[a] <= child[1].lo[a] || child[1].hi[a] <= child[0].lo[a];
+  }
+  return between;
+}
+
 /* Checks that each node but the root is the child of an earlier node, that children lie inside their parents, and that the leaves hold as
  * many bricks and fields as the tree. */
 static stratus_status check_nodes(stratus_context* context, const stratus_tree* tree, uint8_t* depth, uint8_t* taken)
 {
   static const int32_t zero[3] = { 0, 0, 0 };
+  const bool hybrid = tree->statistics.method == STRATUS_TREE_HYBRID || tree->statistics.method == STRATUS_TREE_HYBRID_PAPER;
   uint32_t bricks = 0, fields = 0;
   memset(depth, 255, tree->node_count);
   for (uint32_t n = 0; n < tree->node_count; ++n) {
@@ -61,6 +72,9 @@ static stratus_status check_nodes(stratus_context* context, const stratus_tree* 
           depth[node->first + 1] != 255 || !box_inside(&tree->nodes[node->first], node->lo, node->hi) ||
           !box_inside(&tree->nodes[node->first + 1], node->lo, node->hi)) {
           return WRONG("node %u of the tree has children that can't be its own", n);
+        }
+        if (hybrid && !plane_between(&tree->nodes[node->first])) {
+          return WRONG("node %u of the tree has children that overlap", n);
         }
         depth[node->first] = depth[node->first + 1] = (uint8_t)(depth[n] + 1);
         break;

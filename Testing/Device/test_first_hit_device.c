@@ -26,34 +26,60 @@ static stratus_context* open_context(const char* device, bool as_gpu)
   return context;
 }
 
+/* Trees of one field and of many leaves, in each size of entries and cells; the last one, whose boxes may overlap, is walked on the host.
+ */
+static const struct {
+  stratus_tree_method method;
+  double fill, emptiness;
+  int leaf_bricks, cluster;
+  bool on_device;
+} cases[] = {
+  { STRATUS_TREE_HYBRID, 0.02, 512.0, 4, 0, true },
+  { STRATUS_TREE_HYBRID, 0.0004, 2.0, 4, 0, true },  /* leaves of several bricks, and few fields */
+  { STRATUS_TREE_HYBRID, 0.0004, 1.0, 1, 0, true },  /* leaves of a brick */
+  { STRATUS_TREE_HYBRID, 0.3, 1.5, 2, 9, true },     /* dense fields, entries of three bytes */
+  { STRATUS_TREE_HYBRID, 0.003, 3.0, 40, 20, true }, /* long lists of bricks */
+  { STRATUS_TREE_HYBRID_PAPER, 0.05, 512.0, 4, 9, true },
+  { STRATUS_TREE_OCTANT, 0.001, 512.0, 4, 0, true },
+  { STRATUS_TREE_DISTANCE, 0.02, 512.0, 4, 0, true },
+  { STRATUS_TREE_LBVH, 0.02, 512.0, 4, 0, false },
+};
+#define CASES (sizeof cases / sizeof *cases)
+
 static void device_and_host_hit_the_same(void** state)
 {
   const int count = *(const int*)*state;
   static stratus_ray rays[COUNT];
   static stratus_hit ours[COUNT], theirs[COUNT];
-  static const int methods[4] = { STRATUS_TREE_HYBRID, STRATUS_TREE_OCTANT, STRATUS_TREE_DISTANCE, STRATUS_TREE_LBVH };
   const int64_t dimensions[3] = { 90, 60, 75 };
   stratus_context* host = open_context("host", false);
   for (int as_gpu = 0; as_gpu < 2; ++as_gpu) {
     stratus_context* device = open_context("0", as_gpu);
     assert_non_null(device);
     print_message("on %s\n", stratus_context_device(device));
-    for (int m = 0; m < 4; ++m) {
+    for (size_t m = 0; m < CASES; ++m) {
       uint32_t random = 8;
-      stratus_voxels* voxels = random_voxels(host, dimensions, m == 1 ? 0.001 : 0.02, 0, &random);
+      stratus_voxels* voxels = random_voxels(host, dimensions, cases[m].fill, cases[m].cluster, &random);
       stratus_tree_options options = stratus_tree_options_default();
       stratus_tree* tree = NULL;
-      options.method = (stratus_tree_method)methods[m];
+      options.method = cases[m].method;
+      options.field_emptiness = cases[m].emptiness;
+      options.leaf_bricks = cases[m].leaf_bricks;
       for (int i = 0; i < count; ++i) {
         rays[i] = random_ray(dimensions, &random);
       }
       assert_int_equal(stratus_tree_create(host, voxels, &options, &tree), STRATUS_OK);
       assert_int_equal(stratus_tree_first_hit(host, tree, rays, (size_t)count, theirs), STRATUS_OK);
+      const uint64_t launched = device->report.launched;
       if (stratus_tree_first_hit(device, tree, rays, (size_t)count, ours) != STRATUS_OK) {
         fail_msg("%s", stratus_context_message(device));
       }
+      assert_true((device->report.launched > launched) == cases[m].on_device);
       for (int i = 0; i < count; ++i) {
-        assert_true(ours[i].t == theirs[i].t && ours[i].face == theirs[i].face && ours[i].visited == theirs[i].visited);
+        if (ours[i].t != theirs[i].t || ours[i].face != theirs[i].face || ours[i].visited != theirs[i].visited) {
+          fail_msg("case %zu, ray %d: at %.17g face %d in %u steps, on the host %.17g, %d, %u", m, i, ours[i].t, ours[i].face,
+            ours[i].visited, theirs[i].t, theirs[i].face, theirs[i].visited);
+        }
         assert_memory_equal(ours[i].voxel, theirs[i].voxel, sizeof ours[i].voxel);
       }
       const int bad = count - 4;

@@ -60,12 +60,29 @@ static inline stratus_voxels* random_voxels(
   return voxels;
 }
 
-/* Makes a random ray of eight kinds: arbitrary rays, and hard ones along axes, through corners and edges, from faces, from inside, from
- * behind, or short. */
+/* Makes a ray along an axis that is slow along the two others, and runs beside a plane between voxels, at times between bricks. */
+static inline void slow_ray(const int64_t dimensions[3], uint32_t* random, stratus_ray* ray)
+{
+  const int along = (int)(next_random(random) % 3);
+  for (int a = 0; a < 3; ++a) {
+    const double size = (double)dimensions[a], step = next_random(random) % 2 ? 1.0 : 4.0;
+    if (a == along) {
+      ray->direction[a] = next_random(random) % 2 ? 1.0 : -1.0;
+      ray->origin[a] = (unit_random(random) * 2.0 - 0.5) * size;
+    } else {
+      ray->direction[a] = pow(10.0, -9.0 * unit_random(random)) * (next_random(random) % 2 ? 1.0 : -1.0);
+      ray->origin[a] = floor(unit_random(random) * size / step) * step;
+      ray->origin[a] += pow(10.0, -9.0 * unit_random(random)) * (unit_random(random) - 0.5) * (double)(next_random(random) % 8 != 0);
+    }
+  }
+}
+
+/* Makes a random ray of nine kinds: arbitrary rays, and hard ones along axes, through corners and edges, from faces, from inside, from
+ * behind, short, or beside planes. */
 static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
 {
   stratus_ray ray = { .t_max = INFINITY };
-  const uint32_t kind = next_random(random) % 8;
+  const uint32_t kind = next_random(random) % 9;
   for (int a = 0; a < 3; ++a) {
     const double size = (double)dimensions[a];
     ray.origin[a] = (unit_random(random) * 3.0 - 1.0) * size;
@@ -84,13 +101,17 @@ static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* rand
   }
   if (kind == 5) {
     ray.t_min = unit_random(random);
-    ray.t_max = ray.t_min + unit_random(random) * (double)dimensions[0];
+    ray.t_max =
+      ray.t_min + unit_random(random) * (double)dimensions[0] * (next_random(random) % 2 ? pow(10.0, -9.0 * unit_random(random)) : 1.0);
   }
   if (kind == 7 && next_random(random) % 8 == 0) {
     ray.t_max = -1e-6; /* an empty ray */
   }
   if (kind == 6) { /* almost along an axis */
     ray.direction[next_random(random) % 3] *= 1e-6;
+  }
+  if (kind == 8) {
+    slow_ray(dimensions, random, &ray);
   }
   if (ray.direction[0] == 0.0 && ray.direction[1] == 0.0 && ray.direction[2] == 0.0) {
     ray.direction[next_random(random) % 3] = kind == 1 ? -1.0 : 1.0;

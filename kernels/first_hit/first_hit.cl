@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits in one distance field. Each work item walks STRATUS_WIDTH neighbouring rays. */
+ * First hits in a tree. Each work item walks STRATUS_WIDTH neighbouring rays, through one distance field or, with STRATUS_LEAVES, through
+ * many leaves. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
 #ifndef STRATUS_WIDTH
 #define STRATUS_WIDTH 1
+#endif
+#ifndef STRATUS_LEAVES
+#define STRATUS_LEAVES 0
 #endif
 #ifndef STRATUS_OCTANTS
 #define STRATUS_OCTANTS 1
@@ -16,7 +20,7 @@
 #define STRATUS_CELL_LOG2 2
 #endif
 
-#include "first_hit.h"
+#include "first_hit_leaves.h"
 
 #ifdef STRATUS_ARGUMENTS_BYTES
 /* An array of negative size, which does not compile, where the host lays the arguments out otherwise. */
@@ -24,14 +28,17 @@ typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_AR
 #endif
 
 /* rays: arrays of `count` floats, in the order origin x y z, direction x y z, inverse direction x y z, end; then arrays of `count` ints,
- * cell x y z. results: arrays of `count` ints, in the order state (STRATUS_HIT_*), voxel x y z, steps. */
+ * cell x y z. results: arrays of `count` ints, in the order state (STRATUS_HIT_*), voxel x y z, steps. One field reads no nodes, fields and
+ * bricks. */
 PACKET_KERNEL void first_hit(__constant stratus_hit_arguments* a, __global const uchar* entries, __global const int* rows,
-  __global const int* masks, __global const float* rays, __global int* results)
+  __global const int* masks, __global const int* nodes, __global const int* fields, __global const int* bricks, __global const float* rays,
+  __global int* results)
 {
   const int count = a->count, first = (int)get_global_id(0) * STRATUS_WIDTH;
   if (first >= count) {
     return;
   }
+  const stratus_hit_tables tables = { entries, rows, masks, nodes, fields, bricks };
   float f[10][STRATUS_WIDTH];
   int cell[3][STRATUS_WIDTH], on[STRATUS_WIDTH];
   __global const int* cells = (__global const int*)(rays + 10 * (size_t)count);
@@ -61,9 +68,24 @@ PACKET_KERNEL void first_hit(__constant stratus_hit_arguments* a, __global const
   k.hit = m_none();
   k.doubtful = m_none();
   k.visited = vi_set(0);
-  while (m_any(k.live)) {
-    hit_step(a, entries, rows, masks, &k, STRATUS_OCTANTS, STRATUS_ENTRY_BYTES, STRATUS_CELL_LOG2);
+  k.seeking = m_none();
+#if STRATUS_LEAVES
+  stratus_hit_search search;
+  search.top = search.node = search.count = search.first = search.key = search.number = vi_set(0);
+  k.first_entry = k.first_row = k.brick = vi_set(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    k.at[axis] = k.cells[axis] = vi_set(0);
   }
+  hit_begin(&k, &search, k.live);
+  k.live = m_none();
+  while (m_any(k.live | k.seeking)) {
+    hit_step_leaves(a, &tables, &k, &search, STRATUS_OCTANTS, STRATUS_ENTRY_BYTES, STRATUS_CELL_LOG2);
+  }
+#else
+  while (m_any(k.live)) {
+    hit_step(a, &tables, &k, STRATUS_HIT_FIELD, STRATUS_OCTANTS, STRATUS_ENTRY_BYTES, STRATUS_CELL_LOG2);
+  }
+#endif
   int state[STRATUS_WIDTH], visited[STRATUS_WIDTH];
   vi_store(
     state, vi_select(k.hit, vi_set(STRATUS_HIT_VOXEL), vi_select(k.doubtful, vi_set(STRATUS_HIT_DOUBTFUL), vi_set(STRATUS_HIT_NONE))));

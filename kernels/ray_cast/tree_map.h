@@ -13,79 +13,58 @@
 
 #define TREE_STACK 132
 
-INLINE int tree_larger(int a, int b) { return a > b ? a : b; }
-
-/* The Chebyshev distance from a block to a node's box; 0 inside. */
-INLINE int tree_distance(GLOBAL const int* node, int x, int y, int z)
+/* The Chebyshev distance from each lane's block to a node's box; 0 inside. */
+INLINE vint tree_distance(GLOBAL const int* node, const vint block[3])
 {
-  const int dx = tree_larger(node[0] - x, x - node[3]), dy = tree_larger(node[1] - y, y - node[4]),
-            dz = tree_larger(node[2] - z, z - node[5]);
-  return tree_larger(tree_larger(tree_larger(dx, dy), dz), 0);
+  vint away = vi_set(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    away = vi_max(away, vi_max(vi_set(node[axis]) - block[axis], block[axis] - vi_set(node[3 + axis])));
+  }
+  return away;
 }
 
-INLINE int tree_leaf_byte(GLOBAL const uchar* map, GLOBAL const int* leaf, int x, int y, int z)
+/* What a leaf tells of each lane's block: its byte in the leaf's box, else the distance to that. */
+INLINE vint tree_leaf_bytes(GLOBAL const uchar* map, GLOBAL const int* leaf, const vint block[3], vint away, vmask mask)
 {
-  const int row = (z - leaf[2]) * leaf[4] + (y - leaf[1]);
-  return (int)map[(size_t)leaf[6] + (size_t)row * (size_t)leaf[3] + (size_t)(x - leaf[0])];
+  const vmask inside = mask & vi_lt(away, vi_set(1));
+  const vint index = (block[0] - vi_set(leaf[0])) +
+    ((block[1] - vi_set(leaf[1])) + (block[2] - vi_set(leaf[2])) * vi_set(leaf[4])) * vi_set(leaf[3]) + vi_set(leaf[6]);
+  return vi_select(inside, gather_map(map, index, inside), vi_min(away, vi_set(127)));
 }
 
-/* The byte of one block: the nearest of what all leaves tell. Boxes of bricks do not overlap, so that at most one leaf holds the block
- * itself. */
-INLINE int tree_byte(GLOBAL const uchar* map, int nodes, int x, int y, int z)
+/* The bytes of the packet's blocks: the nearest of what all leaves tell. Boxes of bricks do not overlap, so that at most one leaf holds a
+ * block itself. The lanes descend together, to the nodes that are nearer to one of them than what it knows. */
+INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vmask mask)
 {
   GLOBAL const int* records = (GLOBAL const int*)map;
-  int stack[TREE_STACK], top = 0, nearest = 127;
+  const vint farthest = vi_set(127);
+  int stack[TREE_STACK], top = 0;
+  vint nearest = farthest;
+  if (a->map.tree == 1) {
+    return tree_leaf_bytes(map, records + 8, block, tree_distance(records, block), mask);
+  }
   stack[top++] = 0;
   while (top > 0) {
     GLOBAL const int* node = records + 8 * stack[--top];
-    const int away = tree_distance(node, x, y, z);
-    if (away >= nearest) {
+    const vint away = tree_distance(node, block);
+    const vmask wanted = mask & vi_lt(away, nearest);
+    if (!m_any(wanted)) {
       continue;
     }
     if (!node[7]) {
       GLOBAL const int* child = records + 8 * node[6];
-      const int near = tree_distance(child, x, y, z) <= tree_distance(child + 8, x, y, z) ? 0 : 1;
+      const vmask second = wanted & vi_lt(tree_distance(child + 8, block), tree_distance(child, block));
+      const int near = 2 * m_count(second) > m_count(wanted);
       stack[top++] = node[6] + 1 - near;
       stack[top++] = node[6] + near;
-    } else if (away > 0) {
-      nearest = away;
     } else {
-      const int byte = tree_leaf_byte(map, records + 8 * (nodes + node[6]), x, y, z);
-      if (byte > 127) {
-        return byte;
-      }
-      nearest = byte < nearest ? byte : nearest;
+      const vint byte = tree_leaf_bytes(map, records + 8 * (a->map.tree + node[6]), block, away, wanted);
+      const vmask occupied = wanted & vi_ge(byte, vi_set(128));
+      nearest = vi_select(occupied, byte, vi_select(wanted, vi_min(nearest, byte), nearest));
+      mask = m_andnot(mask, occupied);
     }
   }
   return nearest;
-}
-
-/* The bytes of the packet's blocks. A tree of one leaf is read for all lanes at once. */
-INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vmask mask)
-{
-  GLOBAL const int* records = (GLOBAL const int*)map;
-  if (a->map.tree == 1) {
-    GLOBAL const int* leaf = records + 8;
-    vint away = vi_set(0), in[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const vint first = vi_set(records[axis]), last = vi_set(records[3 + axis]);
-      away = vi_max(away, vi_max(first - block[axis], block[axis] - last));
-      in[axis] = block[axis] - first;
-    }
-    const vmask inside = mask & vi_lt(away, vi_set(1));
-    const vint index = in[0] + (in[1] + in[2] * vi_set(leaf[4])) * vi_set(leaf[3]) + vi_set(leaf[6]);
-    const vint byte = gather_map(map, index, inside);
-    return vi_select(inside, byte, vi_min(away, vi_set(127)));
-  }
-  int x[STRATUS_WIDTH], y[STRATUS_WIDTH], z[STRATUS_WIDTH], on[STRATUS_WIDTH];
-  vi_store(x, block[0]);
-  vi_store(y, block[1]);
-  vi_store(z, block[2]);
-  vi_store(on, vi_select(mask, vi_set(1), vi_set(0)));
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    x[lane] = on[lane] ? tree_byte(map, a->map.tree, x[lane], y[lane], z[lane]) : 127;
-  }
-  return vi_load(x);
 }
 
 #endif

@@ -345,8 +345,9 @@ int main(int argc, char** argv)
   float* rgba = malloc(4 * sizeof(float) * (size_t)s.size * (size_t)s.size);
   printf("scene,way,first,last,still_ms,still_cpu_ms,orbit_ms,orbit_cpu_ms,structure_ms,first_cast_ms,last_cast_ms\n");
   for (int i = 0; s.scenes && i < stratus_scene_count(); ++i) {
-    if (!s.only || strstr(s.only, stratus_scene_name(i))) {
-      measure_scene(context, stratus_scene_name(i), &s, rgba);
+    const char* const name = stratus_scene_name(i);
+    if (s.only ? strstr(s.only, name) != NULL : strcmp(name, "archipelago-1024") != 0) { /* which takes 1 GiB */
+      measure_scene(context, name, &s, rgba);
     }
   }
   const double until = clock_ms(CLOCK_MONOTONIC) + 1e3 * s.seconds;

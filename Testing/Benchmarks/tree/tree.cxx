@@ -18,6 +18,7 @@ namespace {
 const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
+                     archipelago and archipelago-1024, the values > 0 of that volume, take much memory: only where named
   --method M,...     stratus:hybrid|hybrid-paper|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans, all but distance and octant
                      with :N behind it, bricks (the first two) or voxels in a leaf; embree:low|medium|high, embree:packet and
                      embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all; stratus:hybrid-paper, ac,
@@ -87,9 +88,11 @@ void tree_scene::list_volume(const std::string& name)
   stratus_scene* scene = nullptr;
   check_status(this->context.get(), stratus_scene_create(this->context.get(), name.c_str(), &scene));
   const int64_t* n = scene->volume.dimensions;
-  const float* values = static_cast<const float*>(scene->volume.values);
+  const float* floats = static_cast<const float*>(scene->volume.values);
+  const uint8_t* bytes = static_cast<const uint8_t*>(scene->volume.values);
+  const bool whole = scene->volume.type == STRATUS_UINT8;
   for (int64_t v = 0; v < n[0] * n[1] * n[2]; ++v) {
-    if (values[v] > 0.0f) {
+    if (whole ? bytes[v] > 0 : floats[v] > 0.0f) {
       this->own.insert(
         this->own.end(), { static_cast<int32_t>(v % n[0]), static_cast<int32_t>(v / n[0] % n[1]), static_cast<int32_t>(v / n[0] / n[1]) });
     }
@@ -104,7 +107,7 @@ tree_scene::tree_scene(const std::string& name)
 {
   stratus_context* c = this->context.get();
   this->set.name = name;
-  if (name == "cloud") {
+  if (name == "cloud" || name == "archipelago-1024") {
     this->list_volume(name);
   } else {
     check_status(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
@@ -275,19 +278,22 @@ options parse(int argc, char* argv[])
   for (int s = 0; s < stratus_voxel_scene_count(); ++s) {
     scenes.push_back(stratus_voxel_scene_name(s));
   }
-  scenes.push_back("cloud");
+  scenes.insert(scenes.end(), { "cloud", "archipelago-1024" });
   check_names(o.scenes, scenes, "scene");
   for (const std::string& method : o.methods) {
     if (!is_tree_method(method)) {
       throw failure("unknown method " + method + "; --help tells which there are");
     }
   }
-  o.scenes = o.scenes.empty() ? scenes : o.scenes;
   if (!o.device.empty()) {
     o.methods = o.methods.empty() ? device_methods : o.methods;
     for (const std::string& method : o.methods) {
       tree_options_of(method);
     }
+  }
+  if (o.scenes.empty()) {
+    std::copy_if(scenes.begin(), scenes.end(), std::back_inserter(o.scenes),
+      [](const std::string& name) { return name.rfind("archipelago", 0) != 0; });
   }
   o.methods = o.methods.empty() ? all_tree_methods() : o.methods;
   return o;

@@ -280,9 +280,9 @@ static void names_are_listed_and_an_unknown_one_is_told(void** state)
   (void)state;
   stratus_context* context = open_context(1);
   stratus_scene* scene = NULL;
-  assert_int_equal(stratus_scene_count(), 13);
+  assert_int_equal(stratus_scene_count(), 14);
   assert_null(stratus_scene_name(-1));
-  assert_null(stratus_scene_name(13));
+  assert_null(stratus_scene_name(14));
   assert_int_equal(stratus_scene_create(context, "clowd", &scene), STRATUS_INVALID_ARGUMENT);
   assert_null(scene);
   assert_non_null(strstr(stratus_context_message(context), "clowd"));
