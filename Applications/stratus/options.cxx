@@ -74,7 +74,9 @@ How
   --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
                           project (default auto: what should cost less)
   --normals N             of first hits: faces, gradient (default faces)
-  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
+  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto): draws, and builds what it has kernels
+                          for; the picture is the same
+  --report                tell each stage of building: where it was done, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
   --read-timeout S        give INPUT, or a mask, up after S seconds in which its reader neither got a byte nor told of progress; 0: never
                           (default 60)
@@ -322,6 +324,7 @@ constexpr struct {
   { "--shade", &options::shade },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
+  { "--report", &options::report },
 };
 
 // Finds a word in a table. Returns nullptr where the table lacks it.

@@ -36,6 +36,7 @@ struct options {
   bool nearest = false;
   bool shade = false;
   bool audit = false;
+  bool report = false;        // render, tree, sort: tells the stages of building
   bool shows_samples = false; // render: draws the samples that each pixel took
   bool has_range = false;     // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();

@@ -104,6 +104,9 @@ void print_tree(const options& o)
   row("of", what);
   row("device", stratus_context_device(core));
   print(statistics);
+  if (o.report) {
+    core.print_build_report();
+  }
   if (out) {
     out->write(encode(tree.get(), in.volume, o.mode == STRATUS_MODE_COMPOSITE));
     row("boxes", o.output);
