@@ -15,7 +15,7 @@ static std::string method_names()
   for (int i = 0; i < STRATUS_TREE_METHODS; ++i) {
     names += std::string(i ? ", " : "") + stratus_tree_method_name(static_cast<stratus_tree_method>(i));
   }
-  return names + ", ac-edges";
+  return names + ", ac-edges, hybrid-paper-raw";
 }
 
 std::string help()
@@ -254,7 +254,8 @@ void set_method(options& o, const std::string&, const std::string& value)
     o.tetra_method = tetra_method_named(value);
   } else {
     o.agglomerative_by_edges = value == "ac-edges";
-    o.method = o.agglomerative_by_edges ? STRATUS_TREE_AC : method_named(value);
+    o.uncorrected_flooding = value == "hybrid-paper-raw";
+    o.method = o.agglomerative_by_edges ? STRATUS_TREE_AC : o.uncorrected_flooding ? STRATUS_TREE_HYBRID_PAPER : method_named(value);
   }
 }
 

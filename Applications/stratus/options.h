@@ -43,6 +43,7 @@ struct options {
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;
   bool agglomerative_by_edges = false;                           // tree: ac-edges instead of ac
+  bool uncorrected_flooding = false;                             // tree: hybrid-paper-raw instead of hybrid-paper
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface

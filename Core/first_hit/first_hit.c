@@ -34,10 +34,10 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
   return true;
 }
 
-/* Packets walk a single distance field. Where every position is in doubt they would be a waste. */
+/* Packets walk a single distance field, by leaps. Where every position is in doubt they would be a waste. */
 static bool takes_packets(const stratus_hit_batch* batch)
 {
-  return batch->tree->node_count == 1 && batch->tree->field_count == 1 && batch->slack <= 0.05f;
+  return batch->tree->node_count == 1 && batch->tree->field_count == 1 && !batch->tree->statistics.uncorrected && batch->slack <= 0.05f;
 }
 
 static stratus_status run_host(
