@@ -40,7 +40,7 @@ stratus_camera place_camera(const context& core, const options& o, const mesh& m
 void render_grid(const options& o)
 {
   refuse_options(o);
-  context core("host", o.threads);
+  context core(o.device, o.threads);
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   const mesh m(grid, o.array, o.source);
   core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
@@ -83,6 +83,9 @@ void render_grid(const options& o)
   row("flat", grouped(static_cast<unsigned long long>(report.flat)) + " cells have no volume");
   if (image.samples) {
     row("a pixel", picture.describe_samples());
+  }
+  if (o.report) {
+    core.print_build_report();
   }
   picture.write(out);
   row("picture", o.output);

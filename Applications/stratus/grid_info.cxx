@@ -141,7 +141,7 @@ void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
 
 void cli::print_grid(const options& o)
 {
-  context core("host", o.threads);
+  context core(o.device, o.threads);
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   double b[6] = { 0, 0, 0, 0, 0, 0 };
   std::printf("%s\n", o.source.c_str());

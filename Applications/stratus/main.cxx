@@ -139,6 +139,9 @@ void render(const cli::options& o)
   if (image.samples) {
     row("a pixel", frame.describe_samples());
   }
+  if (o.report) {
+    core.print_build_report();
+  }
   frame.write(out);
   row("picture", o.output);
   if (o.audit && report.differing_pixels > 0) {

@@ -15,7 +15,7 @@ static std::string method_names()
   for (int i = 0; i < STRATUS_TREE_METHODS; ++i) {
     names += std::string(i ? ", " : "") + stratus_tree_method_name(static_cast<stratus_tree_method>(i));
   }
-  return names + ", ac-edges";
+  return names + ", ac-edges, hybrid-paper-raw";
 }
 
 std::string help()
@@ -74,7 +74,9 @@ How
   --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
                           project (default auto: what should cost less)
   --normals N             of first hits: faces, gradient (default faces)
-  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto)
+  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto): draws, and builds what it has kernels
+                          for; the picture is the same
+  --report                tell each stage of building: where it was done, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
   --read-timeout S        give INPUT, or a mask, up after S seconds in which its reader neither got a byte nor told of progress; 0: never
                           (default 60)
@@ -252,7 +254,8 @@ void set_method(options& o, const std::string&, const std::string& value)
     o.tetra_method = tetra_method_named(value);
   } else {
     o.agglomerative_by_edges = value == "ac-edges";
-    o.method = o.agglomerative_by_edges ? STRATUS_TREE_AC : method_named(value);
+    o.uncorrected_flooding = value == "hybrid-paper-raw";
+    o.method = o.agglomerative_by_edges ? STRATUS_TREE_AC : o.uncorrected_flooding ? STRATUS_TREE_HYBRID_PAPER : method_named(value);
   }
 }
 
@@ -322,6 +325,7 @@ constexpr struct {
   { "--shade", &options::shade },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
+  { "--report", &options::report },
 };
 
 // Finds a word in a table. Returns nullptr where the table lacks it.

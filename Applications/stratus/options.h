@@ -36,12 +36,14 @@ struct options {
   bool nearest = false;
   bool shade = false;
   bool audit = false;
+  bool report = false;        // render, tree, sort: tells the stages of building
   bool shows_samples = false; // render: draws the samples that each pixel took
   bool has_range = false;     // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_HYBRID;
   bool agglomerative_by_edges = false;                           // tree: ac-edges instead of ac
+  bool uncorrected_flooding = false;                             // tree: hybrid-paper-raw instead of hybrid-paper
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface

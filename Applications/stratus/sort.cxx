@@ -202,7 +202,7 @@ void measure(const cli::context& core, const cli::options& o, const char* name, 
 
 void cli::print_sort(const options& o)
 {
-  context core("host", o.threads);
+  context core(o.device, o.threads);
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   vtkStratusTetrahedra tetrahedra;
   std::string error;
@@ -235,8 +235,12 @@ void cli::print_sort(const options& o)
         100.0 * static_cast<double>(cut.largest_leaf) / static_cast<double>(cut.cell_count),
         100.0 * static_cast<double>(cut.cell_count - mesh.cell_count) / static_cast<double>(mesh.cell_count)) +
       count(cut.cut_cells) + " cut");
+  row("device", stratus_context_device(core));
   row("views", format("%d, %d rays each", 2 * views, rays));
   measure(core, o, "by leaves", pieces, &cut.leaves, STRATUS_PEELING_NEAREST);
   measure(core, o, "in one leaf", mesh, nullptr, STRATUS_PEELING_NEAREST);
   measure(core, o, "in layers", mesh, nullptr, STRATUS_PEELING_LAYERS);
+  if (o.report) {
+    core.print_build_report();
+  }
 }

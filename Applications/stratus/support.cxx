@@ -30,6 +30,21 @@ context::~context()
   stratus_context_destroy(this->Context);
 }
 
+void context::print_build_report() const
+{
+  stratus_build_stage stages[STRATUS_BUILD_STAGES_MAX];
+  const int count = stratus_context_get_build_report(this->Context, stages, STRATUS_BUILD_STAGES_MAX);
+  for (int i = 0; i < count; ++i) {
+    const stratus_build_stage& s = stages[i];
+    row("built",
+      format("%s on %s: %s kernel%s, %.2f ms, %s KiB", s.name, s.where, grouped(s.kernels).c_str(), s.kernels == 1 ? "" : "s", s.ms,
+        grouped((s.bytes + 1023) / 1024).c_str()));
+  }
+  if (count == 0) {
+    row("built", "nothing");
+  }
+}
+
 void context::check(stratus_status status, const std::string& what) const
 {
   if (status != STRATUS_OK) {

@@ -32,6 +32,8 @@ public:
   operator stratus_context*() const { return this->Context; }
   // Throws failure with `what` and the core's message unless the status is STRATUS_OK.
   void check(stratus_status status, const std::string& what) const;
+  // Prints a row for each stage of what was built since the context was made, and where.
+  void print_build_report() const;
 
 private:
   static int progress(void* user, const char* stage, double fraction);

@@ -42,6 +42,7 @@ tree_pointer build(const cli::context& core, const cli::options& o, const cli::i
   stratus_tree_options options = stratus_tree_options_default();
   options.method = o.method;
   options.agglomerative_by_edges = o.agglomerative_by_edges ? 1 : 0;
+  options.uncorrected_flooding = o.uncorrected_flooding ? 1 : 0;
   stratus_tree* tree = nullptr;
   core.check(stratus_tree_create(core, voxels, &options, &tree), "tree");
   return tree_pointer(tree, &stratus_tree_destroy);
@@ -70,6 +71,9 @@ void print(const stratus_tree_statistics& s)
   }
   cli::row("build", cli::format("%.2f ms", s.build_ms));
   cli::row("why", s.why);
+  if (s.uncorrected) {
+    cli::row("hits", "not exact: the leaves keep flooded distances as they come out, and rays may step past voxels");
+  }
 }
 
 std::vector<uint8_t> encode(const stratus_tree* tree, const stratus_volume& volume, bool cells)
@@ -104,6 +108,9 @@ void print_tree(const options& o)
   row("of", what);
   row("device", stratus_context_device(core));
   print(statistics);
+  if (o.report) {
+    core.print_build_report();
+  }
   if (out) {
     out->write(encode(tree.get(), in.volume, o.mode == STRATUS_MODE_COMPOSITE));
     row("boxes", o.output);

@@ -86,7 +86,9 @@ stratus_status stratus_tree_first_hit(
     }
   } else if (context->device) {
     stratus_log(context, STRATUS_LOG_INFO, "first hits: rays are walked on the host, %s",
-      batch.slack > 0.05f ? "for the set is too long for floats" : "for the tree's boxes may overlap");
+      batch.slack > 0.05f              ? "for the set is too long for floats"
+        : tree->statistics.uncorrected ? "for the tree's distances may be too long"
+                                       : "for the tree's boxes may overlap");
   }
   return run_host(context, &batch, rays, count, hits);
 }

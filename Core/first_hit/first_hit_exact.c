@@ -243,6 +243,33 @@ static void walk_field(walker* w, const stratus_tree_field* field, double enter,
   }
 }
 
+/* Walks the paper's field as published (3.2): a ray steps by the distance that is stored for the voxel around its position, until that
+ * voxel is effective. Distances are from centre to centre, and flooded, so that a step may lead past a voxel that the ray meets. */
+static void walk_spheres(walker* w, const stratus_tree_field* field, double enter, double leave)
+{
+  const double length = sqrt(w->d[0] * w->d[0] + w->d[1] * w->d[1] + w->d[2] * w->d[2]); /* voxels for each unit of t */
+  const double across = (double)field->cells[0] + (double)field->cells[1] + (double)field->cells[2];
+  const double end = fmin((leave - enter) * length, across); /* far away, rounding may make more of the way than there is */
+  double done = 0.0;
+  while (done <= end) {
+    int voxel[3];
+    const double t = enter + done / length;
+    for (int a = 0; a < 3; ++a) {
+      const double at = fmax(field->at[a], fmin(field->at[a] + field->cells[a] - 1, floor(w->o[a] + t * w->d[a])));
+      voxel[a] = (int)at;
+    }
+    ++w->visited;
+    const int32_t parts = look(w, field, voxel);
+    if (parts == 0) {
+      try_voxel(w, voxel[0], voxel[1], voxel[2]);
+      if (w->hit->t < INFINITY) {
+        return;
+      }
+    }
+    done += parts > 0 ? (double)parts / STRATUS_FLOODED_PARTS : 1.0;
+  }
+}
+
 /* ---------------------------------------------------------------- nodes */
 
 /* A ray in floats, from where it enters the root's box, in units of its longest component. The sketch meets every
@@ -313,7 +340,7 @@ static void walk_leaf(walker* w, const stratus_tree_node* node)
   if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
     walk_bricks(w, node);
   } else if (meets_box(w, node->lo, node->hi, &enter, &leave)) {
-    walk_field(w, &w->tree->fields[node->first], enter, leave);
+    (w->tree->statistics.uncorrected ? walk_spheres : walk_field)(w, &w->tree->fields[node->first], enter, leave);
   }
 }
 

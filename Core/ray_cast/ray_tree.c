@@ -37,7 +37,7 @@ stratus_status stratus_ray_caster_offer_tree(stratus_ray_caster* caster, const v
 static const stratus_tree* offered_tree(const stratus_ray_caster* caster, bool of_cells)
 {
   const stratus_tree* tree = caster->offered;
-  return tree && tree->origin.hash && (tree->origin.cells != 0) == of_cells ? tree : NULL;
+  return tree && tree->origin.hash && !tree->statistics.uncorrected && (tree->origin.cells != 0) == of_cells ? tree : NULL;
 }
 
 stratus_status stratus_ray_tree_serves_first_hits(

@@ -84,7 +84,8 @@ STRATUS_API void stratus_context_get_programs(const stratus_context* context, st
 /* A stage of building: all that was done under one name at one place since the report was started. */
 typedef struct stratus_build_stage {
   /* "value ranges", "occupancy", "distance map", "effective voxels", "density", "tree shape", "tree leaves" (bricks and fields),
-   * "hierarchy", "distance field", "partition", "visibility order", "visibility signs", "visibility peeling". A constant. */
+   * "hierarchy", "distance field", "partition", "visibility order", "visibility signs", "visibility peeling", "cells and border" (of a mesh
+   * that is drawn). A constant. */
   const char* name;
   const char* where; /* stratus_context_device() if the device ran kernels for it, else "host"; valid as long as the context */
   double ms;         /* on the clock, without that of stages within it; a program that is compiled for it counts */
@@ -96,7 +97,8 @@ typedef struct stratus_build_stage {
 #define STRATUS_BUILD_STAGES_MAX 32
 
 /* Starts the context's report anew. All later calls that create value ranges, occupancy, distance maps, voxels, trees, distance fields,
- * partitions and visibility orders, or sort these, add to it; what fails does not. A new context's report is empty. Takes NULL. */
+ * partitions and visibility orders, sort these, or prepare a mesh for drawing, add to it; what fails does not. A new context's report is
+ * empty. Takes NULL. */
 STRATUS_API void stratus_context_start_build_report(stratus_context* context);
 /* Copies the report's first `capacity` stages, in the order in which they first ended: a stage comes behind those within it. Returns the
  * number of all its stages; 0 for NULL. stages may be NULL. */

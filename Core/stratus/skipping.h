@@ -65,7 +65,7 @@ STRATUS_EXPERIMENTAL void stratus_occupancy_bounds(const stratus_occupancy* occu
 typedef enum stratus_distance_kind {
   STRATUS_DISTANCE_BLOCK, /* 1 in every empty block: rays skip one block at a time */
   STRATUS_DISTANCE_FULL,  /* Chebyshev distance to the nearest occupied block (Deakin & Knackstedt 2019), O(n) sweeps */
-  STRATUS_DISTANCE_PAPER, /* the same map to the bit by the paper's O(n D) transform: the baseline */
+  STRATUS_DISTANCE_PAPER, /* the same by the paper's O(n D) transform, with the paper's limit of 255: the baseline */
   STRATUS_DISTANCE_OCTANT /* eight maps: distance to the nearest occupied block among those that a ray of that octant can reach */
 } stratus_distance_kind;
 
@@ -75,8 +75,9 @@ typedef struct stratus_distance_map stratus_distance_map;
 STRATUS_EXPERIMENTAL stratus_status stratus_distance_map_create(
   stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_kind kind, stratus_distance_map** map);
 STRATUS_EXPERIMENTAL void stratus_distance_map_destroy(stratus_distance_map* map);
-/* Returns the distance in blocks from block (i,j,k): 0 in an occupied block, at most 127 (a longer distance is given as 127), 0 beyond the
- * blocks. octant: 0..7, where bit a is set if the ray moves towards + on axis a; only STRATUS_DISTANCE_OCTANT uses it. */
+/* Returns the distance in blocks from block (i,j,k): 0 in an occupied block, at most 127, in STRATUS_DISTANCE_PAPER 255 (a
+ * longer distance is given as this), 0 beyond the blocks. octant: 0..7, where bit a is set if the ray moves towards + on axis a; only
+ * STRATUS_DISTANCE_OCTANT uses it. */
 STRATUS_EXPERIMENTAL int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_t i, int64_t j, int64_t k);
 STRATUS_EXPERIMENTAL size_t stratus_distance_map_bytes(const stratus_distance_map* map);
 

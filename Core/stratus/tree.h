@@ -46,6 +46,11 @@ typedef struct stratus_tree_options {
   /* ac: the distance of two clusters is the surface area of their union's box, as published (0, default), or the sum of its edges (1),
    * which makes cheaper trees where voxels fill volumes rather than surfaces. */
   int agglomerative_by_edges;
+  /* hybrid-paper: a leaf keeps the distances of its adaptive flooding as they come out, and rays step through it by these, as published
+   * (1); or exact distances correct how far a ray may leap (0, default). Published steps may lead past voxels: of such a tree
+   * stratus_tree_first_hit() misses hits or finds later ones, and stratus_tree_covers() never lets it stand in for another. The other
+   * methods ignore the option. */
+  int uncorrected_flooding;
 } stratus_tree_options;
 
 STRATUS_API stratus_tree_options stratus_tree_options_default(void);
@@ -68,6 +73,7 @@ typedef struct stratus_tree_statistics {
   double sah;       /* surface area heuristic, where both costs are 1 and a distance-field leaf counts as one primitive */
   double bandwidth; /* bandwidth of the density; 0 if none was needed */
   int dbscan_splits, density_splits, sah_splits, median_splits; /* number of splits found by each rule */
+  int uncorrected; /* 1: made with uncorrected_flooding, so that rays may miss voxels. A saved tree keeps it. */
   double build_ms;
   char why[256]; /* one sentence: why the tree has this shape */
 } stratus_tree_statistics;
@@ -101,11 +107,12 @@ STRATUS_API stratus_status stratus_tree_covers(stratus_context* context, const s
   const stratus_criterion* criterion, int cells, int* covers);
 
 /* Finds the first effective voxel along each of `count` rays. Results equal those of stratus_voxels_first_hit() to the bit, edges and
- * corners included, for origins up to some 1e9 voxels away; from farther away they may differ where rays graze edges. A direction of length
- * 0, or a number that is not finite (except t_max), gives STRATUS_INVALID_ARGUMENT with the first such ray's index, and leaves `hits`
- * undefined. Hybrid trees and trees of one leaf, up to 52,000 voxels long, are traversed in beams and packets or on the context's device,
- * others ray by ray on the host. Rays go in a beam where 64 that follow each other, counted from the first, run side by side: give those of
- * a picture tile by tile, each of 8 x 8 pixels, which takes half to two thirds of the time of rows. The rays of a beam share `visited`. */
+ * corners included (but of trees with uncorrected_flooding), for origins up to some 1e9 voxels away; from farther away they may differ
+ * where rays graze edges. A direction of length 0, or a number that is not finite (except t_max), gives STRATUS_INVALID_ARGUMENT with the
+ * first such ray's index, and leaves `hits` undefined. Hybrid trees and trees of one leaf, up to 52,000 voxels long, are traversed in beams
+ * and packets or on the context's device, others ray by ray on the host. Rays go in a beam where 64 that follow each other, counted from
+ * the first, run side by side: give those of a picture tile by tile, each of 8 x 8 pixels, which takes half to two thirds of the time of
+ * rows. The rays of a beam share `visited`. */
 STRATUS_API stratus_status stratus_tree_first_hit(
   stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count, stratus_hit* hits);
 

@@ -267,6 +267,7 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh of %lld cells and %lld points is too large to draw: at most %d and %lld",
       (long long)mesh->cell_count, (long long)mesh->point_count, CELL_INTS_MOST / TETRA_CELL, (long long)POINTS_MOST);
   }
+  const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_mesh), &memory));
   stratus_tetra_mesh* tetra = memory;
   tetra->context = context;
@@ -278,6 +279,8 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   tetra->folded = adjacency->folded_faces;
   TRY_CLEANUP(stratus_tetra_order(context, mesh, &places, &tetra->names));
   TRY_CLEANUP(build(tetra, mesh, adjacency, &places));
+  stratus_stage_end(context, &stage, "cells and border",
+    (size_t)tetra->cell_count * TETRA_CELL * sizeof *tetra->cells + tetra->face_count * sizeof *tetra->faces);
   *out = tetra;
   tetra = NULL;
 

@@ -49,7 +49,8 @@ static stratus_status check_options(stratus_context* context, const stratus_tree
   TRY(check_number(context, "uniformity", o->uniform, 0, 1e18));
   TRY(check_number(context, "the paper's threshold", o->paper_threshold, 0, 1e18));
   TRY(check_number(context, "bandwidth", o->bandwidth, 0, 1e9));
-  return check_number(context, "agglomeration by edges", o->agglomerative_by_edges, 0, 1);
+  TRY(check_number(context, "agglomeration by edges", o->agglomerative_by_edges, 0, 1));
+  return check_number(context, "uncorrected flooding", o->uncorrected_flooding, 0, 1);
 }
 
 /* ---------------------------------------------------------------- shapes */
@@ -156,6 +157,7 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
   stratus_status status = STRATUS_OK;
   tree->octants = options->method != STRATUS_TREE_DISTANCE && options->method != STRATUS_TREE_HYBRID_PAPER;
   tree->cell_log2 = options->method == STRATUS_TREE_HYBRID_PAPER ? 0 : 2;
+  tree->statistics.uncorrected = tree->cell_log2 == 0 && options->uncorrected_flooding;
   if (options->method >= STRATUS_TREE_SAH) {
     return hierarchy(context, voxels, options, tree);
   }

@@ -25,8 +25,9 @@ stratus_status stratus_hybrid_tree_shape(stratus_context* context, const stratus
  * An entry has `entry_bytes` 2 or 3, little-endian. Its lowest 2 or 3 bits are 0 in an occupied cell. The other bits are then the number of
  * the cell's mask, counted from rows[first_row + k*cells[1] + j]. In an empty cell of a tree with `octants`, bits o*2.. or o*3.. are the
  * code of octant o: a leap of 1, 2, 4 cells for codes 1, 2, 3 of two bits, of 1, 2, 3, 4, 6, 8, 12 for codes 1 to 7 of three bits. Without
- * `octants` the lowest two bits hold 1, and the other 14 bits the Chebyshev distance to the nearest occupied cell. A leap of n cells stays
- * within the n^3 cells that begin with the cell (Chebyshev: the (2n-1)^3 around it), all of which are known to be empty. */
+ * `octants` the lowest two bits hold 1, and the other 14 bits the Chebyshev distance to the nearest occupied cell or, in the paper's trees,
+ * a shorter leap. A leap of n cells stays within the n^3 cells that begin with the cell (without `octants`: the (2n-1)^3 around it), all of
+ * which are known to be empty. In an uncorrected tree, these bits are the flooded Euclidean distance in parts of a voxel. */
 typedef struct stratus_tree_field {
   int32_t at[3];        /* first cell */
   int32_t cells[3];     /* along each axis; rows of 2-byte entries with masks have at most STRATUS_FIELD_ROW_MAX */
@@ -35,6 +36,8 @@ typedef struct stratus_tree_field {
 } stratus_tree_field;
 
 #define STRATUS_FIELD_ROW_MAX (1 << 14)
+/* Parts of a voxel in which an uncorrected tree's distances are stored, rounded down; longer ones than 14 bits hold are cut. */
+#define STRATUS_FLOODED_PARTS 32
 
 struct stratus_tree {
   stratus_context* context;
@@ -76,7 +79,7 @@ bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
 
 /* ---- tree_check.c */
 /* Checks against the voxels that each voxel is in exactly one leaf, boxes are tight, and no distance is too long. If not, returns
- * STRATUS_INVALID_ARGUMENT with a message. */
+ * STRATUS_INVALID_ARGUMENT with a message; always for an uncorrected tree, whose distances nobody vouches for. */
 stratus_status stratus_tree_check(stratus_context* context, const stratus_tree* tree, const stratus_voxels* voxels);
 
 #endif

@@ -15,7 +15,7 @@
 typedef struct header {
   uint64_t magic, size, checksum; /* the checksum is of all bytes behind it */
   int32_t version, method;
-  int32_t dimensions[3], octants, entry_bytes, cell_log2;
+  int32_t dimensions[3], leaps, entry_bytes, cell_log2;
   uint32_t node_count, brick_count, field_count, entry_count, row_count, mask_count;
   int64_t voxels, bricks;
   double bandwidth;
@@ -24,6 +24,9 @@ typedef struct header {
   double index_to_world[16];
   stratus_origin origin;
 } header;
+
+/* Values of `leaps`. */
+enum { LEAPS_CHEBYSHEV, LEAPS_OCTANTS, LEAPS_UNCORRECTED };
 
 _Static_assert(sizeof(header) % 8 == 0 && sizeof(stratus_tree_node) == 32 && sizeof(stratus_brick) == 16, "records have no padding");
 _Static_assert(sizeof(stratus_tree_field) == 32, "records have no padding");
@@ -71,7 +74,7 @@ static header header_of(const stratus_tree* tree)
   h.version = VERSION;
   h.method = (int32_t)s->method;
   memcpy(h.dimensions, tree->dimensions, sizeof h.dimensions);
-  h.octants = tree->octants;
+  h.leaps = tree->octants ? LEAPS_OCTANTS : s->uncorrected ? LEAPS_UNCORRECTED : LEAPS_CHEBYSHEV;
   h.entry_bytes = tree->entry_bytes;
   h.cell_log2 = tree->cell_log2;
   h.node_count = tree->node_count;
@@ -154,11 +157,11 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   if (checksum((const unsigned char*)bytes + from, size - from) != h->checksum) {
     return WRONG("a tree whose checksum does not fit: it was changed or damaged");
   }
-  bool fine = h->method >= 0 && h->method < STRATUS_TREE_METHODS && (h->octants == 0 || h->octants == 1) &&
-    (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->octants || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 &&
-    h->origin.intervals >= 0 && h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 &&
-    (h->node_count == 0) == (h->voxels == 0) && (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX &&
-    h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
+  bool fine = h->method >= 0 && h->method < STRATUS_TREE_METHODS && h->leaps >= LEAPS_CHEBYSHEV && h->leaps <= LEAPS_UNCORRECTED &&
+    (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->leaps != LEAPS_UNCORRECTED || h->cell_log2 == 0) &&
+    (h->leaps == LEAPS_OCTANTS || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 && h->origin.intervals >= 0 &&
+    h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 && (h->node_count == 0) == (h->voxels == 0) &&
+    (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX && h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
   for (int a = 0; a < 3; ++a) {
     fine = fine && h->dimensions[a] >= 1 && h->dimensions[a] <= STRATUS_AXIS_MAX;
   }
@@ -208,7 +211,7 @@ static stratus_status fill_tree(stratus_context* context, const header* h, const
     return WRONG("the tree's matrix can't be inverted");
   }
   tree->origin = h->origin;
-  tree->octants = h->octants;
+  tree->octants = h->leaps == LEAPS_OCTANTS;
   tree->entry_bytes = h->entry_bytes;
   tree->cell_log2 = h->cell_log2;
   tree->node_count = h->node_count;
@@ -221,6 +224,7 @@ static stratus_status fill_tree(stratus_context* context, const header* h, const
     .voxels = h->voxels,
     .bricks = h->bricks,
     .bandwidth = h->bandwidth,
+    .uncorrected = h->leaps == LEAPS_UNCORRECTED,
     .dbscan_splits = h->splits[0],
     .density_splits = h->splits[1],
     .sah_splits = h->splits[2],
@@ -271,7 +275,7 @@ stratus_status stratus_tree_covers(stratus_context* context, const stratus_tree*
   TRY(stratus_volume_check(context, volume));
   TRY(stratus_criterion_check(context, criterion));
   *covers = 0;
-  if (tree->origin.hash == 0 || tree->origin.cells != (cells != 0) || !stratus_tree_fits(tree, volume)) {
+  if (tree->origin.hash == 0 || tree->statistics.uncorrected || tree->origin.cells != (cells != 0) || !stratus_tree_fits(tree, volume)) {
     return STRATUS_OK;
   }
   memset(&wanted, 0, sizeof wanted);

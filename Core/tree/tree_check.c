@@ -189,6 +189,9 @@ stratus_status stratus_tree_check(stratus_context* context, const stratus_tree* 
   if (!tree || !voxels) {
     return WRONG("%s is NULL", tree ? "voxels" : "tree");
   }
+  if (tree->statistics.uncorrected) {
+    return WRONG("the distances of the tree's leaves are flooded ones without correction");
+  }
   TRY_CLEANUP(stratus_allocate_zero(context, (size_t)voxels->brick_count, sizeof(uint64_t), &seen));
   TRY_CLEANUP(stratus_allocate(context, tree->node_count, sizeof(stratus_box), &boxes));
   census c = { .voxels = voxels, .seen = seen };

@@ -166,9 +166,30 @@ static stratus_status cut_out(stratus_context* context, const stratus_voxels* vo
   return STRATUS_OK;
 }
 
-/* Makes the paper's leaf, a Euclidean field by its adaptive flooding (2.3). A ray may leap as many cells as surely stay within the sphere
- * of that distance. Floodings overestimate distances, so that the Chebyshev distance, already in the entry, bounds the leap. */
-static stratus_status shorten_by_flooding(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
+/* Largest number in an entry without octants. */
+#define ENTRY_MAX ((1u << 14) - 1u)
+
+/* Returns how far a ray may leap from a cell whose flooded distance is `distance`: as many cells as surely stay within the sphere of that
+ * distance, at most `longest`. */
+static unsigned leap_within(float distance, unsigned longest)
+{
+  unsigned leap = 1;
+  /* Cells within the Chebyshev distance `leap` lie in the sphere if 3 leap^2 < d^2. One more step leaves them. */
+  while (leap < longest && 3.0f * (float)(leap * leap) < distance * distance) {
+    ++leap;
+  }
+  return leap;
+}
+
+static unsigned in_parts(float distance)
+{
+  const float parts = distance * STRATUS_FLOODED_PARTS;
+  return parts < (float)ENTRY_MAX ? (unsigned)parts : ENTRY_MAX;
+}
+
+/* Makes the paper's leaf, a Euclidean field by its adaptive flooding (2.3). Floodings overestimate distances, so that the Chebyshev
+ * distance, already in the entry, bounds the leap. An uncorrected tree keeps the flooded distances themselves. */
+static stratus_status fill_by_flooding(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape,
   const stratus_tree_node* node, const stratus_tree_field* field, stratus_tree* tree)
 {
   stratus_field_options options = stratus_field_options_default();
@@ -190,14 +211,9 @@ static stratus_status shorten_by_flooding(stratus_context* context, const stratu
       const float* row = (const float*)distances + line * (size_t)part.dimensions[0] + part.lo[0];
       uint8_t* e = tree->entries + 2 * ((size_t)field->first_entry + ((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0]);
       for (int32_t i = 0; i < n[0]; ++i, e += 2) {
-        const unsigned longest = (unsigned)(e[0] | e[1] << 8) >> 2;
-        unsigned leap = 1;
-        /* Cells within the Chebyshev distance `leap` lie in the sphere if 3 leap^2 < d^2. One more step leaves them. */
-        while (leap < longest && 3.0f * (float)(leap * leap) < row[i] * row[i]) {
-          ++leap;
-        }
-        if (longest > 0) {
-          const unsigned value = leap << 2 | 1u;
+        const unsigned exact = (unsigned)(e[0] | e[1] << 8) >> 2;
+        if (exact > 0) {
+          const unsigned value = (tree->statistics.uncorrected ? in_parts(row[i]) : leap_within(row[i], exact)) << 2 | 1u;
           e[0] = (uint8_t)value;
           e[1] = (uint8_t)(value >> 8);
         }
@@ -226,7 +242,7 @@ static stratus_status make_field(stratus_context* context, const stratus_voxels*
     TRY(status);
   }
   if (tree->cell_log2 == 0) {
-    TRY(shorten_by_flooding(context, voxels, shape, node, field, tree));
+    TRY(fill_by_flooding(context, voxels, shape, node, field, tree));
   }
   return tree->cell_log2 ? number_masks(context, voxels, shape, node, field, tree, mask) : STRATUS_OK;
 }

@@ -119,7 +119,7 @@ int stratus_distance_map_get(const stratus_distance_map* map, int octant, int64_
   }
   const size_t first = map->kind == STRATUS_DISTANCE_OCTANT ? (size_t)(octant & 7) * map->map_bytes : 0;
   const uint8_t byte = map->bytes[first + (size_t)(k * map->blocks[1] + j) * map->pitch + (size_t)i];
-  return byte < DISTANCE_OCCUPIED ? byte : 0;
+  return map->kind == STRATUS_DISTANCE_PAPER || byte < DISTANCE_OCCUPIED ? byte : 0;
 }
 
 size_t stratus_distance_map_bytes(const stratus_distance_map* map)

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The transform of Deakin & Knackstedt 2019 as published, O(n D). Two scans give the distances along x. Then, along y and z, each block
- * searches as far as its own distance for a nearer block. This is the baseline for the sweeps, and equal to them to the bit. */
+ * searches as far as its own distance for a nearer block. The map is the paper's, too: 0 in an occupied block, elsewhere 1..255. This is
+ * the baseline for the sweeps, which give the same distances up to 127. */
 #include "distance_sweep.h"
 
-/* Computes distances along a line, from seeds of 0 and DISTANCE_MAX. */
+#include <string.h>
+
+/* Computes distances along a line, from seeds of 0 and DISTANCE_MAX_PAPER. */
 static void scan_line(uint8_t* line, int64_t n)
 {
   for (int64_t x = 1; x < n; ++x) {
@@ -50,49 +53,35 @@ static void search_axis(const stratus_context* context, const int64_t n[3], int 
   }
 }
 
-/* Computes each block's distance to the nearest block whose occupancy is `target`. swap: scratch as large as `distance`; lines: scratch of
- * n[1]*n[2] bytes. */
-static void transform(
-  const stratus_context* context, const stratus_occupancy* occupancy, int target, uint8_t* distance, uint8_t* swap, uint8_t* lines)
+stratus_status stratus_distance_paper(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map)
 {
-  const int64_t* n = occupancy->blocks;
+  stratus_status status = STRATUS_OK;
+  const int64_t* n = map->blocks;
+  const size_t count = (size_t)(n[0] * n[1] * n[2]);
+  void *distance = NULL, *swap = NULL, *lines = NULL;
+
+  TRY_CLEANUP(stratus_allocate(context, count, 1, &distance));
+  TRY_CLEANUP(stratus_allocate(context, count, 1, &swap));
+  TRY_CLEANUP(stratus_allocate(context, (size_t)(n[1] * n[2]), 1, &lines));
+  uint8_t* const along_x = distance;
 #pragma omp parallel for schedule(static) num_threads(context->threads)
   for (int64_t row = 0; row < n[1] * n[2]; ++row) {
     const uint8_t* occupied = occupancy->occupied + row * n[0];
-    uint8_t* line = distance + row * n[0];
+    uint8_t* line = along_x + row * n[0];
     for (int64_t x = 0; x < n[0]; ++x) {
-      line[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
+      line[x] = occupied[x] ? 0 : DISTANCE_MAX_PAPER;
     }
     scan_line(line, n[0]);
   }
   search_axis(context, n, 1, distance, swap, lines);
   search_axis(context, n, 2, swap, distance, lines);
-}
-
-stratus_status stratus_distance_paper(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map)
-{
-  stratus_status status = STRATUS_OK;
-  const int64_t* n = map->blocks;
-  const size_t count = (size_t)(n[0] * n[1] * n[2]), lines = (size_t)(n[1] * n[2]);
-  void *outer = NULL, *inner = NULL, *swap = NULL, *line = NULL;
-
-  TRY_CLEANUP(stratus_allocate(context, count, 1, &outer));
-  TRY_CLEANUP(stratus_allocate(context, count, 1, &inner));
-  TRY_CLEANUP(stratus_allocate(context, count, 1, &swap));
-  TRY_CLEANUP(stratus_allocate(context, lines, 1, &line));
-  transform(context, occupancy, 1, outer, swap, line);
-  transform(context, occupancy, 0, inner, swap, line);
   for (int64_t row = 0; row < n[1] * n[2]; ++row) {
-    for (int64_t x = 0; x < n[0]; ++x) {
-      const uint8_t out = ((uint8_t*)outer)[row * n[0] + x], in = ((uint8_t*)inner)[row * n[0] + x];
-      map->bytes[(size_t)row * map->pitch + (size_t)x] = (uint8_t)(out ? out : DISTANCE_OCCUPIED + in);
-    }
+    memcpy(map->bytes + (size_t)row * map->pitch, along_x + row * n[0], (size_t)n[0]);
   }
 
 cleanup:
-  stratus_release(context, outer);
-  stratus_release(context, inner);
+  stratus_release(context, distance);
   stratus_release(context, swap);
-  stratus_release(context, line);
+  stratus_release(context, lines);
   return status;
 }

@@ -5,8 +5,9 @@
 
 #include "volume.h"
 
-#define DISTANCE_MAX 127      /* a longer distance is stored as this */
-#define DISTANCE_OCCUPIED 128 /* added to the inner distance of an occupied block */
+#define DISTANCE_MAX 127       /* a longer distance is stored as this */
+#define DISTANCE_OCCUPIED 128  /* added to the inner distance of an occupied block */
+#define DISTANCE_MAX_PAPER 255 /* the same in the paper's map, which knows no inner distances */
 
 /* Distances of occupied blocks to the nearest empty block, within the box [lo, lo+n), which holds all occupied blocks. */
 typedef struct distance_inner {
@@ -18,7 +19,7 @@ typedef struct distance_inner {
 /* Fills map->bytes by O(n) sweeps, STRATUS_DISTANCE_FULL or STRATUS_DISTANCE_OCTANT. */
 stratus_status stratus_distance_sweep(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
 
-/* Fills map->bytes by the paper's O(n D) transform: the same bytes as STRATUS_DISTANCE_FULL. */
+/* Fills map->bytes by the paper's O(n D) transform: 0 in occupied blocks, elsewhere the distance, at most DISTANCE_MAX_PAPER. */
 stratus_status stratus_distance_paper(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map);
 
 #endif

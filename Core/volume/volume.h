@@ -211,9 +211,10 @@ stratus_status stratus_occupancy_below(
   stratus_context* context, const int64_t blocks[3], int block_size, const uint8_t* bytes, uint8_t beyond, stratus_occupancy** occupancy);
 
 /* ---- distance_map.c
- * Traversal reads one byte for each block. Of an empty block it is the distance, 1..127. Of an occupied block it is 128 plus the distance
- * to the nearest empty block, 1..127 (Chebyshev in all kinds except BLOCK, where it is 1). In a map of kind k the byte of block (i,j,k) for
- * octant o is bytes[o*map_bytes + (k*blocks[1] + j)*pitch + i]; o is 0 in all kinds except OCTANT. */
+ * A byte for each block, which traversal reads of all kinds but PAPER. Of an empty block it is the distance, 1..127. Of an occupied block
+ * it is 128 plus the distance to the nearest empty block, 1..127 (Chebyshev in all kinds except BLOCK, where it is 1). PAPER has the
+ * paper's own bytes: 0 in an occupied block, elsewhere the distance, 1..255. In a map of kind k the byte of block (i,j,k) for octant o is
+ * bytes[o*map_bytes + (k*blocks[1] + j)*pitch + i]; o is 0 in all kinds except OCTANT. */
 struct stratus_distance_map {
   stratus_context* context;
   stratus_distance_kind kind;

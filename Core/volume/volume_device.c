@@ -175,39 +175,29 @@ cleanup:
   return status;
 }
 
-/* Runs the paper's three passes towards blocks of occupancy `target`. The result is in distance[1]. */
-static stratus_status run_paper(stratus_context* context, const int64_t blocks[3], cl_mem occupied, cl_int target, const cl_mem distance[2])
-{
-  const cl_long nx = blocks[0], ny = blocks[1], nz = blocks[2];
-  const cl_ulong count = (cl_ulong)(nx * ny * nz);
-  const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(target), ARGUMENT(count), ARGUMENT(distance[0]) };
-  TRY(stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
-  for (cl_int axis = 0; axis < 3; ++axis) {
-    const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
-      ARGUMENT(distance[(axis + 1) & 1]) };
-    TRY(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), blocks));
-  }
-  return STRATUS_OK;
-}
-
 static stratus_status paper_map(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
 {
   stratus_status status = STRATUS_OK;
-  cl_mem swap = NULL, outer = NULL, inner = NULL;
-  const cl_long nx = map->blocks[0], rows = map->blocks[1] * map->blocks[2], pitch = (cl_long)map->pitch;
+  cl_mem distance[2] = { NULL, NULL }; /* the seeds and the passes take turns */
+  const cl_long nx = map->blocks[0], ny = map->blocks[1], nz = map->blocks[2], rows = ny * nz, pitch = (cl_long)map->pitch;
+  const cl_ulong count = (cl_ulong)(nx * rows);
 
-  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &swap));
-  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &outer));
-  TRY_CLEANUP(make_buffer(context, (size_t)(nx * rows), &inner));
-  TRY_CLEANUP(run_paper(context, map->blocks, occupied, 1, (const cl_mem[]){ swap, outer }));
-  TRY_CLEANUP(run_paper(context, map->blocks, occupied, 0, (const cl_mem[]){ swap, inner }));
-  const stratus_kernel_argument merge[] = { ARGUMENT(outer), ARGUMENT(inner), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch),
-    ARGUMENT(bytes) };
-  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_merge", merge, COUNT_OF(merge), (const int64_t[]){ nx, rows, 1 }));
+  TRY_CLEANUP(make_buffer(context, (size_t)count, &distance[0]));
+  TRY_CLEANUP(make_buffer(context, (size_t)count, &distance[1]));
+  const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(count), ARGUMENT(distance[0]) };
+  TRY_CLEANUP(
+    stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
+  for (cl_int axis = 0; axis < 3; ++axis) {
+    const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
+      ARGUMENT(distance[(axis + 1) & 1]) };
+    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), map->blocks));
+  }
+  const stratus_kernel_argument place[] = { ARGUMENT(distance[1]), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
+  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_place", place, COUNT_OF(place), (const int64_t[]){ nx, rows, 1 }));
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 
 cleanup:
-  release_buffers((cl_mem[]){ swap, outer, inner }, 3);
+  release_buffers(distance, 2);
   return status;
 }
 

@@ -89,3 +89,10 @@ void vtkStratusContext::GetBuildReport(vtkTable* table) const
     table->AddColumn(column);
   }
 }
+
+void vtkStratusContext::KeepBuildReport(vtkTable* table) const
+{
+  if (stratus_context_get_build_report(this->Context, nullptr, 0) > 0) {
+    this->GetBuildReport(table);
+  }
+}

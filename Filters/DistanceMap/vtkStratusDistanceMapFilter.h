@@ -5,8 +5,8 @@
  *
  * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a vtkImageData with one
  * cell per block and the cell data "Distance" (unsigned char). The distance is 0 in occupied blocks and the Chebyshev distance in blocks
- * elsewhere, at most 127. The output lies over the input, but its last blocks may extend beyond it. For cell data it begins at the centre
- * of the first cell, because interpolation does.
+ * elsewhere, at most 127, in the kind PAPER 255. The output lies over the input, but its last blocks may extend beyond it. For cell data it
+ * begins at the centre of the first cell, because interpolation does.
  *
  * A block is occupied if VolumeProperty's scalar opacity is above 0 somewhere between the block's smallest and largest value. Without a
  * VolumeProperty, a block is occupied if a value between the two lies in LowerThreshold..UpperThreshold, ends included. Values of 24 bits
@@ -70,7 +70,7 @@ public:
    * Set/Get the kind of distance. Default FULL.
    * - BLOCK: 1 in every empty block.
    * - FULL: the distance to the nearest occupied block.
-   * - PAPER: the same distances, computed by Deakin and Knackstedt's own transform.
+   * - PAPER: the same distances, computed by Deakin and Knackstedt's own transform, and up to their limit of 255.
    * - OCTANT: the distance to the nearest occupied block that a ray of the octant Octant can reach.
    */
   vtkSetClampMacro(Kind, int, BLOCK, OCTANT);

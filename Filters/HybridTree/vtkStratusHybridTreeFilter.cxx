@@ -107,6 +107,7 @@ stratus_tree_options vtkStratusHybridTreeFilter::Internals::GetOptions() const
   options.exact_density = filter->ExactDensity ? 1 : 0;
   options.density_per_node = filter->DensityPerNode ? 1 : 0;
   options.agglomerative_by_edges = filter->AgglomerativeByEdges ? 1 : 0;
+  options.uncorrected_flooding = filter->UncorrectedFlooding ? 1 : 0;
   return options;
 }
 
@@ -303,6 +304,7 @@ void vtkStratusHybridTreeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ExactDensity: " << (this->ExactDensity ? "On" : "Off") << "\n";
   os << indent << "DensityPerNode: " << (this->DensityPerNode ? "On" : "Off") << "\n";
   os << indent << "AgglomerativeByEdges: " << (this->AgglomerativeByEdges ? "On" : "Off") << "\n";
+  os << indent << "UncorrectedFlooding: " << (this->UncorrectedFlooding ? "On" : "Off") << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Tree: " << this->NumberOfVoxels << " voxels, " << this->NumberOfBricks << " bricks, " << this->NumberOfNodes

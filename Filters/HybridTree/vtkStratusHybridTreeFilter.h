@@ -178,6 +178,16 @@ public:
 
   //@{
   /**
+   * Set/Get whether the leaves of HYBRID_PAPER keep the distances of its jump flooding as they come out, instead of corrected by exact
+   * ones. Rays may then step past voxels, so the tree serves studies only: no mapper uses it. Default off.
+   */
+  vtkSetClampMacro(UncorrectedFlooding, vtkTypeBool, 0, 1);
+  vtkGetMacro(UncorrectedFlooding, vtkTypeBool);
+  vtkBooleanMacro(UncorrectedFlooding, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
    * Set/Get the device that builds: "auto" (the host or an OpenCL GPU, whichever draws a small picture faster), "host", or an OpenCL device
    * by its number or a part of its name. The output does not depend on it. A device that does not exist is an error that lists the existing
    * ones, and the previous device and output stay. The host does what has no kernels or does not fit the device, and everything where the
@@ -248,6 +258,7 @@ protected:
   vtkTypeBool ExactDensity = 0;
   vtkTypeBool DensityPerNode = 0;
   vtkTypeBool AgglomerativeByEdges = 0;
+  vtkTypeBool UncorrectedFlooding = 0;
   int NumberOfThreads = 0;
 
   vtkIdType NumberOfVoxels = 0;

@@ -12,6 +12,9 @@
  * after, for their sources, not both; and a frame that asks all props, such as the first, splits no node. So no frame does much more than
  * the vtkFrustumCoverageCuller does in every frame.
  *
+ * The octree is built and asked on the host, so there is no device to set: a frame changes few of its nodes, and the props' bounds and the
+ * list that it fills are the host's.
+ *
  * A prop is kept if its box reaches into each of the camera's six half-spaces, with the window widened by Margin pixels. Props without
  * bounds and props with UseBounds off are always kept. One culler may serve several renderers; each has an octree of its own.
  *

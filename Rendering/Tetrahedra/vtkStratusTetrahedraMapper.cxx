@@ -77,6 +77,11 @@ const char* vtkStratusTetrahedraMapper::GetDeviceName()
   return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context.Get()) : "";
 }
 
+vtkTable* vtkStratusTetrahedraMapper::GetBuildReport()
+{
+  return this->Internal->BuildReport;
+}
+
 double vtkStratusTetrahedraMapper::GetMarchMilliseconds()
 {
   return this->Internal->Report.march_ms;

@@ -33,6 +33,7 @@
 #include <memory> // For std::unique_ptr
 
 class vtkImageData;
+class vtkTable;
 
 class STRATUSRENDERINGTETRAHEDRA_EXPORT vtkStratusTetrahedraMapper : public vtkUnstructuredGridVolumeMapper
 {
@@ -94,6 +95,14 @@ public:
   virtual const char* GetDevice();
   const char* GetDeviceName(); // the device in use, "" if there is none
   //@}
+
+  /**
+   * Get how the last picture that built anything built it: a row for each stage, in the columns "Stage" (string), "Where" (string: the name
+   * of the device that ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes"
+   * (vtkIdType: of what the stage made) and "Kernels" (vtkIdType: how many the device ran). Drawing itself is no stage. A picture that
+   * reuses all it needs changes no row, and an aborted one tells what it built until then. There are no rows before the first picture.
+   */
+  vtkTable* GetBuildReport();
 
   //@{
   /**

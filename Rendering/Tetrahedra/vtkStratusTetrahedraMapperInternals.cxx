@@ -122,6 +122,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
     return stratus_tetra_caster_render(
       this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
   };
+  stratus_context_start_build_report(this->Context.Get());
   stratus_status status = draw();
   if (status == STRATUS_INVALID_ARGUMENT && options.leaves) {
     options.leaves = nullptr;
@@ -131,6 +132,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
     }
   }
   this->Renderer = nullptr;
+  this->Context.KeepBuildReport(this->BuildReport);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }

@@ -10,7 +10,9 @@
 #include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkImageData.h"
+#include "vtkNew.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
 
 #include <string>
 #include <vector>
@@ -34,6 +36,7 @@ public:
   stratus_tetra_caster* Caster = nullptr;
   vtkStratusContext Context;
   stratus_tetra_report Report = stratus_tetra_report();
+  vtkNew<vtkTable> BuildReport;
   vtkStratusDisplay Display;
   std::string LastError; // reported already
 

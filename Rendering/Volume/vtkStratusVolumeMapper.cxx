@@ -92,6 +92,11 @@ const char* vtkStratusVolumeMapper::GetDeviceName()
   return this->Internal->PrepareContext(error) ? stratus_context_device(this->Internal->Context.Get()) : "";
 }
 
+vtkTable* vtkStratusVolumeMapper::GetBuildReport()
+{
+  return this->Internal->BuildReport;
+}
+
 const char* vtkStratusVolumeMapper::GetStructureAsString()
 {
   return stratus_structure_name(static_cast<stratus_structure>(this->Structure));

@@ -9,7 +9,9 @@
 #include "vtkStratusPicture.h"
 #include "vtkStratusVolumeMapper.h"
 
+#include "vtkNew.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <array>
@@ -26,7 +28,6 @@ public:
 
   // Makes the context and the caster where there are none, or where the number of threads has changed.
   bool PrepareContext(std::string& error);
-  // Replaces the device and its context. On failure both stay as they are.
 
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
@@ -39,6 +40,7 @@ public:
   stratus_ray_caster* Caster = nullptr;
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
+  vtkNew<vtkTable> BuildReport;
   vtkStratusImageView Image;
   std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
   std::vector<stratus_transfer> Functions;       // those of this picture, in the core's terms

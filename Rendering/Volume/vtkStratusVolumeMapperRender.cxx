@@ -141,9 +141,11 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   image.samples = this->Samples.empty() ? nullptr : this->Samples.data();
   image.rgba8 = bytes ? this->Bytes.data() : nullptr;
   this->Renderer = renderer;
+  stratus_context_start_build_report(this->Context.Get());
   const stratus_status status = stratus_ray_caster_render(
     this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
   this->Renderer = nullptr;
+  this->Context.KeepBuildReport(this->BuildReport);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }

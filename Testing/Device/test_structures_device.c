@@ -160,6 +160,7 @@ static void distance_maps_equal_the_hosts(void** state)
   compare_maps(70, 5, 3, 60, &random);
   compare_maps(3, 70, 5, 60, &random);
   compare_maps(300, 2, 1, 2, &random);
+  compare_maps(300, 2, 1, 1, &random);
   compare_maps(40, 33, 29, 3000, &random);
 }
 

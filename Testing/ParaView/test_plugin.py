@@ -157,6 +157,20 @@ def filters(cloud, shown, view, before):
     tree.UpdatePipeline()
     fields = simple.servermanager.Fetch(tree).GetFieldData()
     check(fields.GetArray("StratusHybridTree") is not None, "the image carries its tree")
+    before_settings = vtk_to_numpy(fields.GetArray("StratusHybridTree"))
+    tree.Device, tree.NumberOfThreads = "host", 1
+    tree.UpdatePipeline()
+    on_host = vtk_to_numpy(simple.servermanager.Fetch(tree).GetFieldData().GetArray("StratusHybridTree"))
+    check((on_host == before_settings).all(), "device and threads do not change the tree")
+    bytes_of = []
+    for edges in (0, 1):
+        tree.Method, tree.Purpose, tree.AgglomerativeByEdges, tree.Range = "Agglomerative", "First Hits", edges, [1.15, 2]
+        tree.UpdatePipeline()
+        array = simple.servermanager.Fetch(tree).GetFieldData().GetArray("StratusHybridTree")
+        bytes_of.append(vtk_to_numpy(array).tobytes())
+    check(bytes_of[0] != bytes_of[1], "agglomeration by edges makes another tree")
+    tree.Method, tree.Purpose, tree.AgglomerativeByEdges, tree.Range = "Hybrid", "Ray Casting", 0, [0.1, 2]
+    tree.UpdatePipeline()
     boxes = simple.servermanager.Fetch(tree, idx=1)
     check(boxes.GetNumberOfCells() > 0 and boxes.GetCellData().GetArray("Depth") is not None, "the boxes of its nodes")
     shown.StratusStructure = "Hybrid Tree"

@@ -104,6 +104,8 @@ def trees():
     check(len(seen) == 11 and len(set(seen.values())) == 11, "eleven methods, eleven trees")
     tree.SetMethodToAgglomerative()
     switches(tree, "AgglomerativeByEdges", built)
+    tree.SetMethodToHybridPaper()
+    switches(tree, "UncorrectedFlooding", built)
     tree.SetMethodToSAH()
     tree.SetLeafVoxels(8)
     built()

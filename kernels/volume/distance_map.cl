@@ -7,6 +7,7 @@
  * The paper's transform (Deakin & Knackstedt 2019) is below, as the baseline. */
 #define DISTANCE_MAX 127
 #define DISTANCE_OCCUPIED 128
+#define DISTANCE_MAX_PAPER 255
 
 /* sum_x and sum_axis make sums[(K (ny+1) + J) (nx+1) + I] the number of occupied blocks with i < I, j < J, k < K. sum_x runs along x; each
  * work item does one row. */
@@ -87,11 +88,11 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
 
 /* ---- the paper's transform */
 
-__kernel void paper_seed(__global const uchar* occupied, int target, ulong count, __global uchar* distance)
+__kernel void paper_seed(__global const uchar* occupied, ulong count, __global uchar* distance)
 {
   const ulong b = get_global_id(0);
   if (b < count) {
-    distance[b] = occupied[b] == target ? 0 : DISTANCE_MAX;
+    distance[b] = occupied[b] ? 0 : DISTANCE_MAX_PAPER;
   }
 }
 
@@ -116,12 +117,11 @@ __kernel void paper_axis(__global const uchar* from, long nx, long ny, long nz, 
   to[b] = (uchar)nearest;
 }
 
-/* Makes the map: distances of empty blocks, and of occupied ones with DISTANCE_OCCUPIED added. */
-__kernel void paper_merge(__global const uchar* outer, __global const uchar* inner, long nx, long rows, long pitch, __global uchar* bytes)
+/* Sets the rows of distances `pitch` apart. */
+__kernel void paper_place(__global const uchar* distance, long nx, long rows, long pitch, __global uchar* bytes)
 {
   const long i = (long)get_global_id(0), row = (long)get_global_id(1);
   if (i < nx && row < rows) {
-    const uchar out = outer[row * nx + i];
-    bytes[row * pitch + i] = out ? out : (uchar)(DISTANCE_OCCUPIED + inner[row * nx + i]);
+    bytes[row * pitch + i] = distance[row * nx + i];
   }
 }

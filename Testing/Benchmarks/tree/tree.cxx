@@ -19,10 +19,11 @@ const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
                      archipelago and archipelago-1024, the values > 0 of that volume, take much memory: only where named
-  --method M,...     stratus:hybrid|hybrid-paper|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans, all but distance and octant
-                     with :N behind it, bricks (the first two) or voxels in a leaf; embree:low|medium|high, embree:packet and
-                     embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all; stratus:hybrid-paper, ac,
-                     ac-edges, dpc and kmeans grow faster than n log n and take sets of up to 35,000 voxels)
+  --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans, all but
+                     distance and octant with :N behind it, bricks (the first three) or voxels in a leaf; embree:low|medium|high,
+                     embree:packet and embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all;
+                     stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and take sets of up to
+                     35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
   --device NAME      builds of ours alone, stage by stage, on the host and on this OpenCL device (an index or a part of its name): ms,
                      share, kernels (default methods: stratus:hybrid|hybrid-paper|distance|octant|lbvh)
@@ -35,7 +36,9 @@ const char* const help = R"(stratus-bench tree [options]
 build_ms: from the list of voxels to what can be traced, by the wall clock, 2 threads, median. primary_ns, random_ns: a ray, one thread, its
 processor time, median; 512 x 512 rays of record each. bytes: what the tree holds of memory (Embree: as its monitor tells after the build,
 without the list of voxels that its callbacks read). wrong_hits: among both kinds of rays, against a walk from voxel to voxel in double
-precision; grazing_hits: those that differ where a voxel is met for less than 1e-9 of the numbers around, or two at once.
+precision; grazing_hits: those that differ where a voxel is met for less than 1e-9 of the numbers around, or two at once. missed_hits and
+late_hits, in place of wrong_hits of stratus:hybrid-paper-raw, whose leaves keep flooded distances as they come out: the wrong ones that
+find no voxel, or one behind the walk's.
 With --device: host_ms, device_ms, kernels of METHOD and of "METHOD STAGE", medians of the rounds; a failure if the two trees differ.
 )";
 
@@ -156,6 +159,8 @@ void run_round(const tree_scene& scene, const std::string& method, bool first, m
       const wrong_count count = count_wrong(scene.voxels, scene.rays[kind], scene.walk[kind], hits->hits());
       m.count.wrong += count.wrong;
       m.count.grazing += count.grazing;
+      m.count.missed += count.missed;
+      m.count.late += count.late;
     }
   }
 }
@@ -177,7 +182,12 @@ void add_rows(const std::string& scene, const std::string& method, const measure
   add("nodes", m.numbers.nodes, "1");
   add("depth", m.numbers.depth, "1");
   add("sah", m.numbers.sah, "1");
-  add("wrong_hits", static_cast<double>(m.count.wrong), "1");
+  if (may_err(method)) {
+    add("missed_hits", static_cast<double>(m.count.missed), "1");
+    add("late_hits", static_cast<double>(m.count.late), "1");
+  } else {
+    add("wrong_hits", static_cast<double>(m.count.wrong), "1");
+  }
   add("grazing_hits", static_cast<double>(m.count.grazing), "1");
 }
 
@@ -185,8 +195,8 @@ void run_scene(const std::string& name, const options& o, std::vector<row>& rows
 {
   tree_scene scene(name);
   scene.walk_plainly();
-  std::fprintf(stderr, "%s: %zu voxels\n%-22s %10s %10s %10s %12s %9s %5s %9s %6s %8s\n", name.c_str(), scene.set.count, "", "build_ms",
-    "primary_ns", "random_ns", "bytes", "nodes", "depth", "sah", "wrong", "grazing");
+  std::fprintf(stderr, "%s: %zu voxels\n%-22s %10s %10s %10s %12s %9s %5s %9s %6s %8s %6s %5s\n", name.c_str(), scene.set.count, "",
+    "build_ms", "primary_ns", "random_ns", "bytes", "nodes", "depth", "sah", "wrong", "grazing", "missed", "late");
   const int rounds = o.rounds ? o.rounds : scene.set.count > 5000000 ? 2 : 5;
   std::vector<std::string> methods;
   std::copy_if(o.methods.begin(), o.methods.end(), std::back_inserter(methods),
@@ -205,9 +215,10 @@ void run_scene(const std::string& name, const options& o, std::vector<row>& rows
   }
   for (const std::string& method : methods) {
     const measured& m = all[method];
-    std::fprintf(stderr, "%-22s %10.3f %10.1f %10.1f %12.0f %9.0f %5.0f %9.1f %6lld %8lld\n", method.c_str(), median(m.build_ms),
-      median(m.trace_ns[0]), median(m.trace_ns[1]), m.numbers.bytes, m.numbers.nodes, m.numbers.depth, m.numbers.sah,
-      static_cast<long long>(m.count.wrong), static_cast<long long>(m.count.grazing));
+    std::fprintf(stderr, "%-22s %10.3f %10.1f %10.1f %12.0f %9.0f %5.0f %9.1f %6lld %8lld %6lld %5lld\n", method.c_str(),
+      median(m.build_ms), median(m.trace_ns[0]), median(m.trace_ns[1]), m.numbers.bytes, m.numbers.nodes, m.numbers.depth, m.numbers.sah,
+      static_cast<long long>(m.count.wrong), static_cast<long long>(m.count.grazing), static_cast<long long>(m.count.missed),
+      static_cast<long long>(m.count.late));
     add_rows(name, method, m, rows);
   }
 }

@@ -79,6 +79,8 @@ wrong_count count_wrong(
       ++count.grazing;
     } else {
       ++count.wrong;
+      count.missed += h.t < 0.0;
+      count.late += h.t >= 0.0 && walk[i].voxel[0] >= 0 && h.t > walk[i].t;
     }
   }
   return count;

@@ -54,20 +54,22 @@ context_pointer host_context(int threads);
 void check_status(stratus_context* context, stratus_status status); // throws failure
 
 std::vector<std::string> all_tree_methods();
-// Every method at three sizes of leaves, or qualities of the build. quick: without the slow ones.
+// Every exact method at three sizes of leaves, or qualities of the build. quick: without the slow ones.
 std::vector<std::string> tree_curve_methods(bool quick);
 bool is_tree_method(const std::string& name); // with or without a size of leaves
 bool is_slow_tree(const std::string& method);
 stratus_tree_options tree_options_of(const std::string& method); // of one of ours
+bool may_err(const std::string& method);                         // whether a method's rays may step past voxels
 std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& method);
 
 // ---- embree.cxx: low, medium, high; packet, bricks, with :low, :high or nothing (medium) behind
 std::unique_ptr<first_hits> make_embree_hits(const voxel_set& set, const std::string& kind);
 // ---- openvdb_tree.cxx
 std::unique_ptr<first_hits> make_openvdb_hits(const voxel_set& set);
-// ---- tree_judge.cxx: counts hits that differ from the plain walk's; grazing: those of them that rounding decides
+// ---- tree_judge.cxx: counts hits that differ from the plain walk's; grazing: those that rounding decides; wrong:
+// all others; missed, late: those of the wrong that find no voxel, or one behind the walk's
 struct wrong_count {
-  int64_t wrong = 0, grazing = 0;
+  int64_t wrong = 0, grazing = 0, missed = 0, late = 0;
 };
 wrong_count count_wrong(
   const stratus_voxels* voxels, const voxel_rays& rays, const std::vector<stratus_hit>& walk, const std::vector<voxel_hit>& hits);

@@ -25,7 +25,8 @@ bool has_leaves(stratus_tree_method m)
   return m != STRATUS_TREE_DISTANCE && m != STRATUS_TREE_OCTANT;
 }
 
-const char* const by_edges = "stratus:ac-edges"; // agglomerative clustering by the sum of edges
+const char* const by_edges = "stratus:ac-edges";          // agglomerative clustering by the sum of edges
+const char* const raw_paper = "stratus:hybrid-paper-raw"; // leaves keep the distances of jump flooding as they come out
 
 std::string name_of(stratus_tree_method m)
 {
@@ -98,7 +99,8 @@ private:
   std::vector<stratus_hit> found;
 };
 
-// stratus:METHOD[:LEAF], or stratus:ac-edges[:LEAF]. A tree that is one distance field has no leaves to size.
+// stratus:METHOD[:LEAF], stratus:ac-edges[:LEAF] or stratus:hybrid-paper-raw[:LEAF]. A tree that is one distance field has no leaves to
+// size.
 bool parse_tree(const std::string& name, stratus_tree_options& options)
 {
   const std::string family = family_of(name);
@@ -106,9 +108,13 @@ bool parse_tree(const std::string& name, stratus_tree_options& options)
   const int leaf = sized ? std::atoi(name.c_str() + family.size() + 1) : 0;
   options = stratus_tree_options_default();
   options.agglomerative_by_edges = family == by_edges;
+  options.uncorrected_flooding = family == raw_paper;
+  const std::string plain = options.agglomerative_by_edges ? name_of(STRATUS_TREE_AC)
+    : options.uncorrected_flooding                         ? name_of(STRATUS_TREE_HYBRID_PAPER)
+                                                           : family;
   for (int m = 0; m < STRATUS_TREE_METHODS; ++m) {
     options.method = static_cast<stratus_tree_method>(m);
-    if ((options.agglomerative_by_edges ? "stratus:ac" : family) == name_of(options.method)) {
+    if (plain == name_of(options.method)) {
       if (sized) {
         (has_bricks(options.method) ? options.leaf_bricks : options.leaf_voxels) = leaf;
       }
@@ -126,6 +132,8 @@ std::vector<std::string> tree_names()
     names.push_back(name_of(static_cast<stratus_tree_method>(m)));
     if (m == STRATUS_TREE_AC) {
       names.push_back(by_edges);
+    } else if (m == STRATUS_TREE_HYBRID_PAPER) {
+      names.push_back(raw_paper);
     }
   }
   return names;
@@ -187,8 +195,13 @@ std::vector<std::string> all_tree_methods()
 
 bool is_slow_tree(const std::string& method)
 {
-  static const char* const slow[] = { "stratus:hybrid-paper", "stratus:ac", by_edges, "stratus:dpc", "stratus:kmeans" };
+  static const char* const slow[] = { "stratus:hybrid-paper", raw_paper, "stratus:ac", by_edges, "stratus:dpc", "stratus:kmeans" };
   return std::any_of(std::begin(slow), std::end(slow), [&](const char* name) { return family_of(method) == name; });
+}
+
+bool may_err(const std::string& method)
+{
+  return family_of(method) == raw_paper;
 }
 
 std::vector<std::string> tree_curve_methods(bool quick)
@@ -197,7 +210,7 @@ std::vector<std::string> tree_curve_methods(bool quick)
   for (const std::string& name : tree_names()) {
     stratus_tree_options options;
     parse_tree(name, options);
-    if (quick && is_slow_tree(name)) {
+    if ((quick && is_slow_tree(name)) || may_err(name)) {
       continue;
     }
     if (!has_leaves(options.method)) {

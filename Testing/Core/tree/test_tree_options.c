@@ -3,6 +3,7 @@
 #include "first_hits.h"
 
 #include "bvh.h"
+#include "stratus/distance_field.h"
 #include "tree.h"
 
 static stratus_context* context;
@@ -49,6 +50,99 @@ static void clusters_merge_by_the_distance_asked_for(void** state)
   stratus_voxels_destroy(voxels);
 }
 
+/* The leaves of a tree by the method as published keep what the flooding gave, in parts of a voxel; all else is as in the corrected one. */
+static void uncorrected_leaves_hold_the_flooded_distances(void** state)
+{
+  const int64_t dimensions[3] = { 31, 26, 37 };
+  uint32_t random = 7;
+  (void)state;
+  stratus_voxels* voxels = random_voxels(context, dimensions, 0.01, 0, &random);
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_field_options flooding = stratus_field_options_default();
+  stratus_tree *corrected = NULL, *raw = NULL;
+  stratus_field* field = NULL;
+  assert_int_equal(options.uncorrected_flooding, 0);
+  options.method = STRATUS_TREE_HYBRID_PAPER;
+  options.paper_threshold = 1e18; /* everything is uniform: one leaf */
+  assert_int_equal(stratus_tree_create(context, voxels, &options, &corrected), STRATUS_OK);
+  options.uncorrected_flooding = 1;
+  assert_int_equal(stratus_tree_create(context, voxels, &options, &raw), STRATUS_OK);
+  flooding.method = STRATUS_FIELD_AJFA;
+  assert_int_equal(stratus_field_create(context, voxels, &flooding, &field, NULL), STRATUS_OK);
+  assert_int_equal(raw->node_count, 1);
+  assert_int_equal(raw->field_count, 1);
+  assert_int_equal(raw->entry_count, corrected->entry_count);
+  const stratus_tree_field* f = raw->fields;
+  int64_t empty = 0;
+  for (int32_t k = 0; k < f->cells[2]; ++k) {
+    for (int32_t j = 0; j < f->cells[1]; ++j) {
+      for (int32_t i = 0; i < f->cells[0]; ++i) {
+        uint64_t mask;
+        const int32_t parts = stratus_tree_field_leap(raw, f, 0, i, j, k, &mask);
+        assert_int_equal(parts, (int)(32.0 * stratus_field_get(field, i + f->at[0], j + f->at[1], k + f->at[2])));
+        assert_int_equal(parts == 0, stratus_tree_field_leap(corrected, f, 0, i, j, k, &mask) == 0);
+        empty += parts > 0;
+      }
+    }
+  }
+  assert_true(empty > 20000);
+  assert_int_equal(stratus_tree_check(context, corrected, voxels), STRATUS_OK);
+  assert_int_equal(stratus_tree_check(context, raw, voxels), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "without correction"));
+  stratus_field_destroy(field);
+  stratus_tree_destroy(corrected);
+  stratus_tree_destroy(raw);
+  stratus_voxels_destroy(voxels);
+}
+
+/* A saved tree keeps that it is uncorrected, so that it never stands in for another; one that claims it of bricks is refused. */
+static void a_saved_tree_keeps_that_it_is_uncorrected(void** state)
+{
+  const int64_t dimensions[3] = { 20, 20, 20 };
+  float values[20 * 20 * 20];
+  (void)state;
+  for (int i = 0; i < 20 * 20 * 20; ++i) {
+    values[i] = i % 97 == 0 ? 1.0f : 0.0f;
+  }
+  stratus_volume volume = stratus_volume_default();
+  memcpy(volume.dimensions, dimensions, sizeof dimensions);
+  volume.values = values;
+  volume.type = STRATUS_FLOAT32;
+  stratus_criterion criterion = stratus_criterion_default();
+  criterion.lower = 0.5;
+  stratus_voxels* voxels = NULL;
+  assert_int_equal(stratus_voxels_create(context, &volume, &criterion, &voxels), STRATUS_OK);
+  for (int uncorrected = 0; uncorrected <= 1; ++uncorrected) {
+    stratus_tree_options options = stratus_tree_options_default();
+    stratus_tree *tree = NULL, *loaded = NULL;
+    stratus_tree_statistics s;
+    int covers = -1;
+    options.method = STRATUS_TREE_HYBRID_PAPER;
+    options.uncorrected_flooding = uncorrected;
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    const size_t size = stratus_tree_bytes(tree);
+    void *bytes = malloc(size), *again = malloc(size);
+    stratus_tree_save(tree, bytes);
+    assert_int_equal(stratus_tree_load(context, bytes, size, &loaded), STRATUS_OK);
+    stratus_tree_get_statistics(loaded, &s);
+    assert_int_equal(s.uncorrected, uncorrected);
+    stratus_tree_save(loaded, again);
+    assert_memory_equal(bytes, again, size);
+    assert_int_equal(stratus_tree_covers(context, loaded, &volume, &criterion, 0, &covers), STRATUS_OK);
+    assert_int_equal(covers, !uncorrected);
+    free(bytes);
+    free(again);
+    stratus_tree_destroy(tree);
+    stratus_tree_destroy(loaded);
+    options.method = STRATUS_TREE_HYBRID; /* ignores the option */
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+    stratus_tree_get_statistics(tree, &s);
+    assert_int_equal(s.uncorrected, 0);
+    stratus_tree_destroy(tree);
+  }
+  stratus_voxels_destroy(voxels);
+}
+
 static void an_option_out_of_range_is_refused_with_its_range(void** state)
 {
   const int64_t dimensions[3] = { 5, 5, 5 };
@@ -64,6 +158,12 @@ static void an_option_out_of_range_is_refused_with_its_range(void** state)
     assert_true((tree != NULL) == good);
     assert_true(good || strstr(stratus_context_message(context), value < 0 ? "edges -1 outside 0..1" : "edges 2 outside 0..1"));
     stratus_tree_destroy(tree);
+    tree = NULL;
+    options.agglomerative_by_edges = 0;
+    options.uncorrected_flooding = value;
+    assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), good ? STRATUS_OK : STRATUS_INVALID_ARGUMENT);
+    assert_true(good || strstr(stratus_context_message(context), value < 0 ? "flooding -1 outside 0..1" : "flooding 2 outside 0..1"));
+    stratus_tree_destroy(tree);
   }
   stratus_voxels_destroy(voxels);
 }
@@ -72,6 +172,8 @@ int test_tree_options(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(clusters_merge_by_the_distance_asked_for),
+    cmocka_unit_test(uncorrected_leaves_hold_the_flooded_distances),
+    cmocka_unit_test(a_saved_tree_keeps_that_it_is_uncorrected),
     cmocka_unit_test(an_option_out_of_range_is_refused_with_its_range),
   };
   stratus_context_options options = stratus_context_options_default();
