@@ -79,6 +79,7 @@ static const struct {
   { "u640", { 256, 128, 256 }, 20000, 0x3d8cbad086cd0dd6, 0x9dbcc1d4b849e02a, 0xc0361f624e2763ed, .640 },
   { "1M", { 512, 512, 512 }, 1000000, 0xd4075acee557c9c0, 0x49d8465b3347819a, 0x41128fa56ba3d14d, 0 },
   { "10M", { 1024, 1024, 1024 }, 10000000, 0xb6ba32707207c571, 0xc96c830c87e637f2, 0xeb9da98e5f7474da, 0 },
+  { "archipelago", { 4096, 4096, 4096 }, 4216282, 0x5f29338eb3283cf2, 0xf5af743e068107ea, 0x480158ddb45a5cbf, 0 },
 };
 
 static void sets_and_rays_are_those_of_record(void** state)
