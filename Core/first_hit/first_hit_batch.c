@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Data that all rays of a batch share, and the choice of functions for an instruction set. */
+ * Data that all rays of a batch share, and which trees packets may walk. */
 #include "first_hit_batch.h"
 
 #include <string.h>
@@ -61,10 +61,4 @@ stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch)
     a.row_start = (int)tree->fields[0].first_row;
   }
   return a;
-}
-
-const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context)
-{
-  static const stratus_hit_functions* const functions[] = STRATUS_ISA_EACH(&stratus_hit_functions);
-  return functions[stratus_isa_at_most(context->isa)];
 }

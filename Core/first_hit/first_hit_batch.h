@@ -61,7 +61,7 @@ typedef struct stratus_hit_functions {
   stratus_hit_walk* walk;
   stratus_hit_finish* finish;
 } stratus_hit_functions;
-const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit_batch.c */
+const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit_functions.c */
 extern const stratus_hit_functions stratus_hit_functions_isa0, stratus_hit_functions_isa1, stratus_hit_functions_isa2;
 
 /* first_hit_exact.c: finds the hit of one ray in any tree, in double precision. The voxel and the bits of t are those of voxel_walk.c. */
