@@ -174,7 +174,7 @@ void Filters()
   vtkNew<vtkStratusHybridTreeFilter> tree;
   tree->SetInputData(scene.Image);
   tree->ThresholdBetween(0.2, 2.0);
-  CheckFilter(tree.Get(), { "value ranges", "effective voxels", "tree shape", "tree leaves" });
+  CheckFilter(tree.Get(), { "value ranges", "occupancy", "effective voxels", "tree shape", "tree leaves" });
   vtkNew<vtkStratusHybridTreeFilter> hits;
   hits->SetInputData(scene.Image);
   hits->ThresholdBetween(0.2, 2.0);

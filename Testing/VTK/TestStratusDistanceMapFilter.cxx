@@ -49,10 +49,10 @@ bool Occupied(const float* values, const int sides[3], const int block[3], int s
   return false;
 }
 
-// Chebyshev distance to the nearest occupied block; octant >= 0: among those that its rays can reach.
-int Nearest(const std::vector<char>& occupied, const int blocks[3], const int from[3], int octant)
+// Chebyshev distance to the nearest occupied block, `most` where none is nearer; octant >= 0: among those that its rays can reach.
+int Nearest(const std::vector<char>& occupied, const int blocks[3], const int from[3], int octant, int most)
 {
-  int nearest = 127;
+  int nearest = most;
   for (int k = 0; k < blocks[2]; ++k) {
     for (int j = 0; j < blocks[1]; ++j) {
       for (int i = 0; i < blocks[0]; ++i) {
@@ -108,7 +108,7 @@ void CheckMap(vtkStratusDistanceMapFilter* filter, vtkImageData* input, bool cel
     const int from[3] = { static_cast<int>(b % blocks[0]), static_cast<int>(b / blocks[0] % blocks[1]),
       static_cast<int>(b / blocks[0] / blocks[1]) };
     const bool directed = kind == vtkStratusDistanceMapFilter::OCTANT;
-    int expected = Nearest(occupied, blocks, from, directed ? octant : -1);
+    int expected = Nearest(occupied, blocks, from, directed ? octant : -1, kind == vtkStratusDistanceMapFilter::PAPER ? 255 : 127);
     expected = kind == vtkStratusDistanceMapFilter::BLOCK ? std::min(expected, 1) : expected;
     CHECK(distance->GetTuple1(b) == expected, "block %lld of %d %d %d, size %d, kind %d, octant %d: %g instead of %d",
       static_cast<long long>(b), blocks[0], blocks[1], blocks[2], size, kind, octant, distance->GetTuple1(b), expected);

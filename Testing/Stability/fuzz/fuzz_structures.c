@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #define FARTHEST 127
+#define FARTHEST_PAPER 255
 
 typedef struct grid {
   int64_t n[3];
@@ -121,7 +122,7 @@ static uint8_t* check_occupancy(fuzz* f, const stratus_occupancy* occupancy, con
 
 static int true_distance(const uint8_t* occupied, const grid* g, stratus_distance_kind kind, int octant, const int64_t from[3])
 {
-  int64_t nearest = FARTHEST;
+  int64_t nearest = kind == STRATUS_DISTANCE_PAPER ? FARTHEST_PAPER : FARTHEST;
   for (int64_t b = 0; b < blocks_of(g); ++b) {
     const int64_t at[3] = { b % g->n[0], b / g->n[0] % g->n[1], b / (g->n[0] * g->n[1]) };
     int64_t farthest = 0;
