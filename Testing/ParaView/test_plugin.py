@@ -158,13 +158,13 @@ def filters(cloud, shown, view, before):
     fields = simple.servermanager.Fetch(tree).GetFieldData()
     check(fields.GetArray("StratusHybridTree") is not None, "the image carries its tree")
     before_settings = vtk_to_numpy(fields.GetArray("StratusHybridTree"))
-    tree.Device, tree.NumberOfThreads = "host", 1
+    tree.Device, tree.Threads = "host", 1
     tree.UpdatePipeline()
     on_host = vtk_to_numpy(simple.servermanager.Fetch(tree).GetFieldData().GetArray("StratusHybridTree"))
     check((on_host == before_settings).all(), "device and threads do not change the tree")
     bytes_of = []
     for edges in (0, 1):
-        tree.Method, tree.Purpose, tree.AgglomerativeByEdges, tree.Range = "Agglomerative", "First Hits", edges, [1.15, 2]
+        tree.Method, tree.Purpose, tree.AgglomerativeByEdges, tree.Range = "Agglomerative", "First Hits", edges, [0.9, 2]
         tree.UpdatePipeline()
         array = simple.servermanager.Fetch(tree).GetFieldData().GetArray("StratusHybridTree")
         bytes_of.append(vtk_to_numpy(array).tobytes())
