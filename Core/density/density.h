@@ -56,9 +56,6 @@ void stratus_density_sum_lines(const stratus_brick* bricks, const uint32_t* whic
 /* Finds the borders from the sums. voxels: the number of voxels that the sums were made of. */
 void stratus_density_scan_lines(stratus_density_line* lines, int64_t voxels, double bandwidth, const int32_t peak[3], const int32_t lo[3],
   const int32_t hi[3], stratus_density_borders* borders);
-/* Does both. */
-stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
-  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders);
 
 /* ---- dbscan.c: one-dimensional DBSCAN of coordinates given as counts: counts[i] voxels have coordinate i, 0 <= i < n. A coordinate with
  * at least min_points voxels within eps >= 1 coordinates is a core. Finds the cluster [*lo, *hi) that holds coordinate `peak`, and the

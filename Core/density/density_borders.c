@@ -235,18 +235,3 @@ void stratus_density_scan_lines(stratus_density_line* lines, int64_t voxels, dou
     }
   }
 }
-
-stratus_status stratus_density_find_borders(stratus_context* context, const stratus_brick* bricks, const uint32_t* which, int64_t count,
-  double bandwidth, int exact, const int32_t peak[3], const int32_t lo[3], const int32_t hi[3], stratus_density_borders* borders)
-{
-  int64_t voxels = 0;
-  void* memory;
-  for (int64_t i = 0; i < count; ++i) {
-    voxels += bricks[which ? (int64_t)which[i] : i].count;
-  }
-  TRY(stratus_allocate(context, stratus_density_line_start(lo, hi, 3), sizeof(stratus_density_line), &memory));
-  stratus_density_sum_lines(bricks, which, count, bandwidth, exact, peak, lo, hi, memory);
-  stratus_density_scan_lines(memory, voxels, bandwidth, peak, lo, hi, borders);
-  stratus_release(context, memory);
-  return STRATUS_OK;
-}
