@@ -17,6 +17,7 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
     if (!functions->prepare(batch, rays, count, chunk, bad)) {
       return false;
     }
+    chunk->rays = rays;
     chunk->ahead = rays + count;
     chunk->more = more < STRATUS_HIT_CHUNK ? (int)more : STRATUS_HIT_CHUNK;
     chunk->hits = hits;
@@ -37,7 +38,8 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
 static stratus_status run_host(
   stratus_context* context, const stratus_hit_batch* batch, const stratus_ray* rays, size_t count, stratus_hit* hits)
 {
-  const stratus_hit_functions* functions = stratus_hit_takes_packets(batch) ? stratus_hit_functions_for(context) : NULL;
+  const stratus_hit_functions* functions =
+    stratus_hit_takes_packets(batch) || batch->tree->wide.node_count ? stratus_hit_functions_for(context) : NULL;
   const int64_t chunks = (int64_t)((count + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK);
   const int threads = chunks < context->threads ? (int)chunks : context->threads;
   void* memory;
@@ -87,6 +89,7 @@ stratus_status stratus_tree_first_hit(
   } else if (context->device) {
     stratus_log(context, STRATUS_LOG_INFO, "first hits: rays are walked on the host, %s",
       batch.slack > 0.05f              ? "for the set is too long for floats"
+        : tree->wide.node_count        ? "for the tree is a wide hierarchy"
         : tree->statistics.uncorrected ? "for the tree's distances may be too long"
                                        : "for the tree's boxes may overlap");
   }

@@ -28,6 +28,7 @@ stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch);
 /* A chunk's `count` rays in the form that traversal takes. end < 0: the ray misses the root's box. */
 typedef struct stratus_hit_chunk {
   int count;
+  const stratus_ray* rays;
   const stratus_ray* ahead; /* the next chunk's rays, prefetched while this chunk is walked */
   int more;                 /* their number */
   const stratus_hit* hits;  /* where this chunk's hits will be stored */

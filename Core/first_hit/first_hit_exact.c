@@ -334,10 +334,41 @@ typedef struct pending {
   float enter;
 } pending;
 
-static void walk_leaf(walker* w, const stratus_tree_node* node)
+/* Visits the children of wide nodes in the order of their numbers. */
+static void walk_wide(walker* w, const sketch* k)
+{
+  const stratus_wide_node* nodes = w->tree->wide.nodes;
+  uint32_t stack[STRATUS_WIDE_STACK];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const stratus_wide_node* node = &nodes[stack[--top]];
+    ++w->visited;
+    for (int c = 0; c < node->count; ++c) {
+      const stratus_box box = stratus_wide_box(node, c);
+      stratus_tree_node child = { .first = 0 };
+      float enter;
+      memcpy(child.lo, box.lo, sizeof child.lo);
+      memcpy(child.hi, box.hi, sizeof child.hi);
+      if (!may_meet(k, &child, w->hit->t < INFINITY ? fminf(k->end, of_t(k, w->hit->t)) : k->end, &enter)) {
+        continue;
+      }
+      if (c < node->inner) {
+        stack[top++] = node->node + (uint32_t)c;
+      } else {
+        ++w->visited;
+        try_brick(w, &w->tree->bricks[node->brick + (uint32_t)(c - node->inner)]);
+      }
+    }
+  }
+}
+
+static void walk_leaf(walker* w, const sketch* k, const stratus_tree_node* node)
 {
   double enter, leave;
-  if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
+  if (w->tree->wide.node_count) {
+    walk_wide(w, k);
+  } else if (stratus_tree_node_kind(node) == STRATUS_NODE_BRICKS) {
     walk_bricks(w, node);
   } else if (meets_box(w, node->lo, node->hi, &enter, &leave)) {
     (w->tree->statistics.uncorrected ? walk_spheres : walk_field)(w, &w->tree->fields[node->first], enter, leave);
@@ -363,7 +394,7 @@ static void walk_tree(walker* w)
     }
     ++w->visited;
     if (stratus_tree_node_kind(node) != STRATUS_NODE_INNER) {
-      walk_leaf(w, node);
+      walk_leaf(w, &k, node);
       end = w->hit->t < INFINITY ? fminf(end, of_t(&k, w->hit->t)) : end;
       continue;
     }

@@ -5,6 +5,7 @@
 
 #include "first_hit_beam_leaves.h"
 #include "first_hit_leaves.h"
+#include "first_hit_wide.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -367,6 +368,10 @@ static void walk_packets(const stratus_hit_batch* batch, const stratus_hit_argum
 /* Rays that follow each other go in beams where these are narrow, the others in packets. */
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
 {
+  if (batch->tree->wide.node_count) {
+    wide_walk(batch, chunk);
+    return;
+  }
   const stratus_hit_arguments a = stratus_hit_arguments_of(batch);
   int waiting = 0; /* the first ray that is neither in a beam nor walked */
   for (int first = 0; a.cell_log2 && first + BEAM <= chunk->count; first += BEAM) {

@@ -20,10 +20,12 @@ typedef enum stratus_tree_method {
   STRATUS_TREE_PLOC,         /* parallel locally-ordered clustering (Meister & Bittner 2018) */
   STRATUS_TREE_AC,           /* agglomerative clustering (Walter et al. 2008) */
   STRATUS_TREE_DPC,          /* density peaks (Rodriguez & Laio 2014), split cluster by cluster */
-  STRATUS_TREE_KMEANS        /* k-means (Meister & Bittner 2016) */
+  STRATUS_TREE_KMEANS,       /* k-means (Meister & Bittner 2016) */
+  /* A leaf of all bricks, with a hierarchy of up to 16 children a node over them (layout: Ylitie et al. 2017; shape: LBVH). */
+  STRATUS_TREE_WIDE
 } stratus_tree_method;
 
-#define STRATUS_TREE_METHODS 11
+#define STRATUS_TREE_METHODS 12
 
 STRATUS_EXPERIMENTAL const char* stratus_tree_method_name(
   stratus_tree_method method); /* "hybrid", "hybrid-paper", "distance", "octant", "sah" and so on */
@@ -69,6 +71,7 @@ typedef struct stratus_tree_statistics {
   int64_t nodes, leaves, field_leaves;
   int64_t field_bricks; /* bricks that distance-field leaves span */
   int depth;            /* of the deepest leaf; the root has depth 0 */
+  int64_t wide_nodes;   /* nodes of the hierarchy over the bricks of a WIDE tree, which is one leaf */
   size_t bytes;
   double sah;       /* surface area heuristic, where both costs are 1 and a distance-field leaf counts as one primitive */
   double bandwidth; /* bandwidth of the density; 0 if none was needed */

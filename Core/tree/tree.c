@@ -11,7 +11,7 @@
 #define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
 
 static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh",
-  "ploc", "ac", "dpc", "kmeans" };
+  "ploc", "ac", "dpc", "kmeans", "wide" };
 
 const char* stratus_tree_method_name(stratus_tree_method method)
 {
@@ -124,6 +124,33 @@ cleanup:
   return status;
 }
 
+/* Makes one leaf of all bricks, and the hierarchy over them. */
+static stratus_status wide(stratus_context* context, const stratus_voxels* voxels, stratus_tree* tree)
+{
+  void* memory;
+  if (voxels->brick_count > STRATUS_NODE_COUNT_MAX) {
+    return stratus_fail(
+      context, STRATUS_OVERFLOW, "%lld bricks: a tree takes at most %u", (long long)voxels->brick_count, STRATUS_NODE_COUNT_MAX);
+  }
+  const stratus_stage stage = stratus_stage_begin(context);
+  const uint32_t count = (uint32_t)voxels->brick_count;
+  TRY(stratus_allocate(context, 1, sizeof *tree->nodes, &memory));
+  tree->nodes = memory;
+  tree->nodes[0] = (stratus_tree_node){ .kind_count = stratus_tree_kind_count(STRATUS_NODE_BRICKS, count) };
+  for (int a = 0; a < 3; ++a) {
+    tree->nodes[0].lo[a] = (int32_t)voxels->lo[a];
+    tree->nodes[0].hi[a] = (int32_t)voxels->hi[a];
+  }
+  tree->node_count = 1;
+  TRY(stratus_allocate(context, count, sizeof *tree->bricks, &memory));
+  tree->bricks = memory;
+  tree->brick_count = count;
+  memcpy(tree->bricks, voxels->bricks, count * sizeof *tree->bricks);
+  TRY(stratus_wide_create(context, &tree->bricks, count, &tree->wide));
+  stratus_stage_end(context, &stage, "wide hierarchy", stratus_tree_memory(tree));
+  return STRATUS_OK;
+}
+
 /* Copies the bricks of brick leaves, in the leaves' order, and makes the fields of the other leaves. */
 static stratus_status fill_leaves(stratus_context* context, const stratus_voxels* voxels, stratus_tree_shape* shape, stratus_tree* tree)
 {
@@ -158,6 +185,9 @@ static stratus_status build(stratus_context* context, const stratus_voxels* voxe
   tree->octants = options->method != STRATUS_TREE_DISTANCE && options->method != STRATUS_TREE_HYBRID_PAPER;
   tree->cell_log2 = options->method == STRATUS_TREE_HYBRID_PAPER ? 0 : 2;
   tree->statistics.uncorrected = tree->cell_log2 == 0 && options->uncorrected_flooding;
+  if (options->method == STRATUS_TREE_WIDE) {
+    return wide(context, voxels, tree);
+  }
   if (options->method >= STRATUS_TREE_SAH) {
     return hierarchy(context, voxels, options, tree);
   }
@@ -188,7 +218,8 @@ cleanup:
 size_t stratus_tree_memory(const stratus_tree* tree)
 {
   return tree->node_count * sizeof *tree->nodes + tree->brick_count * sizeof *tree->bricks + tree->field_count * sizeof *tree->fields +
-    (size_t)tree->entry_count * (size_t)tree->entry_bytes + tree->row_count * sizeof *tree->rows + tree->mask_count * sizeof *tree->masks;
+    (size_t)tree->entry_count * (size_t)tree->entry_bytes + tree->row_count * sizeof *tree->rows + tree->mask_count * sizeof *tree->masks +
+    tree->wide.node_count * sizeof *tree->wide.nodes;
 }
 
 /* Computes the depth of every node; parents come before children. */
@@ -223,7 +254,8 @@ stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tre
   }
   s->field_bricks = tree->cell_log2 ? tree->entry_count : tree->entry_count / 64;
   s->bytes = stratus_tree_memory(tree);
-  s->sah = stratus_bvh_sah(tree->nodes, tree->node_count);
+  s->wide_nodes = tree->wide.node_count;
+  s->sah = tree->wide.node_count ? stratus_wide_sah(&tree->wide) : stratus_bvh_sah(tree->nodes, tree->node_count);
   stratus_release(context, depth);
   return STRATUS_OK;
 }
@@ -293,6 +325,7 @@ void stratus_tree_destroy(stratus_tree* tree)
     stratus_release(context, tree->entries);
     stratus_release(context, tree->rows);
     stratus_release(context, tree->masks);
+    stratus_release(context, tree->wide.memory);
     stratus_release(context, tree);
   }
 }

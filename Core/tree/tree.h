@@ -7,6 +7,7 @@
 #include "bvh.h"
 #include "density.h"
 #include "voxels.h"
+#include "wide_tree.h"
 
 /* The shape of a tree, made by hybrid_tree.c with the statistics' splits and `why`. A node of kind FIELD lists bricks [first, first+count)
  * of `order`; tree.c makes its field and the rest of the tree. */
@@ -56,6 +57,8 @@ struct stratus_tree {
   uint8_t* entries; /* entry_count*entry_bytes bytes, and 4 bytes of padding */
   uint32_t* rows;
   uint64_t* masks;
+  /* Of a tree whose only node is a leaf of all bricks: the hierarchy over them. It is made from the bricks, also where a tree is loaded. */
+  stratus_wide wide;
 };
 
 /* Makes a field of the bricks order[node.first ..] for every node of kind FIELD, and sets the node's `first` to the field's number. */

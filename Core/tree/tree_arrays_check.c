@@ -218,6 +218,9 @@ stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus
   stratus_release(context, depth);
   TRY(status);
   TRY(check_bricks(context, tree));
+  if (tree->statistics.method == STRATUS_TREE_WIDE && (tree->node_count > 1 || tree->field_count > 0)) {
+    return WRONG("a tree of %u nodes and %u distance fields; a wide one is a leaf of bricks", tree->node_count, tree->field_count);
+  }
   TRY(check_fields(context, tree));
   return check_covers(context, tree);
 }

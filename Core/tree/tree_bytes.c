@@ -232,6 +232,9 @@ static stratus_status fill_tree(stratus_context* context, const header* h, const
   memcpy(s->why, h->why, sizeof s->why);
   TRY(read_arrays(context, h, bytes, tree));
   TRY(stratus_tree_check_arrays(context, tree));
+  if (s->method == STRATUS_TREE_WIDE && tree->brick_count > 0) {
+    TRY(stratus_wide_create(context, &tree->bricks, tree->brick_count, &tree->wide));
+  }
   return stratus_tree_count_up(context, tree);
 }
 

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * First hits in wide hierarchies. The boxes of a node's 16 children are tested at once against one ray, grown by the slack of positions in
+ * float, so that none is missed. Several rays take turns: while one waits for a node of its own, the others compute. In a brick floats tell
+ * which voxels the ray may meet, and doubles decide between them as voxel_walk.c does, so that a hit is never in doubt.
+ *
+ * Included by first_hit_isa.c. */
+#ifndef STRATUS_FIRST_HIT_WIDE_H
+#define STRATUS_FIRST_HIT_WIDE_H
+
+#include "first_hit_batch.h"
+
+#include "packet.h"
+
+#define WIDE_RAYS 8            /* that take turns */
+#define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
+
+typedef struct wide_ray {
+  float o[3], inverse[3];
+  float end;  /* what the ray enters behind it cannot be its hit */
+  int number; /* in the chunk; -1: none */
+  int top;
+  uint32_t visited;
+  stratus_hit hit;
+  /* Where the ray enters, as the bits of a float >= 0, which are ordered as the float is, above the number of the node or brick. Sorting
+   * writes four entries at once. */
+  uint64_t stack[STRATUS_WIDE_STACK + 4];
+} wide_ray;
+
+static inline float float_of(uint32_t bits)
+{
+  float f;
+  memcpy(&f, &bits, sizeof f);
+  return f;
+}
+
+static inline uint32_t bits_of(float f)
+{
+  uint32_t bits;
+  memcpy(&bits, &f, sizeof bits);
+  return bits;
+}
+
+/* Puts an entry on the stack, below those of the same node that the ray enters earlier. */
+static inline void wide_push(wide_ray* r, int least, uint64_t entry)
+{
+  int at = r->top++;
+  for (; at > least && r->stack[at - 1] < entry; --at) {
+    r->stack[at] = r->stack[at - 1];
+  }
+  r->stack[at] = entry;
+}
+
+static inline uint32_t wide_child(const stratus_wide_node* node, int c)
+{
+  return c < node->inner ? node->node + (uint32_t)c : (node->brick + (uint32_t)(c - node->inner)) | WIDE_BRICK;
+}
+
+#if STRATUS_ISA == 2
+/* Pushes the children of `met`; no branch depends on how many of them are four or fewer. */
+static inline void wide_push_all(wide_ray* r, const stratus_wide_node* node, __m512 enter, __mmask16 met)
+{
+  const int count = __builtin_popcount(met), inner = node->inner;
+  const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __m512i first = _mm512_mask_blend_epi32((__mmask16)((1u << inner) - 1),
+    _mm512_set1_epi32((int)(node->brick - (uint32_t)inner + WIDE_BRICK)), _mm512_set1_epi32((int)node->node));
+  const __m512i t = _mm512_maskz_compress_epi32(met, _mm512_castps_si512(enter));
+  const __m512i n = _mm512_maskz_compress_epi32(met, _mm512_add_epi32(first, lanes));
+  if (__builtin_expect(count <= 4, 1)) {
+    const __m128i t4 = _mm512_castsi512_si128(t), n4 = _mm512_castsi512_si128(n);
+    __m256i k = _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_unpacklo_epi32(n4, t4)), _mm_unpackhi_epi32(n4, t4), 1), other;
+    /* Four entries are sorted by three rounds of exchanges, the greatest first. Empty ones are 0 and come last, above the top. */
+    other = _mm256_permute4x64_epi64(k, 0xb1);
+    k = _mm256_blend_epi32(_mm256_max_epu64(k, other), _mm256_min_epu64(k, other), 0xcc);
+    other = _mm256_permute4x64_epi64(k, 0x4e);
+    k = _mm256_blend_epi32(_mm256_max_epu64(k, other), _mm256_min_epu64(k, other), 0xf0);
+    other = _mm256_permute4x64_epi64(k, 0xd8);
+    k = _mm256_blend_epi32(_mm256_max_epu64(k, other), _mm256_min_epu64(k, other), 0x30);
+    _mm256_storeu_si256((__m256i*)(void*)(r->stack + r->top), k);
+    r->top += count;
+    return;
+  }
+  uint32_t enters[STRATUS_WIDE], numbers[STRATUS_WIDE];
+  const int least = r->top;
+  _mm512_storeu_si512(enters, t);
+  _mm512_storeu_si512(numbers, n);
+  for (int i = 0; i < count; ++i) {
+    wide_push(r, least, (uint64_t)enters[i] << 32 | numbers[i]);
+  }
+}
+
+static inline vfloat wide_planes(const uint8_t bytes[STRATUS_WIDE])
+{
+  return _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i*)(const void*)bytes)));
+}
+#else
+static inline vfloat wide_planes(const uint8_t bytes[STRATUS_WIDTH])
+{
+#if STRATUS_ISA == 1
+  return (vfloat)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i*)(const void*)bytes)));
+#else
+  vfloat f;
+  for (int i = 0; i < STRATUS_WIDTH; ++i) {
+    f[i] = bytes[i];
+  }
+  return f;
+#endif
+}
+#endif
+
+/* Pushes the children of the node that the ray may meet before its end. */
+static inline void wide_node(const stratus_wide_node* node, float slack, wide_ray* r)
+{
+  const vfloat scale = v_set(float_of((uint32_t)(node->shift + 127) << 23)); /* 2^shift */
+#if STRATUS_ISA != 2
+  const int least = r->top;
+#endif
+  ++r->visited;
+  for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
+    vfloat enter = v_set(0.0f), leave = v_set(r->end);
+    for (int a = 0; a < 3; ++a) {
+      const bool up = r->inverse[a] > 0.0f;
+      const float from = (float)node->at[a] - r->o[a], grown = up ? slack : -slack;
+      const vfloat inverse = v_set(r->inverse[a]);
+      const uint8_t *near = (up ? node->lo[a] : node->hi[a]) + part, *far = (up ? node->hi[a] : node->lo[a]) + part;
+      enter = v_max(v_fma(wide_planes(near), scale, v_set(from - grown)) * inverse, enter);
+      leave = v_min(v_fma(wide_planes(far), scale, v_set(from + grown)) * inverse, leave);
+    }
+    const vmask met = v_le(enter, leave);
+#if STRATUS_ISA == 2
+    wide_push_all(r, node, enter, met);
+#else
+    if (m_any(met)) {
+      for (int i = 0; i < STRATUS_WIDTH; ++i) {
+        if (met[i]) {
+          wide_push(r, least, (uint64_t)bits_of(enter[i]) << 32 | wide_child(node, part + i));
+        }
+      }
+    }
+#endif
+  }
+}
+
+/* Whether a hit comes before another: crossings of equal t come in the order of their axes, the ray's own start last. */
+static inline bool wide_before(const stratus_hit* a, const stratus_hit* b)
+{
+  const int axis_a = a->face < 0 ? 3 : a->face / 2, axis_b = b->face < 0 ? 3 : b->face / 2;
+  return a->t < b->t || (a->t == b->t && a->t < INFINITY && axis_a < axis_b);
+}
+
+/* Tries the brick's voxels that the ray may meet, the nearest first. */
+static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_ray* r)
+{
+  float enter[3][4], late[3][4], leave[3][4]; /* where the ray enters voxels of a layer at the earliest, at the latest, and leaves them */
+  float at[64];
+  uint64_t open = 0;
+  ++r->visited;
+  for (int a = 0; a < 3; ++a) {
+    const bool up = r->inverse[a] > 0.0f;
+    for (int i = 0; i < 4; ++i) {
+      const float lo = (float)(4 * brick->at[a] + i) - r->o[a], near = up ? lo : lo + 1.0f, far = up ? lo + 1.0f : lo;
+      const float grown = up ? batch->slack : -batch->slack;
+      enter[a][i] = (near - grown) * r->inverse[a];
+      late[a][i] = (near + grown) * r->inverse[a];
+      leave[a][i] = (far + grown) * r->inverse[a];
+    }
+  }
+  for (int zy = 0; zy < 16; ++zy) {
+    const float from = fmaxf(0.0f, fmaxf(enter[2][zy >> 2], enter[1][zy & 3]));
+    const float to = fminf(r->end, fminf(leave[2][zy >> 2], leave[1][zy & 3]));
+    for (int x = 0; x < 4; ++x) {
+      at[4 * zy + x] = fmaxf(from, enter[0][x]);
+      open |= (uint64_t)(at[4 * zy + x] <= fminf(to, leave[0][x])) << (4 * zy + x);
+    }
+  }
+  open &= brick->mask;
+  while (open) {
+    int bit = __builtin_ctzll(open);
+    for (uint64_t left = open & (open - 1); left; left &= left - 1) {
+      const int other = __builtin_ctzll(left);
+      bit = at[other] < at[bit] ? other : bit;
+    }
+    open &= ~(1ull << bit);
+    if (at[bit] > r->end) {
+      return;
+    }
+    const int in[3] = { bit & 3, bit >> 2 & 3, bit >> 4 };
+    const int voxel[3] = { 4 * brick->at[0] + in[0], 4 * brick->at[1] + in[1], 4 * brick->at[2] + in[2] };
+    stratus_hit hit;
+    stratus_hit_of_voxel(batch, ray, voxel, &hit);
+    if (wide_before(&hit, &r->hit)) {
+      r->hit = hit;
+      r->end = fminf(r->end, fmaxf(0.0f, fmaxf(late[0][in[0]], fmaxf(late[1][in[1]], late[2][in[2]]))));
+    }
+  }
+}
+
+/* Gives the place the chunk's next ray that meets the root's box. */
+static void wide_begin(const stratus_hit_chunk* chunk, int* next, wide_ray* r)
+{
+  while (*next < chunk->count && chunk->end[*next] < 0.0f) {
+    ++*next;
+  }
+  r->number = *next < chunk->count ? (*next)++ : -1;
+  if (r->number >= 0) {
+    for (int a = 0; a < 3; ++a) {
+      r->o[a] = chunk->o[a][r->number];
+      r->inverse[a] = chunk->inverse[a][r->number];
+    }
+    r->end = chunk->end[r->number];
+    r->hit = (stratus_hit){ .t = INFINITY };
+    r->visited = 0;
+    r->top = 1;
+    r->stack[0] = 0;
+  }
+}
+
+static void wide_end(stratus_hit_chunk* chunk, const wide_ray* r)
+{
+  chunk->visited[r->number] = (int)r->visited;
+  chunk->state[r->number] = r->hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
+  for (int a = 0; a < 3; ++a) {
+    chunk->cell[a][r->number] = r->hit.voxel[a];
+  }
+}
+
+/* Takes a ray to its next node or brick. Returns false once it has none. */
+static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, wide_ray* r)
+{
+  const stratus_tree* tree = batch->tree;
+  uint64_t entry;
+  do {
+    if (r->top == 0) {
+      return false;
+    }
+    entry = r->stack[--r->top];
+  } while (float_of((uint32_t)(entry >> 32)) > r->end);
+  const uint32_t number = (uint32_t)entry;
+  if (__builtin_expect((number & WIDE_BRICK) != 0, 0)) {
+    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r);
+  } else {
+    wide_node(&tree->wide.nodes[number], batch->slack, r);
+  }
+  if (r->top == 0) {
+    return false;
+  }
+  const uint32_t next = (uint32_t)r->stack[r->top - 1];
+  if (next & WIDE_BRICK) {
+    __builtin_prefetch(&tree->bricks[next & ~WIDE_BRICK]);
+  } else {
+    __builtin_prefetch(&tree->wide.nodes[next]);
+    __builtin_prefetch(&tree->wide.nodes[next].hi[0][8]);
+  }
+  return true;
+}
+
+static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
+{
+  wide_ray rays[WIDE_RAYS];
+  int next = 0, busy = 0, asked = 0;
+  for (int i = 0; i < chunk->count; ++i) {
+    chunk->state[i] = STRATUS_HIT_NONE;
+    chunk->visited[i] = 0;
+  }
+  for (int i = 0; i < WIDE_RAYS; ++i) {
+    wide_begin(chunk, &next, &rays[i]);
+    busy += rays[i].number >= 0;
+  }
+  while (busy > 0) {
+    asked = stratus_hit_fetch(chunk, asked, chunk->count);
+    for (int i = 0; i < WIDE_RAYS; ++i) {
+      if (rays[i].number >= 0 && !wide_step(batch, chunk, &rays[i])) {
+        wide_end(chunk, &rays[i]);
+        wide_begin(chunk, &next, &rays[i]);
+        busy -= rays[i].number < 0;
+      }
+    }
+  }
+}
+
+#endif

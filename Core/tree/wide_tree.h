@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Wide hierarchies over bricks: nodes of up to 16 children, whose boxes fit two cache lines as bytes (compressed wide hierarchies: Ylitie
+ * et al. 2017). The shape is that of a linear hierarchy over Morton codes, so that siblings never overlap. */
+#ifndef STRATUS_WIDE_TREE_H
+#define STRATUS_WIDE_TREE_H
+
+#include "base.h"
+#include "bvh.h"
+#include "voxels.h"
+
+#define STRATUS_WIDE 16
+/* A ray that descends leaves at most 15 siblings behind in each node. The codes have 48 bits, and a node, which opens its children from the
+ * highest bit down, spends 4 of them or ends in bricks. */
+#define STRATUS_WIDE_STACK (15 * 14 + STRATUS_WIDE)
+
+/* The root is node 0, and parents come before children. Child c is node `node + c` if c < inner, else brick `brick + c - inner`. Its box is
+ * at + (lo[c] << shift) .. at + (hi[c] << shift) in voxels, tight where shift is 0. Places behind `count` have lo 255 and hi 0, so that no
+ * ray meets them. */
+typedef struct stratus_wide_node {
+  int32_t at[3];
+  uint32_t node, brick;
+  uint8_t count, inner, shift, unused;
+  uint8_t lo[3][STRATUS_WIDE], hi[3][STRATUS_WIDE];
+  uint8_t padding[8];
+} stratus_wide_node;
+
+_Static_assert(sizeof(stratus_wide_node) == 128, "a node is two cache lines");
+
+typedef struct stratus_wide {
+  stratus_wide_node* nodes; /* at the start of a cache line within `memory` */
+  uint32_t node_count;      /* 0: there is none */
+  void* memory;
+} stratus_wide;
+
+/* Makes a hierarchy over `count` >= 1 bricks, and brings them into the order of its leaves: *bricks is replaced. STRATUS_INVALID_ARGUMENT
+ * if two bricks are at the same place. The result depends on the set alone, not on the bricks' order. On failure nothing is changed. */
+stratus_status stratus_wide_create(stratus_context* context, stratus_brick** bricks, uint32_t count, stratus_wide* wide);
+/* The box of child c, [lo, hi) in voxels. */
+stratus_box stratus_wide_box(const stratus_wide_node* node, int c);
+/* The tight box of a brick's voxels. */
+stratus_box stratus_brick_box(const stratus_brick* brick);
+/* The surface area heuristic as stratus_bvh_sah() has it: a node costs 1, a brick 1. */
+double stratus_wide_sah(const stratus_wide* wide);
+
+#endif
