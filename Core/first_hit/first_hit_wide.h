@@ -15,9 +15,11 @@
 #define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
 
 typedef struct wide_ray {
-  float o[3], inverse[3];
-  float end;  /* what the ray enters behind it cannot be its hit */
-  int number; /* in the chunk; -1: none */
+  float inverse[3];
+  float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
+  int near[3], far[3];     /* offsets in a node: the planes of boxes where the ray enters and leaves them */
+  float end;               /* what the ray enters behind it cannot be its hit */
+  int number;              /* in the chunk; -1: none */
   int top;
   uint32_t visited;
   stratus_hit hit;
@@ -108,9 +110,9 @@ static inline vfloat wide_planes(const uint8_t bytes[STRATUS_WIDTH])
 #endif
 
 /* Pushes the children of the node that the ray may meet before its end. */
-static inline void wide_node(const stratus_wide_node* node, float slack, wide_ray* r)
+static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
 {
-  const vfloat scale = v_set(float_of((uint32_t)(node->shift + 127) << 23)); /* 2^shift */
+  const float scale = float_of((uint32_t)(node->shift + 127) << 23); /* 2^shift */
 #if STRATUS_ISA != 2
   const int least = r->top;
 #endif
@@ -118,12 +120,11 @@ static inline void wide_node(const stratus_wide_node* node, float slack, wide_ra
   for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
     vfloat enter = v_set(0.0f), leave = v_set(r->end);
     for (int a = 0; a < 3; ++a) {
-      const bool up = r->inverse[a] > 0.0f;
-      const float from = (float)node->at[a] - r->o[a], grown = up ? slack : -slack;
-      const vfloat inverse = v_set(r->inverse[a]);
-      const uint8_t *near = (up ? node->lo[a] : node->hi[a]) + part, *far = (up ? node->hi[a] : node->lo[a]) + part;
-      enter = v_max(v_fma(wide_planes(near), scale, v_set(from - grown)) * inverse, enter);
-      leave = v_min(v_fma(wide_planes(far), scale, v_set(from + grown)) * inverse, leave);
+      const float inverse = r->inverse[a];
+      const vfloat speed = v_set(scale * inverse);
+      const vfloat near = wide_planes((const uint8_t*)node + r->near[a] + part), far = wide_planes((const uint8_t*)node + r->far[a] + part);
+      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->early[a]) * inverse)), enter);
+      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->late[a]) * inverse)), leave);
     }
     const vmask met = v_le(enter, leave);
 #if STRATUS_ISA == 2
@@ -147,6 +148,15 @@ static inline bool wide_before(const stratus_hit* a, const stratus_hit* b)
   return a->t < b->t || (a->t == b->t && a->t < INFINITY && axis_a < axis_b);
 }
 
+static inline float wide_larger(float a, float b)
+{
+  return a > b ? a : b;
+}
+static inline float wide_smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+
 /* Tries the brick's voxels that the ray may meet, the nearest first. */
 static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_ray* r)
 {
@@ -155,21 +165,24 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
   uint64_t open = 0;
   ++r->visited;
   for (int a = 0; a < 3; ++a) {
-    const bool up = r->inverse[a] > 0.0f;
+    const int up = r->inverse[a] > 0.0f;
     for (int i = 0; i < 4; ++i) {
-      const float lo = (float)(4 * brick->at[a] + i) - r->o[a], near = up ? lo : lo + 1.0f, far = up ? lo + 1.0f : lo;
-      const float grown = up ? batch->slack : -batch->slack;
-      enter[a][i] = (near - grown) * r->inverse[a];
-      late[a][i] = (near + grown) * r->inverse[a];
-      leave[a][i] = (far + grown) * r->inverse[a];
+      const int lo = 4 * brick->at[a] + i;
+      const float near = (float)(lo + !up), far = (float)(lo + up);
+      enter[a][i] = (near - r->early[a]) * r->inverse[a];
+      late[a][i] = (near - r->late[a]) * r->inverse[a];
+      leave[a][i] = (far - r->late[a]) * r->inverse[a];
     }
   }
   for (int zy = 0; zy < 16; ++zy) {
-    const float from = fmaxf(0.0f, fmaxf(enter[2][zy >> 2], enter[1][zy & 3]));
-    const float to = fminf(r->end, fminf(leave[2][zy >> 2], leave[1][zy & 3]));
+    const float from = wide_larger(0.0f, wide_larger(enter[2][zy >> 2], enter[1][zy & 3]));
+    const float to = wide_smaller(r->end, wide_smaller(leave[2][zy >> 2], leave[1][zy & 3]));
+    if (from > to || !(brick->mask >> 4 * zy & 15)) {
+      continue;
+    }
     for (int x = 0; x < 4; ++x) {
-      at[4 * zy + x] = fmaxf(from, enter[0][x]);
-      open |= (uint64_t)(at[4 * zy + x] <= fminf(to, leave[0][x])) << (4 * zy + x);
+      at[4 * zy + x] = wide_larger(from, enter[0][x]);
+      open |= (uint64_t)(at[4 * zy + x] <= wide_smaller(to, leave[0][x])) << (4 * zy + x);
     }
   }
   open &= brick->mask;
@@ -189,13 +202,13 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
     stratus_hit_of_voxel(batch, ray, voxel, &hit);
     if (wide_before(&hit, &r->hit)) {
       r->hit = hit;
-      r->end = fminf(r->end, fmaxf(0.0f, fmaxf(late[0][in[0]], fmaxf(late[1][in[1]], late[2][in[2]]))));
+      r->end = wide_smaller(r->end, wide_larger(0.0f, wide_larger(late[0][in[0]], wide_larger(late[1][in[1]], late[2][in[2]]))));
     }
   }
 }
 
 /* Gives the place the chunk's next ray that meets the root's box. */
-static void wide_begin(const stratus_hit_chunk* chunk, int* next, wide_ray* r)
+static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int* next, wide_ray* r)
 {
   while (*next < chunk->count && chunk->end[*next] < 0.0f) {
     ++*next;
@@ -203,8 +216,16 @@ static void wide_begin(const stratus_hit_chunk* chunk, int* next, wide_ray* r)
   r->number = *next < chunk->count ? (*next)++ : -1;
   if (r->number >= 0) {
     for (int a = 0; a < 3; ++a) {
-      r->o[a] = chunk->o[a][r->number];
-      r->inverse[a] = chunk->inverse[a][r->number];
+      const float inverse = chunk->inverse[a][r->number], o = chunk->o[a][r->number];
+      const bool up = inverse > 0.0f;
+      const float grown = up ? batch->slack : -batch->slack;
+      const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)a),
+                hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)a);
+      r->inverse[a] = inverse;
+      r->early[a] = o + grown;
+      r->late[a] = o - grown;
+      r->near[a] = up ? lo : hi;
+      r->far[a] = up ? hi : lo;
     }
     r->end = chunk->end[r->number];
     r->hit = (stratus_hit){ .t = INFINITY };
@@ -238,7 +259,7 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
   if (__builtin_expect((number & WIDE_BRICK) != 0, 0)) {
     wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r);
   } else {
-    wide_node(&tree->wide.nodes[number], batch->slack, r);
+    wide_node(&tree->wide.nodes[number], r);
   }
   if (r->top == 0) {
     return false;
@@ -262,7 +283,7 @@ static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
     chunk->visited[i] = 0;
   }
   for (int i = 0; i < WIDE_RAYS; ++i) {
-    wide_begin(chunk, &next, &rays[i]);
+    wide_begin(batch, chunk, &next, &rays[i]);
     busy += rays[i].number >= 0;
   }
   while (busy > 0) {
@@ -270,7 +291,7 @@ static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
     for (int i = 0; i < WIDE_RAYS; ++i) {
       if (rays[i].number >= 0 && !wide_step(batch, chunk, &rays[i])) {
         wide_end(chunk, &rays[i]);
-        wide_begin(chunk, &next, &rays[i]);
+        wide_begin(batch, chunk, &next, &rays[i]);
         busy -= rays[i].number < 0;
       }
     }

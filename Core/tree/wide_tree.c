@@ -30,8 +30,8 @@ stratus_box stratus_wide_box(const stratus_wide_node* node, int c)
 {
   stratus_box box;
   for (int a = 0; a < 3; ++a) {
-    box.lo[a] = node->at[a] + (node->lo[a][c] << node->shift);
-    box.hi[a] = node->at[a] + (node->hi[a][c] << node->shift);
+    box.lo[a] = (int32_t)node->at[a] + (node->lo[a][c] << node->shift);
+    box.hi[a] = (int32_t)node->at[a] + (node->hi[a][c] << node->shift);
   }
   return box;
 }
@@ -234,7 +234,7 @@ static void enclose(stratus_wide_node* node, const stratus_brick* bricks, const 
   }
   for (int a = 0; a < 3; ++a) {
     extent = all.hi[a] - all.lo[a] > extent ? all.hi[a] - all.lo[a] : extent;
-    node->at[a] = all.lo[a];
+    node->at[a] = (float)all.lo[a];
   }
   while ((extent + (1 << shift) - 1) >> shift > UINT8_MAX) {
     ++shift;

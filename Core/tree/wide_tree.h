@@ -17,7 +17,7 @@
  * at + (lo[c] << shift) .. at + (hi[c] << shift) in voxels, tight where shift is 0. Places behind `count` have lo 255 and hi 0, so that no
  * ray meets them. */
 typedef struct stratus_wide_node {
-  int32_t at[3];
+  float at[3]; /* whole numbers */
   uint32_t node, brick;
   uint8_t count, inner, shift, unused;
   uint8_t lo[3][STRATUS_WIDE], hi[3][STRATUS_WIDE];
