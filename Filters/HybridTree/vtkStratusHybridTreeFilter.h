@@ -76,7 +76,7 @@ public:
   void SetPurposeToFirstHits() { this->SetPurpose(FIRST_HITS); }
   //@}
 
-  enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS };
+  enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS, WIDE };
   //@{
   /**
    * Set/Get how the tree is built. Default HYBRID.
@@ -84,8 +84,10 @@ public:
    * - HYBRID_PAPER: the method of Guo et al. 2025 as published.
    * - DISTANCE, OCTANT: one distance field over everything; OCTANT stores a distance for each octant of ray directions.
    * - SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS: hierarchies of single voxels, for comparison.
+   * - WIDE: one leaf of all bricks with a hierarchy of 16 children a node over them, for sets that are large and sparse. Its nodes are not
+   *   among the boxes of the second output.
    */
-  vtkSetClampMacro(Method, int, HYBRID, K_MEANS);
+  vtkSetClampMacro(Method, int, HYBRID, WIDE);
   vtkGetMacro(Method, int);
   void SetMethodToHybrid() { this->SetMethod(HYBRID); }
   void SetMethodToHybridPaper() { this->SetMethod(HYBRID_PAPER); }
@@ -98,6 +100,7 @@ public:
   void SetMethodToAgglomerative() { this->SetMethod(AGGLOMERATIVE); }
   void SetMethodToDensityPeaks() { this->SetMethod(DENSITY_PEAKS); }
   void SetMethodToKMeans() { this->SetMethod(K_MEANS); }
+  void SetMethodToWide() { this->SetMethod(WIDE); }
   const char* GetMethodAsString();
   //@}
 

@@ -95,7 +95,7 @@ def trees():
     check(tree.GetNumberOfVoxels() == (values == 1).sum(), "none above the upper threshold")
     tree.SetUpperThreshold(5)
     seen = {}
-    for name in "Hybrid HybridPaper Distance Octant SAH Sweep LBVH PLOC Agglomerative DensityPeaks KMeans".split():
+    for name in "Hybrid HybridPaper Distance Octant SAH Sweep LBVH PLOC Agglomerative DensityPeaks KMeans Wide".split():
         getattr(tree, "SetMethodTo" + name)()
         seen[tree.GetMethodAsString()] = built()
         check(tree.GetMethod() == len(seen) - 1, f"SetMethodTo{name} is method {tree.GetMethod()}")
@@ -149,7 +149,7 @@ def trees():
     tree.SetPurposeToRayCasting()
     check(built() != strict and tree.GetPurpose() == tree.RAY_CASTING, "cells and voxels make one tree")
     clamps(tree, "Purpose", tree.RAY_CASTING, tree.FIRST_HITS)
-    clamps(tree, "Method", tree.HYBRID, tree.K_MEANS)
+    clamps(tree, "Method", tree.HYBRID, tree.WIDE)
     tree.SetMethodToLBVH()
     reports(tree, built, ["effective voxels", "hierarchy"])
 

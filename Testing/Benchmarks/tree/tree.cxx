@@ -19,8 +19,8 @@ const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
                      archipelago and archipelago-1024, the values > 0 of that volume, take much memory: only where named
-  --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans, all but
-                     distance and octant with :N behind it, bricks (the first three) or voxels in a leaf; embree:low|medium|high,
+  --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide, all
+                     but distance, octant and wide with :N behind it, bricks (the first three) or voxels in a leaf; embree:low|medium|high,
                      embree:packet and embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all;
                      stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and take sets of up to
                      35,000 voxels)
