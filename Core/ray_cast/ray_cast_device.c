@@ -258,7 +258,7 @@ static stratus_status upload_all(stratus_ray_caster* caster, const stratus_ray_c
   TRY(upload_data(caster, frame, in_pages));
   if (in_pages) {
     const uint64_t uploads = caster->uploads;
-    TRY(stratus_ray_pages_update(caster, &caster->device->pages, frame, variant, text, capacity, why_not));
+    TRY(stratus_ray_pages_update(caster, &caster->device->pages, variant, text, capacity, why_not));
     if (*why_not) {
       return STRATUS_OK;
     }

@@ -34,13 +34,14 @@ void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int components,
 
 /* ---- which pages */
 
-/* Gives how many voxels beyond an occupied block's cells rays may read, below and above it. */
-static void find_margin(const stratus_ray_caster* caster, bool nearest, stratus_ray_variant variant, int margin[2])
+/* Gives how many voxels beyond an occupied block's cells rays may read, below and above it. The nearest value to a sample may lie beyond
+ * them, too: where it shows, the block about it is occupied. */
+static void find_margin(const stratus_ray_caster* caster, stratus_ray_variant variant, int margin[2])
 {
   const bool lit = variant >= STRATUS_VARIANT_SHADING_MIDPOINT || variant == STRATUS_VARIANT_ISOSURFACE;
   const bool segments = variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED;
   margin[0] = lit ? 2 : 0; /* central differences, at a place that may be rounded into the next cell */
-  margin[1] = lit ? 3 : nearest;
+  margin[1] = lit ? 3 : 0;
   if (segments) { /* a segment that shows anything may end in a transparent block, whose value there counts */
     const int segment = (int)ceil(stratus_ray_voxels_a_sample(caster)) + 1;
     margin[0] += segment;
@@ -248,14 +249,14 @@ static stratus_status replace_pages(stratus_ray_caster* caster, stratus_ray_page
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_pages_update(stratus_ray_caster* caster, stratus_ray_pages* pages, const stratus_ray_cast_frame* frame,
-  stratus_ray_variant variant, char* text, size_t capacity, const char** why_not)
+stratus_status stratus_ray_pages_update(
+  stratus_ray_caster* caster, stratus_ray_pages* pages, stratus_ray_variant variant, char* text, size_t capacity, const char** why_not)
 {
   stratus_context* context = caster->context;
   const stratus_volume* volume = &caster->traversed;
   int margin[2];
   *why_not = NULL;
-  find_margin(caster, frame->arguments->values.nearest, variant, margin);
+  find_margin(caster, variant, margin);
   TRY(make_occupancy(caster));
   if (pages->data_serial != caster->data_serial) {
     stratus_release(context, pages->entries);

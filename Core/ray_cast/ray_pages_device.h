@@ -20,8 +20,8 @@ typedef struct stratus_ray_pages {
 
 /* Gives the device the pages of the occupied blocks and of all that `variant` reads about them, unless it has them. Makes the occupancy
  * where there is none. *why_not: the reason why they do not fit, written to `text`; NULL where they do. */
-stratus_status stratus_ray_pages_update(stratus_ray_caster* caster, stratus_ray_pages* pages, const stratus_ray_cast_frame* frame,
-  stratus_ray_variant variant, char* text, size_t capacity, const char** why_not);
+stratus_status stratus_ray_pages_update(
+  stratus_ray_caster* caster, stratus_ray_pages* pages, stratus_ray_variant variant, char* text, size_t capacity, const char** why_not);
 /* Tells rays how the page table is laid out. */
 void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int components, stratus_ray_cast_arguments* a);
 /* Releases the buffers and all memory. */

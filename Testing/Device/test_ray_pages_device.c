@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Volumes that are larger than the device's largest allocation, which is pretended to be small: the pictures from pages equal those of the
  * whole volume to the bit, in every rule and mode; pages are sent once, and anew where more blocks show; what does not fit is drawn on the
- * host, and the report says why. */
+ * host, and the report says why. Run with the argument `--tiny` it draws a few rays: enough for a simulator to see the kernels. */
 #include "picture_case.h"
 #include "structures.h"
 
@@ -11,6 +11,9 @@
 #define SIDES 126, 130, 134
 #define VALUES (126 * 130 * 134)
 #define LOCAL_TABLE_BYTES 400000
+/* With --tiny: of the volume, which the tables of types of one byte fit, and of the picture. */
+#define TINY_SIDES 74, 75, 74
+#define TINY_PICTURE 8
 
 static picture whole, paged;
 static uint8_t labels[VALUES];
@@ -40,6 +43,7 @@ static const page_case cases[] = {
   { "midpoint, dense", STRATUS_INT16, STRATUS_MODE_COMPOSITE, MIDPOINT, LINEAR, STRATUS_STRUCTURE_NONE, .7, .dense = 1, .divisor = 2 },
   { "pre-integrated, long", STRATUS_FLOAT32, STRATUS_MODE_COMPOSITE, PREINTEGRATED, LINEAR, STRATUS_STRUCTURE_DISTANCE, 7.3, .divisor = 3 },
   { "pre-integrated", STRATUS_FLOAT64, STRATUS_MODE_COMPOSITE, PREINTEGRATED, LINEAR, STRATUS_STRUCTURE_OCTANT, 1.3, .divisor = 3, .centered = 1, .ghosts = 1 },
+  { "pre-integrated, bytes", STRATUS_UINT8, STRATUS_MODE_COMPOSITE, PREINTEGRATED, LINEAR, STRATUS_STRUCTURE_DISTANCE, .9, .divisor = 1 },
   { "cells", STRATUS_UINT16, STRATUS_MODE_COMPOSITE, CELLS, LINEAR, STRATUS_STRUCTURE_BLOCK, 0, .divisor = 3 },
   { "nearest", STRATUS_INT64, STRATUS_MODE_COMPOSITE, MIDPOINT, NEAREST, STRATUS_STRUCTURE_DISTANCE, .9, .divisor = 4 },
   { "cells, nearest", STRATUS_FLOAT32, STRATUS_MODE_COMPOSITE, CELLS, NEAREST, STRATUS_STRUCTURE_DISTANCE, 0, .divisor = 3 },
@@ -64,10 +68,15 @@ static void set_peak(picture_case* c, double at)
 
 static void make_case(const page_case* p, uint32_t seed, picture_case* c)
 {
-  case_create(host_context, c, p->type, SIDES, seed);
+  if (tiny) {
+    case_create(host_context, c, p->type, TINY_SIDES, seed);
+  } else {
+    case_create(host_context, c, p->type, SIDES, seed);
+  }
   const double base = case_type_values[p->type].base, scale = case_type_values[p->type].scale;
+  const double shown = tiny && p->mode != STRATUS_MODE_MAXIMUM ? 0.4 : 0.62; /* few values reach it */
   if (!p->dense) {
-    set_peak(c, p->mode == STRATUS_MODE_MINIMUM ? -0.5 : p->sample_distance > 2.0 ? 0.75 : 0.62);
+    set_peak(c, p->mode == STRATUS_MODE_MINIMUM ? -0.5 : p->sample_distance > 2.0 ? 0.75 : shown);
   }
   c->options.mode = p->mode;
   c->options.sampling = p->sampling;
@@ -79,7 +88,7 @@ static void make_case(const page_case* p, uint32_t seed, picture_case* c)
   c->options.shading.specular = 0.3;
   c->options.contour_count = 1;
   c->options.contours[0] = base + 0.65 * scale;
-  c->options.average_range[0] = base + 0.62 * scale;
+  c->options.average_range[0] = base + shown * scale;
   c->options.average_range[1] = base + 0.8 * scale;
   c->volume.cell_centered = p->centered;
   if (p->components) { /* every second value the other component */
@@ -116,7 +125,11 @@ static void render(stratus_ray_caster* caster, const picture_case* c, picture* p
   stratus_transfer functions[2] = { c->transfer, c->transfer }; /* of the second component, or of a label */
   functions[1].color = green;
   functions[1].color_count = 1;
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples };
+  const stratus_image image = { .width = tiny ? TINY_PICTURE : CASE_WIDTH,
+    .height = tiny ? TINY_PICTURE : CASE_HEIGHT,
+    .rgba = p->rgba,
+    .depth = p->depth,
+    .samples = p->samples };
   const stratus_status status = stratus_ray_caster_render(caster, &c->volume, functions, &c->camera, &c->options, &image, &p->report);
   if (status != STRATUS_OK) {
     print_error("%s\n", stratus_context_message(device));
@@ -154,8 +167,8 @@ static void compare(const page_case* p, const picture_case* c)
 {
   render_alone(c, 0, &whole);
   assert_null(strstr(whole.report.why, "pages"));
-  assert_true(case_lit(&whole) > 50);
-  render_alone(c, (volume_bytes(c) - 1) / (size_t)p->divisor, &paged);
+  assert_true(case_lit(&whole) > (tiny ? 3 : 50));
+  render_alone(c, (volume_bytes(c) - 1) / (size_t)(tiny ? 1 : p->divisor), &paged);
   if (!strstr(paged.report.why, "the device has ")) {
     fail_msg("%s: %s", p->name, paged.report.why);
   }
@@ -166,8 +179,12 @@ static void pages_draw_the_whole_volumes_bits(void** state)
 {
   const bool one_ray = *(const bool*)*state;
   device->device->is_cpu = !one_ray;
-  for (uint32_t i = one_ray; i < COUNT_OF(cases); i += test_option("--few") ? 4 : one_ray ? 3 : 1) {
+  device->device->builds = !tiny; /* other tests show a simulator what builds */
+  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : test_option("--few") ? 4 : one_ray ? 3 : 1) {
     picture_case c;
+    if (tiny && cases[i].type > STRATUS_UINT8) {
+      continue;
+    }
     make_case(&cases[i], 40 + i, &c);
     compare(&cases[i], &c);
     print_message("             %s: %s\n", cases[i].name, strstr(paged.report.why, "the device has "));
@@ -295,6 +312,57 @@ static void what_does_not_fit_is_drawn_on_the_host(void** state)
   case_destroy(&c);
 }
 
+/* Calls of OpenCL fail, one a try and all behind it. What the device has no memory for the host draws; any other failure is an error; and
+ * the next picture has the pages again. */
+static void pages_survive_a_device_that_fails(void** state)
+{
+  static const int errors[] = { CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_DEVICE_NOT_AVAILABLE };
+  static const page_case bytes = {
+    .type = STRATUS_UINT8, .sampling = MIDPOINT, .structure = STRATUS_STRUCTURE_DISTANCE, .sample_distance = 0.7
+  };
+  const size_t before = device->device->largest_allocation;
+  picture_case c;
+  int on_host = 0, refused = 0;
+  (void)state;
+  make_case(&bytes, 40, &c);
+  render_alone(&c, 0, &whole);
+  render_alone(&c, volume_bytes(&c) / 3, &paged); /* builds the kernels */
+  const stratus_image image = {
+    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = paged.rgba, .depth = paged.depth, .samples = paged.samples
+  };
+  device->device->largest_allocation = volume_bytes(&c) / 3;
+  for (int64_t n = 0, met = 1; met; n += test_option("--few") ? 5 : 1) {
+    met = 0;
+    for (size_t e = 0; e < COUNT_OF(errors); ++e) {
+      stratus_ray_caster* caster = NULL;
+      assert_int_equal(stratus_ray_caster_create(device, &caster), STRATUS_OK);
+      stratus_device_fail_after(device->device, n, errors[e]);
+      const stratus_status status = stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, &paged.report);
+      met = device->device->calls_left == 0;
+      stratus_device_fail_after(device->device, -1, 0);
+      if (status == STRATUS_OK && strstr(paged.report.why, "drawn on the host: ")) {
+        ++on_host;
+        assert_int_equal(errors[e], CL_MEM_OBJECT_ALLOCATION_FAILURE);
+        assert_memory_equal(whole.rgba, paged.rgba, sizeof whole.rgba);
+      } else if (status != STRATUS_OK) {
+        ++refused;
+        assert_int_equal(status, STRATUS_DEVICE_ERROR);
+        assert_int_equal(errors[e], CL_DEVICE_NOT_AVAILABLE);
+      } else {
+        assert_same("where a structure was built on the host, if anything failed");
+      }
+      render(caster, &c, &paged);
+      assert_non_null(strstr(paged.report.why, "the device has "));
+      assert_same("after a failure");
+      stratus_ray_caster_destroy(caster);
+    }
+  }
+  print_message("             %d pictures drawn on the host, %d refused\n", on_host, refused);
+  assert_true(on_host >= 3 && refused >= 3);
+  device->device->largest_allocation = before;
+  case_destroy(&c);
+}
+
 int test_ray_pages_device(void)
 {
   if (no_device()) {
@@ -307,6 +375,8 @@ int test_ray_pages_device(void)
     cmocka_unit_test(pages_serve_the_local_rule),
     cmocka_unit_test(pages_are_sent_once_and_anew_where_more_shows),
     cmocka_unit_test(what_does_not_fit_is_drawn_on_the_host),
+    cmocka_unit_test(pages_survive_a_device_that_fails),
   };
-  return cmocka_run_group_tests(tests, open_device, close_device);
+  const struct CMUnitTest few[] = { tests[0], tests[1] };
+  return tiny ? cmocka_run_group_tests(few, open_device, close_device) : cmocka_run_group_tests(tests, open_device, close_device);
 }
