@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in value_range.cl, occupancy.cl
- * and distance_map.cl. */
+ * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in skipping.cl. */
 #include "volume_device.h"
 
 #include "device.h"
@@ -77,8 +76,8 @@ static stratus_status run_ranges(
     ARGUMENT(size), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
   const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx),
     ARGUMENT(size), ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
-  TRY(stratus_device_launch(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
-  return stratus_device_launch(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
+  TRY(stratus_device_launch(context, "skipping", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
+  return stratus_device_launch(context, "skipping", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
 }
 
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
@@ -92,6 +91,12 @@ stratus_status stratus_device_value_range(stratus_context* context, const stratu
   TRY_CLEANUP(stratus_device_read(context, b.lo, 0, count * sizeof(float), ranges->lo));
   TRY_CLEANUP(stratus_device_read(context, b.hi, 0, count * sizeof(float), ranges->hi));
   TRY_CLEANUP(stratus_device_read(context, b.gaps, 0, count, ranges->gaps));
+  ranges->on_device = true;
+  if (!stratus_device_is_cpu(context->device)) { /* a processor's buffers can be the host's arrays */
+    ranges->device_lo = b.lo;
+    ranges->device_hi = b.hi;
+    b.lo = b.hi = NULL;
+  }
 
 cleanup:
   release_buffers((cl_mem[]){ b.values, b.column_lo, b.column_hi, b.column_bad, b.lo, b.hi, b.gaps }, 7);
@@ -110,15 +115,20 @@ stratus_status stratus_device_occupancy(
   const cl_int gaps_count = gaps_show, interval_count = (cl_int)shown->count;
   const size_t interval_bytes = shown->count > 0 ? (size_t)shown->count * sizeof *shown->of : sizeof none;
 
-  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
-  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
+  cl_mem range[2] = { ranges->device_lo, ranges->device_hi };
+  if (!range[0]) {
+    TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
+    TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
+    range[0] = lo;
+    range[1] = hi;
+  }
   TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
   TRY_CLEANUP(make_input(context, interval_bytes, shown->count > 0 ? (const void*)shown->of : none, &intervals));
   TRY_CLEANUP(make_buffer(context, count, &occupied));
-  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(intervals), ARGUMENT(interval_count),
-    ARGUMENT(gaps_count), ARGUMENT(count), ARGUMENT(occupied) };
+  const stratus_kernel_argument arguments[] = { ARGUMENT(range[0]), ARGUMENT(range[1]), ARGUMENT(gaps), ARGUMENT(intervals),
+    ARGUMENT(interval_count), ARGUMENT(gaps_count), ARGUMENT(count), ARGUMENT(occupied) };
   TRY_CLEANUP(stratus_device_launch(
-    context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+    context, "skipping", NULL, "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:
@@ -147,9 +157,9 @@ static stratus_status run_sums(stratus_context* context, const int64_t blocks[3]
     ARGUMENT(sx) };
   const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz),
     ARGUMENT(plane) };
-  TRY(stratus_device_launch(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
-  TRY(stratus_device_launch(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
-  return stratus_device_launch(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
+  TRY(stratus_device_launch(context, "skipping", NULL, "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
+  TRY(stratus_device_launch(context, "skipping", NULL, "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
+  return stratus_device_launch(context, "skipping", NULL, "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
 }
 
 static stratus_status search_maps(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
@@ -166,7 +176,7 @@ static stratus_status search_maps(stratus_context* context, stratus_distance_map
     const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
     const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x),
       ARGUMENT(y), ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
-    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
+    TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "search", arguments, COUNT_OF(arguments), map->blocks));
     TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes + (size_t)octant * map->map_bytes));
   }
 
@@ -186,14 +196,14 @@ static stratus_status paper_map(stratus_context* context, stratus_distance_map* 
   TRY_CLEANUP(make_buffer(context, (size_t)count, &distance[1]));
   const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(count), ARGUMENT(distance[0]) };
   TRY_CLEANUP(
-    stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
+    stratus_device_launch(context, "skipping", NULL, "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
   for (cl_int axis = 0; axis < 3; ++axis) {
     const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
       ARGUMENT(distance[(axis + 1) & 1]) };
-    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), map->blocks));
+    TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "paper_axis", pass, COUNT_OF(pass), map->blocks));
   }
   const stratus_kernel_argument place[] = { ARGUMENT(distance[1]), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
-  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_place", place, COUNT_OF(place), (const int64_t[]){ nx, rows, 1 }));
+  TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "paper_place", place, COUNT_OF(place), (const int64_t[]){ nx, rows, 1 }));
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 
 cleanup:
