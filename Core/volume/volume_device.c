@@ -185,6 +185,58 @@ cleanup:
   return status;
 }
 
+/* Bytes of a row of distances at both its ends: ROW_MARGIN in skipping.cl. */
+#define ROW_MARGIN 64
+
+/* Returns the bytes of one of the four arrays of distances that a processor sweeps. */
+static size_t sweep_bytes(const stratus_distance_map* map)
+{
+  return (map->pitch + 2 * ROW_MARGIN) * (size_t)(map->blocks[1] * map->blocks[2]);
+}
+
+/* Launches a kernel of skipping.cl whose items are few and long: each is a work-group. */
+static stratus_status launch_long(
+  stratus_context* context, const char* name, const stratus_kernel_argument* arguments, size_t count, int64_t items)
+{
+  cl_kernel kernel;
+  const size_t global = (size_t)items, local = 1;
+  TRY(stratus_device_kernel(context, "skipping", NULL, name, &kernel));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
+  }
+  return stratus_device_run(context, kernel, 1, &global, &local);
+}
+
+/* A map of full distances by a processor: the host's sweeps. */
+static stratus_status sweep_map(
+  stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem d[4] = { NULL };
+  const int64_t* n = map->blocks;
+  const cl_long nx = n[0], ny = n[1], nz = n[2], pitch = (cl_long)map->pitch;
+  cl_long lo[3] = { 0 }, hi[3] = { 0 }; /* the box in which distances to empty blocks are needed */
+  for (int a = 1; a < 3 && occupancy->count > 0 && occupancy->count < n[0] * n[1] * n[2]; ++a) {
+    lo[a] = occupancy->lo[a] > 0 ? occupancy->lo[a] - 1 : 0;
+    hi[a] = occupancy->hi[a] < n[a] ? occupancy->hi[a] + 1 : n[a];
+  }
+  for (int i = 0; i < 4; ++i) {
+    TRY_CLEANUP(make_buffer(context, sweep_bytes(map), &d[i]));
+  }
+  const stratus_kernel_argument planes[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]),
+    ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]) };
+  const stratus_kernel_argument rows[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]),
+    ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]), ARGUMENT(bytes) };
+  TRY_CLEANUP(launch_long(context, "distance_planes", planes, COUNT_OF(planes), 2 * nz));
+  TRY_CLEANUP(launch_long(context, "distance_sweeps", planes + 1, COUNT_OF(planes) - 1, 4));
+  TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "distance_rows", rows, COUNT_OF(rows), (const int64_t[]){ ny, nz, 1 }));
+  TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
+
+cleanup:
+  release_buffers(d, 4);
+  return status;
+}
+
 static stratus_status paper_map(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
 {
   stratus_status status = STRATUS_OK;
@@ -221,6 +273,9 @@ stratus_status stratus_device_distance_map(stratus_context* context, const strat
   TRY_CLEANUP(make_buffer(context, map->map_bytes, &bytes));
   if (map->kind == STRATUS_DISTANCE_PAPER) {
     TRY_CLEANUP(paper_map(context, map, occupied, bytes));
+  } else if (map->kind == STRATUS_DISTANCE_FULL && stratus_device_is_cpu(context->device) &&
+    sweep_bytes(map) <= stratus_device_largest_allocation(context->device)) {
+    TRY_CLEANUP(sweep_map(context, occupancy, map, occupied, bytes));
   } else {
     TRY_CLEANUP(search_maps(context, map, occupied, bytes));
   }

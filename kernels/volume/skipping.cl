@@ -21,8 +21,8 @@ typedef float bias_type; /* 0 */
 #pragma OPENCL FP_CONTRACT OFF
 
 /* ---- value ranges
- * The same as Core/volume/value_range.c builds. The kernel `columns` reduces, for a row of blocks, each column of values (all y and z of one
- * x), so that neighbouring work items read neighbouring values. The kernel `blocks` then reduces the few columns of each block. */
+ * The same as Core/volume/value_range.c builds. The kernel `columns` reduces, for a row of blocks, each column of values (all y and z of
+ * one x), so that neighbouring work items read neighbouring values. The kernel `blocks` then reduces the few columns of each block. */
 
 /* The column of block row (j, k) at x: values (x, j size .. (j+1) size, k size .. (k+1) size), as far as the volume goes. Columns are
  * indexed as blocks are, x fastest. */
@@ -186,6 +186,143 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
     }
   }
   bytes[row * pitch + at[0]] = (uchar)(least + (inside ? DISTANCE_OCCUPIED : 0));
+}
+
+/* ---- distance maps, for a processor
+ * The host's sweeps (Core/volume/distance_sweep.c), 16 blocks at once. Distances to occupied blocks (target 1) and to empty ones (0) each
+ * have two arrays, of which one is swept towards +z and one towards -z. A row has ROW_MARGIN bytes of DISTANCE_MAX at either end; behind
+ * its last block, up to the pitch, it has the distances of a wider grid, which change none within. Distances to empty blocks are found in
+ * the box (y0, z0) .. (y1, z1), which holds the occupied ones and a layer about them. */
+#define ROW_MARGIN 64
+
+/* Where row (j, k) begins. */
+static long row_at(long pitch, long ny, long j, long k) { return (k * ny + j) * (pitch + 2 * ROW_MARGIN) + ROW_MARGIN; }
+
+/* The flags of blocks x .. x + 15 of a row. Those beyond its end are `other`. */
+static uchar16 load_flags(__global const uchar* occupied, long x, long nx, uchar other)
+{
+  if (x + 16 <= nx) {
+    return vload16(0, occupied + x);
+  }
+  uchar flags[16];
+  for (int lane = 0; lane < 16; ++lane) {
+    flags[lane] = x + lane < nx ? occupied[x + lane] : other;
+  }
+  return vload16(0, flags);
+}
+
+/* Distances along x of one row, by steps of 1, 2, 4 .. 64. `spare`: a second row. */
+static void spread_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row, __global uchar* spare)
+{
+  __global uchar *from = row, *to = spare;
+  const uchar16 far = (uchar16)(DISTANCE_MAX);
+  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16(far, 0, from + x);
+    vstore16(far, 0, to + x);
+  }
+  for (long x = 0; x < n; x += 16) {
+    const uchar16 other = load_flags(occupied, x, n, !target) ^ (uchar16)(target); /* 0 or 1 */
+    vstore16(other * far, 0, from + x);
+  }
+  for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) {
+    for (long x = 0; x < n; x += 16) {
+      const uchar16 beside = min(vload16(0, from + x - step), vload16(0, from + x + step)) + (uchar16)((uchar)step);
+      vstore16(min(vload16(0, from + x), beside), 0, to + x);
+    }
+    __global uchar* swap = from;
+    from = to;
+    to = swap;
+  }
+  for (long x = 0; from != row && x < n; x += 16) {
+    vstore16(vload16(0, from + x), 0, row + x);
+  }
+}
+
+/* The least of each block and its neighbours along x. */
+static uchar16 near_of(__global const uchar* at) { return min(min(vload16(0, at - 1), vload16(0, at)), vload16(0, at + 1)); }
+
+/* row[x] = min(row[x], 1 + the least of before[x - 1 .. x + 1]). */
+static void step_row(__global const uchar* before, long n, __global uchar* row)
+{
+  for (long x = 0; x < n; x += 16) {
+    vstore16(min(vload16(0, row + x), near_of(before + x) + (uchar16)(1)), 0, row + x);
+  }
+}
+
+/* Distances within each plane. One item a plane and target. */
+__kernel void distance_planes(__global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1,
+  __global uchar* up_occupied, __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty)
+{
+  const long item = (long)get_global_id(0), k = item % nz;
+  const int to_empty = item >= nz;
+  if (item >= 2 * nz || (to_empty && (k < z0 || k >= z1))) {
+    return;
+  }
+  __global uchar *up = to_empty ? up_empty : up_occupied, *down = to_empty ? down_empty : down_occupied;
+  const long first = to_empty ? y0 : 0, beyond = to_empty ? y1 : ny, stride = pitch + 2 * ROW_MARGIN;
+  for (long j = first; j < beyond; ++j) {
+    const long at = row_at(pitch, ny, j, k);
+    spread_row(occupied + (k * ny + j) * nx, (uchar)!to_empty, nx, pitch, up + at, down + at);
+    if (j > first) {
+      step_row(up + at - stride, nx, up + at);
+    }
+  }
+  for (long j = beyond - 1; j >= first; --j) {
+    const long at = row_at(pitch, ny, j, k);
+    if (j < beyond - 1) {
+      step_row(up + at + stride, nx, up + at);
+    }
+    for (long x = 0; x < nx; x += 16) {
+      vstore16(vload16(0, up + at + x), 0, down + at + x);
+    }
+  }
+}
+
+/* The sweeps along z. One item a target and direction: each plane steps from the 3x3 nearest blocks of the plane before. */
+__kernel void distance_sweeps(long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1, __global uchar* up_occupied,
+  __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty)
+{
+  const int item = (int)get_global_id(0), to_empty = item & 2, down = item & 1;
+  if (item >= 4) {
+    return;
+  }
+  __global uchar* map = to_empty ? (down ? down_empty : up_empty) : down ? down_occupied : up_occupied;
+  const long first = to_empty ? y0 : 0, beyond = to_empty ? y1 : ny, from = to_empty ? z0 : 0, to = to_empty ? z1 : nz;
+  const long stride = pitch + 2 * ROW_MARGIN;
+  for (long i = 1; i < to - from; ++i) {
+    const long k = down ? to - 1 - i : from + i;
+    for (long j = first; j < beyond; ++j) {
+      __global uchar* row = map + row_at(pitch, ny, j, k);
+      __global const uchar* before = map + row_at(pitch, ny, j, down ? k + 1 : k - 1);
+      const long below = j > first ? -stride : 0, above = j < beyond - 1 ? stride : 0;
+      for (long x = 0; x < nx; x += 16) {
+        const uchar16 near = min(min(near_of(before + below + x), near_of(before + x)), near_of(before + above + x));
+        vstore16(min(vload16(0, row + x), near + (uchar16)(1)), 0, row + x);
+      }
+    }
+  }
+}
+
+/* The map: of an empty block the distance to the nearest occupied one, of an occupied block its mark and the distance to the nearest empty
+ * one. One item a row. */
+__kernel void distance_rows(__global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1,
+  __global const uchar* up_occupied, __global const uchar* down_occupied, __global const uchar* up_empty, __global const uchar* down_empty,
+  __global uchar* bytes)
+{
+  const long j = (long)get_global_id(0), k = (long)get_global_id(1), at = row_at(pitch, ny, j, k), row = k * ny + j;
+  if (j >= ny) {
+    return;
+  }
+  const int in_box = j >= y0 && j < y1 && k >= z0 && k < z1; /* else no block of the row is occupied, or all of the grid are */
+  for (long x = 0; x < nx; x += 16) {
+    uchar16 inside = (uchar16)(DISTANCE_MAX);
+    if (in_box) {
+      inside = min(vload16(0, up_empty + at + x), vload16(0, down_empty + at + x));
+    }
+    const uchar16 outside = min(vload16(0, up_occupied + at + x), vload16(0, down_occupied + at + x));
+    const uchar16 flags = load_flags(occupied + row * nx, x, nx, 0);
+    vstore16(select(outside, inside + (uchar16)(DISTANCE_OCCUPIED), flags != (uchar16)(0)), 0, bytes + row * pitch + x);
+  }
 }
 
 /* ---- the paper's transform */
