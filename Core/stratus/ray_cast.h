@@ -165,7 +165,7 @@ typedef struct stratus_ray_cast_report {
   /* One sentence: the reasons for structure, sampling and sample distance; where a device has a part of the values, or hands the picture
    * to the host, that and its reason; and what was tried. */
   char why[704];
-  int offered_tree;            /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
+  int offered_tree; /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;
 
 typedef struct stratus_ray_caster stratus_ray_caster;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields built by an OpenCL device against the host's, to the bit: by a processor's OpenCL, and by the same taken for a GPU. Run with the argument `--tiny` it takes few and small grids. */
+ * Distance fields built by an OpenCL device against the host's, to the bit: by a processor's OpenCL, and by the same taken
+ * for a GPU. Run with the argument `--tiny` it takes few and small grids. */
 #include "fields.h"
 
 #include "device.h"
