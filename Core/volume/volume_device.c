@@ -225,8 +225,8 @@ static stratus_status sweep_map(
   }
   const stratus_kernel_argument planes[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]),
     ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]) };
-  const stratus_kernel_argument rows[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]),
-    ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]), ARGUMENT(bytes) };
+  const stratus_kernel_argument rows[] = { ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]), ARGUMENT(hi[1]),
+    ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]), ARGUMENT(bytes) };
   TRY_CLEANUP(launch_long(context, "distance_planes", planes, COUNT_OF(planes), 2 * nz));
   TRY_CLEANUP(launch_long(context, "distance_sweeps", planes + 1, COUNT_OF(planes) - 1, 4));
   TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "distance_rows", rows, COUNT_OF(rows), (const int64_t[]){ ny, nz, 1 }));

@@ -198,31 +198,21 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
 /* Where row (j, k) begins. */
 static long row_at(long pitch, long ny, long j, long k) { return (k * ny + j) * (pitch + 2 * ROW_MARGIN) + ROW_MARGIN; }
 
-/* The flags of blocks x .. x + 15 of a row. Those beyond its end are `other`. */
-static uchar16 load_flags(__global const uchar* occupied, long x, long nx, uchar other)
-{
-  if (x + 16 <= nx) {
-    return vload16(0, occupied + x);
-  }
-  uchar flags[16];
-  for (int lane = 0; lane < 16; ++lane) {
-    flags[lane] = x + lane < nx ? occupied[x + lane] : other;
-  }
-  return vload16(0, flags);
-}
-
 /* Distances along x of one row, by steps of 1, 2, 4 .. 64. `spare`: a second row. */
 static void spread_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row, __global uchar* spare)
 {
   __global uchar *from = row, *to = spare;
-  const uchar16 far = (uchar16)(DISTANCE_MAX);
-  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
-    vstore16(far, 0, from + x);
-    vstore16(far, 0, to + x);
+  for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) { /* as many exchanges as there will be: the last step fills `row` */
+    __global uchar* swap = from;
+    from = to;
+    to = swap;
   }
-  for (long x = 0; x < n; x += 16) {
-    const uchar16 other = load_flags(occupied, x, n, !target) ^ (uchar16)(target); /* 0 or 1 */
-    vstore16(other * far, 0, from + x);
+  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16((uchar16)(DISTANCE_MAX), 0, from + x);
+    vstore16((uchar16)(DISTANCE_MAX), 0, to + x);
+  }
+  for (long x = 0; x < n; ++x) {
+    from[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
   }
   for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) {
     for (long x = 0; x < n; x += 16) {
@@ -232,9 +222,6 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
     __global uchar* swap = from;
     from = to;
     to = swap;
-  }
-  for (long x = 0; from != row && x < n; x += 16) {
-    vstore16(vload16(0, from + x), 0, row + x);
   }
 }
 
@@ -260,21 +247,20 @@ __kernel void distance_planes(__global const uchar* occupied, long nx, long ny, 
   }
   __global uchar *up = to_empty ? up_empty : up_occupied, *down = to_empty ? down_empty : down_occupied;
   const long first = to_empty ? y0 : 0, beyond = to_empty ? y1 : ny, stride = pitch + 2 * ROW_MARGIN;
-  for (long j = first; j < beyond; ++j) {
-    const long at = row_at(pitch, ny, j, k);
-    spread_row(occupied + (k * ny + j) * nx, (uchar)!to_empty, nx, pitch, up + at, down + at);
-    if (j > first) {
-      step_row(up + at - stride, nx, up + at);
+  const long rows = beyond - first, begin = row_at(pitch, ny, first, k);
+  for (int back = 0; back < 2; ++back) {
+    for (long i = 0; i < rows; ++i) {
+      const long j = back ? rows - 1 - i : i, at = begin + j * stride;
+      if (!back) {
+        spread_row(occupied + (k * ny + first + j) * nx, (uchar)!to_empty, nx, pitch, up + at, down + at);
+      }
+      if (i > 0) {
+        step_row(up + at + (back ? stride : -stride), nx, up + at);
+      }
     }
   }
-  for (long j = beyond - 1; j >= first; --j) {
-    const long at = row_at(pitch, ny, j, k);
-    if (j < beyond - 1) {
-      step_row(up + at + stride, nx, up + at);
-    }
-    for (long x = 0; x < nx; x += 16) {
-      vstore16(vload16(0, up + at + x), 0, down + at + x);
-    }
+  for (long x = begin - ROW_MARGIN; x < begin - ROW_MARGIN + rows * stride; x += 16) {
+    vstore16(vload16(0, up + x), 0, down + x);
   }
 }
 
@@ -305,9 +291,8 @@ __kernel void distance_sweeps(long nx, long ny, long nz, long pitch, long y0, lo
 
 /* The map: of an empty block the distance to the nearest occupied one, of an occupied block its mark and the distance to the nearest empty
  * one. One item a row. */
-__kernel void distance_rows(__global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1,
-  __global const uchar* up_occupied, __global const uchar* down_occupied, __global const uchar* up_empty, __global const uchar* down_empty,
-  __global uchar* bytes)
+__kernel void distance_rows(long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1, __global const uchar* up_occupied,
+  __global const uchar* down_occupied, __global const uchar* up_empty, __global const uchar* down_empty, __global uchar* bytes)
 {
   const long j = (long)get_global_id(0), k = (long)get_global_id(1), at = row_at(pitch, ny, j, k), row = k * ny + j;
   if (j >= ny) {
@@ -319,9 +304,9 @@ __kernel void distance_rows(__global const uchar* occupied, long nx, long ny, lo
     if (in_box) {
       inside = min(vload16(0, up_empty + at + x), vload16(0, down_empty + at + x));
     }
+    /* The distance of an occupied block to itself is 0. */
     const uchar16 outside = min(vload16(0, up_occupied + at + x), vload16(0, down_occupied + at + x));
-    const uchar16 flags = load_flags(occupied + row * nx, x, nx, 0);
-    vstore16(select(outside, inside + (uchar16)(DISTANCE_OCCUPIED), flags != (uchar16)(0)), 0, bytes + row * pitch + x);
+    vstore16(select(outside, inside + (uchar16)(DISTANCE_OCCUPIED), outside == (uchar16)(0)), 0, bytes + row * pitch + x);
   }
 }
 
