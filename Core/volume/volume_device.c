@@ -194,24 +194,12 @@ static size_t sweep_bytes(const stratus_distance_map* map)
   return (map->pitch + 2 * ROW_MARGIN) * (size_t)(map->blocks[1] * map->blocks[2]);
 }
 
-/* Launches a kernel of skipping.cl whose items are few and long: each is a work-group. */
-static stratus_status launch_long(
-  stratus_context* context, const char* name, const stratus_kernel_argument* arguments, size_t count, int64_t items)
-{
-  cl_kernel kernel;
-  const size_t global = (size_t)items, local = 1;
-  TRY(stratus_device_kernel(context, "skipping", NULL, name, &kernel));
-  for (size_t i = 0; i < count; ++i) {
-    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(context, kernel, 1, &global, &local);
-}
-
 /* A map of full distances by a processor: the host's sweeps. */
 static stratus_status sweep_map(
   stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
 {
   stratus_status status = STRATUS_OK;
+  cl_kernel kernel;
   cl_mem d[4] = { NULL };
   const int64_t* n = map->blocks;
   const cl_long nx = n[0], ny = n[1], nz = n[2], pitch = (cl_long)map->pitch;
@@ -223,13 +211,17 @@ static stratus_status sweep_map(
   for (int i = 0; i < 4; ++i) {
     TRY_CLEANUP(make_buffer(context, sweep_bytes(map), &d[i]));
   }
-  const stratus_kernel_argument planes[] = { ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]),
-    ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]) };
-  const stratus_kernel_argument rows[] = { ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(pitch), ARGUMENT(lo[1]), ARGUMENT(hi[1]),
-    ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]), ARGUMENT(d[3]), ARGUMENT(bytes) };
-  TRY_CLEANUP(launch_long(context, "distance_planes", planes, COUNT_OF(planes), 2 * nz));
-  TRY_CLEANUP(launch_long(context, "distance_sweeps", planes + 1, COUNT_OF(planes) - 1, 4));
-  TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "distance_rows", rows, COUNT_OF(rows), (const int64_t[]){ ny, nz, 1 }));
+  TRY_CLEANUP(stratus_device_kernel(context, "skipping", NULL, "distance_sweep", &kernel));
+  for (cl_int stage = 0; stage < 3; ++stage) {
+    const stratus_kernel_argument arguments[] = { ARGUMENT(stage), ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz),
+      ARGUMENT(pitch), ARGUMENT(lo[1]), ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]),
+      ARGUMENT(d[3]), ARGUMENT(bytes) };
+    const size_t items[3] = { 2 * (size_t)nz, 4, (size_t)(ny * nz) }, one = 1; /* few and long: each is a work-group */
+    for (unsigned i = 0; i < COUNT_OF(arguments); ++i) {
+      TRY_CLEANUP(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
+    }
+    TRY_CLEANUP(stratus_device_run(context, kernel, 1, &items[stage], &one));
+  }
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 
 cleanup:

@@ -236,17 +236,22 @@ static void step_row(__global const uchar* before, long n, __global uchar* row)
   }
 }
 
+/* The arrays and extents of a map's sweeps. */
+typedef struct sweep {
+  __global uchar* of[4]; /* distances to occupied blocks swept up and down, to empty ones up and down */
+  long nx, ny, nz, pitch, y0, y1, z0, z1;
+} sweep;
+
 /* Distances within each plane. One item a plane and target. */
-__kernel void distance_planes(__global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1,
-  __global uchar* up_occupied, __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty)
+static void sweep_plane(const sweep* s, __global const uchar* occupied, long item)
 {
-  const long item = (long)get_global_id(0), k = item % nz;
-  const int to_empty = item >= nz;
-  if (item >= 2 * nz || (to_empty && (k < z0 || k >= z1))) {
+  const long k = item % s->nz, nx = s->nx, ny = s->ny, pitch = s->pitch;
+  const int to_empty = item >= s->nz;
+  if (item >= 2 * s->nz || (to_empty && (k < s->z0 || k >= s->z1))) {
     return;
   }
-  __global uchar *up = to_empty ? up_empty : up_occupied, *down = to_empty ? down_empty : down_occupied;
-  const long first = to_empty ? y0 : 0, beyond = to_empty ? y1 : ny, stride = pitch + 2 * ROW_MARGIN;
+  __global uchar *up = to_empty ? s->of[2] : s->of[0], *down = to_empty ? s->of[3] : s->of[1];
+  const long first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny, stride = pitch + 2 * ROW_MARGIN;
   const long rows = beyond - first, begin = row_at(pitch, ny, first, k);
   for (int back = 0; back < 2; ++back) {
     for (long i = 0; i < rows; ++i) {
@@ -265,15 +270,15 @@ __kernel void distance_planes(__global const uchar* occupied, long nx, long ny, 
 }
 
 /* The sweeps along z. One item a target and direction: each plane steps from the 3x3 nearest blocks of the plane before. */
-__kernel void distance_sweeps(long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1, __global uchar* up_occupied,
-  __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty)
+static void sweep_planes(const sweep* s, long item)
 {
-  const int item = (int)get_global_id(0), to_empty = item & 2, down = item & 1;
   if (item >= 4) {
     return;
   }
-  __global uchar* map = to_empty ? (down ? down_empty : up_empty) : down ? down_occupied : up_occupied;
-  const long first = to_empty ? y0 : 0, beyond = to_empty ? y1 : ny, from = to_empty ? z0 : 0, to = to_empty ? z1 : nz;
+  const int to_empty = item >= 2, down = (int)item & 1;
+  __global uchar* map = item < 2 ? (down ? s->of[1] : s->of[0]) : down ? s->of[3] : s->of[2];
+  const long nx = s->nx, ny = s->ny, pitch = s->pitch, first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny;
+  const long from = to_empty ? s->z0 : 0, to = to_empty ? s->z1 : s->nz;
   const long stride = pitch + 2 * ROW_MARGIN;
   for (long i = 1; i < to - from; ++i) {
     const long k = down ? to - 1 - i : from + i;
@@ -291,22 +296,38 @@ __kernel void distance_sweeps(long nx, long ny, long nz, long pitch, long y0, lo
 
 /* The map: of an empty block the distance to the nearest occupied one, of an occupied block its mark and the distance to the nearest empty
  * one. One item a row. */
-__kernel void distance_rows(long nx, long ny, long nz, long pitch, long y0, long y1, long z0, long z1, __global const uchar* up_occupied,
-  __global const uchar* down_occupied, __global const uchar* up_empty, __global const uchar* down_empty, __global uchar* bytes)
+static void join_rows(const sweep* s, long row, __global uchar* bytes)
 {
-  const long j = (long)get_global_id(0), k = (long)get_global_id(1), at = row_at(pitch, ny, j, k), row = k * ny + j;
-  if (j >= ny) {
+  const long j = row % s->ny, k = row / s->ny, at = row_at(s->pitch, s->ny, j, k);
+  if (k >= s->nz) {
     return;
   }
-  const int in_box = j >= y0 && j < y1 && k >= z0 && k < z1; /* else no block of the row is occupied, or all of the grid are */
-  for (long x = 0; x < nx; x += 16) {
+  /* Else no block of the row is occupied, or all of the grid are. */
+  const int in_box = j >= s->y0 && j < s->y1 && k >= s->z0 && k < s->z1;
+  for (long x = 0; x < s->nx; x += 16) {
     uchar16 inside = (uchar16)(DISTANCE_MAX);
     if (in_box) {
-      inside = min(vload16(0, up_empty + at + x), vload16(0, down_empty + at + x));
+      inside = min(vload16(0, s->of[2] + at + x), vload16(0, s->of[3] + at + x));
     }
     /* The distance of an occupied block to itself is 0. */
-    const uchar16 outside = min(vload16(0, up_occupied + at + x), vload16(0, down_occupied + at + x));
-    vstore16(select(outside, inside + (uchar16)(DISTANCE_OCCUPIED), outside == (uchar16)(0)), 0, bytes + row * pitch + x);
+    const uchar16 outside = min(vload16(0, s->of[0] + at + x), vload16(0, s->of[1] + at + x));
+    vstore16(select(outside, inside + (uchar16)(DISTANCE_OCCUPIED), outside == (uchar16)(0)), 0, bytes + row * s->pitch + x);
+  }
+}
+
+/* The three stages, one after the other: one kernel, for each takes a processor's compiler a while to begin with. */
+__kernel void distance_sweep(int stage, __global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0,
+  long z1, __global uchar* up_occupied, __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty,
+  __global uchar* bytes)
+{
+  const sweep s = { { up_occupied, down_occupied, up_empty, down_empty }, nx, ny, nz, pitch, y0, y1, z0, z1 };
+  const long item = (long)get_global_id(0);
+  if (stage == 0) {
+    sweep_plane(&s, occupied, item);
+  } else if (stage == 1) {
+    sweep_planes(&s, item);
+  } else {
+    join_rows(&s, item, bytes);
   }
 }
 
