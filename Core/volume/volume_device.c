@@ -66,18 +66,20 @@ static stratus_status run_ranges(
   stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges, const range_buffers* b)
 {
   const cl_long nx = volume->dimensions[0], ny = volume->dimensions[1], nz = volume->dimensions[2], stride = volume->value_stride;
-  const cl_long size = ranges->block_size, bx = ranges->blocks[0], by = ranges->blocks[1], bz = ranges->blocks[2], rows = by * bz;
+  const cl_long size = ranges->block_size, bx = ranges->blocks[0], by = ranges->blocks[1], bz = ranges->blocks[2];
   const int wide = stratus_type_is_wide(volume->type);
   const cl_float no_bias = 0.0f;
   char defines[64];
   snprintf(defines, sizeof defines, "-DVALUE=%s -DWIDE=%d", value_name(volume->type), wide);
   const stratus_kernel_argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
-  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride),
-    ARGUMENT(size), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
-  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx),
-    ARGUMENT(size), ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
-  TRY(stratus_device_launch(context, "skipping", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
-  return stratus_device_launch(context, "skipping", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
+  for (cl_int stage = 0; stage < 2; ++stage) { /* columns, then blocks */
+    const stratus_kernel_argument arguments[] = { ARGUMENT(stage), ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz),
+      ARGUMENT(stride), ARGUMENT(size), ARGUMENT(bx), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi),
+      ARGUMENT(b->column_bad), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
+    const int64_t items[3] = { stage ? bx : nx, by, bz };
+    TRY(stratus_device_launch(context, "skipping", defines, "value_ranges", arguments, COUNT_OF(arguments), items));
+  }
+  return STRATUS_OK;
 }
 
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
