@@ -168,9 +168,9 @@ static void occupancy_equals_the_hosts(void** state)
   }
 }
 
-static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
+static void compare_maps_of(stratus_occupancy* o)
 {
-  stratus_occupancy* o = make_occupancy(host_context, nx, ny, nz, fill, random);
+  const int64_t nx = o->blocks[0];
   assert_true(stratus_device_takes_blocks(device, o->blocks));
   for (int which = 2 * STRATUS_DISTANCE_FULL; which < 2 * STRATUS_DISTANCE_OCTANT + 2; ++which) {
     const int kind = which / 2;
@@ -193,6 +193,30 @@ static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint3
   stratus_occupancy_destroy(o);
 }
 
+static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
+{
+  compare_maps_of(make_occupancy(host_context, nx, ny, nz, fill, random));
+}
+
+/* A solid box of occupied blocks within the grid: the nearest empty blocks are about it. */
+static void compare_maps_of_box(const int64_t n[3], const int64_t lo[3], const int64_t hi[3])
+{
+  stratus_occupancy* o = NULL;
+  uint8_t* bytes = malloc((size_t)(n[0] * n[1] * n[2]));
+  assert_non_null(bytes);
+  for (int64_t b = 0; b < n[0] * n[1] * n[2]; ++b) {
+    const int64_t at[3] = { b % n[0], b / n[0] % n[1], b / (n[0] * n[1]) };
+    bytes[b] = 0;
+    for (int a = 0; a < 3; ++a) {
+      bytes[b] |= at[a] < lo[a] || at[a] >= hi[a];
+    }
+  }
+  assert_int_equal(stratus_occupancy_below(host_context, n, 4, bytes, 1, &o), STRATUS_OK);
+  assert_true(o->count > 0);
+  free(bytes);
+  compare_maps_of(o);
+}
+
 static void distance_maps_equal_the_hosts(void** state)
 {
   uint32_t random = 3;
@@ -200,6 +224,15 @@ static void distance_maps_equal_the_hosts(void** state)
   for (int grid = 0; grid < (tiny ? 3 : 40); ++grid) {
     compare_maps(1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       grid < 6 ? grid % 3 : random_below(&random, 60), &random);
+  }
+  for (int box = 0; box < (tiny ? 1 : 12); ++box) {
+    int64_t n[3], lo[3], hi[3];
+    for (int a = 0; a < 3; ++a) {
+      n[a] = 7 + random_below(&random, tiny ? 2 : 30);
+      lo[a] = random_below(&random, 3);
+      hi[a] = n[a] - random_below(&random, 3);
+    }
+    compare_maps_of_box(n, lo, hi);
   }
   if (tiny) {
     compare_maps(6, 5, 4, 20, &random);
