@@ -39,7 +39,8 @@ bool stratus_device_has_double(const stratus_device* device);
 size_t stratus_device_largest_allocation(const stratus_device* device);
 
 /* Gives kernel `kernel` of the embedded source `source` (its file's name without .cl), built with `defines` ("-DA=1 -DB=2"). The device
- * caches programs and kernels by source and defines, and owns the kernel. A failed build leaves its log in the message. */
+ * caches programs and kernels by source and defines, and owns the kernel. defines NULL: the kernel hangs on none, so that any program of
+ * the source serves, if one is built. A failed build leaves its log in the message. */
 stratus_status stratus_device_kernel(
   stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result);
 /* Gives a kernel of the caller's `text`. `source` is its name in the cache and in messages. */

@@ -143,12 +143,13 @@ static stratus_status find_program(
   stratus_context* context, stratus_device* device, const char* source, const char* text, const char* defines, cached_program** result)
 {
   for (cached_program* p = device->programs; p; p = p->next) {
-    if (strcmp(p->name, source) == 0 && strcmp(p->defines, defines) == 0) {
+    if (strcmp(p->name, source) == 0 && (!defines || strcmp(p->defines, defines) == 0)) {
       *result = p;
       return STRATUS_OK;
     }
   }
   void* memory = NULL;
+  defines = defines ? defines : "";
   const size_t name_size = strlen(source) + 1;
   const size_t defines_size = strlen(defines) + 1;
   TRY(stratus_allocate_zero(context, sizeof(cached_program) + name_size + defines_size, 1, &memory));
@@ -172,7 +173,7 @@ stratus_status stratus_device_kernel_from(
 {
   stratus_device* device = context->device;
   cached_program* program = NULL;
-  TRY(find_program(context, device, source, text, defines ? defines : "", &program));
+  TRY(find_program(context, device, source, text, defines, &program));
   for (const cached_kernel* k = device->kernels; k; k = k->next) {
     if (k->program == program && strcmp(k->name, kernel) == 0) {
       *result = k->kernel;

@@ -112,7 +112,10 @@ stratus_status stratus_flood_device_pass(stratus_context* context, flood_device*
   snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DWIDE=%d -DGROUP=%d", device->wide, STRATUS_DEVICE_GROUP);
   const stratus_kernel_argument arguments[] = { ARGUMENT(device->from), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(step_argument),
     ARGUMENT(shift_y), ARGUMENT(shift_z), ARGUMENT(device->to), ARGUMENT(device->sums) };
-  TRY(stratus_device_launch(context, "jump_flooding", defines, "flood", arguments, COUNT_OF(arguments), device->n));
+  const bool by_rows = stratus_device_is_cpu(context->device);
+  const int64_t rows[3] = { ny, nz, 1 };
+  TRY(stratus_device_launch(
+    context, "jump_flooding", defines, by_rows ? "flood_rows" : "flood", arguments, COUNT_OF(arguments), by_rows ? rows : device->n));
   TRY(stratus_device_read(context, device->sums, 0, device->groups * 2 * sizeof(cl_uint), device->host_sums));
   *count = (flood_count){ 0, 0 };
   for (size_t group = 0; group < device->groups; ++group) {

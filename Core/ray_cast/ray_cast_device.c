@@ -6,6 +6,7 @@
 #include "ray_cast_host.h"
 #include "ray_caster.h"
 #include "ray_mask.h"
+#include "ray_pages_device.h"
 #include "ray_shading_table.h"
 
 #include <stdio.h>
@@ -27,6 +28,8 @@ typedef enum buffer_name { VALUES, HIDDEN, MAP, ROUGH, TABLE, ARGUMENTS, OPAQUE,
 
 struct stratus_ray_device {
   stratus_device_slot slots[BUFFERS];
+  stratus_ray_pages pages;
+  bool in_pages; /* the values are in pages, and there is no buffer VALUES */
   uint64_t data_serial, table_serial, map_serial, rough_serial;
 };
 
@@ -36,6 +39,7 @@ void stratus_ray_device_destroy(stratus_ray_caster* caster)
     for (int b = 0; b < BUFFERS; ++b) {
       stratus_slot_drop(&caster->device->slots[b]);
     }
+    stratus_ray_pages_drop(caster->context, &caster->device->pages);
     stratus_release(caster->context, caster->device);
     caster->device = NULL;
   }
@@ -68,14 +72,28 @@ static size_t hidden_bytes(const stratus_ray_caster* caster)
     (caster->hides & HIDDEN_CELLS ? stratus_ray_hidden_cells(&caster->volume, caster->hidden_by_value) : 0);
 }
 
-static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame)
+/* Gives the device the whole volume, or the end of it, where it is to be in pages, and the hidden bytes. */
+static stratus_status upload_data(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, bool in_pages)
 {
   stratus_ray_device* d = caster->device;
-  if (d->data_serial != caster->data_serial) {
-    TRY(replace(caster, VALUES, frame->values, value_bytes(caster)));
+  if (d->data_serial != caster->data_serial || d->in_pages != in_pages) {
+    d->data_serial = 0; /* until all is there */
+    if (in_pages) {
+      stratus_slot_drop(&d->slots[VALUES]);
+    } else {
+      stratus_ray_pages_drop(caster->context, &d->pages);
+      TRY(replace(caster, VALUES, frame->values, value_bytes(caster)));
+    }
+    d->in_pages = in_pages;
     TRY(replace(caster, HIDDEN, frame->hidden, frame->hidden ? hidden_bytes(caster) : 0));
     d->data_serial = caster->data_serial;
   }
+  return STRATUS_OK;
+}
+
+static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame)
+{
+  stratus_ray_device* d = caster->device;
   const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* shading has a table of its own */
   if (d->table_serial != table_serial) {
     const size_t bytes = stratus_table_words(caster->made.table) * sizeof(float);
@@ -100,8 +118,8 @@ static const char* obstacle(const stratus_ray_caster* caster)
 {
   const stratus_device* device = caster->context->device;
   const size_t largest = stratus_device_largest_allocation(device);
-  if (value_bytes(caster) > largest) {
-    return "the volume is larger than the device's largest allocation";
+  if (caster->hides && hidden_bytes(caster) > largest) {
+    return "the mask and the hidden cells are larger than the device's largest allocation";
   }
   if (caster->map && caster->map->bytes_size > largest) {
     return "the distance map is larger than the device's largest allocation";
@@ -121,7 +139,8 @@ static int rarities(const stratus_ray_cast_arguments* a)
   return (a->crop.regions ? RAY_REGIONS : 0) | (a->crop.clip_count ? RAY_CLIP : 0) | (a->crop.has_piece ? RAY_PIECE : 0) |
     (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
     (a->map.tree ? RAY_TREE : 0) | (a->media.components > 1 ? RAY_COMPONENTS : 0) | (a->media.label_count > 0 ? RAY_LABELS : 0) |
-    (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) | (a->table.jumps ? RAY_JUMPS : 0);
+    (a->values.page_components ? RAY_PAGES : 0) | (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) |
+    (a->table.jumps ? RAY_JUMPS : 0);
 }
 
 static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, int type,
@@ -151,8 +170,9 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
-  static const buffer_name order[] = { ARGUMENTS, VALUES, HIDDEN, MAP, ROUGH, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   stratus_context* context = caster->context;
+  stratus_ray_device* d = caster->device;
   stratus_device_slot* slots = caster->device->slots;
   const stratus_ray_cast_arguments* a = frame->arguments;
   const size_t width = (size_t)a->picture.width, height = (size_t)a->picture.height, pixels = width * height;
@@ -163,8 +183,16 @@ static stratus_status draw(
   TRY(stratus_slot_lend(context, slots + DEPTH, CL_MEM_WRITE_ONLY, frame->depth, pixels * sizeof(float)));
   TRY(stratus_slot_lend(context, slots + SAMPLES, CL_MEM_WRITE_ONLY, frame->samples, pixels * sizeof(uint32_t)));
   TRY(stratus_slot_send(context, slots + COUNTS, CL_MEM_READ_WRITE, counts, counts_bytes));
-  for (unsigned i = 0; i < sizeof order / sizeof *order; ++i) {
-    TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &slots[order[i]].memory));
+  unsigned n = 0;
+  TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), &slots[ARGUMENTS].memory));
+  if (!d->in_pages) {
+    TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), &slots[VALUES].memory));
+  }
+  for (int s = 0; d->in_pages && s <= PAGE_SLABS; ++s) { /* the slabs, and the page table behind them */
+    TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), s < PAGE_SLABS ? &d->pages.slabs[s].memory : &d->pages.table.memory));
+  }
+  for (size_t i = 0; i < COUNT_OF(others); ++i) {
+    TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), &slots[others[i]].memory));
   }
   const size_t side = packets ? TILE : 1, group = packets ? 1 : LOCAL_SIDE;
   const size_t global[2] = { (width + side - 1) / side, (height + side - 1) / side }, local[2] = { group, group };
@@ -207,13 +235,52 @@ static stratus_status draw_and_count(
   return status;
 }
 
+/* Logs why the host draws, and keeps it for the report. */
+static void draw_on_host(stratus_ray_caster* caster, const char* why)
+{
+  stratus_log(caster->context, STRATUS_LOG_WARNING, "drawing on the host: %s", why);
+  snprintf(caster->where, sizeof caster->where, "drawn on the host: %s", why);
+}
+
+static void tell_pages(stratus_ray_caster* caster, const stratus_ray_pages* pages)
+{
+  snprintf(caster->where, sizeof caster->where,
+    "the device has %lld of the volume's %lld pages, %.4g MB, as all of it, %.4g MB, exceeds its largest allocation",
+    (long long)pages->count, (long long)(pages->pages[0] * pages->pages[1] * pages->pages[2]), (double)pages->bytes / 1e6,
+    (double)value_bytes(caster) / 1e6);
+}
+
+/* Sends what is stale of the frame's data. *why_not: the reason why the device cannot have it; NULL where it has. */
+static stratus_status upload_all(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, stratus_ray_variant variant,
+  bool in_pages, char* text, size_t capacity, const char** why_not)
+{
+  *why_not = NULL;
+  TRY(upload_data(caster, frame, in_pages));
+  if (in_pages) {
+    const uint64_t uploads = caster->uploads;
+    TRY(stratus_ray_pages_update(caster, &caster->device->pages, variant, text, capacity, why_not));
+    if (*why_not) {
+      return STRATUS_OK;
+    }
+    tell_pages(caster, &caster->device->pages);
+    if (caster->uploads != uploads) {
+      stratus_log(caster->context, STRATUS_LOG_INFO, "%s", caster->where);
+    }
+  }
+  return upload(caster, frame);
+}
+
 stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type,
   stratus_ray_variant variant, stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
   stratus_context* context = caster->context;
+  const bool in_pages = value_bytes(caster) > stratus_device_largest_allocation(context->device);
+  _Alignas(64) stratus_ray_cast_arguments arguments = *frame->arguments; /* aligned so that a device can borrow them */
+  stratus_ray_cast_frame mine = *frame;
+  char text[128];
   const char* why_not = obstacle(caster);
   if (why_not) {
-    stratus_log(context, STRATUS_LOG_WARNING, "drawing on the host: %s", why_not);
+    draw_on_host(caster, why_not);
     return STRATUS_OK;
   }
   if (!caster->device) {
@@ -222,10 +289,19 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
     caster->device = memory;
   }
   const double start = stratus_now_ms();
-  TRY(upload(caster, frame));
+  TRY(upload_all(caster, frame, variant, in_pages, text, sizeof text, &why_not));
   *upload_ms += stratus_now_ms() - start;
+  if (why_not) {
+    draw_on_host(caster, why_not);
+    return STRATUS_OK;
+  }
+  if (in_pages) {
+    stratus_ray_pages_arguments(&caster->device->pages, stratus_volume_components(&caster->traversed), &arguments);
+    type = (int)caster->traversed.type; /* pages have the type's own fetch, whatever the volume's shape */
+  }
+  mine.arguments = &arguments;
   TRY(stratus_progress(context, "ray cast", 0.0));
-  TRY(draw_and_count(caster, frame, type, variant, counts));
+  TRY(draw_and_count(caster, &mine, type, variant, counts));
   *drawn = true;
   return stratus_progress(context, "ray cast", 1.0);
 }

@@ -84,7 +84,8 @@ struct stratus_ray_caster {
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
   stratus_ray_device* device; /* buffers on the OpenCL device; NULL: none */
-  uint64_t data_serial, table_serial, map_serial,
+  char where[160];            /* how the device drew the last picture, or why the host did; empty where nothing is to be said */
+  uint64_t data_serial, table_serial, occupancy_serial, map_serial,
     rough_serial; /* incremented by each build, so that the device knows which buffers are stale */
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads, probe_builds;
 };

@@ -41,6 +41,7 @@ void stratus_ray_drop_occupancy(stratus_ray_caster* caster)
   caster->trial = (stratus_ray_trial){ .map = STRATUS_STRUCTURE_AUTO };
   stratus_occupancy_destroy(caster->occupancy);
   caster->occupancy = NULL;
+  ++caster->occupancy_serial;
 }
 
 void stratus_ray_drop_values(stratus_ray_caster* caster)

@@ -91,6 +91,9 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   if (caster->context->device) {
     bool drawn = false; /* all tiles, those before included */
     const stratus_status status = stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn);
+    if (status != STRATUS_OK) { /* if the host is to draw, the message goes to the log only */
+      snprintf(caster->where, sizeof caster->where, "drawn on the host: %s", stratus_context_message(caster->context));
+    }
     if (stratus_device_hands_back(caster->context, status)) {
       before = &none; /* the device may have drawn on any tile */
     } else if (status != STRATUS_OK || drawn) {
@@ -181,6 +184,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   const bool times = !image->samples; /* a picture of samples, which hang on the structure, follows from no times */
   const bool tries = times && options->structure == STRATUS_STRUCTURE_AUTO;
 
+  caster->where[0] = '\0';
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));
   TRY(stratus_ray_update_structures(caster, options->structure, times, &used, why, sizeof why, report));
   if (caster->choice.provisional) {
@@ -228,8 +232,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   }
   caster->samples_since_data += counts.samples;
   fill_report(caster, &counts, used, report);
-  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s", why, stratus_sampling_name(caster->choice.sampling),
-    caster->choice.sample_distance, *caster->tried ? ": " : "", caster->tried);
+  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
+    caster->choice.sample_distance, *caster->where ? "; " : "", caster->where, *caster->tried ? ": " : "", caster->tried);
   return STRATUS_OK;
 }
 

@@ -84,6 +84,14 @@ static double voxels_a_sample(const double world_to_index[16], double sample_dis
   return voxels;
 }
 
+double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster)
+{
+  double index_to_world[16], world_to_index[16];
+  stratus_volume_index_to_world(&caster->traversed, index_to_world);
+  const bool has_inverse = stratus_matrix_invert_affine(index_to_world, world_to_index);
+  return has_inverse ? voxels_a_sample(world_to_index, caster->choice.sample_distance) : VOXELS_A_SAMPLE_MOST;
+}
+
 /* Sets the bounds, cropped, in index coordinates. voxels: the length of a sample. Returns false if they are empty. */
 static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, double voxels, stratus_ray_cast_arguments* a)
 {

@@ -162,8 +162,10 @@ typedef struct stratus_ray_cast_report {
   int tolerance_met;           /* 0: the finest setting is expected to miss the tolerance; else 1 */
   uint64_t probe_builds;       /* number of probes since the caster was created */
   uint64_t probe_samples;      /* values interpolated by this call's probe */
-  char why[512];               /* one sentence: the reasons for structure, sampling and sample distance, and what was tried */
-  int offered_tree;            /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
+  /* One sentence: the reasons for structure, sampling and sample distance; where a device has a part of the values, or hands the picture
+   * to the host, that and its reason; and what was tried. */
+  char why[704];
+  int offered_tree; /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;
 
 typedef struct stratus_ray_caster stratus_ray_caster;

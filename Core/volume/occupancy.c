@@ -214,14 +214,24 @@ stratus_status stratus_occupancy_create_between(
   TRY(stratus_progress(context, "occupancy", 0.0));
   TRY(create_empty(context, ranges->blocks, ranges->block_size, &occupancy));
   find_ends(ranges, lower, upper, &first, &last);
-  const int64_t blocks = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+  bool tested = false;
+  stratus_status status = STRATUS_OK;
+  if (ranges->on_device && ranges->context == context && stratus_device_builds(context)) {
+    const stratus_shown between = { .count = 1, .of = &(float[2]){ first, last } };
+    status = stratus_device_occupancy(context, ranges, &between, false, occupancy);
+    tested = !stratus_device_hands_back(context, status);
+    status = tested ? status : STRATUS_OK;
+  }
+  const int64_t blocks = tested ? 0 : ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
 #pragma omp parallel for schedule(static) num_threads(context->threads)
   for (int64_t b = 0; b < blocks; ++b) {
     occupancy->occupied[b] = (ranges->lo[b] <= ranges->hi[b]) & (ranges->lo[b] <= last) & (ranges->hi[b] >= first);
   }
-  test_rows(context, NULL, NULL, false, occupancy); /* updates the count and the bounds */
-  end_stage(context, &stage, occupancy);
-  const stratus_status status = stratus_progress(context, "occupancy", 1.0);
+  if (status == STRATUS_OK) {
+    test_rows(context, NULL, NULL, false, occupancy); /* updates the count and the bounds */
+    end_stage(context, &stage, occupancy);
+    status = stratus_progress(context, "occupancy", 1.0);
+  }
   if (status != STRATUS_OK) {
     stratus_occupancy_destroy(occupancy);
     return status;

@@ -387,6 +387,8 @@ void stratus_value_range_destroy(stratus_value_range* ranges)
     stratus_release(context, ranges->lo);
     stratus_release(context, ranges->hi);
     stratus_release(context, ranges->gaps);
+    stratus_device_buffer_release(ranges->device_lo);
+    stratus_device_buffer_release(ranges->device_hi);
     stratus_release(context, ranges);
   }
 }

@@ -54,8 +54,10 @@ struct stratus_value_range {
   bool integer; /* values are whole numbers */
   float* lo;    /* blocks[0]*[1]*[2] fetched values; lo > hi (INFINITY, -INFINITY) where no voxel is finite */
   float* hi;
-  uint8_t* gaps;  /* 1 where some voxel of the block is not finite, or some cell is hidden */
-  float whole_lo; /* range of all finite values */
+  uint8_t* gaps;               /* 1 where some voxel of the block is not finite, or some cell is hidden */
+  bool on_device;              /* made by the context's device, */
+  void *device_lo, *device_hi; /* which keeps lo and hi in these buffers; NULL where they are the host's arrays, or none */
+  float whole_lo;              /* range of all finite values */
   float whole_hi;
 };
 

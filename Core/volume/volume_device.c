@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in value_range.cl, occupancy.cl
- * and distance_map.cl. */
+ * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in skipping.cl. */
 #include "volume_device.h"
 
 #include "device.h"
@@ -67,18 +66,20 @@ static stratus_status run_ranges(
   stratus_context* context, const stratus_volume* volume, const stratus_value_range* ranges, const range_buffers* b)
 {
   const cl_long nx = volume->dimensions[0], ny = volume->dimensions[1], nz = volume->dimensions[2], stride = volume->value_stride;
-  const cl_long size = ranges->block_size, bx = ranges->blocks[0], by = ranges->blocks[1], bz = ranges->blocks[2], rows = by * bz;
+  const cl_long size = ranges->block_size, bx = ranges->blocks[0], by = ranges->blocks[1], bz = ranges->blocks[2];
   const int wide = stratus_type_is_wide(volume->type);
   const cl_float no_bias = 0.0f;
   char defines[64];
   snprintf(defines, sizeof defines, "-DVALUE=%s -DWIDE=%d", value_name(volume->type), wide);
   const stratus_kernel_argument bias = { wide ? sizeof(double) : sizeof no_bias, wide ? (const void*)&ranges->bias : &no_bias };
-  const stratus_kernel_argument columns[] = { ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(stride),
-    ARGUMENT(size), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad) };
-  const stratus_kernel_argument blocks[] = { ARGUMENT(b->column_lo), ARGUMENT(b->column_hi), ARGUMENT(b->column_bad), ARGUMENT(nx),
-    ARGUMENT(size), ARGUMENT(bx), ARGUMENT(rows), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
-  TRY(stratus_device_launch(context, "value_range", defines, "columns", columns, COUNT_OF(columns), (const int64_t[]){ nx, by, bz }));
-  return stratus_device_launch(context, "value_range", defines, "blocks", blocks, COUNT_OF(blocks), (const int64_t[]){ bx, rows, 1 });
+  for (cl_int stage = 0; stage < 2; ++stage) { /* columns, then blocks */
+    const stratus_kernel_argument arguments[] = { ARGUMENT(stage), ARGUMENT(b->values), bias, ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz),
+      ARGUMENT(stride), ARGUMENT(size), ARGUMENT(bx), ARGUMENT(by), ARGUMENT(bz), ARGUMENT(b->column_lo), ARGUMENT(b->column_hi),
+      ARGUMENT(b->column_bad), ARGUMENT(b->lo), ARGUMENT(b->hi), ARGUMENT(b->gaps) };
+    const int64_t items[3] = { stage ? bx : nx, by, bz };
+    TRY(stratus_device_launch(context, "skipping", defines, "value_ranges", arguments, COUNT_OF(arguments), items));
+  }
+  return STRATUS_OK;
 }
 
 stratus_status stratus_device_value_range(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
@@ -92,6 +93,12 @@ stratus_status stratus_device_value_range(stratus_context* context, const stratu
   TRY_CLEANUP(stratus_device_read(context, b.lo, 0, count * sizeof(float), ranges->lo));
   TRY_CLEANUP(stratus_device_read(context, b.hi, 0, count * sizeof(float), ranges->hi));
   TRY_CLEANUP(stratus_device_read(context, b.gaps, 0, count, ranges->gaps));
+  ranges->on_device = true;
+  if (!stratus_device_is_cpu(context->device)) { /* a processor's buffers can be the host's arrays */
+    ranges->device_lo = b.lo;
+    ranges->device_hi = b.hi;
+    b.lo = b.hi = NULL;
+  }
 
 cleanup:
   release_buffers((cl_mem[]){ b.values, b.column_lo, b.column_hi, b.column_bad, b.lo, b.hi, b.gaps }, 7);
@@ -110,15 +117,20 @@ stratus_status stratus_device_occupancy(
   const cl_int gaps_count = gaps_show, interval_count = (cl_int)shown->count;
   const size_t interval_bytes = shown->count > 0 ? (size_t)shown->count * sizeof *shown->of : sizeof none;
 
-  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
-  TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
+  cl_mem range[2] = { ranges->device_lo, ranges->device_hi };
+  if (!range[0]) {
+    TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->lo, &lo));
+    TRY_CLEANUP(make_input(context, count * sizeof(float), ranges->hi, &hi));
+    range[0] = lo;
+    range[1] = hi;
+  }
   TRY_CLEANUP(make_input(context, count, ranges->gaps, &gaps));
   TRY_CLEANUP(make_input(context, interval_bytes, shown->count > 0 ? (const void*)shown->of : none, &intervals));
   TRY_CLEANUP(make_buffer(context, count, &occupied));
-  const stratus_kernel_argument arguments[] = { ARGUMENT(lo), ARGUMENT(hi), ARGUMENT(gaps), ARGUMENT(intervals), ARGUMENT(interval_count),
-    ARGUMENT(gaps_count), ARGUMENT(count), ARGUMENT(occupied) };
+  const stratus_kernel_argument arguments[] = { ARGUMENT(range[0]), ARGUMENT(range[1]), ARGUMENT(gaps), ARGUMENT(intervals),
+    ARGUMENT(interval_count), ARGUMENT(gaps_count), ARGUMENT(count), ARGUMENT(occupied) };
   TRY_CLEANUP(stratus_device_launch(
-    context, "occupancy", "", "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
+    context, "skipping", NULL, "occupancy", arguments, COUNT_OF(arguments), (const int64_t[]){ (int64_t)count, 1, 1 }));
   TRY_CLEANUP(stratus_device_read(context, occupied, 0, count, occupancy->occupied));
 
 cleanup:
@@ -147,9 +159,9 @@ static stratus_status run_sums(stratus_context* context, const int64_t blocks[3]
     ARGUMENT(sx) };
   const stratus_kernel_argument along_z[] = { ARGUMENT(sums), ARGUMENT(sx), ARGUMENT(one), ARGUMENT(sy), ARGUMENT(sx), ARGUMENT(sz),
     ARGUMENT(plane) };
-  TRY(stratus_device_launch(context, "distance_map", "", "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
-  TRY(stratus_device_launch(context, "distance_map", "", "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
-  return stratus_device_launch(context, "distance_map", "", "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
+  TRY(stratus_device_launch(context, "skipping", NULL, "sum_x", along_x, COUNT_OF(along_x), (const int64_t[]){ sy, sz, 1 }));
+  TRY(stratus_device_launch(context, "skipping", NULL, "sum_axis", along_y, COUNT_OF(along_y), (const int64_t[]){ sx, sz, 1 }));
+  return stratus_device_launch(context, "skipping", NULL, "sum_axis", along_z, COUNT_OF(along_z), (const int64_t[]){ sx, sy, 1 });
 }
 
 static stratus_status search_maps(stratus_context* context, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
@@ -166,12 +178,56 @@ static stratus_status search_maps(stratus_context* context, stratus_distance_map
     const cl_int x = whole ? 0 : octant & 1 ? 1 : -1, y = whole ? 0 : octant & 2 ? 1 : -1, z = whole ? 0 : octant & 4 ? 1 : -1;
     const stratus_kernel_argument arguments[] = { ARGUMENT(occupied), ARGUMENT(sums), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(x),
       ARGUMENT(y), ARGUMENT(z), ARGUMENT(pitch), ARGUMENT(bytes) };
-    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "search", arguments, COUNT_OF(arguments), map->blocks));
+    TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "search", arguments, COUNT_OF(arguments), map->blocks));
     TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes + (size_t)octant * map->map_bytes));
   }
 
 cleanup:
   stratus_device_buffer_release(sums);
+  return status;
+}
+
+/* Bytes of a row of distances at both its ends: ROW_MARGIN in skipping.cl. */
+#define ROW_MARGIN 64
+
+/* Returns the bytes of one of the four arrays of distances that a processor sweeps. */
+static size_t sweep_bytes(const stratus_distance_map* map)
+{
+  return (map->pitch + 2 * ROW_MARGIN) * (size_t)(map->blocks[1] * map->blocks[2]);
+}
+
+/* A map of full distances by a processor: the host's sweeps. */
+static stratus_status sweep_map(
+  stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
+{
+  stratus_status status = STRATUS_OK;
+  cl_kernel kernel;
+  cl_mem d[4] = { NULL };
+  const int64_t* n = map->blocks;
+  const cl_long nx = n[0], ny = n[1], nz = n[2], pitch = (cl_long)map->pitch;
+  cl_long lo[3] = { 0 }, hi[3] = { 0 }; /* the box in which distances to empty blocks are needed */
+  for (int a = 1; a < 3 && occupancy->count > 0 && occupancy->count < n[0] * n[1] * n[2]; ++a) {
+    lo[a] = occupancy->lo[a] > 0 ? occupancy->lo[a] - 1 : 0;
+    hi[a] = occupancy->hi[a] < n[a] ? occupancy->hi[a] + 1 : n[a];
+  }
+  for (int i = 0; i < 4; ++i) {
+    TRY_CLEANUP(make_buffer(context, sweep_bytes(map), &d[i]));
+  }
+  TRY_CLEANUP(stratus_device_kernel(context, "skipping", NULL, "distance_sweep", &kernel));
+  for (cl_int stage = 0; stage < 3; ++stage) {
+    const stratus_kernel_argument arguments[] = { ARGUMENT(stage), ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz),
+      ARGUMENT(pitch), ARGUMENT(lo[1]), ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]),
+      ARGUMENT(d[3]), ARGUMENT(bytes) };
+    const size_t items[3] = { 2 * (size_t)nz, 4, (size_t)(ny * nz) }, one = 1; /* few and long: each is a work-group */
+    for (unsigned i = 0; i < COUNT_OF(arguments); ++i) {
+      TRY_CLEANUP(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
+    }
+    TRY_CLEANUP(stratus_device_run(context, kernel, 1, &items[stage], &one));
+  }
+  TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
+
+cleanup:
+  release_buffers(d, 4);
   return status;
 }
 
@@ -186,14 +242,14 @@ static stratus_status paper_map(stratus_context* context, stratus_distance_map* 
   TRY_CLEANUP(make_buffer(context, (size_t)count, &distance[1]));
   const stratus_kernel_argument seed[] = { ARGUMENT(occupied), ARGUMENT(count), ARGUMENT(distance[0]) };
   TRY_CLEANUP(
-    stratus_device_launch(context, "distance_map", "", "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
+    stratus_device_launch(context, "skipping", NULL, "paper_seed", seed, COUNT_OF(seed), (const int64_t[]){ (int64_t)count, 1, 1 }));
   for (cl_int axis = 0; axis < 3; ++axis) {
     const stratus_kernel_argument pass[] = { ARGUMENT(distance[axis & 1]), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(axis),
       ARGUMENT(distance[(axis + 1) & 1]) };
-    TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_axis", pass, COUNT_OF(pass), map->blocks));
+    TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "paper_axis", pass, COUNT_OF(pass), map->blocks));
   }
   const stratus_kernel_argument place[] = { ARGUMENT(distance[1]), ARGUMENT(nx), ARGUMENT(rows), ARGUMENT(pitch), ARGUMENT(bytes) };
-  TRY_CLEANUP(stratus_device_launch(context, "distance_map", "", "paper_place", place, COUNT_OF(place), (const int64_t[]){ nx, rows, 1 }));
+  TRY_CLEANUP(stratus_device_launch(context, "skipping", NULL, "paper_place", place, COUNT_OF(place), (const int64_t[]){ nx, rows, 1 }));
   TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
 
 cleanup:
@@ -211,6 +267,9 @@ stratus_status stratus_device_distance_map(stratus_context* context, const strat
   TRY_CLEANUP(make_buffer(context, map->map_bytes, &bytes));
   if (map->kind == STRATUS_DISTANCE_PAPER) {
     TRY_CLEANUP(paper_map(context, map, occupied, bytes));
+  } else if (map->kind == STRATUS_DISTANCE_FULL && stratus_device_is_cpu(context->device) &&
+    sweep_bytes(map) <= stratus_device_largest_allocation(context->device)) {
+    TRY_CLEANUP(sweep_map(context, occupancy, map, occupied, bytes));
   } else {
     TRY_CLEANUP(search_maps(context, map, occupied, bytes));
   }

@@ -42,6 +42,9 @@ static void compare_ranges(const sample_volume* v, int size)
   assert_memory_equal(r.lo, host->lo, count * sizeof(float));
   assert_memory_equal(r.hi, host->hi, count * sizeof(float));
   assert_memory_equal(r.gaps, host->gaps, count);
+  assert_true(r.on_device);
+  stratus_device_buffer_release(r.device_lo);
+  stratus_device_buffer_release(r.device_hi);
   free(r.lo);
   free(r.hi);
   free(r.gaps);
@@ -91,6 +94,49 @@ static void compare_occupancy(const stratus_value_range* ranges, const stratus_t
   stratus_release(host_context, shown.of);
 }
 
+/* Blocks between two values, of ranges that the device has made, which it may keep. */
+static void between_two_values_equals_the_hosts(void** state)
+{
+  static const double ends[][2] = { { 0.4, 0.6 }, { 0.3, 0.3 }, { -5.0, 0.001 }, { 0.999, 2.0 }, { 3.0, 4.0 } };
+  uint32_t random = 4;
+  (void)state;
+  for (int keeps = 0; keeps < 2; ++keeps) {
+    const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_UINT8, STRATUS_INT32 };
+    device->device->is_cpu = !keeps;
+    for (size_t t = 0; t < COUNT_OF(types); ++t) {
+      sample_volume v = make_volume(types[t], 33, 6, 7, 1, &random);
+      stratus_value_range *host_ranges = NULL, *ranges = NULL;
+      double low, high;
+      spoil(&v, 20, &random);
+      assert_int_equal(stratus_value_range_create(host_context, &v.view, 2, &host_ranges), STRATUS_OK);
+      assert_int_equal(stratus_value_range_create(device, &v.view, 2, &ranges), STRATUS_OK);
+      const int64_t* n = ranges->blocks;
+      assert_true(ranges->on_device && (ranges->device_lo != NULL) == keeps);
+      assert_int_equal(stratus_value_range_whole(ranges, &low, &high), STRATUS_OK);
+      for (size_t e = 0; e < COUNT_OF(ends); ++e) {
+        const double lower = low + ends[e][0] * (high - low), upper = low + ends[e][1] * (high - low);
+        stratus_occupancy *expected = NULL, *got = NULL;
+        assert_int_equal(stratus_occupancy_create_between(host_context, host_ranges, lower, upper, &expected), STRATUS_OK);
+        const uint64_t launched = device->report.launched;
+        assert_int_equal(stratus_occupancy_create_between(device, ranges, lower, upper, &got), STRATUS_OK);
+        assert_int_equal(device->report.launched - launched, 1);
+        assert_memory_equal(got->occupied, expected->occupied, (size_t)(n[0] * n[1] * n[2]));
+        assert_int_equal(got->count, expected->count);
+        assert_true(e > 0 || got->count > 0);
+        stratus_occupancy_destroy(got);
+        assert_int_equal(stratus_occupancy_create_between(device, host_ranges, lower, upper, &got), STRATUS_OK);
+        assert_int_equal(device->report.launched - launched, 1); /* ranges that only the host has */
+        stratus_occupancy_destroy(got);
+        stratus_occupancy_destroy(expected);
+      }
+      stratus_value_range_destroy(host_ranges);
+      stratus_value_range_destroy(ranges);
+      free_volume(&v);
+    }
+  }
+  device->device->is_cpu = true;
+}
+
 static void occupancy_equals_the_hosts(void** state)
 {
   static const double white[4] = { 0, 1, 1, 1 };
@@ -122,11 +168,13 @@ static void occupancy_equals_the_hosts(void** state)
   }
 }
 
-static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
+static void compare_maps_of(stratus_occupancy* o)
 {
-  stratus_occupancy* o = make_occupancy(host_context, nx, ny, nz, fill, random);
+  const int64_t nx = o->blocks[0];
   assert_true(stratus_device_takes_blocks(device, o->blocks));
-  for (int kind = STRATUS_DISTANCE_FULL; kind <= STRATUS_DISTANCE_OCTANT; ++kind) {
+  for (int which = 2 * STRATUS_DISTANCE_FULL; which < 2 * STRATUS_DISTANCE_OCTANT + 2; ++which) {
+    const int kind = which / 2;
+    device->device->is_cpu = which % 2; /* a processor has kernels of its own */
     stratus_distance_map *host = NULL, filled;
     assert_int_equal(stratus_distance_map_create(host_context, o, (stratus_distance_kind)kind, &host), STRATUS_OK);
     filled = *host;
@@ -145,6 +193,30 @@ static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint3
   stratus_occupancy_destroy(o);
 }
 
+static void compare_maps(int64_t nx, int64_t ny, int64_t nz, int64_t fill, uint32_t* random)
+{
+  compare_maps_of(make_occupancy(host_context, nx, ny, nz, fill, random));
+}
+
+/* A solid box of occupied blocks within the grid: the nearest empty blocks are about it. */
+static void compare_maps_of_box(const int64_t n[3], const int64_t lo[3], const int64_t hi[3])
+{
+  stratus_occupancy* o = NULL;
+  uint8_t* bytes = malloc((size_t)(n[0] * n[1] * n[2]));
+  assert_non_null(bytes);
+  for (int64_t b = 0; b < n[0] * n[1] * n[2]; ++b) {
+    const int64_t at[3] = { b % n[0], b / n[0] % n[1], b / (n[0] * n[1]) };
+    bytes[b] = 0;
+    for (int a = 0; a < 3; ++a) {
+      bytes[b] |= at[a] < lo[a] || at[a] >= hi[a];
+    }
+  }
+  assert_int_equal(stratus_occupancy_below(host_context, n, 4, bytes, 1, &o), STRATUS_OK);
+  assert_true(o->count > 0);
+  free(bytes);
+  compare_maps_of(o);
+}
+
 static void distance_maps_equal_the_hosts(void** state)
 {
   uint32_t random = 3;
@@ -152,6 +224,15 @@ static void distance_maps_equal_the_hosts(void** state)
   for (int grid = 0; grid < (tiny ? 3 : 40); ++grid) {
     compare_maps(1 + random_below(&random, 9), 1 + random_below(&random, 9), 1 + random_below(&random, 9),
       grid < 6 ? grid % 3 : random_below(&random, 60), &random);
+  }
+  for (int box = 0; box < (tiny ? 1 : 12); ++box) {
+    int64_t n[3], lo[3], hi[3];
+    for (int a = 0; a < 3; ++a) {
+      n[a] = 7 + random_below(&random, tiny ? 2 : 30);
+      lo[a] = random_below(&random, 3);
+      hi[a] = n[a] - random_below(&random, 3);
+    }
+    compare_maps_of_box(n, lo, hi);
   }
   if (tiny) {
     compare_maps(6, 5, 4, 20, &random);
@@ -183,6 +264,7 @@ int test_structures_device(void)
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(value_ranges_of_every_type_equal_the_hosts),
+    cmocka_unit_test(between_two_values_equals_the_hosts),
     cmocka_unit_test(occupancy_equals_the_hosts),
     cmocka_unit_test(distance_maps_equal_the_hosts),
     cmocka_unit_test(a_named_device_builds),

@@ -43,4 +43,20 @@ FLOOD_INLINE int flood_ratio(float now, float before)
   return (int)(now * flood_inverse_root(now) * flood_inverse_root(before) * FLOOD_RATIO_ONE + 0.5f);
 }
 
+#ifdef STRATUS_DEVICE
+/* The same of 16 voxels. */
+static inline float16 flood_inverse_roots(float16 a)
+{
+  float16 r = as_float16((int16)(0x5f375a86) - (as_int16(a) >> (int16)(1)));
+  r = r * (1.5f - 0.5f * a * r * r);
+  r = r * (1.5f - 0.5f * a * r * r);
+  return r * (1.5f - 0.5f * a * r * r);
+}
+
+static inline int16 flood_ratios(float16 now, float16 before)
+{
+  return convert_int16(now * flood_inverse_roots(now) * flood_inverse_roots(before) * FLOOD_RATIO_ONE + 0.5f);
+}
+#endif
+
 #endif

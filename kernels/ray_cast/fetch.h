@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Loads the volume's values for a packet, as floats. Included once for each STRATUS_TYPE (the number of a stratus_type) with 32-bit
  * indices, and once with STRATUS_TYPE -1 for the generic fetch. That takes any type, stride and size, and axes of one value; it is slow.
+ * Types 6 and 7 have a fetch of their own from pages only (RAY_PAGES), which takes any size, too. A value of a page that the device does
+ * not have is not finite.
  *
  *   fetch_pair(a, values, index, mask, end, &v0, &v1)   values[index] and values[index+1]; not in the generic fetch
  *   fetch_cell(a, values, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
@@ -25,15 +27,82 @@
 #define VALUE int
 #elif STRATUS_TYPE == 5
 #define VALUE uint
+#elif STRATUS_TYPE == 6
+#define VALUE long
+#elif STRATUS_TYPE == 7
+#define VALUE ulong
 #elif STRATUS_TYPE == 8
 #define VALUE float
 #elif STRATUS_TYPE == 9
 #define VALUE double
 #endif
-#define VALUE_WIDE (STRATUS_TYPE == 4 || STRATUS_TYPE == 5 || STRATUS_TYPE == 9)
+#define VALUE_WIDE (STRATUS_TYPE >= 4 && STRATUS_TYPE != 8)
+
+/* ------------------------------------------------------------------------------------------------ pages */
+#if RAY_IN_PAGES
+
+/* The value (i,j,k) in the page of its cell; NULL where there is no such page. */
+INLINE GLOBAL const VALUE* RAY_NAME(in_page)(CONSTANT stratus_ray_cast_arguments* a, const value_source* values, int i, int j, int k)
+{
+  const size_t row = (size_t)(k >> PAGE_LOG2) * (size_t)a->values.pages_rows + (size_t)(j >> PAGE_LOG2);
+  const int entry = values->table[row * (size_t)a->values.pages_across + (size_t)(i >> PAGE_LOG2)], in_row = PAGE_SIDE - 1;
+  if (entry < 0) {
+    return 0;
+  }
+  const size_t page = (size_t)(entry & ((1 << PAGE_SLAB_SHIFT) - 1)) * (size_t)a->values.page_components + (size_t)values->component;
+  const int slab = entry >> PAGE_SLAB_SHIFT, at = ((k & in_row) * PAGE_ROW + (j & in_row)) * PAGE_ROW + (i & in_row);
+  GLOBAL const void* from = slab < 2 ? (slab ? values->slab[1] : values->slab[0]) : slab == 2 ? values->slab[2] : values->slab[3];
+  return (GLOBAL const VALUE*)from + page * PAGE_VALUES + at;
+}
+
+INLINE float RAY_NAME(load_one)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const VALUE* at)
+{
+#if VALUE_WIDE
+  return (float)((double)*at - BIAS_OF(a));
+#else
+  (void)a;
+  return (float)*at;
+#endif
+}
+
+INLINE void RAY_NAME(fetch_cell)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+{
+  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
+  float lv[8][STRATUS_WIDTH];
+  vi_store(li, i);
+  vi_store(lj, j);
+  vi_store(lk, k);
+  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    GLOBAL const VALUE* at = lm[lane] ? RAY_NAME(in_page)(a, &values, li[lane], lj[lane], lk[lane]) : 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int behind = ((corner >> 2) * PAGE_ROW + (corner >> 1 & 1)) * PAGE_ROW + (corner & 1);
+      lv[corner][lane] = at ? RAY_NAME(load_one)(a, at + behind) : lm[lane] ? NAN : 0.0f;
+    }
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    v[corner] = v_load(lv[corner]);
+  }
+}
+
+INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask)
+{
+  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
+  float lv[STRATUS_WIDTH];
+  vi_store(li, i);
+  vi_store(lj, j);
+  vi_store(lk, k);
+  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    GLOBAL const VALUE* at = lm[lane] ? RAY_NAME(in_page)(a, &values, li[lane], lj[lane], lk[lane]) : 0;
+    lv[lane] = at ? RAY_NAME(load_one)(a, at) : lm[lane] ? NAN : 0.0f;
+  }
+  return v_load(lv);
+}
 
 /* ------------------------------------------------------------------------------------------------ generic */
-#if STRATUS_TYPE == -1
+#elif STRATUS_TYPE == -1
 
 INLINE float RAY_NAME(load_any)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
 {

@@ -21,9 +21,9 @@ INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_
 
 /* The values i and i+1 of row (j, k). At the volume's end both are the last value. */
 INLINE void RAY_NAME(fetch_two)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
 {
-#if STRATUS_TYPE == -1
+#if STRATUS_TYPE == -1 || RAY_IN_PAGES
   *v0 = RAY_NAME(fetch_nearest)(a, values, i, j, k, mask);
   *v1 = RAY_NAME(fetch_nearest)(a, values, vi_min(i + vi_set(1), vi_set(a->values.dimensions[0] - 1)), j, k, mask);
 #else
@@ -33,7 +33,7 @@ INLINE void RAY_NAME(fetch_two)(
 
 /* The gradient for nearest interpolation: differences at the voxel itself. */
 INLINE void RAY_NAME(voxel_gradient)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   vint at[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -58,8 +58,7 @@ INLINE void RAY_NAME(voxel_gradient)(
 }
 
 /* g: change of the value per voxel along each axis, at index coordinates x. Lanes outside `mask` get any number. */
-INLINE void RAY_NAME(ray_gradient)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, const vfloat x[3], vmask mask, vfloat g[3])
+INLINE void RAY_NAME(ray_gradient)(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
     RAY_NAME(voxel_gradient)(a, values, x, mask, g);

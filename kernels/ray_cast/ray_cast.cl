@@ -31,6 +31,19 @@
 typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
 #endif
 
+/* The kernel's arguments that say where the values are. */
+#if RAY_IN_PAGES
+#define VALUE_ARGUMENTS                                                                                                                    \
+  __global const void *slab0, __global const void *slab1, __global const void *slab2, __global const void *slab3, __global const int *pages
+#define VALUE_SOURCE                                                                                                                       \
+  {                                                                                                                                        \
+    { slab0, slab1, slab2, slab3 }, pages, 0                                                                                               \
+  }
+#else
+#define VALUE_ARGUMENTS __global const void* only_slab
+#define VALUE_SOURCE only_slab
+#endif
+
 typedef struct stratus_pixels {
   __global float* rgba;
   __global uchar* rgba8;
@@ -59,10 +72,11 @@ static void store_pixel(
 
 #if STRATUS_WIDTH == 1
 /* counts: rays, samples, skipped, lookups of each row of pixels, so that 32 bits hold them. */
-PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGUMENTS, __global const uchar* hidden,
   __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
   __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {
+  const value_source values = VALUE_SOURCE;
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= a->picture.width || y >= a->picture.height) {
@@ -150,10 +164,11 @@ static uint sum_lanes(vint lanes)
 }
 
 /* counts: rays, samples, skipped, lookups of each tile. 32 bits hold a tile's, and no other work item adds to them. */
-PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, __global const void* values, __global const uchar* hidden,
+PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGUMENTS, __global const uchar* hidden,
   __global const uchar* map, __global const uchar* rough, __global const void* table, __global const float* opaque_depth,
   __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts)
 {
+  const value_source values = VALUE_SOURCE;
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
   const int x1 = min(x0 + RAY_TILE, a->picture.width), y1 = min(y0 + RAY_TILE, a->picture.height);

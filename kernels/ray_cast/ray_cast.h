@@ -31,7 +31,7 @@
 
 /* The field at index coordinates: not finite where a corner is not, or where the cell or the value is hidden. */
 INLINE vfloat RAY_NAME(ray_value)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
 {
   vfloat x[3] = { position[0], position[1], position[2] };
   if (a->values.clamp) {
@@ -115,7 +115,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
 /* Takes the next sample of every live ray. The value is fetched for all lanes that are inside the volume, those of ended rays too: whether
  * a ray has ended hangs on the colour of the last sample, and the fetch need not wait for that. */
 INLINE stratus_sample RAY_NAME(ray_sample)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, const stratus_packet* k)
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {
   const vfloat fi = v_from_int(k->i), one = v_set(1.0f);
   const vmask inside = vi_lt(k->i, k->last);
@@ -192,7 +192,7 @@ INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 #if STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_local.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS
-INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   (void)rough;
@@ -204,7 +204,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
 
 #if PACKETS_TOGETHER == 2
 /* Marches two packets side by side: while one waits for its values, the other computes. The bits are those of each packet alone. */
-INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
   while (m_any(left->live) && m_any(right->live) && RAY_NAME(ray_leap)(a, map, left) && RAY_NAME(ray_leap)(a, map, right)) {
@@ -219,7 +219,7 @@ INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOB
 
 #if RAY_BY_CELLS
 #if PACKETS_TOGETHER == 2
-INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {
   RAY_NAME(ray_march)(a, values, hidden, map, rough, table, left);

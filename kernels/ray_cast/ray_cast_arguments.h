@@ -27,6 +27,19 @@
 #ifndef RAY_HAS
 #define RAY_HAS 0xfff
 #endif
+/* Values in pages, which only devices know, and only where the whole volume does not fit one of their allocations. */
+#define RAY_PAGES 0x1000
+#define RAY_IN_PAGES (RAY_HAS & RAY_PAGES)
+
+/* A page holds the values of PAGE_SIDE^3 cells, both ends included, so that a cell's corners are in one page: x fastest, one component
+ * after the other. Values beyond the volume's end repeat its last. An entry of the page table is the slab's number << PAGE_SLAB_SHIFT, and
+ * the page's place in the slab; negative where the device has no page. */
+#define PAGE_LOG2 3
+#define PAGE_SIDE (1 << PAGE_LOG2)
+#define PAGE_ROW (PAGE_SIDE + 1)
+#define PAGE_VALUES (PAGE_ROW * PAGE_ROW * PAGE_ROW)
+#define PAGE_SLABS 4
+#define PAGE_SLAB_SHIFT 29
 /* A field of the arguments, which is 0 where the frame has none of `what`. */
 #define RAY_RARE(what, field) (RAY_HAS & (what) ? (field) : 0)
 
@@ -92,6 +105,7 @@ typedef struct stratus_ray_values {
   int type, stride;         /* read by the generic fetch only, as the next two */
   int row_high, slice_high; /* high 32 bits of row and slice */
   int bias_low, bias_high;  /* bits of the double that wide types are relative to */
+  int pages_across, pages_rows, page_components; /* of the page table: pages in a row, rows in a slice; and components in a page */
 } stratus_ray_values;
 
 /* The structure that tells which segments need no samples. */

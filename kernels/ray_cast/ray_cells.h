@@ -230,7 +230,7 @@ INLINE vmask cell_composite(
 #endif
 
 /* Visits the cells of the lanes in `mask`. Returns the lanes whose way shows something, and what their way is. */
-INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   stratus_packet* k, const cell_walk* w, vmask mask, cell_way* ways)
 {
   vint inside[3];
@@ -276,7 +276,7 @@ INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
 }
 
 /* Visits the box about a value, or the part of it that is in one cell, of every live ray. */
-INLINE void RAY_NAME(cell_visit_nearest)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(cell_visit_nearest)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const int* sums, stratus_packet* k, const cell_walk* w)
 {
   vint at[3], hides[3];
@@ -294,7 +294,7 @@ INLINE void RAY_NAME(cell_visit_nearest)(CONSTANT stratus_ray_cast_arguments* a,
 
 /* Lanes walk each for itself: a lane whose cell shows something waits until one in CELL_WAITING has pieces to composite, and a lane that
  * has composited its pieces goes on. */
-INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const void* table, stratus_packet* k, int nearest, int halves)
 {
   GLOBAL const int* sums = (GLOBAL const int*)table;
@@ -329,7 +329,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 #if STRATUS_RAY_MODE == STRATUS_RAY_CELLS
 /* Boxes about values are cells half a cell further on. Where cells of a volume of points are hidden, boxes are cut at the cells' planes,
  * too: then the planes are half a cell apart. */
-INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   (void)rough;

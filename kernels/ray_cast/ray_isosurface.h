@@ -31,7 +31,7 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 #endif
 
 /* Composites the surface at point s of the rays. */
-SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
   vfloat x[3];
@@ -60,7 +60,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
 
 /* Composites all surfaces in the cells of the rays in `mask`, in the order in which the rays meet them: piece by piece, and within a piece
  * by rising or falling values. */
-SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   stratus_packet* k, const cell_walk* w, const stratus_cubic* cubic, vmask mask)
 {
   for (int piece = 0; piece < 3; ++piece) {
@@ -85,7 +85,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments
 
 /* Visits the cell of every live ray. */
 INLINE void RAY_NAME(surface_visit)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden, stratus_packet* k, const cell_walk* w)
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, stratus_packet* k, const cell_walk* w)
 {
   vint inside[3];
   vfloat v[8];
@@ -116,7 +116,7 @@ INLINE void RAY_NAME(surface_visit)(
   }
 }
 
-INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   cell_walk w;

@@ -75,7 +75,7 @@ INLINE void local_composite(
 #endif
 
 /* Marches the live rays, all of them in smooth runs. */
-INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const int* sums, stratus_packet* k)
 {
   while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
@@ -88,7 +88,7 @@ INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
 }
 
 /* Rays take a run each in turns: all that are in smooth runs first, then all that are in rough ones, so that neighbours keep together. */
-INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const uchar* hidden,
+INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), whole_begin = k->begin, whole_end = k->end;

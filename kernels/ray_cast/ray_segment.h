@@ -27,6 +27,17 @@ INLINE double stratus_bias(const stratus_ray_cast_arguments* a)
 typedef uint64_t stratus_index;
 #endif
 
+/* Where a volume's values lie: one behind the other, or in pages (RAY_PAGES), of which a table tells the slab and the place in it. */
+#if RAY_IN_PAGES
+typedef struct value_source {
+  GLOBAL const void* slab[PAGE_SLABS];
+  GLOBAL const int* table;
+  int component;
+} value_source;
+#else
+typedef GLOBAL const void* value_source;
+#endif
+
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat transparency, red, green, blue, depth;
@@ -43,7 +54,7 @@ typedef struct stratus_packet {
 /* A sample of every ray, in the segment [lo, lo + weight]. */
 typedef struct stratus_sample {
   vfloat value, lo, weight;
-  GLOBAL const void* values; /* of the volume that the sample is from */
+  value_source values; /* of the volume that the sample is from */
   GLOBAL const uchar* hidden;
 } stratus_sample;
 

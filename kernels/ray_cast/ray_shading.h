@@ -12,10 +12,19 @@
 #define OUTLINE static __attribute__((noinline))
 #endif
 
+#if RAY_IN_PAGES
+INLINE value_source component_values(value_source values, int c)
+{
+  values.component = c;
+  return values;
+}
+#define COMPONENT_VALUES(a, values, c) component_values(values, c)
+#else
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
+#endif
 
 /* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. */
-OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, GLOBAL const void* table, int c,
+OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
   const stratus_packet* k, vfloat s, vmask mask, stratus_lit_sample* lighting)
 {
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };

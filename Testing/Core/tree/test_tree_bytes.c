@@ -22,6 +22,7 @@ static stratus_tree* make_tree(stratus_context* context, stratus_tree_method met
   *voxels = random_voxels(context, dimensions, 0.01, 0, random);
   options.method = method;
   options.field_emptiness = 2.0;
+  options.paper_threshold = 0.5; /* so that the paper's tree of so few voxels has several levels, too */
   assert_int_equal(stratus_tree_create(context, *voxels, &options, &tree), STRATUS_OK);
   return tree;
 }
@@ -278,11 +279,81 @@ static void a_tree_covers_only_what_it_was_made_of(void** state)
   stratus_context_destroy(context);
 }
 
+/* Saves the tree as it is now, checksum included, and loads that. */
+static stratus_status load_forged(stratus_context* context, const stratus_tree* tree)
+{
+  stratus_tree* back = NULL;
+  size_t size;
+  void* bytes = save(tree, &size);
+  const stratus_status status = stratus_tree_load(context, bytes, size, &back);
+  assert_true((back != NULL) == (status == STRATUS_OK));
+  stratus_tree_destroy(back);
+  free(bytes);
+  return status;
+}
+
+/* Grows the box of `child`, which no field's cells bind, as far as the plane between it and its sibling, and then a voxel farther. Returns
+ * whether there is one axis along which they lie apart: boxes apart along several have no one plane to pass. */
+static bool grow_to_sibling(
+  stratus_context* context, const stratus_tree* tree, stratus_tree_node* child, const stratus_tree_node* sibling, stratus_status beyond)
+{
+  const stratus_tree_node kept = *child;
+  int axes = 0, axis = 0;
+  for (int a = 0; a < 3; ++a) {
+    const bool apart = child->hi[a] <= sibling->lo[a] || sibling->hi[a] <= child->lo[a];
+    axes += apart;
+    axis = apart ? a : axis;
+  }
+  if (axes != 1) {
+    return false;
+  }
+  const bool below = child->hi[axis] <= sibling->lo[axis];
+  int32_t* end = below ? &child->hi[axis] : &child->lo[axis];
+  *end = below ? sibling->lo[axis] : sibling->hi[axis];
+  assert_int_equal(load_forged(context, tree), STRATUS_OK);
+  *end += below ? 1 : -1;
+  assert_int_equal(load_forged(context, tree), beyond);
+  if (beyond != STRATUS_OK) {
+    assert_non_null(strstr(stratus_context_message(context), "has children that overlap"));
+  }
+  *child = kept;
+  return true;
+}
+
+/* Rays in hybrid trees take the sibling on their side of a plane first. A box that grows as far as that plane is let in, a box that grows a
+ * voxel beyond it is not; hierarchies, whose boxes may overlap, are. */
+static void hybrid_siblings_that_overlap_are_refused(void** state)
+{
+  static const stratus_tree_method methods[] = { STRATUS_TREE_HYBRID, STRATUS_TREE_HYBRID_PAPER, STRATUS_TREE_SAH };
+  (void)state;
+  uint32_t random = 9;
+  stratus_context* context = open_context();
+  for (int m = 0; m < 3; ++m) {
+    stratus_voxels* voxels;
+    stratus_tree* tree = make_tree(context, methods[m], &random, &voxels);
+    const stratus_status beyond = methods[m] == STRATUS_TREE_SAH ? STRATUS_OK : STRATUS_INVALID_ARGUMENT;
+    int grown = 0;
+    for (uint32_t n = 0; n < tree->node_count && grown < 20; ++n) {
+      for (int c = 0; stratus_tree_node_kind(&tree->nodes[n]) == STRATUS_NODE_INNER && c < 2; ++c) {
+        stratus_tree_node* child = &tree->nodes[tree->nodes[n].first];
+        grown +=
+          stratus_tree_node_kind(&child[c]) != STRATUS_NODE_FIELD && grow_to_sibling(context, tree, &child[c], &child[1 - c], beyond);
+      }
+    }
+    print_message("             %s: %d boxes grown\n", stratus_tree_method_name(methods[m]), grown);
+    assert_true(grown > 0);
+    assert_int_equal(load_forged(context, tree), STRATUS_OK);
+    stratus_tree_destroy(tree);
+    stratus_voxels_destroy(voxels);
+  }
+  stratus_context_destroy(context);
+}
+
 int test_tree_bytes(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(what_is_saved_comes_back),
     cmocka_unit_test(a_tree_of_no_voxel_comes_back_and_nothing_hits_it), cmocka_unit_test(damaged_bytes_are_refused),
-    cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(forged_places_and_intervals_are_refused),
-    cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
+    cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(hybrid_siblings_that_overlap_are_refused),
+    cmocka_unit_test(forged_places_and_intervals_are_refused), cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
