@@ -101,7 +101,7 @@ static void layers_are_the_hosts_to_the_byte(void** state)
 {
   compared seen = { 0 }, leaves = { 0 };
   (void)state;
-  for (int kind = tiny ? 2 : 0; kind < 3; ++kind) {
+  for (int kind = tiny ? 1 : 0; kind < 3; ++kind) {
     mesh_case mesh = make_mesh(kind);
     const stratus_mesh view = mesh_case_view(&mesh);
     stratus_partition_options options = stratus_partition_options_default();
