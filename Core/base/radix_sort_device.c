@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The radix sort on the context's OpenCL device: buffers, places of digits, and launches of radix_sort.cl. */
-#include "device.h"
+#include "radix_sort_device.h"
 #include "radix_sort.h"
 
 #include <stdio.h>
@@ -16,7 +16,8 @@
 
 typedef struct sort_device {
   stratus_context* context;
-  cl_mem keys[2], values[2], places;
+  stratus_device_keys* keys;
+  cl_mem places;
   uint32_t* host_places;
   cl_uint count, chunk, chunks;
   int bits; /* of a digit */
@@ -35,19 +36,12 @@ static size_t digits_of(const sort_device* d)
   return (size_t)1 << d->bits;
 }
 
-static stratus_status make_buffers(sort_device* d, const uint64_t* keys, const uint32_t* values)
+static stratus_status make_places(sort_device* d)
 {
-  const size_t key_bytes = d->count * sizeof *keys, value_bytes = d->count * sizeof *values;
   void* memory;
   TRY(stratus_allocate(d->context, digits_of(d), d->chunks * sizeof(uint32_t), &memory));
   d->host_places = memory;
-  TRY(stratus_device_buffer(d->context, CL_MEM_READ_WRITE, digits_of(d) * d->chunks * sizeof(uint32_t), NULL, false, &d->places));
-  for (int i = 0; i < 2; ++i) {
-    TRY(stratus_device_buffer(d->context, CL_MEM_READ_WRITE, key_bytes, NULL, false, &d->keys[i]));
-    TRY(stratus_device_buffer(d->context, CL_MEM_READ_WRITE, value_bytes, NULL, false, &d->values[i]));
-  }
-  TRY(stratus_device_write(d->context, d->keys[0], 0, key_bytes, keys));
-  return stratus_device_write(d->context, d->values[0], 0, value_bytes, values);
+  return stratus_device_buffer(d->context, CL_MEM_READ_WRITE, digits_of(d) * d->chunks * sizeof(uint32_t), NULL, false, &d->places);
 }
 
 static stratus_status launch(const sort_device* d, const char* name, const stratus_kernel_argument* arguments, size_t count)
@@ -83,7 +77,7 @@ static bool place_digits(const sort_device* d)
 static stratus_status run_pass(sort_device* d, cl_int shift)
 {
   const size_t bytes = digits_of(d) * d->chunks * sizeof(uint32_t);
-  const stratus_kernel_argument count[] = { ARGUMENT(d->keys[0]), ARGUMENT(d->count), ARGUMENT(shift), ARGUMENT(d->chunk),
+  const stratus_kernel_argument count[] = { ARGUMENT(d->keys->keys[0]), ARGUMENT(d->count), ARGUMENT(shift), ARGUMENT(d->chunk),
     ARGUMENT(d->chunks), ARGUMENT(d->places) };
   TRY(launch(d, "count", count, COUNT_OF(count)));
   TRY(stratus_device_read(d->context, d->places, 0, bytes, d->host_places));
@@ -91,46 +85,73 @@ static stratus_status run_pass(sort_device* d, cl_int shift)
     return STRATUS_OK;
   }
   TRY(stratus_device_write(d->context, d->places, 0, bytes, d->host_places));
-  const stratus_kernel_argument scatter[] = { ARGUMENT(d->keys[0]), ARGUMENT(d->values[0]), ARGUMENT(d->count), ARGUMENT(shift),
-    ARGUMENT(d->chunk), ARGUMENT(d->chunks), ARGUMENT(d->places), ARGUMENT(d->keys[1]), ARGUMENT(d->values[1]) };
+  const stratus_kernel_argument scatter[] = { ARGUMENT(d->keys->keys[0]), ARGUMENT(d->keys->values[0]), ARGUMENT(d->count), ARGUMENT(shift),
+    ARGUMENT(d->chunk), ARGUMENT(d->chunks), ARGUMENT(d->places), ARGUMENT(d->keys->keys[1]), ARGUMENT(d->keys->values[1]) };
   TRY(launch(d, "scatter", scatter, COUNT_OF(scatter)));
-  const cl_mem keys = d->keys[0], values = d->values[0];
-  d->keys[0] = d->keys[1];
-  d->values[0] = d->values[1];
-  d->keys[1] = keys;
-  d->values[1] = values;
+  const cl_mem keys = d->keys->keys[0], values = d->keys->values[0];
+  d->keys->keys[0] = d->keys->keys[1];
+  d->keys->values[0] = d->keys->values[1];
+  d->keys->keys[1] = keys;
+  d->keys->values[1] = values;
   return STRATUS_OK;
+}
+
+stratus_status stratus_device_keys_create(stratus_context* context, uint32_t count, stratus_device_keys* keys)
+{
+  keys->count = count;
+  for (int i = 0; i < 2; ++i) {
+    TRY(stratus_device_buffer(context, CL_MEM_READ_WRITE, count * sizeof(uint64_t), NULL, false, &keys->keys[i]));
+    TRY(stratus_device_buffer(context, CL_MEM_READ_WRITE, count * sizeof(uint32_t), NULL, false, &keys->values[i]));
+  }
+  return STRATUS_OK;
+}
+
+void stratus_device_keys_release(stratus_device_keys* keys)
+{
+  for (int i = 0; i < 2; ++i) {
+    stratus_device_buffer_release(keys->keys[i]);
+    stratus_device_buffer_release(keys->values[i]);
+  }
+}
+
+stratus_status stratus_device_keys_sort(stratus_context* context, stratus_device_keys* keys, int bits)
+{
+  stratus_status status = STRATUS_OK;
+  sort_device d = { .context = context, .keys = keys, .count = keys->count };
+  const bool processor = stratus_device_is_cpu(context->device);
+  d.group = processor ? 1 : GPU_GROUP;
+  d.bits = processor ? CPU_BITS : GPU_BITS;
+  d.chunk = processor ? (d.count + CPU_CHUNKS - 1) / CPU_CHUNKS : GPU_CHUNK;
+  d.chunks = (d.count + d.chunk - 1) / d.chunk;
+  snprintf(d.defines, sizeof d.defines, "-DGROUP=%zu -DDIGIT_BITS=%d", d.group, d.bits);
+  TRY_CLEANUP(make_places(&d));
+  for (cl_int shift = 0; shift < bits; shift += d.bits) {
+    TRY_CLEANUP(run_pass(&d, shift));
+  }
+cleanup:
+  stratus_device_buffer_release(d.places);
+  stratus_release(context, d.host_places);
+  return status;
 }
 
 stratus_status stratus_device_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits)
 {
   stratus_status status = STRATUS_OK;
-  sort_device d = { .context = context, .count = count };
+  stratus_device_keys on_device = { .count = 0 };
   void* sorted = NULL;
-  const bool processor = stratus_device_is_cpu(context->device);
-  d.group = processor ? 1 : GPU_GROUP;
-  d.bits = processor ? CPU_BITS : GPU_BITS;
-  d.chunk = processor ? (count + CPU_CHUNKS - 1) / CPU_CHUNKS : GPU_CHUNK;
-  d.chunks = (count + d.chunk - 1) / d.chunk;
-  snprintf(d.defines, sizeof d.defines, "-DGROUP=%zu -DDIGIT_BITS=%d", d.group, d.bits);
-  TRY_CLEANUP(make_buffers(&d, keys, values));
-  for (cl_int shift = 0; shift < bits; shift += d.bits) {
-    TRY_CLEANUP(run_pass(&d, shift));
-  }
+  TRY_CLEANUP(stratus_device_keys_create(context, count, &on_device));
+  TRY_CLEANUP(stratus_device_write(context, on_device.keys[0], 0, count * sizeof *keys, keys));
+  TRY_CLEANUP(stratus_device_write(context, on_device.values[0], 0, count * sizeof *values, values));
+  TRY_CLEANUP(stratus_device_keys_sort(context, &on_device, bits));
   /* Both are read before either is written, so that the host can still sort them. */
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *keys + sizeof *values, &sorted));
   uint32_t* const sorted_values = (uint32_t*)((uint64_t*)sorted + count);
-  TRY_CLEANUP(stratus_device_read(context, d.keys[0], 0, count * sizeof *keys, sorted));
-  TRY_CLEANUP(stratus_device_read(context, d.values[0], 0, count * sizeof *values, sorted_values));
+  TRY_CLEANUP(stratus_device_read(context, on_device.keys[0], 0, count * sizeof *keys, sorted));
+  TRY_CLEANUP(stratus_device_read(context, on_device.values[0], 0, count * sizeof *values, sorted_values));
   memcpy(keys, sorted, count * sizeof *keys);
   memcpy(values, sorted_values, count * sizeof *values);
 cleanup:
   stratus_release(context, sorted);
-  for (int i = 0; i < 2; ++i) {
-    stratus_device_buffer_release(d.keys[i]);
-    stratus_device_buffer_release(d.values[i]);
-  }
-  stratus_device_buffer_release(d.places);
-  stratus_release(context, d.host_places);
+  stratus_device_keys_release(&on_device);
   return status;
 }

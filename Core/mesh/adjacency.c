@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Neighbours through faces. Each face is a record in the bucket of its lowest point number, so that a bucket holds faces near one another
  * in memory. A bucket pairs its faces in a hash table that fits a cache. Neither a record's place nor the result depends on the number of
- * threads. */
-#include "mesh.h"
+ * threads. A device that builds pairs the faces of large meshes. */
+#include "adjacency_device.h"
+#include "device.h"
 
 #include <string.h>
 
@@ -171,7 +172,7 @@ static void pair_bucket(adjacency_build* build, int bucket, face_slot* table, in
 static void pair_faces(adjacency_build* build)
 {
   stratus_adjacency* adjacency = build->adjacency;
-  int64_t broken = 0, folded = 0, border = 0;
+  int64_t broken = 0, folded = 0;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
   for (int64_t i = 0; i < 4 * build->mesh->cell_count; ++i) {
     adjacency->neighbours[i] = -1;
@@ -183,16 +184,11 @@ static void pair_faces(adjacency_build* build)
       pair_bucket(build, bucket, build->tables + (size_t)worker * slots, &broken, &folded);
     }
   }
-#pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : border)
-  for (int64_t i = 0; i < 4 * build->mesh->cell_count; ++i) {
-    border += adjacency->neighbours[i] < 0;
-  }
   adjacency->broken_faces = broken;
   adjacency->folded_faces = folded;
-  adjacency->border_faces = border;
 }
 
-static stratus_status build_adjacency(adjacency_build* build)
+static stratus_status pair_on_host(adjacency_build* build)
 {
   stratus_context* context = build->context;
   const int64_t faces = 4 * build->mesh->cell_count;
@@ -207,8 +203,6 @@ static stratus_status build_adjacency(adjacency_build* build)
   build->places = memory;
   TRY(stratus_allocate(context, (size_t)faces, sizeof(face_record), &memory));
   build->records = memory;
-  find_orientations(build);
-  TRY(stratus_progress(context, "adjacency", 0.3));
 #pragma omp parallel for schedule(static, 1) num_threads(build->chunks)
   for (int chunk = 0; chunk < build->chunks; ++chunk) {
     count_faces(build, chunk);
@@ -225,6 +219,32 @@ static stratus_status build_adjacency(adjacency_build* build)
   TRY(stratus_allocate(context, (size_t)build->workers, (build->largest + build->largest / 2 + 1) * sizeof(face_slot), &memory));
   build->tables = memory;
   pair_faces(build);
+  return STRATUS_OK;
+}
+
+static stratus_status pair(adjacency_build* build)
+{
+  if (stratus_adjacency_on_device(build->context, build->mesh)) {
+    const stratus_status status = stratus_adjacency_pair_on_device(build->context, build->mesh, build->adjacency);
+    if (!stratus_device_hands_back(build->context, status)) {
+      return status;
+    }
+  }
+  return pair_on_host(build);
+}
+
+static stratus_status build_adjacency(adjacency_build* build)
+{
+  stratus_adjacency* adjacency = build->adjacency;
+  int64_t border = 0;
+  find_orientations(build);
+  TRY(stratus_progress(build->context, "adjacency", 0.3));
+  TRY(pair(build));
+#pragma omp parallel for schedule(static) num_threads(build->context->threads) reduction(+ : border)
+  for (int64_t i = 0; i < 4 * build->mesh->cell_count; ++i) {
+    border += adjacency->neighbours[i] < 0;
+  }
+  adjacency->border_faces = border;
   return STRATUS_OK;
 }
 

@@ -64,7 +64,8 @@ typedef struct stratus_visibility_result {
 
 /* Sorts the cells as the camera's eye sees them (parallel: along its forward). right and up do not matter. matrix: world = matrix * local,
  * as in stratus_mesh; NULL: the mesh's. The same sequence of calls gives the same order at any number of threads and on any device. A GPU
- * with doubles computes the signs of meshes that are not small. The host computes the signs that rounding leaves open, and the order. */
+ * with doubles computes the signs of meshes that are not small, and a device that builds peels their layers. The host computes the signs
+ * that rounding leaves open, peels leaves with rings, and lists the nearest first. */
 STRATUS_API stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, const stratus_camera* camera,
   const double matrix[16], stratus_peeling peeling, stratus_visibility_result* result);
 

@@ -179,6 +179,7 @@ void stratus_visibility_order_destroy(stratus_visibility_order* order)
   stratus_release(context, order->cells);
   stratus_release(context, order->seeds);
   stratus_device_signs_destroy(context, order->device_signs);
+  stratus_device_layers_destroy(context, order->device_layers);
   stratus_release(context, order);
 }
 
@@ -237,14 +238,19 @@ static stratus_peel_counts peel_leaf(stratus_visibility_order* order, int32_t le
   return counts;
 }
 
-static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling, stratus_visibility_result* result)
+/* peeled: leaves that are left out; NULL: none. */
+static void peel_on_host(stratus_visibility_order* order, stratus_peeling peeling, const uint8_t* peeled, stratus_visibility_result* result)
 {
   int64_t cycles = 0, forced = 0, overlaps = 0, tests = 0;
   int layers = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(peeling_threads(order)) reduction(+ : cycles, forced, overlaps, tests)           \
   reduction(max : layers)
   for (int32_t i = 0; i < order->leaf_count; ++i) {
-    const stratus_peel_counts counts = peel_leaf(order, (int32_t)(order->leaf_work[i] % STRATUS_LEAVES_MAX), peeling);
+    const int32_t leaf = (int32_t)(order->leaf_work[i] % STRATUS_LEAVES_MAX);
+    if (peeled && peeled[leaf]) {
+      continue;
+    }
+    const stratus_peel_counts counts = peel_leaf(order, leaf, peeling);
     cycles += counts.cycles;
     forced += counts.forced;
     overlaps += counts.overlaps;
@@ -256,6 +262,30 @@ static void peel_leaves(stratus_visibility_order* order, stratus_peeling peeling
   result->overlaps = overlaps;
   result->gate_tests = tests;
   result->layers = layers;
+}
+
+static stratus_status peel_leaves(stratus_visibility_order* order, stratus_peeling peeling, stratus_visibility_result* result)
+{
+  stratus_context* context = order->context;
+  void* peeled = NULL;
+  int layers = 0;
+  if (peeling == STRATUS_PEELING_LAYERS && stratus_order_layers_on_device(order)) {
+    TRY(stratus_allocate_zero(context, (size_t)order->leaf_count, 1, &peeled));
+    const stratus_status status = stratus_order_peel_layers_on_device(order, peeled, &layers);
+    const bool handed_back = stratus_device_hands_back(context, status);
+    if (status != STRATUS_OK) {
+      stratus_release(context, peeled);
+      peeled = NULL;
+      layers = 0;
+    }
+    if (status != STRATUS_OK && !handed_back) {
+      return status;
+    }
+  }
+  peel_on_host(order, peeling, peeled, result);
+  result->layers = layers > result->layers ? layers : result->layers;
+  stratus_release(context, peeled);
+  return STRATUS_OK;
 }
 
 static stratus_status find_signs(stratus_visibility_order* order, const stratus_view* view, int64_t* exact)
@@ -315,7 +345,7 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   const stratus_stage peel_stage = stratus_stage_begin(context);
   const bool leaves_changed = stratus_order_sort_leaves(order, &view), gaps = order->gap_begin[order->leaf_count] > 0;
   if (leaves_changed || !sorted || order->relations_changed || gaps || order->result.forced > 0) {
-    peel_leaves(order, peeling, &found);
+    TRY(peel_leaves(order, peeling, &found));
     stratus_stage_end(context, &peel_stage, "visibility peeling", (size_t)order->cell_count * sizeof *order->cells);
   } else { /* all relations are those of the last view, and there are no gaps, where relations are not compared */
     found.reused = 1;

@@ -99,12 +99,13 @@ struct stratus_visibility_order {
   stratus_gate* gates; /* the gap faces in this view */
   stratus_gate_node* gate_nodes;
 
-  uint32_t* seen_at;                         /* each point's place in `seen`; NULL: its number */
-  double* seen;                              /* 3 coordinates a point, by stratus_order_see_points() */
-  uint32_t* cells;                           /* the result, front to back, by the mesh's cell numbers */
-  bool relations_changed;                    /* the last view changed some cell's state */
-  struct stratus_device_signs* device_signs; /* the device's buffers, kept from view to view; NULL: it has not been used */
-  stratus_order_seed* seeds;                 /* seed_count for each thread that peels: the largest leaf's */
+  uint32_t* seen_at;                           /* each point's place in `seen`; NULL: its number */
+  double* seen;                                /* 3 coordinates a point, by stratus_order_see_points() */
+  uint32_t* cells;                             /* the result, front to back, by the mesh's cell numbers */
+  bool relations_changed;                      /* the last view changed some cell's state */
+  struct stratus_device_signs* device_signs;   /* the device's buffers, kept from view to view; NULL: it has not been used */
+  struct stratus_device_layers* device_layers; /* the same for peeling in layers */
+  stratus_order_seed* seeds;                   /* seed_count for each thread that peels: the largest leaf's */
   int64_t seed_count;
   int64_t steps_per_cell; /* limit of the search for rings: STRATUS_STEPS_PER_CELL; tests lower it */
   size_t bytes;
@@ -306,6 +307,16 @@ stratus_peel_counts stratus_order_leaf_nearest(stratus_visibility_order* order, 
 
 /* ---- visibility_layers.c */
 stratus_peel_counts stratus_order_leaf_layers(stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds);
+
+/* ---- visibility_layers_device.c: all leaves' layers on the context's device, as by stratus_order_leaf_layers(). */
+typedef struct stratus_device_layers stratus_device_layers;
+
+/* Whether the device builds, the cells are many, and they fit. */
+bool stratus_order_layers_on_device(const stratus_visibility_order* order);
+/* Sets peeled[leaf] for each leaf, and writes the cells of those that it has peeled; a leaf with rings is left to the host. layers: of the
+ * leaf with most so far. */
+stratus_status stratus_order_peel_layers_on_device(stratus_visibility_order* order, uint8_t* peeled, int* layers);
+void stratus_device_layers_destroy(stratus_context* context, stratus_device_layers* layers); /* takes NULL */
 
 /* ---- visibility_peeling.c */
 

@@ -209,6 +209,18 @@ static stratus_status job_order(stratus_context* context, int number, void* kept
   return status;
 }
 
+static stratus_status job_layers(stratus_context* context, int number, void* kept, uint64_t* sum)
+{
+  const stratus_camera camera = { .eye = { -20, 31, 3 + number }, .forward = { 1, 0, 0 } };
+  stratus_visibility_result result;
+  (void)context;
+  const stratus_status status = stratus_visibility_order_sort(kept, &camera, NULL, STRATUS_PEELING_LAYERS, &result);
+  if (status == STRATUS_OK) {
+    *sum = job_sum(7, result.cells, (size_t)result.count * sizeof *result.cells);
+  }
+  return status;
+}
+
 static stratus_status job_order_before(stratus_context* context, int number, void* kept, uint64_t* sum)
 {
   return job_order(context, number + 7, kept, sum);
@@ -262,6 +274,7 @@ static const device_job device_jobs[] = {
   { "tetrahedra", STRATUS_TETRA_COMPOSITE, job_tetra_open, job_tetra_close, NULL, job_tetra },
   { "tetrahedra drawn before", STRATUS_TETRA_MAXIMUM, job_tetra_open, job_tetra_close, job_tetra_before, job_tetra },
   { "visibility order", 0, job_order_open, job_order_close, NULL, job_order },
+  { "order by layers", 0, job_order_open, job_order_close, NULL, job_layers },
   { "another view's order", 1, job_order_open, job_order_close, job_order_before, job_order },
 };
 

@@ -7,6 +7,7 @@
 
 #include "volume.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -116,6 +117,26 @@ static inline void mesh_shuffle(mesh_case* mesh, uint32_t seed)
       v[q] = kept;
     }
   }
+}
+
+/* Blades of an iris: `count` blocks of three cells around an axis, each over the next block and under the one before. */
+static inline mesh_case mesh_iris(int count)
+{
+  mesh_case mesh = mesh_case_allocate(3 * count, 3 * count);
+  for (int b = 0; b < count; ++b) {
+    const double angle = 6.283185307179586 * b / count, lean = angle + 1.2 * 6.283185307179586 / count;
+    const double radius[3] = { 1.0, 3.0, 2.0 }, height[3] = { 0.0, 0.0, 1.0 };
+    for (int i = 0; i < 3; ++i) {
+      double* p = mesh.points + 3 * (3 * b + i);
+      p[0] = radius[i] * cos(i < 2 ? angle : lean);
+      p[1] = radius[i] * sin(i < 2 ? angle : lean);
+      p[2] = height[i];
+    }
+    const int p = 3 * b, q = 3 * ((b + 1) % count);
+    const int32_t cells[12] = { p, p + 1, p + 2, q, p + 1, p + 2, q, q + 1, p + 2, q, q + 1, q + 2 };
+    memcpy(mesh.vertices + 12 * b, cells, sizeof cells);
+  }
+  return mesh;
 }
 
 /* Makes a mesh of both meshes' points and cells, the first's before the second's. Frees both. */

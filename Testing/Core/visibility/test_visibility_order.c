@@ -159,33 +159,13 @@ static int64_t broken_relations(const mesh_case* mesh, const stratus_camera* cam
   return broken;
 }
 
-/* Blades of an iris: `count` blocks of three cells around an axis, each over the next block and under the one before. */
-static mesh_case iris(int count)
-{
-  mesh_case mesh = mesh_case_allocate(3 * count, 3 * count);
-  for (int b = 0; b < count; ++b) {
-    const double angle = 6.283185307179586 * b / count, lean = angle + 1.2 * 6.283185307179586 / count;
-    const double radius[3] = { 1.0, 3.0, 2.0 }, height[3] = { 0.0, 0.0, 1.0 };
-    for (int i = 0; i < 3; ++i) {
-      double* p = mesh.points + 3 * (3 * b + i);
-      p[0] = radius[i] * cos(i < 2 ? angle : lean);
-      p[1] = radius[i] * sin(i < 2 ? angle : lean);
-      p[2] = height[i];
-    }
-    const int p = 3 * b, q = 3 * ((b + 1) % count);
-    const int32_t cells[12] = { p, p + 1, p + 2, q, p + 1, p + 2, q, q + 1, p + 2, q, q + 1, q + 2 };
-    memcpy(mesh.vertices + 12 * b, cells, sizeof cells);
-  }
-  return mesh;
-}
-
 static void a_ring_of_cells_loses_one_relation(void** state)
 {
   (void)state;
   stratus_context* context = mesh_context(1);
   int64_t found = 0;
   for (int count = 3; count <= 12; ++count) {
-    mesh_case mesh = iris(count);
+    mesh_case mesh = mesh_iris(count);
     stratus_visibility_order* order = make_order(context, &mesh);
     for (int side = -1; side <= 1; side += 2) {
       for (int peeling = 0; peeling < 2; ++peeling) {
@@ -206,10 +186,10 @@ static void a_ring_of_cells_loses_one_relation(void** state)
 
 static mesh_case iris_stack(int count)
 {
-  mesh_case mesh = iris(5);
+  mesh_case mesh = mesh_iris(5);
   for (int i = 1; i < count; ++i) {
     static const double one[3] = { 1, 1, 1 };
-    mesh_case other = iris(3 + i % 6);
+    mesh_case other = mesh_iris(3 + i % 6);
     mesh_move(&other, one, (const double[3]){ 0, 0, 1.5 * i });
     mesh = mesh_join(mesh, other);
   }
