@@ -99,9 +99,9 @@ def trees():
         getattr(tree, "SetMethodTo" + name)()
         seen[tree.GetMethodAsString()] = built()
         check(tree.GetMethod() == len(seen) - 1, f"SetMethodTo{name} is method {tree.GetMethod()}")
-        hierarchy = tree.GetMethod() >= tree.SAH
+        hierarchy = tree.SAH <= tree.GetMethod() <= tree.K_MEANS
         check((tree.GetNumberOfLeaves() == tree.GetNumberOfVoxels()) == hierarchy, f"{name}: {tree.GetNumberOfLeaves()} leaves")
-    check(len(seen) == 11 and len(set(seen.values())) == 11, "eleven methods, eleven trees")
+    check(len(seen) == 12 and len(set(seen.values())) == 12, "twelve methods, twelve trees")
     tree.SetMethodToAgglomerative()
     switches(tree, "AgglomerativeByEdges", built)
     tree.SetMethodToHybridPaper()
