@@ -84,6 +84,9 @@ typedef struct stratus_kernel_argument {
 /* Builds kernel `kernel` of `source`, sets its arguments in order, and enqueues it over items[0] x items[1] x items[2]. */
 stratus_status stratus_device_launch(stratus_context* context, const char* source, const char* defines, const char* kernel,
   const stratus_kernel_argument* arguments, size_t count, const int64_t items[3]);
+/* The same over `groups` work-groups of `group` items in a row. */
+stratus_status stratus_device_launch_groups(stratus_context* context, const char* source, const char* defines, const char* kernel,
+  const stratus_kernel_argument* arguments, size_t count, size_t groups, size_t group);
 
 /* Returns the text of kernels/<name>.cl with its headers included, NULL if there is none. The build generates it. */
 const char* stratus_kernel_source(const char* name);

@@ -247,14 +247,31 @@ stratus_status stratus_device_run(
   return STRATUS_OK;
 }
 
+/* Finds a kernel and sets its arguments. */
+static stratus_status prepare_kernel(stratus_context* context, const char* source, const char* defines, const char* name,
+  const stratus_kernel_argument* arguments, size_t count, cl_kernel* kernel)
+{
+  TRY(stratus_device_kernel(context, source, defines, name, kernel));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(stratus_device_argument(context, *kernel, (unsigned)i, arguments[i].size, arguments[i].value));
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_device_launch_groups(stratus_context* context, const char* source, const char* defines, const char* name,
+  const stratus_kernel_argument* arguments, size_t count, size_t groups, size_t group)
+{
+  const size_t items = groups * group;
+  cl_kernel kernel;
+  TRY(prepare_kernel(context, source, defines, name, arguments, count, &kernel));
+  return stratus_device_run(context, kernel, 1, &items, &group);
+}
+
 stratus_status stratus_device_launch(stratus_context* context, const char* source, const char* defines, const char* name,
   const stratus_kernel_argument* arguments, size_t count, const int64_t items[3])
 {
   cl_kernel kernel;
-  TRY(stratus_device_kernel(context, source, defines, name, &kernel));
-  for (size_t i = 0; i < count; ++i) {
-    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
+  TRY(prepare_kernel(context, source, defines, name, arguments, count, &kernel));
   const size_t local[3] = { STRATUS_DEVICE_GROUP, 1, 1 };
   const size_t global[3] = { (size_t)items[0], (size_t)items[1], (size_t)items[2] };
   return stratus_device_run(context, kernel, 3, global, local);

@@ -46,13 +46,7 @@ static stratus_status make_places(sort_device* d)
 
 static stratus_status launch(const sort_device* d, const char* name, const stratus_kernel_argument* arguments, size_t count)
 {
-  const size_t items = d->chunks * d->group;
-  cl_kernel kernel;
-  TRY(stratus_device_kernel(d->context, "radix_sort", d->defines, name, &kernel));
-  for (size_t i = 0; i < count; ++i) {
-    TRY(stratus_device_argument(d->context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(d->context, kernel, 1, &items, &d->group);
+  return stratus_device_launch_groups(d->context, "radix_sort", d->defines, name, arguments, count, d->chunks, d->group);
 }
 
 /* Turns counts into first places. Returns false if all keys have the same digit, so that the pass can be skipped. */

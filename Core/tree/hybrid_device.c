@@ -108,17 +108,11 @@ void stratus_hybrid_device_destroy(hybrid_build* build)
 static stratus_status launch(
   const hybrid_build* build, const char* name, const stratus_kernel_argument* arguments, size_t count, size_t groups)
 {
-  stratus_context* context = build->context;
-  const size_t local = build->device->processor ? 1 : GROUP, global = groups * local;
+  const size_t local = build->device->processor ? 1 : GROUP;
   char defines[96];
-  cl_kernel kernel;
   snprintf(defines, sizeof defines, "-DGROUP=%d -DSTRATUS_SLOT_BYTES=%zu -DSTRATUS_CHUNK_BYTES=%zu", (int)local,
     sizeof(stratus_hybrid_slot), sizeof(stratus_hybrid_chunk));
-  TRY(stratus_device_kernel(context, "hybrid_tree", defines, name, &kernel));
-  for (size_t i = 0; i < count; ++i) {
-    TRY(stratus_device_argument(context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(context, kernel, 1, &global, &local);
+  return stratus_device_launch_groups(build->context, "hybrid_tree", defines, name, arguments, count, groups, local);
 }
 
 /* Launches a kernel that sets `count` numbers of the sums. */

@@ -8,7 +8,6 @@
 #include "morton.h"
 #include "radix_sort.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Where a node's children begin among the sorted bricks; child c holds the bricks cut[c] .. cut[c + 1] - 1. */

@@ -76,13 +76,7 @@ cleanup:
 
 static stratus_status launch(const layers_device* d, const char* name, const stratus_kernel_argument* arguments, size_t count)
 {
-  const size_t items = d->chunks * d->group;
-  cl_kernel kernel;
-  TRY(stratus_device_kernel(d->context, "visibility_layers", d->defines, name, &kernel));
-  for (size_t i = 0; i < count; ++i) {
-    TRY(stratus_device_argument(d->context, kernel, (unsigned)i, arguments[i].size, arguments[i].value));
-  }
-  return stratus_device_run(d->context, kernel, 1, &items, &d->group);
+  return stratus_device_launch_groups(d->context, "visibility_layers", d->defines, name, arguments, count, d->chunks, d->group);
 }
 
 static stratus_status peel_layer(const layers_device* d, cl_int first, cl_int parity)
