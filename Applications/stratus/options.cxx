@@ -86,7 +86,7 @@ How
 Trees
   --lower V, --upper V    the values that count (default: what the opacity shows)
   --method M              )" +
-    method_names() + R"( (default hybrid)
+    method_names() + R"( (default auto)
   --mode M                composite: blocks of cells for ray casting; first-hit: voxels (default composite)
 
 Orders

@@ -41,7 +41,7 @@ struct options {
   bool has_range = false;     // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  stratus_tree_method method = STRATUS_TREE_HYBRID;
+  stratus_tree_method method = STRATUS_TREE_AUTO;
   bool agglomerative_by_edges = false;                           // tree: ac-edges instead of ac
   bool uncorrected_flooding = false;                             // tree: hybrid-paper-raw instead of hybrid-paper
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids

@@ -60,6 +60,9 @@ void print(const stratus_tree_statistics& s)
   cli::row("nodes",
     count(s.nodes) + ", " + count(s.leaves) + " leaves, " + count(s.field_leaves) + " of them distance fields over " +
       count(s.field_bricks) + " bricks");
+  if (s.wide_nodes > 0) {
+    cli::row("hierarchy", count(s.wide_nodes) + " nodes of up to 16 children over the bricks");
+  }
   cli::row("depth", std::to_string(s.depth));
   cli::row("size", cli::format("%s KiB", count(static_cast<int64_t>(s.bytes + 1023) / 1024).c_str()));
   cli::row("cost", cli::format("%.4g by the surface area heuristic", s.sah));

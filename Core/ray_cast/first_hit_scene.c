@@ -4,6 +4,7 @@
 
 #include "ray_caster.h"
 #include "ray_tree.h"
+#include "tree.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -161,7 +162,7 @@ static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted,
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   stratus_structure structure, bool plain, stratus_first_hit_scene* scene, stratus_ray_cast_report* report)
 {
-  static const stratus_tree_method methods[] = { [STRATUS_STRUCTURE_AUTO] = STRATUS_TREE_HYBRID,
+  static const stratus_tree_method methods[] = { [STRATUS_STRUCTURE_AUTO] = STRATUS_TREE_AUTO,
     [STRATUS_STRUCTURE_BLOCK] = STRATUS_TREE_DISTANCE,
     [STRATUS_STRUCTURE_DISTANCE] = STRATUS_TREE_DISTANCE,
     [STRATUS_STRUCTURE_OCTANT] = STRATUS_TREE_OCTANT,
@@ -188,6 +189,9 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
   } else if (scene->used != STRATUS_STRUCTURE_NONE) {
     TRY(update_tree(caster, methods[structure], report));
     scene->tree = kept->tree;
+    if (structure == STRATUS_STRUCTURE_AUTO && scene->tree->statistics.method == STRATUS_TREE_OCTANT) {
+      scene->used = STRATUS_STRUCTURE_OCTANT;
+    }
   }
   bounds_of(scene->tree, scene->voxels, scene);
   tell(scene, structure, offered, report);

@@ -192,7 +192,9 @@ stratus_status stratus_tree_of_occupancy(stratus_context* context, const stratus
       }
     }
   }
-  const stratus_status status = stratus_tree_create(context, &voxels, NULL, tree);
+  stratus_tree_options options = stratus_tree_options_default();
+  options.method = STRATUS_TREE_HYBRID;
+  const stratus_status status = stratus_tree_create(context, &voxels, &options, tree);
   stratus_release(context, voxels.bricks);
   return status;
 }

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 typedef enum stratus_tree_method {
-  STRATUS_TREE_HYBRID,       /* default: splits by density only where a single distance field would waste memory */
+  STRATUS_TREE_HYBRID,       /* Guo et al. 2025, but splits only where a single distance field would be too large or too empty */
   STRATUS_TREE_HYBRID_PAPER, /* Guo et al. 2025 as published: node test and split at every node, threshold in voxels */
   STRATUS_TREE_DISTANCE,     /* a single distance-field leaf; STRATUS_UNSUPPORTED over 2^14 bricks along x */
   STRATUS_TREE_OCTANT,       /* the same with a distance for each of a ray's eight octants */
@@ -22,16 +22,18 @@ typedef enum stratus_tree_method {
   STRATUS_TREE_DPC,          /* density peaks (Rodriguez & Laio 2014), split cluster by cluster */
   STRATUS_TREE_KMEANS,       /* k-means (Meister & Bittner 2016) */
   /* A leaf of all bricks, with a hierarchy of up to 16 children a node over them (layout: Ylitie et al. 2017; shape: LBVH). */
-  STRATUS_TREE_WIDE
+  STRATUS_TREE_WIDE,
+  /* Default: OCTANT where its bytes are 1 MB or fewer, or no more than those of WIDE; else WIDE. The statistics tell which, and why. */
+  STRATUS_TREE_AUTO
 } stratus_tree_method;
 
-#define STRATUS_TREE_METHODS 12
+#define STRATUS_TREE_METHODS 13
 
 STRATUS_EXPERIMENTAL const char* stratus_tree_method_name(
-  stratus_tree_method method); /* "hybrid", "hybrid-paper", "distance", "octant", "sah" and so on */
+  stratus_tree_method method); /* "auto", "hybrid", "hybrid-paper", "distance", "octant", "sah" and so on */
 
 typedef struct stratus_tree_options {
-  stratus_tree_method method; /* default hybrid */
+  stratus_tree_method method; /* default auto */
   /* 1..64; default 32. A node at this depth is a leaf; a baseline splits it at the median from there on. */
   int max_depth;
   int leaf_bricks;        /* most bricks (4^3 voxels, a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
@@ -66,8 +68,8 @@ STRATUS_API stratus_status stratus_tree_create(
 STRATUS_API void stratus_tree_destroy(stratus_tree* tree);
 
 typedef struct stratus_tree_statistics {
-  stratus_tree_method method;
-  int64_t voxels, bricks; /* bricks: those that hold an effective voxel */
+  stratus_tree_method method; /* never auto, but what it took */
+  int64_t voxels, bricks;     /* bricks: those that hold an effective voxel */
   int64_t nodes, leaves, field_leaves;
   int64_t field_bricks; /* bricks that distance-field leaves span */
   int depth;            /* of the deepest leaf; the root has depth 0 */

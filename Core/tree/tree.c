@@ -9,9 +9,11 @@
 
 /* Most bricks of a field in the paper's trees, whose fields have an entry per voxel: 256^3 entries. */
 #define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
+/* What a core's own cache holds. */
+#define CACHED_BYTES 1e6
 
 static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh",
-  "ploc", "ac", "dpc", "kmeans", "wide" };
+  "ploc", "ac", "dpc", "kmeans", "wide", "auto" };
 
 const char* stratus_tree_method_name(stratus_tree_method method)
 {
@@ -20,7 +22,7 @@ const char* stratus_tree_method_name(stratus_tree_method method)
 
 stratus_tree_options stratus_tree_options_default(void)
 {
-  return (stratus_tree_options){ .method = STRATUS_TREE_HYBRID,
+  return (stratus_tree_options){ .method = STRATUS_TREE_AUTO,
     .max_depth = 32,
     .leaf_bricks = 4,
     .leaf_voxels = 1,
@@ -178,6 +180,23 @@ static stratus_status fill_leaves(stratus_context* context, const stratus_voxels
   return stratus_tree_make_fields(context, voxels, shape, tree);
 }
 
+/* What `auto` makes, and why: the structure of fewer bytes, but a field that fits a core's cache in any case, because a step there costs a
+ * ray less than a node of a hierarchy. */
+static stratus_tree_method cheapest(const stratus_voxels* voxels, char* why, size_t size)
+{
+  const double field = stratus_tree_octant_bytes(voxels), wide = (double)voxels->brick_count * STRATUS_WIDE_BYTES;
+  if (field <= CACHED_BYTES) {
+    snprintf(why, size, "one distance field of %.0f kB, which a core's cache holds", field / 1e3);
+    return STRATUS_TREE_OCTANT;
+  }
+  if (field <= wide) {
+    snprintf(why, size, "one distance field of %.0f kB; a wide hierarchy would take some %.0f", field / 1e3, wide / 1e3);
+    return STRATUS_TREE_OCTANT;
+  }
+  snprintf(why, size, "a wide hierarchy of some %.0f kB; one distance field would take %.0f", wide / 1e3, field / 1e3);
+  return STRATUS_TREE_WIDE;
+}
+
 static stratus_status build(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options, stratus_tree* tree)
 {
   stratus_tree_shape shape = { 0 };
@@ -297,10 +316,14 @@ stratus_status stratus_tree_create(
   for (int a = 0; a < 3; ++a) {
     tree->dimensions[a] = (int32_t)voxels->dimensions[a];
   }
-  if (voxels->count > 0) {
-    TRY_CLEANUP(build(context, voxels, options, tree));
+  stratus_tree_options resolved = *options;
+  if (options->method == STRATUS_TREE_AUTO) {
+    resolved.method = voxels->count > 0 ? cheapest(voxels, tree->statistics.why, sizeof tree->statistics.why) : STRATUS_TREE_OCTANT;
   }
-  tree->statistics.method = options->method;
+  if (voxels->count > 0) {
+    TRY_CLEANUP(build(context, voxels, &resolved, tree));
+  }
+  tree->statistics.method = resolved.method;
   tree->statistics.voxels = voxels->count;
   tree->statistics.bricks = voxels->brick_count;
   TRY_CLEANUP(stratus_tree_count_up(context, tree));

@@ -64,6 +64,8 @@ struct stratus_tree {
 /* Makes a field of the bricks order[node.first ..] for every node of kind FIELD, and sets the node's `first` to the field's number. */
 stratus_status stratus_tree_make_fields(
   stratus_context* context, const stratus_voxels* voxels, const stratus_tree_shape* shape, stratus_tree* tree);
+/* Returns the bytes of a tree of one field of octants over all voxels, of which there are some. */
+double stratus_tree_octant_bytes(const stratus_voxels* voxels);
 /* Returns 0 if cell (i,j,k) of a field is occupied, or else how far a ray of `octant` may leap, 1 or more. *mask gets an occupied cell's
  * voxels, else 0. */
 int32_t stratus_tree_field_leap(

@@ -157,7 +157,7 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   if (checksum((const unsigned char*)bytes + from, size - from) != h->checksum) {
     return WRONG("a tree whose checksum does not fit: it was changed or damaged");
   }
-  bool fine = h->method >= 0 && h->method < STRATUS_TREE_METHODS && h->leaps >= LEAPS_CHEBYSHEV && h->leaps <= LEAPS_UNCORRECTED &&
+  bool fine = h->method >= 0 && h->method < STRATUS_TREE_AUTO && h->leaps >= LEAPS_CHEBYSHEV && h->leaps <= LEAPS_UNCORRECTED &&
     (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->leaps != LEAPS_UNCORRECTED || h->cell_log2 == 0) &&
     (h->leaps == LEAPS_OCTANTS || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 && h->origin.intervals >= 0 &&
     h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 && (h->node_count == 0) == (h->voxels == 0) &&

@@ -26,6 +26,22 @@ int32_t stratus_tree_field_leap(
   return tree->octants ? stratus_leap_of_code(bits, (int)(entry >> (octant * bits) & low)) : (int32_t)(entry >> 2);
 }
 
+static int entry_bytes_of(uint64_t entries, int64_t voxels, bool long_rows)
+{
+  return long_rows || 3 * entries <= ENTRY_BYTES_A_VOXEL * (uint64_t)voxels ? 3 : 2;
+}
+
+double stratus_tree_octant_bytes(const stratus_voxels* voxels)
+{
+  double cells[3];
+  for (int a = 0; a < 3; ++a) {
+    cells[a] = (double)((voxels->hi[a] - 1) / STRATUS_BRICK - voxels->lo[a] / STRATUS_BRICK + 1);
+  }
+  const double rows = cells[1] * cells[2], entries = cells[0] * rows;
+  return entries * entry_bytes_of((uint64_t)entries, voxels->count, cells[0] > STRATUS_FIELD_ROW_MAX) + rows * sizeof(uint32_t) +
+    (double)voxels->brick_count * sizeof(uint64_t);
+}
+
 /* ---------------------------------------------------------------- cells */
 
 /* Finds the cells of a field: bricks, or voxels of bricks in the paper's trees. */
@@ -267,7 +283,7 @@ static stratus_status place_fields(
       long_rows |= field->cells[0] > STRATUS_FIELD_ROW_MAX;
     }
   }
-  tree->entry_bytes = tree->octants && (long_rows || 3 * entries <= ENTRY_BYTES_A_VOXEL * (uint64_t)voxels->count) ? 3 : 2;
+  tree->entry_bytes = tree->octants ? entry_bytes_of(entries, voxels->count, long_rows) : 2;
   if (!tree->octants && long_rows && tree->cell_log2) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "a distance field of rows longer than %d bricks", STRATUS_FIELD_ROW_MAX);
   }

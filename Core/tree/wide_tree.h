@@ -9,6 +9,8 @@
 #include "voxels.h"
 
 #define STRATUS_WIDE 16
+/* Bytes of the hierarchy and its bricks, for each brick: nodes have 9 to 10 children where sets are large. */
+#define STRATUS_WIDE_BYTES 30
 /* A ray that descends leaves at most 15 siblings behind in each node. The codes have 48 bits, and a node, which opens its children from the
  * highest bit down, spends 4 of them or ends in bricks. */
 #define STRATUS_WIDE_STACK (15 * 14 + STRATUS_WIDE)

@@ -17,6 +17,7 @@ opacity.RemoveAllPoints(), opacity.AddPoint(0.05, 0), opacity.AddPoint(1, 0.35)
 color.RemoveAllPoints(), color.AddRGBPoint(0, 0.75, 0.8, 0.9), color.AddRGBPoint(1, 1, 0.97, 0.9)
 volume.GetProperty().SetInterpolationTypeToLinear()
 tree.SetInputData(image), tree.SetVolumeProperty(volume.GetProperty())
+tree.SetMethodToHybrid()
 tree.SetFieldEmptiness(3)  # the default, 512, needs no more than one leaf here: this shows how a larger scene is cut
 tree.Update()
 mapper.SetInputConnection(tree.GetOutputPort()), mapper.SetStructureToHybrid(), volume.SetMapper(mapper)

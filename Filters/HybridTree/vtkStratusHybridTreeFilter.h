@@ -76,10 +76,11 @@ public:
   void SetPurposeToFirstHits() { this->SetPurpose(FIRST_HITS); }
   //@}
 
-  enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS, WIDE };
+  enum MethodType { HYBRID, HYBRID_PAPER, DISTANCE, OCTANT, SAH, SWEEP, LBVH, PLOC, AGGLOMERATIVE, DENSITY_PEAKS, K_MEANS, WIDE, AUTO };
   //@{
   /**
-   * Set/Get how the tree is built. Default HYBRID.
+   * Set/Get how the tree is built. Default AUTO.
+   * - AUTO: OCTANT where its bytes are 1 MB or fewer, or no more than those of WIDE; else WIDE. GetReason() tells which, and why.
    * - HYBRID: leaves of distance fields where voxels are spread evenly, a hierarchy of bricks elsewhere.
    * - HYBRID_PAPER: the method of Guo et al. 2025 as published.
    * - DISTANCE, OCTANT: one distance field over everything; OCTANT stores a distance for each octant of ray directions.
@@ -87,8 +88,9 @@ public:
    * - WIDE: one leaf of all bricks with a hierarchy of 16 children a node over them, for sets that are large and sparse. Its nodes are not
    *   among the boxes of the second output.
    */
-  vtkSetClampMacro(Method, int, HYBRID, WIDE);
+  vtkSetClampMacro(Method, int, HYBRID, AUTO);
   vtkGetMacro(Method, int);
+  void SetMethodToAuto() { this->SetMethod(AUTO); }
   void SetMethodToHybrid() { this->SetMethod(HYBRID); }
   void SetMethodToHybridPaper() { this->SetMethod(HYBRID_PAPER); }
   void SetMethodToDistance() { this->SetMethod(DISTANCE); }
@@ -249,7 +251,7 @@ protected:
   double LowerThreshold;
   double UpperThreshold;
   int Purpose = RAY_CASTING;
-  int Method = HYBRID;
+  int Method = AUTO;
   int MaximumDepth = 32;
   int LeafBricks = 4;
   int LeafVoxels = 1;

@@ -99,6 +99,7 @@ static void trees(stratus_context* context)
   const expected_stage of_voxels[] = { { "effective voxels", bricks * sizeof(stratus_brick), 3 /* masks, counts, bricks */ } };
   assert_report(context, of_voxels, 1);
 
+  options.method = STRATUS_TREE_HYBRID;
   options.field_emptiness = 2.0; /* so that the root is split by density */
   call(context, stratus_tree_create(context, voxels, &options, &tree));
   const uint64_t nodes = tree->node_count * sizeof *tree->nodes;

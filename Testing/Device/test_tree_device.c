@@ -187,6 +187,7 @@ static void trees_equal_the_hosts(void** state)
     stratus_voxels* voxels = make_voxels(host_context, &set);
     for (int way = 0; way < (tiny ? 2 : 6); ++way) {
       stratus_tree_options options = stratus_tree_options_default();
+      options.method = STRATUS_TREE_HYBRID;
       options.field_emptiness = way == 0 ? options.field_emptiness : 1.0 + (double)random_below(&random, 30);
       options.leaf_bricks = 1 + (int)random_below(&random, 6);
       options.exact_density = way == 2;
@@ -256,6 +257,7 @@ static void what_does_not_fit_is_built_on_the_host(void** state)
   make_clusters(300, 2, tiny ? 30 : 500, &random);
   stratus_voxels* voxels = make_voxels(host_context, &set);
   stratus_tree_options options = stratus_tree_options_default();
+  options.method = STRATUS_TREE_HYBRID;
   options.field_emptiness = 2.0;
   stratus_tree *here = NULL, *there = NULL;
   call(host_context, stratus_tree_create(host_context, voxels, &options, &here));
@@ -280,6 +282,7 @@ static void sums_beyond_whole_doubles_are_the_hosts(void** state)
   set_add_noise(&set, tiny ? 60 : 3000, &random);
   stratus_voxels* voxels = make_voxels(host_context, &set);
   stratus_tree_options options = stratus_tree_options_default();
+  options.method = STRATUS_TREE_HYBRID;
   const hybrid_build build = { .context = device, .voxels = voxels, .options = &options };
   assert_true(stratus_hybrid_on_device(&build));
   compare_trees(voxels, &options); /* its bandwidth reaches so far that the lines are the host's */
@@ -304,6 +307,7 @@ static void fail_at_each_call(const failing_way* way, const stratus_voxels* voxe
   stratus_tree_options options = stratus_tree_options_default();
   stratus_tree *tree = NULL, *right = NULL;
   stratus_voxels *scanned = NULL, *expected = NULL;
+  options.method = STRATUS_TREE_HYBRID;
   options.field_emptiness = 4.0;
   options.max_depth = 6;
   call(host_context, stratus_tree_create(host_context, voxels, &options, &right));

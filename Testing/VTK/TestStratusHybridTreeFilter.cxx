@@ -179,7 +179,7 @@ void EveryMethodBuilds()
   filter->SetVolumeProperty(scene.Volume->GetProperty());
   filter->SetPurposeToFirstHits();
   vtkIdType voxels = -1;
-  for (int method = Filter::HYBRID; method <= Filter::WIDE; ++method) {
+  for (int method = Filter::HYBRID; method <= Filter::AUTO; ++method) {
     filter->SetMethod(method);
     filter->Update();
     CHECK(filter->GetNumberOfVoxels() > 100 && (voxels < 0 || voxels == filter->GetNumberOfVoxels()), "%s: %lld voxels",

@@ -102,6 +102,9 @@ def trees():
         hierarchy = tree.SAH <= tree.GetMethod() <= tree.K_MEANS
         check((tree.GetNumberOfLeaves() == tree.GetNumberOfVoxels()) == hierarchy, f"{name}: {tree.GetNumberOfLeaves()} leaves")
     check(len(seen) == 12 and len(set(seen.values())) == 12, "twelve methods, twelve trees")
+    tree.SetMethodToAuto()
+    check(tree.GetMethodAsString() == "auto" and built() == seen["octant"], "a set this small gets one field of octants")
+    check("one distance field" in tree.GetReason(), f"the reason: {tree.GetReason()}")
     tree.SetMethodToAgglomerative()
     switches(tree, "AgglomerativeByEdges", built)
     tree.SetMethodToHybridPaper()
@@ -149,7 +152,7 @@ def trees():
     tree.SetPurposeToRayCasting()
     check(built() != strict and tree.GetPurpose() == tree.RAY_CASTING, "cells and voxels make one tree")
     clamps(tree, "Purpose", tree.RAY_CASTING, tree.FIRST_HITS)
-    clamps(tree, "Method", tree.HYBRID, tree.WIDE)
+    clamps(tree, "Method", tree.HYBRID, tree.AUTO)
     tree.SetMethodToLBVH()
     reports(tree, built, ["effective voxels", "hierarchy"])
 

@@ -22,7 +22,7 @@ bool has_bricks(stratus_tree_method m)
 // Whether a method's tree is more than one distance field.
 bool has_leaves(stratus_tree_method m)
 {
-  return m != STRATUS_TREE_DISTANCE && m != STRATUS_TREE_OCTANT && m != STRATUS_TREE_WIDE;
+  return m != STRATUS_TREE_DISTANCE && m != STRATUS_TREE_OCTANT && m != STRATUS_TREE_WIDE && m != STRATUS_TREE_AUTO;
 }
 
 const char* const by_edges = "stratus:ac-edges";          // agglomerative clustering by the sum of edges

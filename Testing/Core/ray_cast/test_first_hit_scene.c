@@ -25,7 +25,7 @@ static void structures_and_threads_change_no_bit(void** state)
 {
   (void)state;
   stratus_context* contexts[2] = { case_context("host", 1), case_context("host", 3) };
-  static const stratus_structure used[] = { STRATUS_STRUCTURE_HYBRID, STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_BLOCK,
+  static const stratus_structure used[] = { STRATUS_STRUCTURE_OCTANT, STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_BLOCK,
     STRATUS_STRUCTURE_DISTANCE, STRATUS_STRUCTURE_OCTANT, STRATUS_STRUCTURE_HYBRID };
   int lit = 0;
   for (uint32_t seed = 1; seed <= 60; ++seed) {

@@ -168,6 +168,73 @@ static void an_option_out_of_range_is_refused_with_its_range(void** state)
   stratus_voxels_destroy(voxels);
 }
 
+/* A box of side^3 voxels in which `count` blocks of 4^3 voxels lie anywhere. */
+static stratus_voxels* scattered_blocks(int32_t side, int count, uint32_t* random)
+{
+  const int64_t dimensions[3] = { side, side, side };
+  int32_t* positions = malloc((size_t)count * 64 * 3 * sizeof *positions);
+  stratus_voxels* voxels = NULL;
+  assert_non_null(positions);
+  for (int b = 0; b < count; ++b) {
+    int32_t corner[3];
+    for (int a = 0; a < 3; ++a) {
+      corner[a] = b < 2 ? (b ? side - 4 : 0) : (int32_t)(unit_random(random) * (side / 4)) * 4;
+    }
+    for (int v = 0; v < 64; ++v) {
+      for (int a = 0; a < 3; ++a) {
+        positions[3 * (64 * b + v) + a] = corner[a] + (v >> 2 * a & 3);
+      }
+    }
+  }
+  assert_int_equal(stratus_voxels_create_list(context, dimensions, positions, (size_t)count * 64, &voxels), STRATUS_OK);
+  free(positions);
+  return voxels;
+}
+
+static stratus_tree* tree_by(const stratus_voxels* voxels, stratus_tree_method method)
+{
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_tree* tree = NULL;
+  options.method = method;
+  assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
+  return tree;
+}
+
+static void auto_takes_a_cached_field_or_fewer_bytes(void** state)
+{
+  static const struct {
+    int32_t side;
+    int blocks;
+    stratus_tree_method method;
+  } sets[] = { { 64, 30, STRATUS_TREE_OCTANT }, { 256, 8, STRATUS_TREE_OCTANT }, { 256, 100000, STRATUS_TREE_OCTANT },
+    { 240, 3000, STRATUS_TREE_OCTANT }, { 400, 400, STRATUS_TREE_WIDE }, { 400, 60000, STRATUS_TREE_WIDE },
+    { 400, 170000, STRATUS_TREE_OCTANT }, { 400, 900000, STRATUS_TREE_OCTANT } };
+  uint32_t random = 3;
+  int cached = 0, fewer = 0, wide_taken = 0;
+  (void)state;
+  for (size_t i = 0; i < sizeof sets / sizeof sets[0]; ++i) {
+    stratus_voxels* voxels = scattered_blocks(sets[i].side, sets[i].blocks, &random);
+    stratus_tree *chosen = tree_by(voxels, STRATUS_TREE_AUTO), *octant = tree_by(voxels, STRATUS_TREE_OCTANT);
+    stratus_tree* wide = tree_by(voxels, STRATUS_TREE_WIDE);
+    const double field = stratus_tree_octant_bytes(voxels), about = STRATUS_WIDE_BYTES * (double)voxels->brick_count;
+    /* The field's bytes are told exactly, but for those of its node and its place; the hierarchy's to a fifth in large sets. */
+    assert_int_equal((size_t)field, octant->statistics.bytes - sizeof *octant->nodes - sizeof *octant->fields);
+    assert_true(voxels->brick_count < 5000 || fabs((double)wide->statistics.bytes / about - 1.0) < 0.2);
+    assert_int_equal(chosen->statistics.method, sets[i].method);
+    assert_int_equal(chosen->statistics.bytes, (sets[i].method == STRATUS_TREE_WIDE ? wide : octant)->statistics.bytes);
+    assert_non_null(
+      strstr(chosen->statistics.why, sets[i].method == STRATUS_TREE_WIDE ? "a wide hierarchy of some" : "one distance field of"));
+    cached += field <= 1e6;
+    fewer += field > 1e6 && field <= about;
+    wide_taken += field > 1e6 && field > about;
+    stratus_tree_destroy(chosen);
+    stratus_tree_destroy(octant);
+    stratus_tree_destroy(wide);
+    stratus_voxels_destroy(voxels);
+  }
+  assert_true(cached >= 2 && fewer >= 2 && wide_taken >= 2);
+}
+
 int test_tree_options(void)
 {
   const struct CMUnitTest tests[] = {
@@ -175,6 +242,7 @@ int test_tree_options(void)
     cmocka_unit_test(uncorrected_leaves_hold_the_flooded_distances),
     cmocka_unit_test(a_saved_tree_keeps_that_it_is_uncorrected),
     cmocka_unit_test(an_option_out_of_range_is_refused_with_its_range),
+    cmocka_unit_test(auto_takes_a_cached_field_or_fewer_bytes),
   };
   stratus_context_options options = stratus_context_options_default();
   options.device = "host";
