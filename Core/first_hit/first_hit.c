@@ -81,7 +81,7 @@ stratus_status stratus_tree_first_hit(
     return STRATUS_OK;
   }
   stratus_hit_batch_begin(tree, &batch);
-  if (context->device && stratus_hit_takes_packets(&batch)) {
+  if (context->device && (stratus_hit_takes_packets(&batch) || tree->wide.node_count)) {
     const stratus_status status = stratus_first_hit_device(context, tree, rays, count, hits);
     if (!stratus_device_hands_back(context, status)) {
       return status;
@@ -89,7 +89,6 @@ stratus_status stratus_tree_first_hit(
   } else if (context->device) {
     stratus_log(context, STRATUS_LOG_INFO, "first hits: rays are walked on the host, %s",
       batch.slack > 0.05f              ? "for the set is too long for floats"
-        : tree->wide.node_count        ? "for the tree is a wide hierarchy"
         : tree->statistics.uncorrected ? "for the tree's distances may be too long"
                                        : "for the tree's boxes may overlap");
   }

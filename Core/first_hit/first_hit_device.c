@@ -24,6 +24,8 @@ typedef struct launch {
   cl_kernel kernel;
   bool packets;
   cl_mem buffers[BUFFERS];
+  const buffer_name* names; /* of the kernel's parameters */
+  unsigned parameters;
   stratus_hit_chunk* chunks;
   int32_t* words; /* input of a launch, then its output */
 } launch;
@@ -76,10 +78,11 @@ static stratus_status walk(launch* l, const stratus_ray* rays, int count, stratu
   l->arguments.count = count;
   TRY(stratus_device_write(l->context, l->buffers[ARGUMENTS], 0, sizeof l->arguments, &l->arguments));
   TRY(stratus_device_write(l->context, l->buffers[RAYS], 0, (size_t)count * 13 * 4, l->words));
-  for (unsigned b = 0; b < BUFFERS; ++b) {
-    TRY(stratus_device_argument(l->context, l->kernel, b, sizeof(cl_mem), &l->buffers[b]));
+  for (unsigned p = 0; p < l->parameters; ++p) {
+    TRY(stratus_device_argument(l->context, l->kernel, p, sizeof(cl_mem), &l->buffers[l->names[p]]));
   }
-  const size_t items = l->packets ? ((size_t)count + 15) / 16 : (size_t)count, local = l->packets ? 4 : GROUP;
+  const bool packets = l->packets && !l->batch->tree->wide.node_count;
+  const size_t items = packets ? ((size_t)count + 15) / 16 : (size_t)count, local = packets ? 4 : GROUP;
   TRY(stratus_device_run(l->context, l->kernel, 1, &items, &local));
   TRY(stratus_device_read(l->context, l->buffers[RESULTS], 0, (size_t)count * 5 * 4, l->words));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(l->context->threads)
@@ -96,31 +99,48 @@ static stratus_status make_table(launch* l, buffer_name name, size_t bytes, cons
   return stratus_device_buffer(l->context, CL_MEM_READ_ONLY, bytes ? bytes : 16, bytes ? table : NULL, bytes > 0, &l->buffers[name]);
 }
 
-static stratus_status begin(launch* l, size_t most)
+static stratus_status make_tables(launch* l)
 {
   const stratus_tree* tree = l->batch->tree;
-  const stratus_device* device = l->context->device;
   const bool leaves = l->batch->leaves;
+  TRY(make_table(l, BRICKS, (size_t)tree->brick_count * sizeof *tree->bricks, tree->bricks));
+  if (tree->wide.node_count) {
+    return make_table(l, NODES, tree->wide.node_count * sizeof *tree->wide.nodes, tree->wide.nodes);
+  }
+  TRY(make_table(l, ENTRIES, tree->entry_count ? (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4 : 0, tree->entries));
+  TRY(make_table(l, ROWS, (size_t)tree->row_count * sizeof *tree->rows, tree->rows));
+  TRY(make_table(l, MASKS, (size_t)tree->mask_count * sizeof *tree->masks, tree->masks));
+  TRY(make_table(l, NODES, leaves ? (size_t)tree->node_count * sizeof *tree->nodes : 0, tree->nodes));
+  return make_table(l, FIELDS, leaves ? (size_t)tree->field_count * sizeof *tree->fields : 0, tree->fields);
+}
+
+static stratus_status begin(launch* l, size_t most)
+{
+  static const buffer_name of_fields[] = { ARGUMENTS, ENTRIES, ROWS, MASKS, NODES, FIELDS, BRICKS, RAYS, RESULTS };
+  static const buffer_name of_wide[] = { ARGUMENTS, NODES, BRICKS, RAYS, RESULTS };
+  const stratus_tree* tree = l->batch->tree;
+  const bool wide = tree->wide.node_count > 0;
   char defines[224];
   void* memory;
-  l->packets = stratus_device_is_cpu(device);
+  l->packets = stratus_device_is_cpu(l->context->device);
   l->arguments = stratus_hit_arguments_of(l->batch);
-  snprintf(defines, sizeof defines,
-    "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_LEAVES=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d "
-    "-DSTRATUS_ARGUMENTS_BYTES=%zu",
-    l->packets ? 16 : 1, leaves, tree->octants, tree->entry_bytes, tree->cell_log2, sizeof(stratus_hit_arguments));
-  TRY(stratus_device_kernel(l->context, "first_hit", defines, "first_hit", &l->kernel));
+  l->names = wide ? of_wide : of_fields;
+  l->parameters = wide ? sizeof of_wide / sizeof *of_wide : sizeof of_fields / sizeof *of_fields;
+  const int used = snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu",
+    l->packets ? 16 : 1, sizeof(stratus_hit_arguments));
+  if (!wide) {
+    snprintf(defines + used, sizeof defines - (size_t)used,
+      " -DSTRATUS_LEAVES=%d -DSTRATUS_OCTANTS=%d -DSTRATUS_ENTRY_BYTES=%d -DSTRATUS_CELL_LOG2=%d", l->batch->leaves, tree->octants,
+      tree->entry_bytes, tree->cell_log2);
+  }
+  const char* const name = wide ? "first_hit_wide" : "first_hit";
+  TRY(stratus_device_kernel(l->context, name, defines, name, &l->kernel));
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;
   TRY(stratus_allocate(l->context, most, 13 * 4, &memory));
   l->words = memory;
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
-  TRY(make_table(l, ENTRIES, tree->entry_count ? (size_t)tree->entry_count * (size_t)tree->entry_bytes + 4 : 0, tree->entries));
-  TRY(make_table(l, ROWS, (size_t)tree->row_count * sizeof *tree->rows, tree->rows));
-  TRY(make_table(l, MASKS, (size_t)tree->mask_count * sizeof *tree->masks, tree->masks));
-  TRY(make_table(l, NODES, leaves ? (size_t)tree->node_count * sizeof *tree->nodes : 0, tree->nodes));
-  TRY(make_table(l, FIELDS, leaves ? (size_t)tree->field_count * sizeof *tree->fields : 0, tree->fields));
-  TRY(make_table(l, BRICKS, (size_t)tree->brick_count * sizeof *tree->bricks, tree->bricks));
+  TRY(make_tables(l));
   TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, most * 13 * 4, NULL, false, &l->buffers[RAYS]));
   return stratus_device_buffer(l->context, CL_MEM_WRITE_ONLY, most * 5 * 4, NULL, false, &l->buffers[RESULTS]);
 }

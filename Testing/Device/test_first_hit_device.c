@@ -42,6 +42,9 @@ static const struct {
   { STRATUS_TREE_HYBRID_PAPER, 0.05, 512.0, 4, 9, true },
   { STRATUS_TREE_OCTANT, 0.001, 512.0, 4, 0, true },
   { STRATUS_TREE_DISTANCE, 0.02, 512.0, 4, 0, true },
+  { STRATUS_TREE_WIDE, 0.0001, 512.0, 4, 0, true }, /* nodes of few bricks */
+  { STRATUS_TREE_WIDE, 0.02, 512.0, 4, 0, true },
+  { STRATUS_TREE_WIDE, 0.3, 512.0, 4, 9, true },
   { STRATUS_TREE_LBVH, 0.02, 512.0, 4, 0, false },
 };
 #define CASES (sizeof cases / sizeof *cases)
@@ -76,7 +79,9 @@ static void device_and_host_hit_the_same(void** state)
       }
       assert_true((device->report.launched > launched) == cases[m].on_device);
       for (int i = 0; i < count; ++i) {
-        if (ours[i].t != theirs[i].t || ours[i].face != theirs[i].face || ours[i].visited != theirs[i].visited) {
+        /* A wide hierarchy's rays visit other voxels where they share their way, and in doubt. */
+        const bool visits = cases[m].method == STRATUS_TREE_WIDE || ours[i].visited == theirs[i].visited;
+        if (ours[i].t != theirs[i].t || ours[i].face != theirs[i].face || !visits) {
           fail_msg("case %zu, ray %d: at %.17g face %d in %u steps, on the host %.17g, %d, %u", m, i, ours[i].t, ours[i].face,
             ours[i].visited, theirs[i].t, theirs[i].face, theirs[i].visited);
         }
