@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CHUNKS 128 /* per launch */
+#define CHUNKS 512 /* per launch */
 #define GROUP 64   /* work items per group, one ray each */
 
 /* The kernel gets the arguments' size by a define and asserts it, too. */

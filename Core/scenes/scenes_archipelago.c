@@ -1,39 +1,40 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The archipelago as a set of voxels, of which no dense volume would fit into memory, and as a smaller volume. Logarithms of the clouds'
- * particles and of their densities are evenly distributed. A scene never changes. */
+ * The archipelago as a set of voxels, of which no dense volume would fit into memory, and as a smaller volume; and islets, a few dense
+ * clouds in as large a cube. Logarithms of the clouds' particles and of their densities are evenly distributed. A scene never changes. */
 #include "scenes_archipelago.h"
 #include "scenes_random.h"
 
 #include <string.h>
 
-#define CLOUDS 64
-#define FEWEST_LOG2 8.0      /* particles in a cloud */
-#define LEAST_DENSITY .002   /* particles a voxel in a cloud's middle; the most is 1 */
-#define SCATTERED 1024       /* particles outside of all clouds */
+#define CLOUDS_MAX 64
 #define NORMAL_VOLUME 15.75  /* (2 pi)^1.5: a normal distribution of N particles has N / (15.75 width^3) a voxel in its middle */
 #define VALUE_OF_PARTICLE 40 /* in the volume */
 
 typedef struct archipelago {
-  int side;
-  double most_log2; /* particles in a cloud */
+  int side, clouds;
+  double fewest_log2, most_log2; /* particles in a cloud */
+  double least_density;          /* particles a voxel in a cloud's middle; the most is 1 */
+  int scattered;                 /* particles outside of all clouds */
   uint64_t seed;
 } archipelago;
 
-static const archipelago as_set = { ARCHIPELAGO_LONGEST, 20.0, 4096 }, as_volume = { ARCHIPELAGO_SIDE, 18.0, 1024 };
+static const archipelago as_set = { ARCHIPELAGO_LONGEST, 64, 8.0, 20.0, .002, 1024, 4096 },
+                         as_volume = { ARCHIPELAGO_SIDE, 64, 8.0, 18.0, .002, 1024, 1024 },
+                         islets = { ARCHIPELAGO_LONGEST, 8, 14.0, 17.0, .2, 0, 8 };
 
 typedef struct cloud {
   double at[3], width;
   int64_t particles;
 } cloud;
 
-static void make_clouds(const archipelago* a, uint64_t* state, cloud clouds[CLOUDS])
+static void make_clouds(const archipelago* a, uint64_t* state, cloud clouds[CLOUDS_MAX])
 {
-  for (int c = 0; c < CLOUDS; ++c) {
+  for (int c = 0; c < a->clouds; ++c) {
     for (int axis = 0; axis < 3; ++axis) {
       clouds[c].at[axis] = random_unit(state) * a->side;
     }
-    clouds[c].particles = (int64_t)exp2(FEWEST_LOG2 + (a->most_log2 - FEWEST_LOG2) * random_unit(state));
-    const double density = pow(LEAST_DENSITY, random_unit(state));
+    clouds[c].particles = (int64_t)exp2(a->fewest_log2 + (a->most_log2 - a->fewest_log2) * random_unit(state));
+    const double density = pow(a->least_density, random_unit(state));
     clouds[c].width = cbrt((double)clouds[c].particles / (NORMAL_VOLUME * density));
   }
 }
@@ -42,21 +43,21 @@ static void make_clouds(const archipelago* a, uint64_t* state, cloud clouds[CLOU
 static stratus_status scatter(
   stratus_context* context, const archipelago* a, void (*put)(void* to, uint64_t voxel), void* to, int64_t* particles)
 {
-  cloud clouds[CLOUDS];
+  cloud clouds[CLOUDS_MAX];
   uint64_t state = a->seed;
   const double side = a->side;
   const uint64_t n = (uint64_t)a->side;
   make_clouds(a, &state, clouds);
-  *particles = SCATTERED;
-  for (int c = 0; c < CLOUDS; ++c) {
+  *particles = a->scattered;
+  for (int c = 0; c < a->clouds; ++c) {
     *particles += clouds[c].particles;
   }
-  for (int i = 0; put && i < SCATTERED; ++i) {
+  for (int i = 0; put && i < a->scattered; ++i) {
     const uint64_t x = random_bits(&state) % n, y = random_bits(&state) % n, z = random_bits(&state) % n;
     put(to, (z * n + y) * n + x);
   }
-  for (int c = 0; put && c < CLOUDS; ++c) {
-    TRY(stratus_progress(context, "archipelago", (double)c / CLOUDS));
+  for (int c = 0; put && c < a->clouds; ++c) {
+    TRY(stratus_progress(context, "archipelago", (double)c / a->clouds));
     for (int64_t i = 0; i < clouds[c].particles; ++i) {
       const double x = floor(clouds[c].at[0] + clouds[c].width * random_normal(&state));
       const double y = floor(clouds[c].at[1] + clouds[c].width * random_normal(&state));
@@ -109,19 +110,20 @@ static void sort(uint64_t* keys, uint64_t* room, uint32_t count)
   }
 }
 
-stratus_status stratus_archipelago_list(stratus_context* context, int32_t** positions, size_t* count)
+stratus_status stratus_archipelago_list(stratus_context* context, bool of_islets, int32_t** positions, size_t* count)
 {
+  const archipelago* const a = of_islets ? &islets : &as_set;
   const uint64_t n = ARCHIPELAGO_LONGEST;
   void *keys = NULL, *sorted = NULL, *list = NULL;
   key_list particles = { NULL, 0 };
   int64_t most;
   size_t distinct = 0;
   stratus_status status;
-  TRY_CLEANUP(scatter(context, &as_set, NULL, NULL, &most));
+  TRY_CLEANUP(scatter(context, a, NULL, NULL, &most));
   TRY_CLEANUP(stratus_allocate(context, (size_t)most, sizeof *particles.keys, &keys));
   TRY_CLEANUP(stratus_allocate(context, (size_t)most, sizeof *particles.keys, &sorted));
   particles.keys = keys;
-  TRY_CLEANUP(scatter(context, &as_set, put_key, &particles, &most));
+  TRY_CLEANUP(scatter(context, a, put_key, &particles, &most));
   sort(keys, sorted, particles.count);
   particles.keys = sorted;
   for (uint32_t i = 0; i < particles.count; ++i) {

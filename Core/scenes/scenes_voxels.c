@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The voxel sets of record and their rays, defined to the last voxel: uneven mixtures of blobs, shells and noise, solid cubes in noise
- * whose density has a given deviation, and an archipelago of clouds. A set never changes. */
+ * whose density has a given deviation, an archipelago of clouds, and islets. A set never changes. */
 #include "stratus/scenes.h"
 #include "scenes_archipelago.h"
 #include "scenes_random.h"
@@ -20,7 +20,7 @@ typedef struct recipe {
   const char* name;
   int n[3];
   int64_t voxels;
-  int blobs; /* number of blobs; 0: cubes in noise, or an archipelago, which has no `voxels` */
+  int blobs; /* number of blobs; 0: cubes in noise, or an archipelago or islets, which have no `voxels` */
   double in_blobs, in_shells;
   double deviation; /* cubes in noise: standard deviation of the density of occupied blocks of 8^3, over .5 */
   uint64_t seed;
@@ -39,6 +39,7 @@ static const recipe recipes[] = {
   { "1M",   { 512, 512, 512 },  1000000, 40, .60, .25, 0,   77 },
   { "10M",  { 1024, 1024, 1024 }, 10000000, 60, .60, .25, 0, 78 },
   { "archipelago", { ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST }, 0, 0, 0, 0, 0, 0 },
+  { "islets", { ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST, ARCHIPELAGO_LONGEST }, 0, 0, 0, 0, 0, 0 },
 };
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
@@ -281,7 +282,8 @@ stratus_status stratus_voxel_scene_create(
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the address of dimensions, positions or count is NULL");
   }
   TRY(find_recipe(context, name, &recipe));
-  TRY(recipe->voxels ? make_set(context, recipe, positions, count) : stratus_archipelago_list(context, positions, count));
+  TRY(recipe->voxels ? make_set(context, recipe, positions, count)
+                     : stratus_archipelago_list(context, strcmp(name, "islets") == 0, positions, count));
   for (int a = 0; a < 3; ++a) {
     dimensions[a] = recipe->n[a];
   }

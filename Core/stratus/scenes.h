@@ -40,7 +40,8 @@ STRATUS_EXPERIMENTAL void stratus_scene_destroy(stratus_context* context, stratu
  * deg, its elevation 25 deg, its azimuth 30 + 45 view deg about up_axis, its parallel scale .72 R. */
 STRATUS_EXPERIMENTAL stratus_status stratus_scene_camera(
   stratus_context* context, const double bounds[6], int up_axis, int view, int parallel, double aspect, stratus_camera* camera);
-/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M archipelago, which is scattered over 4096^3 voxels. */
+/* Voxel sets of record: 17K 24K 30K 35K u225 u367 u571 u640 1M 10M; in 4096^3 voxels archipelago, scattered clouds, and islets, 8 dense
+ * ones. */
 STRATUS_EXPERIMENTAL int stratus_voxel_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_voxel_scene_name(int index); /* NULL for other indices */
 /* Makes *count triples in *positions. Free them with stratus_voxel_scene_release(). */

@@ -18,11 +18,11 @@ namespace {
 const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
-                     archipelago and archipelago-1024, the values > 0 of that volume, take much memory: only where named
-  --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide, all
-                     but distance, octant and wide with :N behind it, bricks (the first three) or voxels in a leaf; embree:low|medium|high,
-                     embree:packet and embree:bricks with :low or :high behind it or neither (medium), openvdb (default: all;
-                     stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and take sets of up to
+                     archipelago, archipelago-1024 (the values > 0 of that volume) and islets take much memory: only where named
+  --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide|
+                     auto, all but distance, octant, wide and auto with :N behind it, bricks (the first three) or voxels in a leaf;
+                     embree:low|medium|high, embree:packet and embree:bricks with :low or :high behind it or neither (medium),
+                     openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and take sets of up to
                      35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
   --device NAME      builds of ours alone, stage by stage, on the host and on this OpenCL device (an index or a part of its name): ms,
@@ -304,7 +304,7 @@ options parse(int argc, char* argv[])
   }
   if (o.scenes.empty()) {
     std::copy_if(scenes.begin(), scenes.end(), std::back_inserter(o.scenes),
-      [](const std::string& name) { return name.rfind("archipelago", 0) != 0; });
+      [](const std::string& name) { return name.rfind("archipelago", 0) != 0 && name != "islets"; });
   }
   o.methods = o.methods.empty() ? all_tree_methods() : o.methods;
   return o;

@@ -80,6 +80,7 @@ static const struct {
   { "1M", { 512, 512, 512 }, 1000000, 0xd4075acee557c9c0, 0x49d8465b3347819a, 0x41128fa56ba3d14d, 0 },
   { "10M", { 1024, 1024, 1024 }, 10000000, 0xb6ba32707207c571, 0xc96c830c87e637f2, 0xeb9da98e5f7474da, 0 },
   { "archipelago", { 4096, 4096, 4096 }, 4216282, 0x5f29338eb3283cf2, 0xf5af743e068107ea, 0x480158ddb45a5cbf, 0 },
+  { "islets", { 4096, 4096, 4096 }, 408529, 0x99fc8e39a3bca8a4, 0xf5af743e068107ea, 0x10f9a954df559648, 0 },
 };
 
 static void sets_and_rays_are_those_of_record(void** state)
