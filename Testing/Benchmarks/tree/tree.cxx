@@ -22,8 +22,8 @@ const char* const help = R"(stratus-bench tree [options]
   --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide|
                      auto, all but distance, octant, wide and auto with :N behind it, bricks (the first three) or voxels in a leaf;
                      embree:low|medium|high, embree:packet and embree:bricks with :low or :high behind it or neither (medium),
-                     openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and take sets of up to
-                     35,000 voxels)
+                     openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and
+                     take sets of up to 35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
   --device NAME      builds of ours alone, stage by stage, on the host and on this OpenCL device (an index or a part of its name): ms,
                      share, kernels (default methods: stratus:hybrid|hybrid-paper|distance|octant|lbvh)
