@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A stable radix sort by bytes. The order is the same at any number of threads. */
+ * A stable radix sort. The order is the same at any number of threads. */
 #include "radix_sort.h"
 
 #include "device.h"
@@ -7,17 +7,17 @@
 #include <omp.h>
 #include <string.h>
 
-#define DIGIT_BITS 8
-#define DIGITS (1 << DIGIT_BITS)
+#define DIGIT_BITS_MAX 8
+#define DIGITS (1 << DIGIT_BITS_MAX)
 
 typedef struct digit_pass {
   const uint64_t* keys;
-  const uint32_t* values;
+  const uint32_t* values; /* NULL: there are none */
   uint64_t* keys_out;
   uint32_t* values_out;
   uint32_t (*places)[DIGITS]; /* one row for each chunk: counts, then places */
   uint32_t count, chunks;
-  int shift;
+  int shift, digits; /* number of digits: a power of 2 */
 } digit_pass;
 
 static uint32_t chunk_begin(const digit_pass* p, uint32_t chunk)
@@ -28,9 +28,9 @@ static uint32_t chunk_begin(const digit_pass* p, uint32_t chunk)
 static void count_digits(const digit_pass* p, uint32_t chunk)
 {
   uint32_t* counts = p->places[chunk];
-  memset(counts, 0, sizeof *p->places);
+  memset(counts, 0, (size_t)p->digits * sizeof *counts);
   for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); ++i) {
-    counts[p->keys[i] >> p->shift & (DIGITS - 1)]++;
+    counts[p->keys[i] >> p->shift & (uint64_t)(p->digits - 1)]++;
   }
 }
 
@@ -38,7 +38,7 @@ static void count_digits(const digit_pass* p, uint32_t chunk)
 static bool place_digits(const digit_pass* p)
 {
   uint32_t place = 0;
-  for (uint32_t digit = 0; digit < DIGITS; ++digit) {
+  for (int digit = 0; digit < p->digits; ++digit) {
     const uint32_t before = place;
     for (uint32_t chunk = 0; chunk < p->chunks; ++chunk) {
       const uint32_t here = p->places[chunk][digit];
@@ -56,9 +56,11 @@ static void scatter_digits(const digit_pass* p, uint32_t chunk)
 {
   uint32_t* places = p->places[chunk];
   for (uint32_t i = chunk_begin(p, chunk); i < chunk_begin(p, chunk + 1); ++i) {
-    const uint32_t to = places[p->keys[i] >> p->shift & (DIGITS - 1)]++;
+    const uint32_t to = places[p->keys[i] >> p->shift & (uint64_t)(p->digits - 1)]++;
     p->keys_out[to] = p->keys[i];
-    p->values_out[to] = p->values[i];
+    if (p->values) {
+      p->values_out[to] = p->values[i];
+    }
   }
 }
 
@@ -85,10 +87,14 @@ static stratus_status sort_on_host(stratus_context* context, uint64_t* keys, uin
   const int threads = count < 1 << 14 ? 1 : context->threads; /* for fewer keys the sum over the chunks' counts costs too much */
 
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *keys, &other_keys));
-  TRY_CLEANUP(stratus_allocate(context, count, sizeof *values, &other_values));
+  if (values) {
+    TRY_CLEANUP(stratus_allocate(context, count, sizeof *values, &other_values));
+  }
   TRY_CLEANUP(stratus_allocate(context, (size_t)threads, DIGITS * sizeof(uint32_t), &places));
-  digit_pass p = { keys, values, other_keys, other_values, places, count, (uint32_t)threads, 0 };
-  for (; p.shift < bits; p.shift += DIGIT_BITS) {
+  digit_pass p = { keys, values, other_keys, other_values, places, count, (uint32_t)threads, 0, 0 };
+  for (int passes = (bits + DIGIT_BITS_MAX - 1) / DIGIT_BITS_MAX, digit_bits; passes > 0; p.shift += digit_bits, --passes) {
+    digit_bits = (bits - p.shift + passes - 1) / passes; /* digits of nearly the same size */
+    p.digits = 1 << digit_bits;
     if (run_pass(&p, threads)) {
       uint64_t* const from_keys = (uint64_t*)p.keys;
       uint32_t* const from_values = (uint32_t*)p.values;
@@ -100,7 +106,9 @@ static stratus_status sort_on_host(stratus_context* context, uint64_t* keys, uin
   }
   if (p.keys != keys) {
     memcpy(keys, p.keys, count * sizeof *keys);
-    memcpy(values, p.values, count * sizeof *values);
+    if (values) {
+      memcpy(values, p.values, count * sizeof *values);
+    }
   }
 
 cleanup:
@@ -112,7 +120,7 @@ cleanup:
 
 stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits)
 {
-  if (stratus_radix_sort_on_device(context, count)) {
+  if (values && stratus_radix_sort_on_device(context, count)) {
     const stratus_status status = stratus_device_radix_sort(context, keys, values, count, bits);
     if (!stratus_device_hands_back(context, status)) {
       return status;

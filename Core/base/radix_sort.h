@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sorts many keys with their values. */
+ * Sorts many keys, and their values with them. */
 #ifndef STRATUS_RADIX_SORT_H
 #define STRATUS_RADIX_SORT_H
 
 #include "base.h"
 
-/* Sorts keys and their values; equal keys keep their order. Only the lowest `bits` of a key may be set. Many keys are sorted on the
- * context's device if it builds, to the same order. */
+/* Sorts keys by their lowest `bits`, 64 or fewer, and their values; equal ones keep their order. Many keys with values are sorted on the
+ * context's device if it builds, to the same order; only the lowest `bits` of such keys may be set. values may be NULL. */
 stratus_status stratus_radix_sort(stratus_context* context, uint64_t* keys, uint32_t* values, uint32_t count, int bits);
 
 /* ---- radix_sort_device.c */

@@ -16,12 +16,17 @@ typedef struct cuts {
   uint32_t count, inner;
 } cuts;
 
+/* A node without boxes: its sorted bricks first .. end - 1, and what stratus_wide_node tells of its children. */
+typedef struct stem {
+  uint32_t first, end, node, brick;
+  uint8_t count, inner;
+} stem;
+
 typedef struct wide_build {
   stratus_context* context;
   uint64_t* codes;          /* sorted */
   uint32_t *sorted, *order; /* the brick of each code; of each leaf in the nodes' order */
-  stratus_wide_node* nodes;
-  uint32_t (*range)[2];                  /* of each node */
+  stem* stems;
   uint32_t node_count, capacity, placed; /* placed: bricks that are leaves so far */
 } wide_build;
 
@@ -148,40 +153,30 @@ static void open_range(const wide_build* build, uint32_t first, uint32_t end, cu
 
 static stratus_status reserve(wide_build* build, uint32_t count)
 {
-  stratus_context* context = build->context;
-  void *nodes = NULL, *range = NULL;
+  void* stems;
   if (count <= build->capacity) {
     return STRATUS_OK;
   }
   const uint32_t wanted = count > 2 * build->capacity ? count : 2 * build->capacity;
-  TRY(stratus_allocate(context, wanted, sizeof *build->nodes, &nodes));
-  const stratus_status status = stratus_allocate(context, wanted, sizeof *build->range, &range);
-  if (status != STRATUS_OK) {
-    stratus_release(context, nodes);
-    return status;
-  }
+  TRY(stratus_allocate(build->context, wanted, sizeof *build->stems, &stems));
   if (build->node_count) {
-    memcpy(nodes, build->nodes, build->node_count * sizeof *build->nodes);
-    memcpy(range, build->range, build->node_count * sizeof *build->range);
+    memcpy(stems, build->stems, build->node_count * sizeof *build->stems);
   }
-  stratus_release(context, build->nodes);
-  stratus_release(context, build->range);
-  build->nodes = nodes;
-  build->range = range;
+  stratus_release(build->context, build->stems);
+  build->stems = stems;
   build->capacity = wanted;
   return STRATUS_OK;
 }
 
 /* Gives the node its children: ranges of the next level, and leaves. */
-static void place_children(wide_build* build, const cuts* from, stratus_wide_node* node)
+static void place_children(wide_build* build, const cuts* from, stem* node)
 {
   uint32_t inner = 0, leaves = 0;
   node->count = (uint8_t)from->count;
   node->inner = (uint8_t)from->inner;
   for (uint32_t c = 0; c < from->count; ++c) {
     if (from->cut[c + 1] - from->cut[c] > 1) {
-      build->range[node->node + inner][0] = from->cut[c];
-      build->range[node->node + inner++][1] = from->cut[c + 1];
+      build->stems[node->node + inner++] = (stem){ .first = from->cut[c], .end = from->cut[c + 1] };
     } else {
       build->order[node->brick + leaves++] = build->sorted[from->cut[c]];
     }
@@ -198,10 +193,11 @@ static stratus_status grow_level(wide_build* build, uint32_t first, uint32_t end
   cuts* const all = memory;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
   for (int64_t i = 0; i < n; ++i) {
-    open_range(build, build->range[first + i][0], build->range[first + i][1], &all[i]);
+    open_range(build, build->stems[first + i].first, build->stems[first + i].end, &all[i]);
   }
   for (int64_t i = 0; i < n; ++i) {
-    build->nodes[first + i] = (stratus_wide_node){ .node = next, .brick = brick };
+    build->stems[first + i].node = next;
+    build->stems[first + i].brick = brick;
     next += all[i].inner;
     brick += all[i].count - all[i].inner;
   }
@@ -209,7 +205,7 @@ static stratus_status grow_level(wide_build* build, uint32_t first, uint32_t end
   if (status == STRATUS_OK) {
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
     for (int64_t i = 0; i < n; ++i) {
-      place_children(build, &all[i], &build->nodes[first + i]);
+      place_children(build, &all[i], &build->stems[first + i]);
     }
     build->node_count = next;
     build->placed = brick;
@@ -220,17 +216,17 @@ static stratus_status grow_level(wide_build* build, uint32_t first, uint32_t end
 
 /* ---------------------------------------------------------------- boxes */
 
-/* Sets the boxes of a node's children. boxes: of the nodes behind it; its own is set. */
-static void enclose(stratus_wide_node* node, const stratus_brick* bricks, const uint32_t* order, stratus_box* boxes, uint32_t number)
+/* Makes a node of a stem. boxes: of the nodes behind it; its own is set. */
+static void enclose(const stem* from, const stratus_brick* bricks, stratus_box* boxes, uint32_t number, stratus_wide_node* node)
 {
   stratus_box child[STRATUS_WIDE], all = stratus_box_none();
   int32_t extent = 0;
   int shift = 0;
-  for (int c = 0; c < node->count; ++c) {
-    child[c] =
-      c < node->inner ? boxes[node->node + (uint32_t)c] : stratus_brick_box(&bricks[order[node->brick + (uint32_t)(c - node->inner)]]);
+  for (int c = 0; c < from->count; ++c) {
+    child[c] = c < from->inner ? boxes[from->node + (uint32_t)c] : stratus_brick_box(&bricks[from->brick + (uint32_t)(c - from->inner)]);
     stratus_box_add(&all, &child[c]);
   }
+  *node = (stratus_wide_node){ .node = from->node, .brick = from->brick, .count = from->count, .inner = from->inner };
   for (int a = 0; a < 3; ++a) {
     extent = all.hi[a] - all.lo[a] > extent ? all.hi[a] - all.lo[a] : extent;
     node->at[a] = (float)all.lo[a];
@@ -248,50 +244,60 @@ static void enclose(stratus_wide_node* node, const stratus_brick* bricks, const 
   boxes[number] = all;
 }
 
-static stratus_status grow(wide_build* build, const stratus_brick* bricks, uint32_t count)
+#define CACHE_LINE 64
+
+/* Makes the nodes, a level at a time from the last. Level l ends before node level[l]. */
+static stratus_status make_nodes(
+  const wide_build* build, const uint32_t* level, uint32_t levels, const stratus_brick* bricks, stratus_wide* wide)
+{
+  void *memory, *nodes;
+  TRY(stratus_allocate(build->context, build->node_count, sizeof(stratus_box), &memory));
+  stratus_box* const boxes = memory;
+  const stratus_status status = stratus_allocate(build->context, build->node_count * sizeof *wide->nodes + CACHE_LINE, 1, &nodes);
+  if (status == STRATUS_OK) {
+    wide->memory = nodes;
+    wide->nodes = (void*)(((uintptr_t)nodes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+    wide->node_count = build->node_count;
+    while (levels > 0) {
+      const int64_t end = level[--levels], first = levels ? level[levels - 1] : 0;
+#pragma omp parallel for schedule(static) num_threads(build->context->threads)
+      for (int64_t n = first; n < end; ++n) {
+        enclose(&build->stems[n], bricks, boxes, (uint32_t)n, &wide->nodes[n]);
+      }
+    }
+  }
+  stratus_release(build->context, boxes);
+  return status;
+}
+
+/* Makes the hierarchy's stems, and then its nodes over the bricks in the leaves' order, *ordered. */
+static stratus_status grow(wide_build* build, const stratus_brick* bricks, uint32_t count, stratus_brick** ordered, stratus_wide* wide)
 {
   uint32_t level[64], levels = 0;
   void* memory;
   TRY(reserve(build, 1));
-  build->range[0][0] = 0;
-  build->range[0][1] = count;
+  build->stems[0] = (stem){ .first = 0, .end = count };
   build->node_count = 1;
   for (uint32_t first = 0; first < build->node_count; first = level[levels - 1]) {
     level[levels++] = build->node_count;
     TRY(stratus_progress(build->context, "tree", 0.5));
     TRY(grow_level(build, first, build->node_count));
   }
-  TRY(stratus_allocate(build->context, build->node_count, sizeof(stratus_box), &memory));
-  stratus_box* const boxes = memory;
-  while (levels > 0) {
-    const int64_t end = level[--levels], first = levels ? level[levels - 1] : 0;
+  TRY(stratus_allocate(build->context, count, sizeof *bricks, &memory));
+  stratus_brick* const to = *ordered = memory;
 #pragma omp parallel for schedule(static) num_threads(build->context->threads)
-    for (int64_t n = first; n < end; ++n) {
-      enclose(&build->nodes[n], bricks, build->order, boxes, (uint32_t)n);
-    }
+  for (uint32_t b = 0; b < count; ++b) {
+    to[b] = bricks[build->order[b]];
   }
-  stratus_release(build->context, boxes);
-  return STRATUS_OK;
-}
-
-#define CACHE_LINE 64
-
-/* Copies the nodes to memory that begins with a cache line, and leaves no room behind them. */
-static stratus_status settle(const wide_build* build, stratus_wide* wide)
-{
-  const size_t size = build->node_count * sizeof *build->nodes;
-  TRY(stratus_allocate(build->context, size + CACHE_LINE, 1, &wide->memory));
-  wide->nodes = (void*)(((uintptr_t)wide->memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
-  wide->node_count = build->node_count;
-  memcpy(wide->nodes, build->nodes, size);
-  return STRATUS_OK;
+  return make_nodes(build, level, levels, to, wide);
 }
 
 stratus_status stratus_wide_create(stratus_context* context, stratus_brick** bricks, uint32_t count, stratus_wide* wide)
 {
   wide_build build = { .context = context };
   stratus_status status = STRATUS_OK;
-  void *memory = NULL, *ordered = NULL;
+  stratus_brick* ordered = NULL;
+  void* memory;
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *build.codes, &memory));
   build.codes = memory;
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *build.sorted, &memory));
@@ -299,22 +305,14 @@ stratus_status stratus_wide_create(stratus_context* context, stratus_brick** bri
   TRY_CLEANUP(stratus_allocate(context, count, sizeof *build.order, &memory));
   build.order = memory;
   TRY_CLEANUP(sort_bricks(&build, *bricks, count));
-  TRY_CLEANUP(grow(&build, *bricks, count));
-  TRY_CLEANUP(stratus_allocate(context, count, sizeof **bricks, &ordered));
-  TRY_CLEANUP(settle(&build, wide));
-  stratus_brick* const to = ordered;
-#pragma omp parallel for schedule(static) num_threads(context->threads)
-  for (uint32_t b = 0; b < count; ++b) {
-    to[b] = (*bricks)[build.order[b]];
-  }
+  TRY_CLEANUP(grow(&build, *bricks, count, &ordered, wide));
   stratus_release(context, *bricks);
-  *bricks = to;
+  *bricks = ordered;
   ordered = NULL;
 
 cleanup:
   stratus_release(context, ordered);
-  stratus_release(context, build.nodes);
-  stratus_release(context, build.range);
+  stratus_release(context, build.stems);
   stratus_release(context, build.order);
   stratus_release(context, build.sorted);
   stratus_release(context, build.codes);

@@ -3,14 +3,14 @@
  * brick. Where that field would be far larger than the list, the numbers of bricks are sorted instead. */
 #include "voxels_build.h"
 
+#include "radix_sort.h"
+
 #include <string.h>
 
 /* A field is used up to so many bytes, and beyond if it has at most so many bricks for each listed voxel. */
 #define FIELD_BYTES_MAX ((size_t)32 << 20)
 #define FIELD_BRICKS_A_VOXEL 32
 #define VOXEL_NS 5.0 /* of one thread for a voxel */
-#define DIGIT_BITS 11
-#define DIGITS (1 << DIGIT_BITS)
 
 typedef struct voxel_list {
   const int32_t* positions;
@@ -162,68 +162,96 @@ cleanup:
 
 /* ---------------------------------------------------------------- by sorting */
 
-/* Key that sorts as bricks do: the brick's place, 16 bits for each axis, and 6 bits for the voxel in it. */
-static uint64_t key_of(const int32_t p[3])
+#define VOXEL_SHIFT 58 /* a key's highest 6 bits tell the voxel in its brick */
+
+/* Bits of numbers 0 .. count - 1. */
+static int bits_of(int64_t count)
 {
-  return ((uint64_t)(p[2] / 4) << 38) | ((uint64_t)(p[1] / 4) << 22) | ((uint64_t)(p[0] / 4) << 6) |
-    (uint64_t)((p[2] & 3) << 4 | (p[1] & 3) << 2 | (p[0] & 3));
+  return count > 1 ? 64 - __builtin_clzll((uint64_t)count - 1) : 0;
 }
 
-/* Sorts by all bits of the brick's place, digit by digit from the lowest. A digit that all keys share is skipped. Returns the array that
- * holds the sorted keys. start: scratch of DIGITS numbers. */
-static uint64_t* sort_keys(uint64_t* keys, uint64_t* other, int64_t count, uint64_t* start)
+/* Lists a key for each voxel, whose lowest bits sort as bricks do, and sorts them. */
+static stratus_status sort_places(const stratus_voxels* voxels, const voxel_list* list, const int bits[3], int threads, uint64_t* keys)
 {
-  const uint64_t digit = DIGITS - 1;
-  for (int shift = 6; count > 0 && shift < 54; shift += DIGIT_BITS) {
-    uint64_t sum = 0;
-    memset(start, 0, DIGITS * sizeof *start);
-    for (int64_t i = 0; i < count; ++i) {
-      start[keys[i] >> shift & digit]++;
-    }
-    if (start[keys[0] >> shift & digit] == (uint64_t)count) {
-      continue;
-    }
-    for (int d = 0; d < DIGITS; ++d) {
-      const uint64_t here = start[d];
-      start[d] = sum;
-      sum += here;
-    }
-    for (int64_t i = 0; i < count; ++i) {
-      other[start[keys[i] >> shift & digit]++] = keys[i];
-    }
-    uint64_t* swapped = keys;
-    keys = other;
-    other = swapped;
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int64_t v = 0; v < list->count; ++v) {
+    const int32_t* p = list->positions + 3 * v;
+    const uint64_t x = (uint32_t)p[0] >> 2, y = (uint32_t)p[1] >> 2, z = (uint32_t)p[2] >> 2;
+    const uint64_t voxel = (uint64_t)((p[2] & 3) << 4 | (p[1] & 3) << 2 | (p[0] & 3));
+    keys[v] = voxel << VOXEL_SHIFT | z << (bits[0] + bits[1]) | y << bits[0] | x;
   }
-  return keys;
+  return stratus_radix_sort(voxels->context, keys, NULL, (uint32_t)list->count, bits[0] + bits[1] + bits[2]);
 }
 
-static stratus_status take_by_sorting(stratus_voxels* voxels, const voxel_list* list)
+/* Where part `part` of the sorted keys begins: where a brick does. */
+static int64_t begin_of_part(const uint64_t* keys, int64_t count, int part, int parts)
 {
-  stratus_context* context = voxels->context;
-  stratus_status status;
-  void *memory = NULL, *bricks = NULL;
-  TRY_CLEANUP(stratus_allocate(context, 2 * (size_t)list->count + DIGITS, sizeof(uint64_t), &memory));
-  uint64_t* keys = memory;
-  for (int64_t v = 0; v < list->count; ++v) {
-    keys[v] = key_of(list->positions + 3 * v);
+  int64_t v = count * part / parts;
+  while (v > 0 && v < count && keys[v] << 6 == keys[v - 1] << 6) {
+    ++v;
   }
-  keys = sort_keys(keys, keys + list->count, list->count, keys + 2 * list->count);
-  voxels->brick_count = 0;
-  for (int64_t v = 0; v < list->count; ++v) {
-    voxels->brick_count += v == 0 || keys[v] >> 6 != keys[v - 1] >> 6;
-  }
-  TRY_CLEANUP(stratus_allocate(context, (size_t)voxels->brick_count, sizeof(stratus_brick), &bricks));
-  voxels->bricks = bricks;
-  for (int64_t v = 0, brick = -1; v < list->count; ++v) {
-    if (v == 0 || keys[v] >> 6 != keys[v - 1] >> 6) {
-      voxels->bricks[++brick] = (stratus_brick){ .at = { (uint16_t)(keys[v] >> 6), (uint16_t)(keys[v] >> 22), (uint16_t)(keys[v] >> 38) } };
+  return v;
+}
+
+static bool begins_brick(const uint64_t* keys, int64_t v, int64_t first)
+{
+  return v == first || keys[v] << 6 != keys[v - 1] << 6;
+}
+
+/* Makes bricks of sorted keys. */
+static stratus_status take_sorted(stratus_voxels* voxels, const uint64_t* keys, int64_t count, const int bits[3], int threads)
+{
+  const uint64_t in_x = ((uint64_t)1 << bits[0]) - 1, in_y = ((uint64_t)1 << bits[1]) - 1, in_z = ((uint64_t)1 << bits[2]) - 1;
+  void* memory;
+  TRY(stratus_allocate_zero(voxels->context, (size_t)threads + 1, sizeof(int64_t), &memory));
+  int64_t* const start = memory;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int part = 0; part < threads; ++part) {
+    const int64_t first = begin_of_part(keys, count, part, threads), end = begin_of_part(keys, count, part + 1, threads);
+    for (int64_t v = first; v < end; ++v) {
+      start[part + 1] += begins_brick(keys, v, first);
     }
-    voxels->bricks[brick].mask |= (uint64_t)1 << (keys[v] & 63);
   }
-  stratus_voxels_measure(voxels);
-cleanup:
-  stratus_release(context, memory);
+  for (int part = 0; part < threads; ++part) {
+    start[part + 1] += start[part];
+  }
+  const stratus_status status = stratus_allocate(voxels->context, (size_t)start[threads], sizeof(stratus_brick), &memory);
+  if (status == STRATUS_OK) {
+    voxels->bricks = memory;
+    voxels->brick_count = start[threads];
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int part = 0; part < threads; ++part) {
+      const int64_t first = begin_of_part(keys, count, part, threads), end = begin_of_part(keys, count, part + 1, threads);
+      stratus_brick* brick = voxels->bricks + start[part] - 1;
+      for (int64_t v = first; v < end; ++v) {
+        if (begins_brick(keys, v, first)) {
+          *++brick = (stratus_brick){ .at = { (uint16_t)(keys[v] & in_x), (uint16_t)(keys[v] >> bits[0] & in_y),
+                                        (uint16_t)(keys[v] >> (bits[0] + bits[1]) & in_z) } };
+        }
+        brick->mask |= (uint64_t)1 << (keys[v] >> VOXEL_SHIFT);
+      }
+    }
+  }
+  stratus_release(voxels->context, start);
+  return status;
+}
+
+static stratus_status take_by_sorting(stratus_voxels* voxels, const voxel_list* list, int threads)
+{
+  const int bits[3] = { bits_of(voxels->bricks_along[0]), bits_of(voxels->bricks_along[1]), bits_of(voxels->bricks_along[2]) };
+  void* keys;
+  if (list->count > UINT32_MAX) {
+    return stratus_fail(voxels->context, STRATUS_OVERFLOW, "%lld positions: at most %u", (long long)list->count, UINT32_MAX);
+  }
+  TRY(stratus_allocate(voxels->context, (size_t)list->count, sizeof(uint64_t), &keys));
+  stratus_status status = sort_places(voxels, list, bits, threads, keys);
+  if (status == STRATUS_OK) {
+    status = take_sorted(voxels, keys, list->count, bits, threads);
+  }
+  if (status == STRATUS_OK) {
+    stratus_voxels_measure(voxels);
+  }
+  stratus_release(voxels->context, keys);
   return status;
 }
 
@@ -264,7 +292,7 @@ stratus_status stratus_voxels_create_list(
   }
   const size_t field = (size_t)(voxels->bricks_along[0] * voxels->bricks_along[1] * voxels->bricks_along[2]);
   const bool sparse = field > FIELD_BYTES_MAX / sizeof(uint32_t) && field / FIELD_BRICKS_A_VOXEL > count;
-  TRY_CLEANUP(sparse ? take_by_sorting(voxels, &list) : take_by_field(voxels, &list, threads));
+  TRY_CLEANUP(sparse ? take_by_sorting(voxels, &list, threads) : take_by_field(voxels, &list, threads));
   stratus_voxels_end_stage(voxels, &stage);
   *out = voxels;
   voxels = NULL;
