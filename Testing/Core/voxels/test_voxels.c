@@ -257,6 +257,50 @@ static void a_list_makes_the_set_of_its_positions(void** state)
   }
 }
 
+/* Threads share a sparse list's sorted keys: a brick whose voxels fall to several of them is still one. */
+static void any_number_of_threads_sorts_a_sparse_list_alike(void** state)
+{
+  enum { BRICKS = 3000, MOST = 2 * 64 * BRICKS };
+  static int32_t positions[MOST][3];
+  const int64_t n[3] = { 1 << 18, 1 << 17, 1 << 18 };
+  uint32_t random = 4;
+  size_t count = 0;
+  int64_t distinct = 0;
+  (void)state;
+  for (int b = 0; b < BRICKS; ++b) {
+    /* no two are at the same x; many lie in a row */
+    const int32_t at[3] = { 4 * (b * 21), 4 * (int32_t)random_below(&random, 3), 4 * (int32_t)random_below(&random, 1 << 16) };
+    const int voxels = b % 7 ? 1 + (int)random_below(&random, 64) : 64;
+    for (int v = 0; v < 2 * voxels; ++v) { /* each is listed twice */
+      const int bit = v % voxels;
+      positions[count][0] = at[0] + (bit & 3);
+      positions[count][1] = at[1] + (bit >> 2 & 3);
+      positions[count++][2] = at[2] + (bit >> 4);
+    }
+    distinct += voxels;
+  }
+  for (size_t i = count - 1; i > 0; --i) {
+    const size_t other = (size_t)random_below(&random, (uint32_t)i + 1);
+    int32_t kept[3];
+    memcpy(kept, positions[i], sizeof kept);
+    memcpy(positions[i], positions[other], sizeof kept);
+    memcpy(positions[other], kept, sizeof kept);
+  }
+  for (int threads = 1; threads <= 9; threads += 2) {
+    stratus_context* context = make_context("host", threads);
+    stratus_voxels* s = NULL;
+    assert_int_equal(stratus_voxels_create_list(context, n, positions[0], count, &s), STRATUS_OK);
+    check_consistent(s);
+    assert_int_equal(s->brick_count, BRICKS);
+    assert_int_equal(stratus_voxels_count(s), distinct);
+    for (size_t i = 0; i < count; i += 97) {
+      assert_int_equal(stratus_voxels_get(s, positions[i][0], positions[i][1], positions[i][2]), 1);
+    }
+    stratus_voxels_destroy(s);
+    stratus_context_destroy(context);
+  }
+}
+
 /* ---------------------------------------------------------------- cells */
 
 static int block_in(const stratus_voxels* s, int64_t i, int64_t j, int64_t k)
@@ -649,6 +693,7 @@ int test_voxels(void)
     cmocka_unit_test(every_type_is_compared_exactly),
     cmocka_unit_test(ends_of_intervals_are_in_and_feet_of_ramps_are_out),
     cmocka_unit_test(a_list_makes_the_set_of_its_positions),
+    cmocka_unit_test(any_number_of_threads_sorts_a_sparse_list_alike),
     cmocka_unit_test(blocks_that_either_sampling_shows_are_there_and_few_others),
     cmocka_unit_test(an_interval_of_cells_keeps_each_block_whose_range_meets_it),
     cmocka_unit_test(a_set_that_covers_another_holds_all_of_it),
