@@ -25,8 +25,9 @@ const char* const help = R"(stratus-bench tree [options]
                      openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and
                      take sets of up to 35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
-  --device NAME      builds of ours alone, stage by stage, on the host and on this OpenCL device (an index or a part of its name): ms,
-                     share, kernels (default methods: stratus:hybrid|hybrid-paper|distance|octant|lbvh)
+  --device NAME      ours alone on the host and on this OpenCL device (an index or a part of its name): builds stage by stage, ms, share
+                     and kernels; rays, ns, and hits missed or late (default methods: stratus:hybrid|
+                     hybrid-paper|hybrid-paper-raw|distance|octant|lbvh|ploc|wide)
   --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
   --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                      the rows before them tell where they come from, as in stratus-bench volume
@@ -47,8 +48,8 @@ constexpr size_t slow_most = 35000;
 constexpr double build_budget_ms = 20.0; // short builds are repeated within a round
 
 // Methods whose builds have stages that a device does.
-const std::vector<std::string> device_methods = { "stratus:hybrid", "stratus:hybrid-paper", "stratus:distance", "stratus:octant",
-  "stratus:lbvh" };
+const std::vector<std::string> device_methods = { "stratus:hybrid", "stratus:hybrid-paper", "stratus:hybrid-paper-raw",
+  "stratus:distance", "stratus:octant", "stratus:lbvh", "stratus:ploc", "stratus:wide" };
 
 struct options {
   std::vector<std::string> scenes, methods;

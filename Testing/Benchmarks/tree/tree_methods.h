@@ -76,8 +76,8 @@ wrong_count count_wrong(
 
 // ---- tree.cxx
 int tree_main(int argc, char* argv[]);
-// ---- tree_stages.cxx: builds stage by stage, on the host and on a device; adds a row for each stage's times and kernels. Throws failure
-// if the two trees differ.
+// ---- tree_stages.cxx: builds stage by stage and rays, on the host and on a device; adds a row for each stage's times and kernels, and for
+// the rays' times and errors. Throws failure if the two trees or their hits differ.
 void run_stages(const voxel_set& set, const std::string& method, const std::string& device, int rounds, std::vector<row>& rows);
 
 } // namespace bench

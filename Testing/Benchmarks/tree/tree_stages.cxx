@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench tree --device: what a tree is built of, stage by stage, on the host and on an OpenCL device, in turn. The set is a volume
-// of bytes, 1 in its voxels, so that the search for voxels is a stage, too; a set of more than 2^30 places is a list.
+// stratus-bench tree --device: what a tree is built of, stage by stage, and rays through it, on the host and on an OpenCL device, in turn.
+// The set is a volume of bytes, 1 in its voxels, so that the search for voxels is a stage, too; a set of more than 2^30 places is a list.
 #include "tree_methods.h"
 
 #include <algorithm>
@@ -57,9 +57,9 @@ std::vector<uint8_t> fill(const voxel_set& set)
   return values;
 }
 
-// Builds a tree once; returns its bytes.
-std::vector<uint8_t> build(
-  stratus_context* c, const voxel_set& set, const std::vector<uint8_t>& values, const stratus_tree_options& options)
+using tree_pointer = std::unique_ptr<stratus_tree, tree_deleter>;
+
+tree_pointer build(stratus_context* c, const voxel_set& set, const std::vector<uint8_t>& values, const stratus_tree_options& options)
 {
   stratus_voxels* made = nullptr;
   stratus_tree* tree = nullptr;
@@ -70,16 +70,82 @@ std::vector<uint8_t> build(
     stratus_criterion criterion = stratus_criterion_default();
     volume.values = values.data();
     volume.type = STRATUS_UINT8;
+    std::fill(volume.origin, volume.origin + 3, 0.5); // as in a set of a list, voxel (i,j,k) is [i,i+1] x [j,j+1] x [k,k+1]
     std::copy(set.dimensions, set.dimensions + 3, volume.dimensions);
     criterion.lower = 1.0;
     check_status(c, stratus_voxels_create(c, &volume, &criterion, &made));
   }
   const std::unique_ptr<stratus_voxels, voxels_deleter> voxels(made);
   check_status(c, stratus_tree_create(c, voxels.get(), &options, &tree));
-  const std::unique_ptr<stratus_tree, tree_deleter> owner(tree);
+  return tree_pointer(tree);
+}
+
+std::vector<uint8_t> bytes_of(const stratus_tree* tree)
+{
   std::vector<uint8_t> bytes(stratus_tree_bytes(tree));
   stratus_tree_save(tree, bytes.data());
   return bytes;
+}
+
+// Rays of one kind, and the hits that every exact tree has: those of an octant field.
+struct ray_set {
+  std::vector<stratus_ray> rays;
+  std::vector<stratus_hit> exact;
+  std::vector<double> ns[2]; // a ray, on host and device
+  int64_t missed = 0, late = 0;
+};
+
+void trace(stratus_context* c, const stratus_tree* tree, const std::vector<stratus_ray>& rays, std::vector<stratus_hit>& hits)
+{
+  hits.resize(rays.size());
+  check_status(c, stratus_tree_first_hit(c, tree, rays.data(), rays.size(), hits.data()));
+}
+
+void make_rays(stratus_context* c, const voxel_set& set, ray_set kinds[2])
+{
+  stratus_voxels* made = nullptr;
+  stratus_tree_options options = stratus_tree_options_default();
+  voxel_rays rays;
+  check_status(c, stratus_voxels_create_list(c, set.dimensions, set.positions, set.count, &made));
+  const std::unique_ptr<stratus_voxels, voxels_deleter> voxels(made);
+  stratus_tree* tree = nullptr;
+  check_status(c, stratus_tree_create(c, voxels.get(), &options, &tree));
+  const tree_pointer owner(tree);
+  for (int kind = 0; kind < 2; ++kind) {
+    rays.coherent = kind == 0;
+    rays.rays.resize(512 * 512);
+    check_status(c, stratus_voxel_scene_rays(c, voxels.get(), kind, rays.rays.data()));
+    kinds[kind].rays.clear();
+    for (const uint32_t number : tile_order(rays, 8)) {
+      kinds[kind].rays.push_back(rays.rays[number]);
+    }
+    trace(c, tree, kinds[kind].rays, kinds[kind].exact);
+  }
+}
+
+// Traces once on each side, and counts what differs from the exact hits. Host and device must find the same.
+void run_rays(const context_pointer contexts[2], const tree_pointer trees[2], bool timed, ray_set& of)
+{
+  std::vector<stratus_hit> hits[2];
+  for (int side = 0; side < 2; ++side) {
+    const double start = now_ms();
+    trace(contexts[side].get(), trees[side].get(), of.rays, hits[side]);
+    if (timed) {
+      of.ns[side].push_back((now_ms() - start) * 1e6 / static_cast<double>(of.rays.size()));
+    }
+  }
+  of.missed = of.late = 0;
+  for (size_t r = 0; r < of.rays.size(); ++r) {
+    const stratus_hit &here = hits[0][r], &there = hits[1][r];
+    if (here.t != there.t || std::memcmp(here.voxel, there.voxel, sizeof here.voxel) != 0) {
+      throw failure("the hits of host and device differ");
+    }
+    of.missed += here.voxel[0] < 0 && of.exact[r].voxel[0] >= 0;
+    of.late += here.voxel[0] >= 0 && here.t > of.exact[r].t;
+    if (here.t < of.exact[r].t) {
+      throw failure("a ray hits before its first voxel");
+    }
+  }
 }
 
 void take_report(const stratus_context* c, int side, stages& all)
@@ -126,6 +192,18 @@ void print(const std::string& scene, const std::string& method, const std::strin
   line(whole_build, whole[0], whole[1], kernels);
 }
 
+void print_rays(const std::string& scene, const std::string& method, const char* kind, const ray_set& of, std::vector<row>& rows)
+{
+  const double ns[2] = { median(of.ns[0]), median(of.ns[1]) };
+  std::fprintf(stderr, "%-20s %7.1f ns %6s %7.1f ns %6s %7s %7.2f  missed %lld, late %lld\n", kind, ns[0], "", ns[1], "", "", ns[1] / ns[0],
+    static_cast<long long>(of.missed), static_cast<long long>(of.late));
+  const std::string name = kind;
+  rows.push_back({ scene, method, "host_" + name + "_ns", "ns", ns[0] });
+  rows.push_back({ scene, method, "device_" + name + "_ns", "ns", ns[1] });
+  rows.push_back({ scene, method, name + "_missed", "1", static_cast<double>(of.missed) });
+  rows.push_back({ scene, method, name + "_late", "1", static_cast<double>(of.late) });
+}
+
 } // namespace
 
 void run_stages(const voxel_set& set, const std::string& method, const std::string& device, int rounds, std::vector<row>& rows)
@@ -134,12 +212,14 @@ void run_stages(const voxel_set& set, const std::string& method, const std::stri
   const context_pointer contexts[2] = { host_context(2), open_context(device.c_str(), 2) };
   const std::vector<uint8_t> values = fill(set);
   stages all;
-  std::vector<uint8_t> bytes[2];
+  ray_set kinds[2];
+  make_rays(contexts[0].get(), set, kinds);
   for (int round = -1; round < rounds; ++round) { // the first one waits for OpenCL's compiler
+    tree_pointer trees[2];
     for (int side = 0; side < 2; ++side) {
       stratus_context* c = contexts[side].get();
       stratus_context_start_build_report(c);
-      bytes[side] = build(c, set, values, options);
+      trees[side] = build(c, set, values, options);
       if (round >= 0) {
         for (stage& s : all.all) {
           s.kernels = side ? 0 : s.kernels;
@@ -147,11 +227,16 @@ void run_stages(const voxel_set& set, const std::string& method, const std::stri
         take_report(c, side, all);
       }
     }
-    if (bytes[0] != bytes[1]) {
+    if (bytes_of(trees[0].get()) != bytes_of(trees[1].get())) {
       throw failure("the trees of host and device differ");
+    }
+    for (ray_set& kind : kinds) {
+      run_rays(contexts, trees, round >= 0, kind);
     }
   }
   print(set.name, method, stratus_context_device(contexts[1].get()), all, rows);
+  print_rays(set.name, method, "primary", kinds[0], rows);
+  print_rays(set.name, method, "random", kinds[1], rows);
 }
 
 } // namespace bench
