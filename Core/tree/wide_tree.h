@@ -21,9 +21,8 @@
 typedef struct stratus_wide_node {
   float at[3]; /* whole numbers */
   uint32_t node, brick;
-  uint8_t count, inner, shift, unused;
-  uint8_t lo[3][STRATUS_WIDE], hi[3][STRATUS_WIDE];
-  uint8_t padding[8];
+  uint8_t count, inner, shift, unused[9];
+  uint8_t lo[3][STRATUS_WIDE], hi[3][STRATUS_WIDE]; /* each of 16 bytes that are loaded at once */
 } stratus_wide_node;
 
 _Static_assert(sizeof(stratus_wide_node) == 128, "a node is two cache lines");

@@ -29,9 +29,8 @@ typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_AR
 typedef struct stratus_wide_node {
   float at[3];
   uint node, brick;
-  uchar count, inner, shift, unused;
+  uchar count, inner, shift, unused[9];
   uchar lo[3][WIDE], hi[3][WIDE];
-  uchar padding[8];
 } stratus_wide_node;
 
 typedef char stratus_wide_nodes_agree[sizeof(stratus_wide_node) == 128 ? 1 : -1];
@@ -63,7 +62,7 @@ INLINE void wide_push(wide_ray* r, int least, float enter, uint number)
 INLINE vfloat wide_planes(__global const uchar* bytes)
 {
 #if STRATUS_WIDTH == 16
-  return convert_float16(vload16(0, bytes));
+  return convert_float16(*(__global const uchar16*)bytes); /* which lies as a uchar16 should, so that it is loaded as one */
 #else
   return (float)bytes[0];
 #endif
@@ -72,7 +71,9 @@ INLINE vfloat wide_planes(__global const uchar* bytes)
 /* A bit for each lane of the mask. */
 INLINE uint wide_bits(vmask mask)
 {
-#if STRATUS_WIDTH == 16
+#if STRATUS_WIDTH == 16 && defined(STRATUS_DEVICE_AVX512)
+  return mask;
+#elif STRATUS_WIDTH == 16
   const int16 bits = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
   const int8 of8 = bits.lo | bits.hi;
   const int4 of4 = of8.lo | of8.hi;
@@ -98,8 +99,8 @@ INLINE void wide_node(__global const stratus_wide_node* node, wide_ray* r)
   for (int part = 0; part < (STRATUS_WIDTH == 16 ? WIDE : node->count); part += STRATUS_WIDTH) {
     vfloat enter = v_set(0.0f), leave = v_set(r->end);
     for (int a = 0; a < 3; ++a) {
-      const vfloat lo = wide_planes(node->lo[a] + part), hi = wide_planes(node->hi[a] + part);
-      const vfloat near = r->up[a] ? lo : hi, far = r->up[a] ? hi : lo;
+      const vfloat near = wide_planes((r->up[a] ? node->lo[a] : node->hi[a]) + part);
+      const vfloat far = wide_planes((r->up[a] ? node->hi[a] : node->lo[a]) + part);
       enter = v_max(v_fma(near, v_set(speed[a]), v_set(base_early[a])), enter);
       leave = v_min(v_fma(far, v_set(speed[a]), v_set(base_late[a])), leave);
     }
@@ -114,19 +115,23 @@ INLINE void wide_node(__global const stratus_wide_node* node, wide_ray* r)
   }
 }
 
+/* fmin() and fmax() of OpenCL C heed NaNs, of which there are none here. */
+INLINE float larger(float a, float b) { return a > b ? a : b; }
+INLINE float smaller(float a, float b) { return a < b ? a : b; }
+
 /* Takes in a voxel that the ray may meet from `enter` on. `to` is where it has entered it at the latest, if it crosses it for sure. */
 INLINE void wide_take(wide_ray* r, const int voxel[3], float enter, float to, bool sure)
 {
   if (sure && to < r->to) {
-    r->other = fmin(r->other, r->from);
+    r->other = smaller(r->other, r->from);
     for (int a = 0; a < 3; ++a) {
       r->voxel[a] = voxel[a];
     }
     r->from = enter;
     r->to = to;
-    r->end = fmin(r->end, to);
+    r->end = smaller(r->end, to);
   } else {
-    r->other = fmin(r->other, enter);
+    r->other = smaller(r->other, enter);
   }
 }
 
@@ -149,16 +154,16 @@ INLINE void wide_brick(__global const int* brick, wide_ray* r)
   for (int zy = 0; zy < 16; ++zy) {
     const int z = zy >> 2, y = zy & 3;
     const uint row = mask[zy >> 3] >> 4 * (zy & 7) & 15u;
-    const float from = fmax(0.0f, fmax(enter[2][z], enter[1][y])), last = fmin(leave[2][z], leave[1][y]);
-    if (!row || from > fmin(r->end, last)) {
+    const float from = larger(0.0f, larger(enter[2][z], enter[1][y])), last = smaller(leave[2][z], leave[1][y]);
+    if (!row || from > smaller(r->end, last)) {
       continue;
     }
-    const float to = fmax(0.0f, fmax(latest[2][z], latest[1][y])), first = fmin(soonest[2][z], soonest[1][y]);
+    const float to = larger(0.0f, larger(latest[2][z], latest[1][y])), first = smaller(soonest[2][z], soonest[1][y]);
     for (int x = 0; x < 4; ++x) {
-      const float begin = fmax(from, enter[0][x]), entered = fmax(to, latest[0][x]);
-      if ((row >> x & 1u) && begin <= fmin(r->end, fmin(last, leave[0][x]))) {
+      const float begin = larger(from, enter[0][x]), entered = larger(to, latest[0][x]);
+      if ((row >> x & 1u) && begin <= smaller(r->end, smaller(last, leave[0][x]))) {
         const int voxel[3] = { at[0] + x, at[1] + y, at[2] + z };
-        wide_take(r, voxel, begin, entered, entered < fmin(first, soonest[0][x]) && entered < r->sure_end);
+        wide_take(r, voxel, begin, entered, entered < smaller(first, soonest[0][x]) && entered < r->sure_end);
       }
     }
   }
