@@ -2,9 +2,9 @@
  * First hits in a wide hierarchy, one ray a work item. The boxes of a node's 16 children are tested STRATUS_WIDTH at a time, grown by the
  * slack of positions in float, so that none is missed.
  *
- * In a brick, floats bound where the ray enters and leaves each voxel. The ray's hit is certain if it crosses a voxel for sure, and if no
- * other voxel that it may meet begins before the latest point of that crossing. Any other ray that may meet a voxel is doubtful, and the
- * caller walks it again in double precision. Doubtful rays graze edges, so that they are few. */
+ * In a brick, floats bound where the ray enters each voxel that it may meet. Of these the ray takes the one whose latest beginning comes
+ * first; if another may begin before that, the ray is doubtful, and the caller walks it again in double precision. The caller computes the
+ * hit with the voxel that was taken, too, and finds out if there is none. Doubtful rays graze edges, so that they are few. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -23,7 +23,6 @@ typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_AR
 #define WIDE 16
 #define WIDE_STACK 226         /* as STRATUS_WIDE_STACK of wide_tree.h, which tells why */
 #define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
-#define SURE_END 4.0f          /* slacks before the ray's end in which a crossing is not certain */
 
 /* The struct of wide_tree.h. */
 typedef struct stratus_wide_node {
@@ -39,10 +38,9 @@ typedef struct wide_ray {
   float inverse[3];
   float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
   int up[3];
-  float end, sure_end; /* what the ray enters behind `end` cannot be its hit */
+  float end; /* what the ray enters behind it cannot be its hit */
   int top, visited;
-  /* The voxel that the ray crosses for sure whose crossing begins first: from where to where it may begin. And where any other voxel that
-   * the ray may meet may begin. */
+  /* The voxel that was taken: from where to where it may begin. And where any other voxel that the ray may meet may begin. */
   int voxel[3];
   float from, to, other;
   ulong stack[WIDE_STACK]; /* bits of a float >= 0, which are ordered as the float is, above the number of a node or brick */
@@ -119,19 +117,19 @@ INLINE void wide_node(__global const stratus_wide_node* node, wide_ray* r)
 INLINE float larger(float a, float b) { return a > b ? a : b; }
 INLINE float smaller(float a, float b) { return a < b ? a : b; }
 
-/* Takes in a voxel that the ray may meet from `enter` on. `to` is where it has entered it at the latest, if it crosses it for sure. */
-INLINE void wide_take(wide_ray* r, const int voxel[3], float enter, float to, bool sure)
+/* Takes in a voxel that the ray may meet, and enters between `from` and `to`. */
+INLINE void wide_take(wide_ray* r, const int voxel[3], float from, float to)
 {
-  if (sure && to < r->to) {
+  if (to < r->to) {
     r->other = smaller(r->other, r->from);
     for (int a = 0; a < 3; ++a) {
       r->voxel[a] = voxel[a];
     }
-    r->from = enter;
+    r->from = from;
     r->to = to;
     r->end = smaller(r->end, to);
   } else {
-    r->other = smaller(r->other, enter);
+    r->other = smaller(r->other, from);
   }
 }
 
@@ -140,14 +138,13 @@ INLINE void wide_brick(__global const int* brick, wide_ray* r)
 {
   const uint mask[2] = { (uint)brick[0], (uint)brick[1] };
   const int at[3] = { 4 * (brick[2] & 0xffff), 4 * (brick[2] >> 16 & 0xffff), 4 * (brick[3] & 0xffff) };
-  float enter[3][4], leave[3][4], latest[3][4], soonest[3][4]; /* where the ray enters and leaves the layers of voxels, at the extremes */
+  float enter[3][4], latest[3][4], leave[3][4]; /* where the ray enters layers of voxels at the earliest, at the latest, and leaves them */
   ++r->visited;
   for (int a = 0; a < 3; ++a) {
     for (int i = 0; i < 4; ++i) {
       const float near = (float)(at[a] + i + !r->up[a]), far = (float)(at[a] + i + r->up[a]);
       enter[a][i] = (near - r->early[a]) * r->inverse[a];
       latest[a][i] = (near - r->late[a]) * r->inverse[a];
-      soonest[a][i] = (far - r->early[a]) * r->inverse[a];
       leave[a][i] = (far - r->late[a]) * r->inverse[a];
     }
   }
@@ -158,12 +155,12 @@ INLINE void wide_brick(__global const int* brick, wide_ray* r)
     if (!row || from > smaller(r->end, last)) {
       continue;
     }
-    const float to = larger(0.0f, larger(latest[2][z], latest[1][y])), first = smaller(soonest[2][z], soonest[1][y]);
+    const float to = larger(0.0f, larger(latest[2][z], latest[1][y]));
     for (int x = 0; x < 4; ++x) {
-      const float begin = larger(from, enter[0][x]), entered = larger(to, latest[0][x]);
+      const float begin = larger(from, enter[0][x]);
       if ((row >> x & 1u) && begin <= smaller(r->end, smaller(last, leave[0][x]))) {
         const int voxel[3] = { at[0] + x, at[1] + y, at[2] + z };
-        wide_take(r, voxel, begin, entered, entered < smaller(first, soonest[0][x]) && entered < r->sure_end);
+        wide_take(r, voxel, begin, larger(to, latest[0][x]));
       }
     }
   }
@@ -181,7 +178,6 @@ INLINE int wide_walk(const float o[3], const float inverse[3], float end, float 
     r->voxel[a] = 0;
   }
   r->end = end;
-  r->sure_end = end - SURE_END * slack;
   r->from = r->to = r->other = INFINITY;
   r->visited = 0;
   r->stack[0] = 0;
