@@ -145,6 +145,9 @@ static stratus_status job_tree(stratus_context* context, int method, void* kept,
     assert_non_null(bytes);
     memset(hits, 0, sizeof hits);
     status = stratus_tree_first_hit(context, tree, jobs_data.rays, JOB_RAYS, hits);
+    for (int i = 0; i < JOB_RAYS && method == STRATUS_TREE_WIDE; ++i) {
+      hits[i].visited = 0; /* which depends on how rays share their way */
+    }
     stratus_tree_save(tree, bytes);
     *sum = job_sum(job_sum(7, bytes, stratus_tree_bytes(tree)), hits, sizeof hits);
     free(bytes);
@@ -271,6 +274,7 @@ static const device_job device_jobs[] = {
   JOB_BUILD("hybrid tree of the paper", STRATUS_TREE_HYBRID_PAPER, job_tree),
   JOB_BUILD("octant tree", STRATUS_TREE_OCTANT, job_tree),
   JOB_BUILD("tree of boxes", STRATUS_TREE_LBVH, job_tree),
+  JOB_BUILD("wide hierarchy", STRATUS_TREE_WIDE, job_tree),
   { "tetrahedra", STRATUS_TETRA_COMPOSITE, job_tetra_open, job_tetra_close, NULL, job_tetra },
   { "tetrahedra drawn before", STRATUS_TETRA_MAXIMUM, job_tetra_open, job_tetra_close, job_tetra_before, job_tetra },
   { "visibility order", 0, job_order_open, job_order_close, NULL, job_order },
