@@ -349,11 +349,32 @@ static void hybrid_siblings_that_overlap_are_refused(void** state)
   stratus_context_destroy(context);
 }
 
+/* A saved tree tells the method that made it, which `auto` never is. */
+static void a_tree_of_no_method_is_refused(void** state)
+{
+  stratus_context* context = open_context();
+  stratus_voxels* voxels = NULL;
+  uint32_t random = 9;
+  (void)state;
+  stratus_tree* tree = make_tree(context, STRATUS_TREE_AUTO, &random, &voxels);
+  assert_int_equal(tree->statistics.method, STRATUS_TREE_OCTANT);
+  assert_int_equal(load_forged(context, tree), STRATUS_OK);
+  for (int method = -1; method <= STRATUS_TREE_METHODS; ++method) {
+    const bool good = method >= 0 && method < STRATUS_TREE_AUTO && method != STRATUS_TREE_WIDE; /* which has no fields */
+    tree->statistics.method = (stratus_tree_method)method;
+    assert_int_equal(load_forged(context, tree), good ? STRATUS_OK : STRATUS_INVALID_ARGUMENT);
+  }
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(voxels);
+  stratus_context_destroy(context);
+}
+
 int test_tree_bytes(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(what_is_saved_comes_back),
     cmocka_unit_test(a_tree_of_no_voxel_comes_back_and_nothing_hits_it), cmocka_unit_test(damaged_bytes_are_refused),
     cmocka_unit_test(forged_trees_do_no_harm), cmocka_unit_test(hybrid_siblings_that_overlap_are_refused),
-    cmocka_unit_test(forged_places_and_intervals_are_refused), cmocka_unit_test(a_tree_covers_only_what_it_was_made_of) };
+    cmocka_unit_test(forged_places_and_intervals_are_refused), cmocka_unit_test(a_tree_covers_only_what_it_was_made_of),
+    cmocka_unit_test(a_tree_of_no_method_is_refused) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
