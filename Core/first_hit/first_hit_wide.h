@@ -14,15 +14,20 @@
 #define WIDE_RAYS 8            /* that take turns */
 #define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
 
-typedef struct wide_ray {
+/* A ray, and its hit so far. */
+typedef struct wide_line {
   float inverse[3];
   float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
-  int near[3], far[3];     /* offsets in a node: the planes of boxes where the ray enters and leaves them */
   float end;               /* what the ray enters behind it cannot be its hit */
-  int number;              /* in the chunk; -1: none */
+  stratus_hit hit;
+} wide_line;
+
+typedef struct wide_ray {
+  wide_line line;
+  int near[3], far[3]; /* offsets in a node: the planes of boxes where the ray enters and leaves them */
+  int number;          /* in the chunk; -1: none */
   int top;
   uint32_t visited;
-  stratus_hit hit;
   /* Where the ray enters, as the bits of a float >= 0, which are ordered as the float is, above the number of the node or brick. Sorting
    * writes four entries at once. */
   uint64_t stack[STRATUS_WIDE_STACK + 4];
@@ -118,13 +123,13 @@ static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
 #endif
   ++r->visited;
   for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
-    vfloat enter = v_set(0.0f), leave = v_set(r->end);
+    vfloat enter = v_set(0.0f), leave = v_set(r->line.end);
     for (int a = 0; a < 3; ++a) {
-      const float inverse = r->inverse[a];
+      const float inverse = r->line.inverse[a];
       const vfloat speed = v_set(scale * inverse);
       const vfloat near = wide_planes((const uint8_t*)node + r->near[a] + part), far = wide_planes((const uint8_t*)node + r->far[a] + part);
-      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->early[a]) * inverse)), enter);
-      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->late[a]) * inverse)), leave);
+      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->line.early[a]) * inverse)), enter);
+      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->line.late[a]) * inverse)), leave);
     }
     const vmask met = v_le(enter, leave);
 #if STRATUS_ISA == 2
@@ -158,12 +163,11 @@ static inline float wide_smaller(float a, float b)
 }
 
 /* Tries the brick's voxels that the ray may meet, the nearest first. */
-static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_ray* r)
+static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_line* r)
 {
   float enter[3][4], late[3][4], leave[3][4]; /* where the ray enters voxels of a layer at the earliest, at the latest, and leaves them */
   float at[64];
   uint64_t open = 0;
-  ++r->visited;
   for (int a = 0; a < 3; ++a) {
     const int up = r->inverse[a] > 0.0f;
     for (int i = 0; i < 4; ++i) {
@@ -207,28 +211,34 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
   }
 }
 
-/* Gives the place the chunk's next ray that meets the root's box. */
-static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int* next, wide_ray* r)
+static inline void wide_line_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int number, wide_line* r)
 {
-  while (*next < chunk->count && chunk->end[*next] < 0.0f) {
+  for (int a = 0; a < 3; ++a) {
+    const float inverse = chunk->inverse[a][number], o = chunk->o[a][number], grown = inverse > 0.0f ? batch->slack : -batch->slack;
+    r->inverse[a] = inverse;
+    r->early[a] = o + grown;
+    r->late[a] = o - grown;
+  }
+  r->end = chunk->end[number];
+  r->hit = (stratus_hit){ .t = INFINITY };
+}
+
+/* Gives the place the chunk's next ray before `last` that meets the root's box. */
+static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int* next, int last, wide_ray* r)
+{
+  while (*next < last && chunk->end[*next] < 0.0f) {
     ++*next;
   }
-  r->number = *next < chunk->count ? (*next)++ : -1;
+  r->number = *next < last ? (*next)++ : -1;
   if (r->number >= 0) {
+    wide_line_begin(batch, chunk, r->number, &r->line);
     for (int a = 0; a < 3; ++a) {
-      const float inverse = chunk->inverse[a][r->number], o = chunk->o[a][r->number];
-      const bool up = inverse > 0.0f;
-      const float grown = up ? batch->slack : -batch->slack;
+      const bool up = r->line.inverse[a] > 0.0f;
       const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)a),
                 hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)a);
-      r->inverse[a] = inverse;
-      r->early[a] = o + grown;
-      r->late[a] = o - grown;
       r->near[a] = up ? lo : hi;
       r->far[a] = up ? hi : lo;
     }
-    r->end = chunk->end[r->number];
-    r->hit = (stratus_hit){ .t = INFINITY };
     r->visited = 0;
     r->top = 1;
     r->stack[0] = 0;
@@ -238,9 +248,9 @@ static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* 
 static void wide_end(stratus_hit_chunk* chunk, const wide_ray* r)
 {
   chunk->visited[r->number] = (int)r->visited;
-  chunk->state[r->number] = r->hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
+  chunk->state[r->number] = r->line.hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
   for (int a = 0; a < 3; ++a) {
-    chunk->cell[a][r->number] = r->hit.voxel[a];
+    chunk->cell[a][r->number] = r->line.hit.voxel[a];
   }
 }
 
@@ -254,10 +264,11 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
       return false;
     }
     entry = r->stack[--r->top];
-  } while (float_of((uint32_t)(entry >> 32)) > r->end);
+  } while (float_of((uint32_t)(entry >> 32)) > r->line.end);
   const uint32_t number = (uint32_t)entry;
   if (__builtin_expect((number & WIDE_BRICK) != 0, 0)) {
-    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r);
+    ++r->visited;
+    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], &r->line);
   } else {
     wide_node(&tree->wide.nodes[number], r);
   }
@@ -274,24 +285,25 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
   return true;
 }
 
-static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
+/* Walks the rays first .. last - 1 of a chunk. */
+static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last)
 {
   wide_ray rays[WIDE_RAYS];
-  int next = 0, busy = 0, asked = 0;
-  for (int i = 0; i < chunk->count; ++i) {
+  int next = first, busy = 0, asked = first;
+  for (int i = first; i < last; ++i) {
     chunk->state[i] = STRATUS_HIT_NONE;
     chunk->visited[i] = 0;
   }
   for (int i = 0; i < WIDE_RAYS; ++i) {
-    wide_begin(batch, chunk, &next, &rays[i]);
+    wide_begin(batch, chunk, &next, last, &rays[i]);
     busy += rays[i].number >= 0;
   }
   while (busy > 0) {
-    asked = stratus_hit_fetch(chunk, asked, chunk->count);
+    asked = stratus_hit_fetch(chunk, asked, last);
     for (int i = 0; i < WIDE_RAYS; ++i) {
       if (rays[i].number >= 0 && !wide_step(batch, chunk, &rays[i])) {
         wide_end(chunk, &rays[i]);
-        wide_begin(batch, chunk, &next, &rays[i]);
+        wide_begin(batch, chunk, &next, last, &rays[i]);
         busy -= rays[i].number < 0;
       }
     }

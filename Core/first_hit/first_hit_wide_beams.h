@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Beams of rays through wide hierarchies. BEAM rays that follow each other and run into the same octant visit a node once for all of them.
+ * The beam's borders tell which of the 16 children it may meet, and each of these is then tested against the rays that have come so far, a
+ * ray in each lane. A child goes on the stack with the set of rays that may meet it.
+ *
+ * Borders are planes that hold all rays of the beam from its begin on. Across an axis, the lower border is a line of the least position and
+ * slope of all rays, and the upper one of the greatest. So a box is met between two lines as it is by a ray: it is entered by the upper
+ * border, and left by the lower one. As in first_hit_wide.h, boxes are grown by the slack of positions in float, so that none is missed.
+ *
+ * Included by first_hit_isa.c. */
+#ifndef STRATUS_FIRST_HIT_WIDE_BEAMS_H
+#define STRATUS_FIRST_HIT_WIDE_BEAMS_H
+
+#include "first_hit_beams.h"
+#include "first_hit_wide.h"
+
+/* Some axis is the longest of a ray, or nearly, for all rays of a narrow cone. Along it each ray runs at least at this speed. */
+#define WIDE_BEAM_SLOWEST 0.5f
+
+typedef struct wide_beam_entry {
+  uint64_t rays;   /* that may meet it */
+  uint32_t number; /* of a node, or of a brick with WIDE_BRICK */
+  float at;        /* where the beam enters, along its axis */
+} wide_beam_entry;
+
+/* Positions along the beam's axis are counted from its begin on, in the direction in which the rays run. */
+typedef struct wide_beam {
+  int first; /* ray of the chunk */
+  int axis;
+  uint64_t live; /* rays that meet the root's box */
+  int up[3];
+  int near[3], far[3]; /* as wide_ray has them */
+  float sign[3];
+  float speed[2][3],
+    base[2][3]; /* a plane at p is met at p * speed + base: [0] at the earliest as a near one, [1] at the latest as a far one */
+  float last;   /* no ray ends behind it */
+  float inverse[3][BEAM], early[3][BEAM], late[3][BEAM]; /* a plane at p is met at p * inverse + early at the earliest, and so on */
+  float end[BEAM];                                       /* of each ray, along itself */
+  float ends[BEAM];                                      /* along the beam's axis; below its begin: the ray is none of the beam's */
+  float begins[BEAM], along[BEAM];                       /* where a ray begins along the beam's axis, and how fast it runs */
+  uint64_t begun;                                        /* rays that have a line */
+  wide_line line[BEAM];
+  int top, visited;
+  wide_beam_entry stack[STRATUS_WIDE_STACK];
+} wide_beam;
+
+/* The lanes of a mask as bits. */
+static inline uint64_t wide_bits(vmask mask)
+{
+#if STRATUS_ISA == 2
+  return mask;
+#elif STRATUS_ISA == 1
+  return (uint64_t)m_bits(mask);
+#else
+  uint64_t bits = 0;
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    bits |= (uint64_t)(mask[lane] & 1) << lane;
+  }
+  return bits;
+#endif
+}
+
+static inline float beam_highest(vfloat v)
+{
+  return -beam_lowest(v_set(0.0f) - v);
+}
+
+/* ---------------------------------------------------------------- a beam of rays */
+
+/* Finds the octant and the axis of the chunk's rays from `first` on. Returns false unless they have one of each. */
+static inline bool wide_beam_direction(const stratus_hit_chunk* c, int first, wide_beam* beam)
+{
+  const vfloat most = v_set(INFINITY);
+  vfloat least[3] = { most, most, most };
+  int up[3] = { 0 }, down[3] = { 0 };
+  beam->first = first;
+  beam->live = 0;
+  for (int i = 0; i < BEAM; i += STRATUS_WIDTH) {
+    const vmask lives = v_le(v_set(0.0f), v_load(c->end + first + i));
+    beam->live |= wide_bits(lives) << i;
+    for (int axis = 0; axis < 3; ++axis) {
+      const vfloat d = v_load(c->d[axis] + first + i);
+      const vmask rises = v_lt(v_set(0.0f), d);
+      up[axis] |= m_any(lives & rises);
+      down[axis] |= m_any(m_andnot(lives, rises));
+      least[axis] = v_min(least[axis], v_select(lives, v_abs(d), most));
+    }
+  }
+  float slowest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float speed = beam_lowest(least[axis]);
+    beam->axis = speed > slowest ? axis : beam->axis;
+    slowest = speed > slowest ? speed : slowest;
+    beam->up[axis] = up[axis] != 0;
+    beam->sign[axis] = up[axis] ? 1.0f : -1.0f;
+    const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)axis),
+              hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)axis);
+    beam->near[axis] = up[axis] ? lo : hi;
+    beam->far[axis] = up[axis] ? hi : lo;
+  }
+  return !((up[0] && down[0]) || (up[1] && down[1]) || (up[2] && down[2])) && slowest >= WIDE_BEAM_SLOWEST;
+}
+
+/* Finds the beam's borders, and takes its rays. */
+static inline void wide_beam_place(const stratus_hit_batch* batch, const stratus_hit_chunk* c, wide_beam* beam)
+{
+  const vfloat most = v_set(INFINITY), least = v_set(-INFINITY);
+  const int m = beam->axis, first = beam->first;
+  vfloat begins = most, ends = least;
+  vmask lives[BEAM_PARTS];
+  for (int part = 0; part < BEAM_PARTS; ++part) {
+    const int i = part * STRATUS_WIDTH;
+    const vfloat end = v_load(c->end + first + i);
+    const vfloat along = v_abs(v_load(c->d[m] + first + i)), from = v_set(beam->sign[m]) * v_load(c->o[m] + first + i);
+    lives[part] = v_le(v_set(0.0f), end);
+    v_store(beam->end + i, end);
+    v_store(beam->begins + i, from);
+    v_store(beam->along + i, along);
+    begins = v_min(begins, v_select(lives[part], from, most));
+    for (int axis = 0; axis < 3; ++axis) {
+      const vfloat inverse = v_load(c->inverse[axis] + first + i), o = v_load(c->o[axis] + first + i);
+      const vfloat grown = v_set(beam->sign[axis] * batch->slack);
+      v_store(beam->inverse[axis] + i, inverse);
+      v_store(beam->early[axis] + i, (v_set(0.0f) - (o + grown)) * inverse);
+      v_store(beam->late[axis] + i, (grown - o) * inverse);
+    }
+  }
+  const float begin = beam_lowest(begins), slack = 2.0f * batch->slack; /* a border takes a few roundings more than a ray */
+  for (int part = 0; part < BEAM_PARTS; ++part) {
+    const int i = part * STRATUS_WIDTH;
+    const vfloat from = v_load(beam->begins + i) - v_set(begin);
+    const vfloat end = v_fma(v_load(beam->end + i), v_load(beam->along + i), from + v_set(slack));
+    v_store(beam->begins + i, from);
+    v_store(beam->ends + i, v_select(lives[part], end, least));
+    ends = v_max(ends, v_select(lives[part], end, least));
+  }
+  beam->last = beam_highest(ends);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float sign = beam->sign[axis];
+    if (axis == m) {
+      beam->speed[0][axis] = beam->speed[1][axis] = sign;
+      beam->base[0][axis] = -begin - slack;
+      beam->base[1][axis] = -begin + slack;
+      continue;
+    }
+    vfloat low = most, high = least, flat = most, steep = least;
+    for (int part = 0; part < BEAM_PARTS; ++part) {
+      const int i = part * STRATUS_WIDTH;
+      const vfloat slope = v_abs(v_load(c->d[axis] + first + i)) / v_load(beam->along + i);
+      const vfloat at = v_set(sign) * v_load(c->o[axis] + first + i) - v_load(beam->begins + i) * slope;
+      low = v_min(low, v_select(lives[part], at, most));
+      high = v_max(high, v_select(lives[part], at, least));
+      flat = v_min(flat, v_select(lives[part], slope, most));
+      steep = v_max(steep, v_select(lives[part], slope, least));
+    }
+    const float in = 1.0f / beam_highest(steep), out = 1.0f / beam_lowest(flat);
+    beam->speed[0][axis] = sign * in;
+    beam->speed[1][axis] = sign * out;
+    beam->base[0][axis] = -(beam_highest(high) + slack) * in;
+    beam->base[1][axis] = (slack - beam_lowest(low)) * out;
+  }
+  beam->begun = 0;
+  beam->visited = 0;
+  beam->top = 1;
+  beam->stack[0] = (wide_beam_entry){ .rays = beam->live };
+}
+
+/* ---------------------------------------------------------------- nodes and bricks */
+
+static inline vfloat wide_beam_planes(const stratus_wide_node* node, int place, int axis, float scale)
+{
+  return v_fma(wide_planes((const uint8_t*)node + place), v_set(scale), v_set(node->at[axis]));
+}
+
+/* Pushes the children that rays may meet before their ends. */
+static inline void wide_beam_node(const stratus_wide_node* node, uint64_t rays, wide_beam* beam)
+{
+  const float scale = float_of((uint32_t)(node->shift + 127) << 23); /* 2^shift */
+  const int least = beam->top;
+  float near[3][STRATUS_WIDE], far[3][STRATUS_WIDE], enters[STRATUS_WIDE];
+  uint64_t met = 0, meets[STRATUS_WIDE];
+  for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
+    vfloat enter = v_set(0.0f), leave = v_set(beam->last);
+    for (int a = 0; a < 3; ++a) {
+      const vfloat in = wide_beam_planes(node, beam->near[a] + part, a, scale), out = wide_beam_planes(node, beam->far[a] + part, a, scale);
+      enter = v_max(v_fma(in, v_set(beam->speed[0][a]), v_set(beam->base[0][a])), enter);
+      leave = v_min(v_fma(out, v_set(beam->speed[1][a]), v_set(beam->base[1][a])), leave);
+      v_store(near[a] + part, in);
+      v_store(far[a] + part, out);
+    }
+    v_store(enters + part, enter);
+    met |= wide_bits(v_le(enter, leave)) << part;
+  }
+  met &= (1ull << node->count) - 1;
+  for (uint64_t left = met; left; left &= left - 1) {
+    meets[__builtin_ctzll(left)] = 0;
+  }
+  for (int part = 0; part < BEAM; part += STRATUS_WIDTH) {
+    if (!(rays >> part & ((1ull << STRATUS_WIDTH) - 1))) {
+      continue;
+    }
+    vfloat inverse[3], early[3], late[3];
+    const vfloat end = v_load(beam->end + part);
+    for (int a = 0; a < 3; ++a) {
+      inverse[a] = v_load(beam->inverse[a] + part);
+      early[a] = v_load(beam->early[a] + part);
+      late[a] = v_load(beam->late[a] + part);
+    }
+    for (uint64_t left = met; left; left &= left - 1) {
+      const int c = __builtin_ctzll(left);
+      vfloat enter = v_set(0.0f), leave = end;
+      for (int a = 0; a < 3; ++a) {
+        enter = v_max(v_fma(v_set(near[a][c]), inverse[a], early[a]), enter);
+        leave = v_min(v_fma(v_set(far[a][c]), inverse[a], late[a]), leave);
+      }
+      meets[c] |= wide_bits(v_le(enter, leave)) << part;
+    }
+  }
+  for (; met; met &= met - 1) {
+    const int c = __builtin_ctzll(met);
+    if (!(meets[c] & rays)) {
+      continue;
+    }
+    const wide_beam_entry entry = { meets[c] & rays, wide_child(node, c), enters[c] };
+    int at = beam->top++;
+    for (; at > least && beam->stack[at - 1].at < entry.at; --at) {
+      beam->stack[at] = beam->stack[at - 1];
+    }
+    beam->stack[at] = entry;
+  }
+}
+
+static inline void wide_beam_brick(
+  const stratus_hit_batch* batch, const stratus_hit_chunk* c, const stratus_brick* brick, uint64_t rays, wide_beam* beam)
+{
+  bool shorter = false;
+  for (; rays; rays &= rays - 1) {
+    const int i = __builtin_ctzll(rays);
+    wide_line* const line = &beam->line[i];
+    if (!(beam->begun >> i & 1)) {
+      wide_line_begin(batch, c, beam->first + i, line);
+      beam->begun |= 1ull << i;
+    }
+    wide_brick(batch, &c->rays[beam->first + i], brick, line);
+    if (line->end < beam->end[i]) {
+      beam->end[i] = line->end;
+      beam->ends[i] = line->end * beam->along[i] + beam->begins[i] + 2.0f * batch->slack;
+      shorter = true;
+    }
+  }
+  if (shorter) {
+    vfloat last = v_load(beam->ends);
+    for (int part = STRATUS_WIDTH; part < BEAM; part += STRATUS_WIDTH) {
+      last = v_max(last, v_load(beam->ends + part));
+    }
+    beam->last = beam_highest(last);
+  }
+}
+
+/* Those of the rays that do not end in front of a position along the beam. */
+static inline uint64_t wide_beam_reach(const wide_beam* beam, uint64_t rays, float at)
+{
+  uint64_t reach = 0;
+  for (int part = 0; part < BEAM; part += STRATUS_WIDTH) {
+    reach |= wide_bits(v_le(v_set(at), v_load(beam->ends + part))) << part;
+  }
+  return reach & rays;
+}
+
+static inline void wide_beam_fetch(const stratus_tree* tree, const wide_beam* beam, int least)
+{
+  for (int i = least; i < beam->top; ++i) {
+    const uint32_t next = beam->stack[i].number;
+    if (next & WIDE_BRICK) {
+      __builtin_prefetch(&tree->bricks[next & ~WIDE_BRICK]);
+    } else {
+      __builtin_prefetch(&tree->wide.nodes[next]);
+      __builtin_prefetch(&tree->wide.nodes[next].hi[0][8]);
+    }
+  }
+}
+
+/* Stores what the rays have met. Each of the live ones has its share of what the beam visited. */
+static inline void wide_beam_store(const wide_beam* beam, stratus_hit_chunk* c)
+{
+  const int live = __builtin_popcountll(beam->live), share = live ? beam->visited / live : 0;
+  int rest = beam->visited - live * share;
+  for (int i = 0; i < BEAM; ++i) {
+    const int ray = beam->first + i;
+    c->state[ray] = STRATUS_HIT_NONE;
+    c->visited[ray] = 0;
+    if (beam->live >> i & 1) {
+      c->visited[ray] = share + rest;
+      rest = 0;
+    }
+    if (beam->begun >> i & 1 && beam->line[i].hit.t < INFINITY) {
+      c->state[ray] = STRATUS_HIT_VOXEL;
+      for (int a = 0; a < 3; ++a) {
+        c->cell[a][ray] = beam->line[i].hit.voxel[a];
+      }
+    }
+  }
+}
+
+/* Walks BEAM rays of a chunk from `first` on, if they run side by side. Returns false if they do not. */
+static inline bool wide_beam_walk(const stratus_hit_batch* batch, int first, stratus_hit_chunk* c)
+{
+  const stratus_tree* tree = batch->tree;
+  wide_beam beam;
+  int asked = first;
+  if (!wide_beam_direction(c, first, &beam)) {
+    return false;
+  }
+  wide_beam_place(batch, c, &beam);
+  while (beam.top > 0) {
+    const wide_beam_entry entry = beam.stack[--beam.top];
+    const uint64_t rays = wide_beam_reach(&beam, entry.rays, entry.at);
+    if (!rays) {
+      continue;
+    }
+    asked = stratus_hit_fetch(c, asked, first + BEAM);
+    ++beam.visited;
+    if (entry.number & WIDE_BRICK) {
+      wide_beam_brick(batch, c, &tree->bricks[entry.number & ~WIDE_BRICK], rays, &beam);
+    } else {
+      const int least = beam.top;
+      wide_beam_node(&tree->wide.nodes[entry.number], rays, &beam);
+      wide_beam_fetch(tree, &beam, least);
+    }
+  }
+  wide_beam_store(&beam, c);
+  return true;
+}
+
+#endif
