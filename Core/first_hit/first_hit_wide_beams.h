@@ -91,7 +91,6 @@ static inline bool wide_beam_direction(const stratus_hit_chunk* c, int first, wi
     const float speed = beam_lowest(least[axis]);
     beam->axis = speed > slowest ? axis : beam->axis;
     slowest = speed > slowest ? speed : slowest;
-    beam->up[axis] = up[axis] != 0;
     beam->sign[axis] = up[axis] ? 1.0f : -1.0f;
     const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)axis),
               hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)axis);
@@ -167,66 +166,146 @@ static inline void wide_beam_place(const stratus_hit_batch* batch, const stratus
 
 /* ---------------------------------------------------------------- nodes and bricks */
 
-static inline vfloat wide_beam_planes(const stratus_wide_node* node, int place, int axis, float scale)
+#define WIDE_LANES ((UINT64_C(1) << STRATUS_WIDTH) - 1)
+
+static inline void wide_beam_fetch(const stratus_tree* tree, uint32_t next)
 {
-  return v_fma(wide_planes((const uint8_t*)node + place), v_set(scale), v_set(node->at[axis]));
+  if (next & WIDE_BRICK) {
+    __builtin_prefetch(&tree->bricks[next & ~WIDE_BRICK]);
+  } else {
+    __builtin_prefetch(&tree->wide.nodes[next]);
+    __builtin_prefetch(&tree->wide.nodes[next].hi[0][8]);
+  }
 }
 
-/* Pushes the children that rays may meet before their ends. */
-static inline void wide_beam_node(const stratus_wide_node* node, uint64_t rays, wide_beam* beam)
+#define WIDE_PARTS (STRATUS_WIDE / STRATUS_WIDTH)
+
+/* The planes of a node's boxes by which rays enter and leave them. */
+typedef struct wide_boxes {
+  vfloat near[3][WIDE_PARTS], far[3][WIDE_PARTS];
+} wide_boxes;
+
+/* Finds the node's planes, and where the beam enters its children. Returns which of them it may meet. */
+static inline uint32_t wide_beam_boxes(const stratus_wide_node* node, const wide_beam* beam, wide_boxes* boxes, float enters[STRATUS_WIDE])
 {
-  const float scale = float_of((uint32_t)(node->shift + 127) << 23); /* 2^shift */
-  const int least = beam->top;
-  float near[3][STRATUS_WIDE], far[3][STRATUS_WIDE], enters[STRATUS_WIDE];
-  uint64_t met = 0, meets[STRATUS_WIDE];
-  for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
+  const vfloat scale = v_set(float_of((uint32_t)(node->shift + 127) << 23)); /* 2^shift */
+  uint32_t met = 0;
+  for (int part = 0; part < WIDE_PARTS; ++part) {
+    const uint8_t* bytes = (const uint8_t*)node + part * STRATUS_WIDTH;
     vfloat enter = v_set(0.0f), leave = v_set(beam->last);
     for (int a = 0; a < 3; ++a) {
-      const vfloat in = wide_beam_planes(node, beam->near[a] + part, a, scale), out = wide_beam_planes(node, beam->far[a] + part, a, scale);
-      enter = v_max(v_fma(in, v_set(beam->speed[0][a]), v_set(beam->base[0][a])), enter);
-      leave = v_min(v_fma(out, v_set(beam->speed[1][a]), v_set(beam->base[1][a])), leave);
-      v_store(near[a] + part, in);
-      v_store(far[a] + part, out);
+      boxes->near[a][part] = v_fma(wide_planes(bytes + beam->near[a]), scale, v_set(node->at[a]));
+      boxes->far[a][part] = v_fma(wide_planes(bytes + beam->far[a]), scale, v_set(node->at[a]));
+      enter = v_max(v_fma(boxes->near[a][part], v_set(beam->speed[0][a]), v_set(beam->base[0][a])), enter);
+      leave = v_min(v_fma(boxes->far[a][part], v_set(beam->speed[1][a]), v_set(beam->base[1][a])), leave);
     }
-    v_store(enters + part, enter);
-    met |= wide_bits(v_le(enter, leave)) << part;
+    v_store(enters + part * STRATUS_WIDTH, enter);
+    met |= (uint32_t)wide_bits(v_le(enter, leave)) << part * STRATUS_WIDTH;
   }
-  met &= (1ull << node->count) - 1;
-  for (uint64_t left = met; left; left &= left - 1) {
-    meets[__builtin_ctzll(left)] = 0;
+  return met & ((1u << node->count) - 1);
+}
+
+/* Finds which rays meet which of the children `met`: a ray after the other, its children in lanes. */
+static inline void wide_beam_by_ray(
+  const wide_beam* beam, const wide_boxes* boxes, uint32_t met, uint64_t rays, uint64_t meets[STRATUS_WIDE])
+{
+#if STRATUS_ISA == 2
+  __m512i low = _mm512_setzero_si512(), high = low;
+#endif
+  for (; rays; rays &= rays - 1) {
+    const int i = __builtin_ctzll(rays);
+    uint32_t children = 0;
+    for (int part = 0; part < WIDE_PARTS; ++part) {
+      vfloat enter = v_set(0.0f), leave = v_set(beam->end[i]);
+      for (int a = 0; a < 3; ++a) {
+        const vfloat inverse = v_set(beam->inverse[a][i]);
+        enter = v_max(v_fma(boxes->near[a][part], inverse, v_set(beam->early[a][i])), enter);
+        leave = v_min(v_fma(boxes->far[a][part], inverse, v_set(beam->late[a][i])), leave);
+      }
+      children |= (uint32_t)wide_bits(v_le(enter, leave)) << part * STRATUS_WIDTH;
+    }
+    children &= met;
+#if STRATUS_ISA == 2
+    const __m512i ray = _mm512_set1_epi64((int64_t)(rays & -rays));
+    low = _mm512_mask_or_epi64(low, (__mmask8)children, low, ray);
+    high = _mm512_mask_or_epi64(high, (__mmask8)(children >> 8), high, ray);
+#else
+    for (; children; children &= children - 1) {
+      meets[__builtin_ctz(children)] |= rays & -rays;
+    }
+#endif
   }
-  for (int part = 0; part < BEAM; part += STRATUS_WIDTH) {
-    if (!(rays >> part & ((1ull << STRATUS_WIDTH) - 1))) {
+#if STRATUS_ISA == 2
+  _mm512_storeu_si512(meets, low);
+  _mm512_storeu_si512(meets + 8, high);
+#endif
+}
+
+/* The same: a child after the other, its rays in lanes. */
+static inline void wide_beam_by_child(
+  const wide_beam* beam, const wide_boxes* boxes, uint32_t met, uint64_t rays, uint64_t meets[STRATUS_WIDE])
+{
+  float near[3][STRATUS_WIDE], far[3][STRATUS_WIDE];
+  for (int a = 0; a < 3; ++a) {
+    for (int part = 0; part < WIDE_PARTS; ++part) {
+      v_store(near[a] + part * STRATUS_WIDTH, boxes->near[a][part]);
+      v_store(far[a] + part * STRATUS_WIDTH, boxes->far[a][part]);
+    }
+  }
+  for (int first = 0; first < BEAM; first += STRATUS_WIDTH) {
+    vfloat inverse[3], early[3], late[3];
+    const vfloat end = v_load(beam->end + first);
+    const uint64_t some = rays >> first & WIDE_LANES;
+    if (!some) {
       continue;
     }
-    vfloat inverse[3], early[3], late[3];
-    const vfloat end = v_load(beam->end + part);
     for (int a = 0; a < 3; ++a) {
-      inverse[a] = v_load(beam->inverse[a] + part);
-      early[a] = v_load(beam->early[a] + part);
-      late[a] = v_load(beam->late[a] + part);
+      inverse[a] = v_load(beam->inverse[a] + first);
+      early[a] = v_load(beam->early[a] + first);
+      late[a] = v_load(beam->late[a] + first);
     }
-    for (uint64_t left = met; left; left &= left - 1) {
-      const int c = __builtin_ctzll(left);
+    for (uint32_t left = met; left; left &= left - 1) {
+      const int c = __builtin_ctz(left);
       vfloat enter = v_set(0.0f), leave = end;
       for (int a = 0; a < 3; ++a) {
         enter = v_max(v_fma(v_set(near[a][c]), inverse[a], early[a]), enter);
         leave = v_min(v_fma(v_set(far[a][c]), inverse[a], late[a]), leave);
       }
-      meets[c] |= wide_bits(v_le(enter, leave)) << part;
+      meets[c] |= (wide_bits(v_le(enter, leave)) & some) << first;
     }
   }
-  for (; met; met &= met - 1) {
-    const int c = __builtin_ctzll(met);
-    if (!(meets[c] & rays)) {
+}
+
+/* Pushes the children that rays may meet before their ends. Both ways to find them take the same time a test: the one with fewer is taken.
+ */
+static inline void wide_beam_node(const stratus_tree* tree, const stratus_wide_node* node, uint64_t rays, wide_beam* beam)
+{
+  wide_boxes boxes;
+  float enters[STRATUS_WIDE];
+  uint64_t meets[STRATUS_WIDE] = { 0 };
+  const int least = beam->top;
+  const uint32_t met = wide_beam_boxes(node, beam, &boxes, enters);
+  int packets = 0;
+  for (int first = 0; first < BEAM; first += STRATUS_WIDTH) {
+    packets += (rays >> first & WIDE_LANES) != 0;
+  }
+  if (__builtin_popcountll(rays) * WIDE_PARTS <= __builtin_popcount(met) * packets) {
+    wide_beam_by_ray(beam, &boxes, met, rays, meets);
+  } else {
+    wide_beam_by_child(beam, &boxes, met, rays, meets);
+  }
+  for (uint32_t left = met; left; left &= left - 1) {
+    const int c = __builtin_ctz(left);
+    if (!meets[c]) {
       continue;
     }
-    const wide_beam_entry entry = { meets[c] & rays, wide_child(node, c), enters[c] };
+    const wide_beam_entry entry = { meets[c], wide_child(node, c), enters[c] };
     int at = beam->top++;
     for (; at > least && beam->stack[at - 1].at < entry.at; --at) {
       beam->stack[at] = beam->stack[at - 1];
     }
     beam->stack[at] = entry;
+    wide_beam_fetch(tree, entry.number);
   }
 }
 
@@ -265,19 +344,6 @@ static inline uint64_t wide_beam_reach(const wide_beam* beam, uint64_t rays, flo
     reach |= wide_bits(v_le(v_set(at), v_load(beam->ends + part))) << part;
   }
   return reach & rays;
-}
-
-static inline void wide_beam_fetch(const stratus_tree* tree, const wide_beam* beam, int least)
-{
-  for (int i = least; i < beam->top; ++i) {
-    const uint32_t next = beam->stack[i].number;
-    if (next & WIDE_BRICK) {
-      __builtin_prefetch(&tree->bricks[next & ~WIDE_BRICK]);
-    } else {
-      __builtin_prefetch(&tree->wide.nodes[next]);
-      __builtin_prefetch(&tree->wide.nodes[next].hi[0][8]);
-    }
-  }
 }
 
 /* Stores what the rays have met. Each of the live ones has its share of what the beam visited. */
@@ -323,9 +389,7 @@ static inline bool wide_beam_walk(const stratus_hit_batch* batch, int first, str
     if (entry.number & WIDE_BRICK) {
       wide_beam_brick(batch, c, &tree->bricks[entry.number & ~WIDE_BRICK], rays, &beam);
     } else {
-      const int least = beam.top;
-      wide_beam_node(&tree->wide.nodes[entry.number], rays, &beam);
-      wide_beam_fetch(tree, &beam, least);
+      wide_beam_node(tree, &tree->wide.nodes[entry.number], rays, &beam);
     }
   }
   wide_beam_store(&beam, c);
