@@ -23,7 +23,7 @@ typedef struct wide_line {
 } wide_line;
 
 typedef struct wide_ray {
-  wide_line line;
+  wide_line* line;
   int near[3], far[3]; /* offsets in a node: the planes of boxes where the ray enters and leaves them */
   int number;          /* in the chunk; -1: none */
   int top;
@@ -123,13 +123,13 @@ static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
 #endif
   ++r->visited;
   for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
-    vfloat enter = v_set(0.0f), leave = v_set(r->line.end);
+    vfloat enter = v_set(0.0f), leave = v_set(r->line->end);
     for (int a = 0; a < 3; ++a) {
-      const float inverse = r->line.inverse[a];
+      const float inverse = r->line->inverse[a];
       const vfloat speed = v_set(scale * inverse);
       const vfloat near = wide_planes((const uint8_t*)node + r->near[a] + part), far = wide_planes((const uint8_t*)node + r->far[a] + part);
-      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->line.early[a]) * inverse)), enter);
-      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->line.late[a]) * inverse)), leave);
+      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->line->early[a]) * inverse)), enter);
+      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->line->late[a]) * inverse)), leave);
     }
     const vmask met = v_le(enter, leave);
 #if STRATUS_ISA == 2
@@ -223,34 +223,54 @@ static inline void wide_line_begin(const stratus_hit_batch* batch, const stratus
   r->hit = (stratus_hit){ .t = INFINITY };
 }
 
-/* Gives the place the chunk's next ray before `last` that meets the root's box. */
-static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int* next, int last, wide_ray* r)
+/* Rays of a chunk that are not begun yet. */
+typedef struct wide_rest {
+  int next, last;
+} wide_rest;
+
+/* Gives r->line a ray, and r->number, r->top and r->stack; r->number is -1 if none is left. */
+typedef void wide_next(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, void* rest, wide_ray* r);
+
+static inline void wide_next_of_chunk(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, void* rest, wide_ray* r)
 {
-  while (*next < last && chunk->end[*next] < 0.0f) {
-    ++*next;
+  wide_rest* const left = rest;
+  while (left->next < left->last && chunk->end[left->next] < 0.0f) {
+    ++left->next;
   }
-  r->number = *next < last ? (*next)++ : -1;
+  r->number = left->next < left->last ? left->next++ : -1;
   if (r->number >= 0) {
-    wide_line_begin(batch, chunk, r->number, &r->line);
-    for (int a = 0; a < 3; ++a) {
-      const bool up = r->line.inverse[a] > 0.0f;
-      const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)a),
-                hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)a);
-      r->near[a] = up ? lo : hi;
-      r->far[a] = up ? hi : lo;
-    }
-    r->visited = 0;
+    wide_line_begin(batch, chunk, r->number, r->line);
     r->top = 1;
     r->stack[0] = 0;
   }
 }
 
+/* Offsets in a node: the planes of boxes where rays enter and leave them that run along an axis, or against it. */
+static inline void wide_sides(int axis, bool up, int* near, int* far)
+{
+  const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)axis),
+            hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)axis);
+  *near = up ? lo : hi;
+  *far = up ? hi : lo;
+}
+
+static inline __attribute__((always_inline)) bool wide_begin(
+  const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, wide_next* next, void* rest, wide_ray* r)
+{
+  next(batch, chunk, rest, r);
+  for (int a = 0; r->number >= 0 && a < 3; ++a) {
+    wide_sides(a, r->line->inverse[a] > 0.0f, &r->near[a], &r->far[a]);
+  }
+  r->visited = 0;
+  return r->number >= 0;
+}
+
 static void wide_end(stratus_hit_chunk* chunk, const wide_ray* r)
 {
   chunk->visited[r->number] = (int)r->visited;
-  chunk->state[r->number] = r->line.hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
+  chunk->state[r->number] = r->line->hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
   for (int a = 0; a < 3; ++a) {
-    chunk->cell[a][r->number] = r->line.hit.voxel[a];
+    chunk->cell[a][r->number] = r->line->hit.voxel[a];
   }
 }
 
@@ -264,11 +284,11 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
       return false;
     }
     entry = r->stack[--r->top];
-  } while (float_of((uint32_t)(entry >> 32)) > r->line.end);
+  } while (float_of((uint32_t)(entry >> 32)) > r->line->end);
   const uint32_t number = (uint32_t)entry;
   if (__builtin_expect((number & WIDE_BRICK) != 0, 0)) {
     ++r->visited;
-    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], &r->line);
+    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r->line);
   } else {
     wide_node(&tree->wide.nodes[number], r);
   }
@@ -285,29 +305,37 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
   return true;
 }
 
-/* Walks the rays first .. last - 1 of a chunk. */
-static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last)
+/* Lets rays take turns until none is left. */
+static inline __attribute__((always_inline)) void wide_turns(
+  const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last, wide_next* next, void* rest)
 {
   wide_ray rays[WIDE_RAYS];
-  int next = first, busy = 0, asked = first;
-  for (int i = first; i < last; ++i) {
-    chunk->state[i] = STRATUS_HIT_NONE;
-    chunk->visited[i] = 0;
-  }
+  wide_line lines[WIDE_RAYS];
+  int busy = 0, asked = first;
   for (int i = 0; i < WIDE_RAYS; ++i) {
-    wide_begin(batch, chunk, &next, last, &rays[i]);
-    busy += rays[i].number >= 0;
+    rays[i].line = &lines[i];
+    busy += wide_begin(batch, chunk, next, rest, &rays[i]);
   }
   while (busy > 0) {
     asked = stratus_hit_fetch(chunk, asked, last);
     for (int i = 0; i < WIDE_RAYS; ++i) {
       if (rays[i].number >= 0 && !wide_step(batch, chunk, &rays[i])) {
         wide_end(chunk, &rays[i]);
-        wide_begin(batch, chunk, &next, last, &rays[i]);
-        busy -= rays[i].number < 0;
+        busy -= !wide_begin(batch, chunk, next, rest, &rays[i]);
       }
     }
   }
+}
+
+/* Walks the rays first .. last - 1 of a chunk. */
+static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last)
+{
+  wide_rest rest = { first, last };
+  for (int i = first; i < last; ++i) {
+    chunk->state[i] = STRATUS_HIT_NONE;
+    chunk->visited[i] = 0;
+  }
+  wide_turns(batch, chunk, first, last, wide_next_of_chunk, &rest);
 }
 
 #endif

@@ -17,6 +17,9 @@
 /* Some axis is the longest of a ray, or nearly, for all rays of a narrow cone. Along it each ray runs at least at this speed. */
 #define WIDE_BEAM_SLOWEST 0.5f
 
+/* A visit by a beam takes as long as some so many by single rays. */
+#define WIDE_BEAM_VISIT 4
+
 typedef struct wide_beam_entry {
   uint64_t rays;   /* that may meet it */
   uint32_t number; /* of a node, or of a brick with WIDE_BRICK */
@@ -92,10 +95,7 @@ static inline bool wide_beam_direction(const stratus_hit_chunk* c, int first, wi
     beam->axis = speed > slowest ? axis : beam->axis;
     slowest = speed > slowest ? speed : slowest;
     beam->sign[axis] = up[axis] ? 1.0f : -1.0f;
-    const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)axis),
-              hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)axis);
-    beam->near[axis] = up[axis] ? lo : hi;
-    beam->far[axis] = up[axis] ? hi : lo;
+    wide_sides(axis, up[axis], &beam->near[axis], &beam->far[axis]);
   }
   return !((up[0] && down[0]) || (up[1] && down[1]) || (up[2] && down[2])) && slowest >= WIDE_BEAM_SLOWEST;
 }
@@ -309,17 +309,22 @@ static inline void wide_beam_node(const stratus_tree* tree, const stratus_wide_n
   }
 }
 
+static inline wide_line* wide_beam_line(const stratus_hit_batch* batch, const stratus_hit_chunk* c, int i, wide_beam* beam)
+{
+  if (!(beam->begun >> i & 1)) {
+    wide_line_begin(batch, c, beam->first + i, &beam->line[i]);
+    beam->begun |= 1ull << i;
+  }
+  return &beam->line[i];
+}
+
 static inline void wide_beam_brick(
   const stratus_hit_batch* batch, const stratus_hit_chunk* c, const stratus_brick* brick, uint64_t rays, wide_beam* beam)
 {
   bool shorter = false;
   for (; rays; rays &= rays - 1) {
     const int i = __builtin_ctzll(rays);
-    wide_line* const line = &beam->line[i];
-    if (!(beam->begun >> i & 1)) {
-      wide_line_begin(batch, c, beam->first + i, line);
-      beam->begun |= 1ull << i;
-    }
+    wide_line* const line = wide_beam_line(batch, c, i, beam);
     wide_brick(batch, &c->rays[beam->first + i], brick, line);
     if (line->end < beam->end[i]) {
       beam->end[i] = line->end;
@@ -346,6 +351,48 @@ static inline uint64_t wide_beam_reach(const wide_beam* beam, uint64_t rays, flo
   return reach & rays;
 }
 
+/* ---------------------------------------------------------------- rays that part */
+
+typedef struct wide_beam_rest {
+  wide_beam* beam;
+  uint64_t rays;
+  float slack;
+} wide_beam_rest;
+
+/* Gives a ray what its beam has on the stack for it. */
+static inline void wide_next_of_beam(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, void* rest, wide_ray* r)
+{
+  wide_beam_rest* const left = rest;
+  wide_beam* const beam = left->beam;
+  r->number = -1;
+  for (r->top = 0; left->rays && r->top == 0; left->rays &= left->rays - 1) {
+    const int i = __builtin_ctzll(left->rays);
+    for (int e = 0; e < beam->top; ++e) {
+      const wide_beam_entry* entry = &beam->stack[e];
+      const float at = (entry->at - beam->begins[i] - 2.0f * left->slack) / beam->along[i];
+      if (entry->rays >> i & 1) {
+        r->stack[r->top++] = (uint64_t)bits_of(wide_larger(at, 0.0f)) << 32 | entry->number;
+      }
+    }
+    if (r->top > 0) {
+      r->number = beam->first + i;
+      r->line = wide_beam_line(batch, chunk, i, beam);
+    }
+  }
+}
+
+/* Whether the rays run side by side: on average half of those that meet children of the root meet the same one. */
+static inline bool wide_beam_narrow(const wide_beam* beam)
+{
+  uint64_t rays = 0;
+  int pairs = 0;
+  for (int e = 0; e < beam->top; ++e) {
+    rays |= beam->stack[e].rays;
+    pairs += __builtin_popcountll(beam->stack[e].rays);
+  }
+  return 3 * pairs >= beam->top * __builtin_popcountll(rays);
+}
+
 /* Stores what the rays have met. Each of the live ones has its share of what the beam visited. */
 static inline void wide_beam_store(const wide_beam* beam, stratus_hit_chunk* c)
 {
@@ -354,9 +401,8 @@ static inline void wide_beam_store(const wide_beam* beam, stratus_hit_chunk* c)
   for (int i = 0; i < BEAM; ++i) {
     const int ray = beam->first + i;
     c->state[ray] = STRATUS_HIT_NONE;
-    c->visited[ray] = 0;
     if (beam->live >> i & 1) {
-      c->visited[ray] = share + rest;
+      c->visited[ray] += share + rest;
       rest = 0;
     }
     if (beam->begun >> i & 1 && beam->line[i].hit.t < INFINITY) {
@@ -373,12 +419,15 @@ static inline bool wide_beam_walk(const stratus_hit_batch* batch, int first, str
 {
   const stratus_tree* tree = batch->tree;
   wide_beam beam;
-  int asked = first;
+  int asked = first, gain = 0; /* visits by single rays that the beam has saved */
   if (!wide_beam_direction(c, first, &beam)) {
     return false;
   }
   wide_beam_place(batch, c, &beam);
-  while (beam.top > 0) {
+  for (int i = first; i < first + BEAM; ++i) {
+    c->visited[i] = 0;
+  }
+  while (beam.top > 0 && gain >= 0) {
     const wide_beam_entry entry = beam.stack[--beam.top];
     const uint64_t rays = wide_beam_reach(&beam, entry.rays, entry.at);
     if (!rays) {
@@ -386,11 +435,19 @@ static inline bool wide_beam_walk(const stratus_hit_batch* batch, int first, str
     }
     asked = stratus_hit_fetch(c, asked, first + BEAM);
     ++beam.visited;
+    gain += __builtin_popcountll(rays) - WIDE_BEAM_VISIT;
     if (entry.number & WIDE_BRICK) {
       wide_beam_brick(batch, c, &tree->bricks[entry.number & ~WIDE_BRICK], rays, &beam);
     } else {
       wide_beam_node(tree, &tree->wide.nodes[entry.number], rays, &beam);
+      if (beam.visited == 1 && !wide_beam_narrow(&beam)) {
+        return false;
+      }
     }
+  }
+  wide_beam_rest rest = { &beam, beam.live, batch->slack };
+  if (beam.top > 0) {
+    wide_turns(batch, c, first, first + BEAM, wide_next_of_beam, &rest);
   }
   wide_beam_store(&beam, c);
   return true;
