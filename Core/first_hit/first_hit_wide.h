@@ -167,7 +167,7 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
 {
   float enter[3][4], late[3][4], leave[3][4]; /* where the ray enters voxels of a layer at the earliest, at the latest, and leaves them */
   float at[64];
-  uint64_t open = 0;
+  uint64_t open = brick->mask;
   for (int a = 0; a < 3; ++a) {
     const int up = r->inverse[a] > 0.0f;
     for (int i = 0; i < 4; ++i) {
@@ -178,18 +178,12 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
       leave[a][i] = (far - r->late[a]) * r->inverse[a];
     }
   }
-  for (int zy = 0; zy < 16; ++zy) {
-    const float from = wide_larger(0.0f, wide_larger(enter[2][zy >> 2], enter[1][zy & 3]));
-    const float to = wide_smaller(r->end, wide_smaller(leave[2][zy >> 2], leave[1][zy & 3]));
-    if (from > to || !(brick->mask >> 4 * zy & 15)) {
-      continue;
-    }
-    for (int x = 0; x < 4; ++x) {
-      at[4 * zy + x] = wide_larger(from, enter[0][x]);
-      open |= (uint64_t)(at[4 * zy + x] <= wide_smaller(to, leave[0][x])) << (4 * zy + x);
-    }
+  for (uint64_t left = brick->mask; left; left &= left - 1) {
+    const int bit = __builtin_ctzll(left), x = bit & 3, y = bit >> 2 & 3, z = bit >> 4;
+    const float to = wide_smaller(wide_smaller(r->end, leave[0][x]), wide_smaller(leave[1][y], leave[2][z]));
+    at[bit] = wide_larger(wide_larger(0.0f, enter[0][x]), wide_larger(enter[1][y], enter[2][z]));
+    open ^= (uint64_t)(at[bit] > to) << bit;
   }
-  open &= brick->mask;
   while (open) {
     int bit = __builtin_ctzll(open);
     for (uint64_t left = open & (open - 1); left; left &= left - 1) {

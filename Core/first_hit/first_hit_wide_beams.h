@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Beams of rays through wide hierarchies. BEAM rays that follow each other and run into the same octant visit a node once for all of them.
- * The beam's borders tell which of the 16 children it may meet, and each of these is then tested against the rays that have come so far, a
- * ray in each lane. A child goes on the stack with the set of rays that may meet it.
+ * Beams of rays through wide hierarchies. BEAM rays that follow each other and run side by side visit a node once for all of them. The
+ * borders of the beam tell which of the node's children it may meet. These are tested against those rays that have come so far, and a child
+ * goes on the stack with the set of rays that may meet it. Rays that do not, or no longer, share what they visit go on one by one.
  *
- * Borders are planes that hold all rays of the beam from its begin on. Across an axis, the lower border is a line of the least position and
- * slope of all rays, and the upper one of the greatest. So a box is met between two lines as it is by a ray: it is entered by the upper
- * border, and left by the lower one. As in first_hit_wide.h, boxes are grown by the slack of positions in float, so that none is missed.
+ * The borders enclose all rays of the beam. Across its axis, the lower border is a line of the rays' least position and slope, the upper
+ * one a line of the greatest. A box is met between them as by a ray: it is entered by the upper border and left by the lower one. As in
+ * first_hit_wide.h, boxes are grown by the slack of positions in float, so that none is missed.
  *
  * Included by first_hit_isa.c. */
 #ifndef STRATUS_FIRST_HIT_WIDE_BEAMS_H
@@ -14,11 +14,15 @@
 #include "first_hit_beams.h"
 #include "first_hit_wide.h"
 
-/* Some axis is the longest of a ray, or nearly, for all rays of a narrow cone. Along it each ray runs at least at this speed. */
+/* The least speed of a beam's rays along its axis, where 1 is a ray's along its longest one. All rays of a narrow cone are faster than that
+ * along some axis. */
 #define WIDE_BEAM_SLOWEST 0.5f
 
-/* A visit by a beam takes as long as some so many by single rays. */
+/* A visit by a beam takes as long as about so many visits by single rays. */
 #define WIDE_BEAM_VISIT 4
+
+#define WIDE_PARTS (STRATUS_WIDE / STRATUS_WIDTH) /* vectors for a node's children */
+#define WIDE_LANES ((UINT64_C(1) << STRATUS_WIDTH) - 1)
 
 typedef struct wide_beam_entry {
   uint64_t rays;   /* that may meet it */
@@ -26,24 +30,26 @@ typedef struct wide_beam_entry {
   float at;        /* where the beam enters, along its axis */
 } wide_beam_entry;
 
-/* Positions along the beam's axis are counted from its begin on, in the direction in which the rays run. */
+/* Sets of rays have bit i for the beam's ray i. Positions along the axis are counted from where the first ray begins, in the direction of
+ * the rays. */
 typedef struct wide_beam {
   int first; /* ray of the chunk */
   int axis;
-  uint64_t live; /* rays that meet the root's box */
-  int up[3];
+  uint64_t live;       /* rays that meet the root's box */
   int near[3], far[3]; /* as wide_ray has them */
-  float sign[3];
-  float speed[2][3],
-    base[2][3]; /* a plane at p is met at p * speed + base: [0] at the earliest as a near one, [1] at the latest as a far one */
-  float last;   /* no ray ends behind it */
-  float inverse[3][BEAM], early[3][BEAM], late[3][BEAM]; /* a plane at p is met at p * inverse + early at the earliest, and so on */
-  float end[BEAM];                                       /* of each ray, along itself */
-  float ends[BEAM];                                      /* along the beam's axis; below its begin: the ray is none of the beam's */
-  float begins[BEAM], along[BEAM];                       /* where a ray begins along the beam's axis, and how fast it runs */
-  uint64_t begun;                                        /* rays that have a line */
-  wide_line line[BEAM];
+  float sign[3];       /* of the rays' directions */
+  float speed[2][3];   /* a plane at p is met at p * speed + base: [0] at the earliest, [1] at the latest */
+  float base[2][3];    /* likewise */
+  float last;          /* no ray ends behind it */
+  uint64_t begun;      /* rays that have a line */
   int top, visited;
+  /* Of each ray: it meets a plane at p at p * inverse + early at the earliest, and p * inverse + late at the latest. */
+  _Alignas(64) float inverse[3][BEAM];
+  float early[3][BEAM], late[3][BEAM];
+  float end[BEAM];                 /* its end, along itself */
+  float ends[BEAM];                /* its end along the axis; below 0 if it is not live */
+  float begins[BEAM], along[BEAM]; /* where it begins along the axis, and its speed there */
+  wide_line line[BEAM];
   wide_beam_entry stack[STRATUS_WIDE_STACK];
 } wide_beam;
 
@@ -70,14 +76,15 @@ static inline float beam_highest(vfloat v)
 
 /* ---------------------------------------------------------------- a beam of rays */
 
-/* Finds the octant and the axis of the chunk's rays from `first` on. Returns false unless they have one of each. */
+/* Finds the octant and the axis of the chunk's rays from `first` on. Returns false unless the live ones have one of each. */
 static inline bool wide_beam_direction(const stratus_hit_chunk* c, int first, wide_beam* beam)
 {
   const vfloat most = v_set(INFINITY);
   vfloat least[3] = { most, most, most };
   int up[3] = { 0 }, down[3] = { 0 };
   beam->first = first;
-  beam->live = 0;
+  beam->live = beam->begun = 0;
+  beam->top = beam->visited = 0;
   for (int i = 0; i < BEAM; i += STRATUS_WIDTH) {
     const vmask lives = v_le(v_set(0.0f), v_load(c->end + first + i));
     beam->live |= wide_bits(lives) << i;
@@ -158,15 +165,11 @@ static inline void wide_beam_place(const stratus_hit_batch* batch, const stratus
     beam->base[0][axis] = -(beam_highest(high) + slack) * in;
     beam->base[1][axis] = (slack - beam_lowest(low)) * out;
   }
-  beam->begun = 0;
-  beam->visited = 0;
   beam->top = 1;
   beam->stack[0] = (wide_beam_entry){ .rays = beam->live };
 }
 
 /* ---------------------------------------------------------------- nodes and bricks */
-
-#define WIDE_LANES ((UINT64_C(1) << STRATUS_WIDTH) - 1)
 
 static inline void wide_beam_fetch(const stratus_tree* tree, uint32_t next)
 {
@@ -177,8 +180,6 @@ static inline void wide_beam_fetch(const stratus_tree* tree, uint32_t next)
     __builtin_prefetch(&tree->wide.nodes[next].hi[0][8]);
   }
 }
-
-#define WIDE_PARTS (STRATUS_WIDE / STRATUS_WIDTH)
 
 /* The planes of a node's boxes by which rays enter and leave them. */
 typedef struct wide_boxes {
@@ -381,7 +382,8 @@ static inline void wide_next_of_beam(const stratus_hit_batch* batch, const strat
   }
 }
 
-/* Whether the rays run side by side: on average half of those that meet children of the root meet the same one. */
+/* Whether the rays run side by side, once the beam has visited the root: a third of those that meet children meet the same one, on average.
+ * Where 16 boxes lie in a row of four and columns of two, a ray from anywhere meets less than that. */
 static inline bool wide_beam_narrow(const wide_beam* beam)
 {
   uint64_t rays = 0;
@@ -423,7 +425,9 @@ static inline bool wide_beam_walk(const stratus_hit_batch* batch, int first, str
   if (!wide_beam_direction(c, first, &beam)) {
     return false;
   }
-  wide_beam_place(batch, c, &beam);
+  if (beam.live) {
+    wide_beam_place(batch, c, &beam);
+  }
   for (int i = first; i < first + BEAM; ++i) {
     c->visited[i] = 0;
   }
