@@ -5,7 +5,7 @@
 
 #include "first_hit_beam_leaves.h"
 #include "first_hit_leaves.h"
-#include "first_hit_wide.h"
+#include "first_hit_wide_beams.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -365,26 +365,34 @@ static void walk_packets(const stratus_hit_batch* batch, const stratus_hit_argum
   }
 }
 
+/* Walks the chunk's rays first .. last - 1 without beams. */
+static void walk_rest(const stratus_hit_batch* batch, const stratus_hit_arguments* a, stratus_hit_chunk* chunk, int first, int last)
+{
+  if (first == last) {
+    return;
+  }
+  if (batch->tree->wide.node_count) {
+    wide_walk(batch, chunk, first, last);
+  } else {
+    walk_packets(batch, a, chunk, first, last);
+  }
+}
+
 /* Rays that follow each other go in beams where these are narrow, the others in packets. */
 static void walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
 {
-  if (batch->tree->wide.node_count) {
-    wide_walk(batch, chunk);
-    return;
-  }
+  const bool wide = batch->tree->wide.node_count > 0;
   const stratus_hit_arguments a = stratus_hit_arguments_of(batch);
+  const bool beams = wide || a.cell_log2;
   int waiting = 0; /* the first ray that is neither in a beam nor walked */
-  for (int first = 0; a.cell_log2 && first + BEAM <= chunk->count; first += BEAM) {
-    if (beam_walk(batch, &a, first, chunk)) {
-      if (waiting < first) {
-        walk_packets(batch, &a, chunk, waiting, first);
-      }
+  for (int first = 0; first < chunk->count; first += BEAM) {
+    const bool whole = first + BEAM <= chunk->count;
+    if (beams && whole && (wide ? wide_beam_walk(batch, first, chunk) : beam_walk(batch, &a, first, chunk))) {
+      walk_rest(batch, &a, chunk, waiting, first);
       waiting = first + BEAM;
     }
   }
-  if (waiting < chunk->count) {
-    walk_packets(batch, &a, chunk, waiting, chunk->count);
-  }
+  walk_rest(batch, &a, chunk, waiting, chunk->count);
 }
 
 /* ---------------------------------------------------------------- chunk to hits */

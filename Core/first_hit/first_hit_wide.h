@@ -14,15 +14,20 @@
 #define WIDE_RAYS 8            /* that take turns */
 #define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
 
-typedef struct wide_ray {
+/* A ray, and its hit so far. */
+typedef struct wide_line {
   float inverse[3];
   float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
-  int near[3], far[3];     /* offsets in a node: the planes of boxes where the ray enters and leaves them */
   float end;               /* what the ray enters behind it cannot be its hit */
-  int number;              /* in the chunk; -1: none */
+  stratus_hit hit;
+} wide_line;
+
+typedef struct wide_ray {
+  wide_line* line;
+  int near[3], far[3]; /* offsets in a node: the planes of boxes where the ray enters and leaves them */
+  int number;          /* in the chunk; -1: none */
   int top;
   uint32_t visited;
-  stratus_hit hit;
   /* Where the ray enters, as the bits of a float >= 0, which are ordered as the float is, above the number of the node or brick. Sorting
    * writes four entries at once. */
   uint64_t stack[STRATUS_WIDE_STACK + 4];
@@ -118,13 +123,13 @@ static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
 #endif
   ++r->visited;
   for (int part = 0; part < STRATUS_WIDE; part += STRATUS_WIDTH) {
-    vfloat enter = v_set(0.0f), leave = v_set(r->end);
+    vfloat enter = v_set(0.0f), leave = v_set(r->line->end);
     for (int a = 0; a < 3; ++a) {
-      const float inverse = r->inverse[a];
+      const float inverse = r->line->inverse[a];
       const vfloat speed = v_set(scale * inverse);
       const vfloat near = wide_planes((const uint8_t*)node + r->near[a] + part), far = wide_planes((const uint8_t*)node + r->far[a] + part);
-      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->early[a]) * inverse)), enter);
-      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->late[a]) * inverse)), leave);
+      enter = v_max(v_fma(near, speed, v_set((node->at[a] - r->line->early[a]) * inverse)), enter);
+      leave = v_min(v_fma(far, speed, v_set((node->at[a] - r->line->late[a]) * inverse)), leave);
     }
     const vmask met = v_le(enter, leave);
 #if STRATUS_ISA == 2
@@ -158,12 +163,11 @@ static inline float wide_smaller(float a, float b)
 }
 
 /* Tries the brick's voxels that the ray may meet, the nearest first. */
-static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_ray* r)
+static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, const stratus_brick* brick, wide_line* r)
 {
   float enter[3][4], late[3][4], leave[3][4]; /* where the ray enters voxels of a layer at the earliest, at the latest, and leaves them */
   float at[64];
-  uint64_t open = 0;
-  ++r->visited;
+  uint64_t open = brick->mask;
   for (int a = 0; a < 3; ++a) {
     const int up = r->inverse[a] > 0.0f;
     for (int i = 0; i < 4; ++i) {
@@ -174,18 +178,12 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
       leave[a][i] = (far - r->late[a]) * r->inverse[a];
     }
   }
-  for (int zy = 0; zy < 16; ++zy) {
-    const float from = wide_larger(0.0f, wide_larger(enter[2][zy >> 2], enter[1][zy & 3]));
-    const float to = wide_smaller(r->end, wide_smaller(leave[2][zy >> 2], leave[1][zy & 3]));
-    if (from > to || !(brick->mask >> 4 * zy & 15)) {
-      continue;
-    }
-    for (int x = 0; x < 4; ++x) {
-      at[4 * zy + x] = wide_larger(from, enter[0][x]);
-      open |= (uint64_t)(at[4 * zy + x] <= wide_smaller(to, leave[0][x])) << (4 * zy + x);
-    }
+  for (uint64_t left = brick->mask; left; left &= left - 1) {
+    const int bit = __builtin_ctzll(left), x = bit & 3, y = bit >> 2 & 3, z = bit >> 4;
+    const float to = wide_smaller(wide_smaller(r->end, leave[0][x]), wide_smaller(leave[1][y], leave[2][z]));
+    at[bit] = wide_larger(wide_larger(0.0f, enter[0][x]), wide_larger(enter[1][y], enter[2][z]));
+    open ^= (uint64_t)(at[bit] > to) << bit;
   }
-  open &= brick->mask;
   while (open) {
     int bit = __builtin_ctzll(open);
     for (uint64_t left = open & (open - 1); left; left &= left - 1) {
@@ -207,40 +205,66 @@ static void wide_brick(const stratus_hit_batch* batch, const stratus_ray* ray, c
   }
 }
 
-/* Gives the place the chunk's next ray that meets the root's box. */
-static void wide_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int* next, wide_ray* r)
+static inline void wide_line_begin(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, int number, wide_line* r)
 {
-  while (*next < chunk->count && chunk->end[*next] < 0.0f) {
-    ++*next;
+  for (int a = 0; a < 3; ++a) {
+    const float inverse = chunk->inverse[a][number], o = chunk->o[a][number], grown = inverse > 0.0f ? batch->slack : -batch->slack;
+    r->inverse[a] = inverse;
+    r->early[a] = o + grown;
+    r->late[a] = o - grown;
   }
-  r->number = *next < chunk->count ? (*next)++ : -1;
+  r->end = chunk->end[number];
+  r->hit = (stratus_hit){ .t = INFINITY };
+}
+
+/* Rays of a chunk that are not begun yet. */
+typedef struct wide_rest {
+  int next, last;
+} wide_rest;
+
+/* Gives r->line a ray, and r->number, r->top and r->stack; r->number is -1 if none is left. */
+typedef void wide_next(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, void* rest, wide_ray* r);
+
+static inline void wide_next_of_chunk(const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, void* rest, wide_ray* r)
+{
+  wide_rest* const left = rest;
+  while (left->next < left->last && chunk->end[left->next] < 0.0f) {
+    ++left->next;
+  }
+  r->number = left->next < left->last ? left->next++ : -1;
   if (r->number >= 0) {
-    for (int a = 0; a < 3; ++a) {
-      const float inverse = chunk->inverse[a][r->number], o = chunk->o[a][r->number];
-      const bool up = inverse > 0.0f;
-      const float grown = up ? batch->slack : -batch->slack;
-      const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)a),
-                hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)a);
-      r->inverse[a] = inverse;
-      r->early[a] = o + grown;
-      r->late[a] = o - grown;
-      r->near[a] = up ? lo : hi;
-      r->far[a] = up ? hi : lo;
-    }
-    r->end = chunk->end[r->number];
-    r->hit = (stratus_hit){ .t = INFINITY };
-    r->visited = 0;
+    wide_line_begin(batch, chunk, r->number, r->line);
     r->top = 1;
     r->stack[0] = 0;
   }
 }
 
+/* Offsets in a node: the planes of boxes where rays enter and leave them that run along an axis, or against it. */
+static inline void wide_sides(int axis, bool up, int* near, int* far)
+{
+  const int lo = (int)(offsetof(stratus_wide_node, lo) + STRATUS_WIDE * (size_t)axis),
+            hi = (int)(offsetof(stratus_wide_node, hi) + STRATUS_WIDE * (size_t)axis);
+  *near = up ? lo : hi;
+  *far = up ? hi : lo;
+}
+
+static inline __attribute__((always_inline)) bool wide_begin(
+  const stratus_hit_batch* batch, const stratus_hit_chunk* chunk, wide_next* next, void* rest, wide_ray* r)
+{
+  next(batch, chunk, rest, r);
+  for (int a = 0; r->number >= 0 && a < 3; ++a) {
+    wide_sides(a, r->line->inverse[a] > 0.0f, &r->near[a], &r->far[a]);
+  }
+  r->visited = 0;
+  return r->number >= 0;
+}
+
 static void wide_end(stratus_hit_chunk* chunk, const wide_ray* r)
 {
   chunk->visited[r->number] = (int)r->visited;
-  chunk->state[r->number] = r->hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
+  chunk->state[r->number] = r->line->hit.t < INFINITY ? STRATUS_HIT_VOXEL : STRATUS_HIT_NONE;
   for (int a = 0; a < 3; ++a) {
-    chunk->cell[a][r->number] = r->hit.voxel[a];
+    chunk->cell[a][r->number] = r->line->hit.voxel[a];
   }
 }
 
@@ -254,10 +278,11 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
       return false;
     }
     entry = r->stack[--r->top];
-  } while (float_of((uint32_t)(entry >> 32)) > r->end);
+  } while (float_of((uint32_t)(entry >> 32)) > r->line->end);
   const uint32_t number = (uint32_t)entry;
   if (__builtin_expect((number & WIDE_BRICK) != 0, 0)) {
-    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r);
+    ++r->visited;
+    wide_brick(batch, &chunk->rays[r->number], &tree->bricks[number & ~WIDE_BRICK], r->line);
   } else {
     wide_node(&tree->wide.nodes[number], r);
   }
@@ -274,28 +299,37 @@ static inline bool wide_step(const stratus_hit_batch* batch, const stratus_hit_c
   return true;
 }
 
-static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk)
+/* Lets rays take turns until none is left. */
+static inline __attribute__((always_inline)) void wide_turns(
+  const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last, wide_next* next, void* rest)
 {
   wide_ray rays[WIDE_RAYS];
-  int next = 0, busy = 0, asked = 0;
-  for (int i = 0; i < chunk->count; ++i) {
-    chunk->state[i] = STRATUS_HIT_NONE;
-    chunk->visited[i] = 0;
-  }
+  wide_line lines[WIDE_RAYS];
+  int busy = 0, asked = first;
   for (int i = 0; i < WIDE_RAYS; ++i) {
-    wide_begin(batch, chunk, &next, &rays[i]);
-    busy += rays[i].number >= 0;
+    rays[i].line = &lines[i];
+    busy += wide_begin(batch, chunk, next, rest, &rays[i]);
   }
   while (busy > 0) {
-    asked = stratus_hit_fetch(chunk, asked, chunk->count);
+    asked = stratus_hit_fetch(chunk, asked, last);
     for (int i = 0; i < WIDE_RAYS; ++i) {
       if (rays[i].number >= 0 && !wide_step(batch, chunk, &rays[i])) {
         wide_end(chunk, &rays[i]);
-        wide_begin(batch, chunk, &next, &rays[i]);
-        busy -= rays[i].number < 0;
+        busy -= !wide_begin(batch, chunk, next, rest, &rays[i]);
       }
     }
   }
+}
+
+/* Walks the rays first .. last - 1 of a chunk. */
+static void wide_walk(const stratus_hit_batch* batch, stratus_hit_chunk* chunk, int first, int last)
+{
+  wide_rest rest = { first, last };
+  for (int i = first; i < last; ++i) {
+    chunk->state[i] = STRATUS_HIT_NONE;
+    chunk->visited[i] = 0;
+  }
+  wide_turns(batch, chunk, first, last, wide_next_of_chunk, &rest);
 }
 
 #endif

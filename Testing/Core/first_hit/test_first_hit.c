@@ -120,21 +120,22 @@ static void beams_hit_what_the_walk_hits(void** state)
   (void)state;
   static stratus_ray rays[TILES * 64];
   static stratus_hit hits[TILES * 64];
+  static const stratus_tree_method methods[4] = { STRATUS_TREE_DISTANCE, STRATUS_TREE_OCTANT, STRATUS_TREE_HYBRID, STRATUS_TREE_WIDE };
   for (int isa = 0; isa <= 2; ++isa) {
     uint32_t random = 11;
     uint64_t steps = 0, alone = 0;
     stratus_context* context = open_context(isa, 1);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 80; ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
-        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 4 == 0 ? 9 : 150));
+        dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 7 == 0 ? 9 : 150));
       }
       const double fill = round % 5 == 0 ? 1.0 : round % 5 == 1 ? 0.0003 : round % 5 == 2 ? 0.002 : unit_random(&random);
-      stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 4 == 3 ? 6 : 0, &random);
+      stratus_voxels* voxels = random_voxels(context, dimensions, fill, round % 3 == 2 ? 6 : 0, &random);
       stratus_tree_options options = stratus_tree_options_default();
       stratus_tree* tree = NULL;
-      options.method = round % 3 == 0 ? STRATUS_TREE_DISTANCE : round % 3 == 1 ? STRATUS_TREE_OCTANT : STRATUS_TREE_HYBRID;
-      options.field_emptiness = 1.0 + round % 4; /* many leaves */
+      options.method = methods[round % 4];
+      options.field_emptiness = 1.0 + round / 4 % 4; /* many leaves */
       options.leaf_bricks = 1 + round % 7;
       assert_int_equal(stratus_tree_create(context, voxels, &options, &tree), STRATUS_OK);
       for (int picture = 0; picture < 8; ++picture) {
