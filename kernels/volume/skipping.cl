@@ -201,8 +201,35 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
  * the box (y0, z0) .. (y1, z1), which holds the occupied ones and a layer about them. */
 #define ROW_MARGIN 64
 
-/* Where row (j, k) begins. */
-static long row_at(long pitch, long ny, long j, long k) { return (k * ny + j) * (pitch + 2 * ROW_MARGIN) + ROW_MARGIN; }
+/* Where row (j, k) begins. Rows of a plane share the margins between them; planes share none, for items write theirs. */
+static long row_at(long pitch, long ny, long j, long k)
+{
+  return k * (ny * (pitch + ROW_MARGIN) + ROW_MARGIN) + j * (pitch + ROW_MARGIN) + ROW_MARGIN;
+}
+
+/* Writes 0 to blocks of occupancy `target`, DISTANCE_MAX to all others of a row and to its margins. Returns how many have it. */
+static long seed_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row)
+{
+  const uchar16 far = (uchar16)(DISTANCE_MAX);
+  long count = 0;
+  for (long x = -ROW_MARGIN; x < 0; x += 16) {
+    vstore16(far, 0, row + x);
+  }
+  for (long x = n / 16 * 16; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16(far, 0, row + x);
+  }
+  for (long x = 0; x + 16 <= n; x += 16) {
+    const char16 found = vload16(0, occupied + x) == (uchar16)(target);
+    const long2 parts = as_long2(found);
+    vstore16(select(far, (uchar16)(0), found), 0, row + x);
+    count += (long)(popcount((ulong)parts.x) + popcount((ulong)parts.y)) / 8;
+  }
+  for (long x = n / 16 * 16; x < n; ++x) {
+    row[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
+    count += occupied[x] == target;
+  }
+  return count;
+}
 
 /* Distances along x of one row, by steps of 1, 2, 4 .. 64. `spare`: a second row. */
 static void spread_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row, __global uchar* spare)
@@ -213,12 +240,12 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
     from = to;
     to = swap;
   }
-  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
-    vstore16((uchar16)(DISTANCE_MAX), 0, from + x);
-    vstore16((uchar16)(DISTANCE_MAX), 0, to + x);
+  const long count = seed_row(occupied, target, n, pitch, row);
+  if (count == 0 || count == n) {
+    return;
   }
-  for (long x = 0; x < n; ++x) {
-    from[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
+  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16(vload16(0, row + x), 0, spare + x);
   }
   for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) {
     for (long x = 0; x < n; x += 16) {
@@ -235,14 +262,7 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
  * changed. */
 static void spread_side(__global const uchar* occupied, long n, long pitch, int side, __global uchar* row)
 {
-  int some = 0;
-  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
-    vstore16((uchar16)(DISTANCE_MAX), 0, row + x);
-  }
-  for (long x = 0; x < n; ++x) {
-    row[x] = occupied[x] ? 0 : DISTANCE_MAX;
-    some |= occupied[x];
-  }
+  const int some = seed_row(occupied, 1, n, pitch, row) > 0;
   for (int step = 1; some && step < n && step <= ROW_MARGIN; step *= 2) {
     const uchar16 farther = (uchar16)((uchar)step);
     if (side > 0) {
@@ -284,14 +304,15 @@ static void sweep_plane(const sweep* s, __global const uchar* occupied, long ite
     return;
   }
   if (s->planes && !to_empty) {
-    for (long row = k * ny; row < (k + 1) * ny; ++row) {
-      spread_side(occupied + row * nx, nx, pitch, -1, s->of[0] + row_at(pitch, ny, row, 0));
-      spread_side(occupied + row * nx, nx, pitch, 1, s->of[1] + row_at(pitch, ny, row, 0));
+    for (long j = 0; j < ny; ++j) {
+      const long at = row_at(pitch, ny, j, k);
+      spread_side(occupied + (k * ny + j) * nx, nx, pitch, -1, s->of[0] + at);
+      spread_side(occupied + (k * ny + j) * nx, nx, pitch, 1, s->of[1] + at);
     }
     return;
   }
   __global uchar *up = to_empty ? s->of[2] : s->of[0], *down = to_empty ? s->of[3] : s->of[1];
-  const long first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny, stride = pitch + 2 * ROW_MARGIN;
+  const long first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny, stride = pitch + ROW_MARGIN;
   const long rows = beyond - first, begin = row_at(pitch, ny, first, k);
   for (int back = 0; back < 2; ++back) {
     for (long i = 0; i < rows; ++i) {
@@ -304,7 +325,7 @@ static void sweep_plane(const sweep* s, __global const uchar* occupied, long ite
       }
     }
   }
-  for (long x = begin - ROW_MARGIN; x < begin - ROW_MARGIN + rows * stride; x += 16) {
+  for (long x = begin - ROW_MARGIN; x < begin + rows * stride; x += 16) {
     vstore16(vload16(0, up + x), 0, down + x);
   }
 }
@@ -319,7 +340,7 @@ static void sweep_planes(const sweep* s, long item)
   __global uchar* map = item < 2 ? (down ? s->of[1] : s->of[0]) : down ? s->of[3] : s->of[2];
   const long nx = s->nx, ny = s->ny, pitch = s->pitch, first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny;
   const long from = to_empty ? s->z0 : 0, to = to_empty ? s->z1 : s->nz;
-  const long stride = pitch + 2 * ROW_MARGIN;
+  const long stride = pitch + ROW_MARGIN;
   for (long i = 1; i < to - from; ++i) {
     const long k = down ? to - 1 - i : from + i;
     for (long j = first; j < beyond; ++j) {
@@ -373,7 +394,7 @@ static void join_empty(const sweep* s, long row)
  * plane before. The last row of the item's planes stands for rows beyond the grid. */
 static void sweep_octant(const sweep* s, int octant, __global uchar* bytes)
 {
-  const long nx = s->nx, ny = s->ny, nz = s->nz, stride = s->pitch + 2 * ROW_MARGIN, plane = (ny + 1) * stride;
+  const long nx = s->nx, ny = s->ny, nz = s->nz, stride = s->pitch + ROW_MARGIN, plane = (ny + 1) * stride + ROW_MARGIN;
   const int side = octant & 1 ? 1 : -1, y_up = octant & 2, z_up = octant & 4;
   __global uchar* planes = s->planes + 2 * octant * plane;
   __global const uchar* along = s->of[octant & 1];
