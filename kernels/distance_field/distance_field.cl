@@ -2,6 +2,12 @@
  * The exact Euclidean distance transform. The field holds a squared distance for each voxel: positive outside effective voxels; inside
  * them negative where the field is signed, else 0. Along y an item walks a column of bits up and down; along x and z each voxel searches
  * outward, no farther than the best distance found so far. All numbers are integers, so that the results are the host's. */
+#ifndef STRATUS_DEVICE
+#define STRATUS_DEVICE 1
+#endif
+#define STRATUS_WIDTH 16 /* of the kernels for a processor */
+#include "packet.h"
+
 #ifndef WIDE
 #define WIDE 0
 #endif
@@ -81,25 +87,14 @@ __kernel void search(__global const value* from, long nx, long ny, long nz, int 
  * the other is not. Searches read them apart, voxels outside `plus` and voxels inside `minus`, and keep best - n^2, which no step lets
  * overflow. */
 #if !WIDE
-#define MARGIN 16 /* beside the reach of a search, so that no vector reads beyond its row */
-
 /* First and last place along a line that holds a target, effective (0) and other (1). */
 typedef struct ranges {
   long first[2], last[2];
 } ranges;
 
-static int16 numbers(void) { return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
+static int some_above(vint a) { return m_any(vi_lt(vi_set(0), a)); }
 
-/* Whether a lane is above 0. */
-static int some_above(int16 a)
-{
-  const int8 b = max(a.lo, a.hi);
-  const int4 c = max(b.lo, b.hi);
-  const int2 d = max(c.lo, c.hi);
-  return max(d.x, d.y) > 0;
-}
-
-static int16 load_part(__global const int* from, long lanes)
+static vint load_part(__global const int* from, long lanes)
 {
   int part[16] = { 0 };
   if (lanes >= 16) {
@@ -111,7 +106,7 @@ static int16 load_part(__global const int* from, long lanes)
   return vload16(0, part);
 }
 
-static void store_part(int16 a, long lanes, __global int* to)
+static void store_part(vint a, long lanes, __global int* to)
 {
   int part[16];
   if (lanes >= 16) {
@@ -125,8 +120,8 @@ static void store_part(int16 a, long lanes, __global int* to)
 }
 
 /* Searches for 16 targets of the halves at plus and minus, at n*one and n*other from their own places. c: best - n^2. */
-static int16 look(
-  int16 c, int16 inside, int kinds, __global const int* plus, __global const int* minus, long one, long other, long last, long* step)
+static vint look(
+  vint c, vmask inside, int kinds, __global const int* plus, __global const int* minus, long one, long other, long last, long* step)
 {
   __global const int* only = kinds == 1 ? plus : minus;
   long n = *step;
@@ -138,7 +133,7 @@ static int16 look(
     for (; n <= last && some_above(c); ++n) {
       const int16 out = min(vload16(0, plus + n * one), vload16(0, plus + n * other));
       const int16 in = min(vload16(0, minus + n * one), vload16(0, minus + n * other));
-      c = min(c, select(out, in, inside)) - (int16)((int)(2 * n + 1));
+      c = min(c, vi_select(inside, in, out)) - (int16)((int)(2 * n + 1));
     }
   }
   *step = n;
@@ -154,11 +149,13 @@ static long last_of(const ranges* r, int kinds) { return kinds == 1 ? r->last[0]
 
 /* Squared distances with their signs, of targets whose halves are plus and minus at their own places: in a row, of which all lanes see
  * places first .. last, or in a tile of columns (stride 16). */
-static int16 search_lanes(__global const int* plus, __global const int* minus, int16 valid, const ranges* r, long at, long stride)
+static vint search_lanes(__global const int* plus, __global const int* minus, long lanes, const ranges* r, long at, long stride)
 {
-  const int16 below = vload16(0, minus) & valid, inside = below > 0;
-  int16 c = (vload16(0, plus) & valid) + below;
-  const int kinds = (some_above(c & ~inside) ? 1 : 0) | (some_above(below) ? 2 : 0);
+  const vmask valid = vi_lt(vi_lanes(), vi_set((int)min(lanes, 16L)));
+  const vint above = vi_select(valid, vload16(0, plus), vi_set(0)), below = vi_select(valid, vload16(0, minus), vi_set(0));
+  const vmask inside = vi_lt(vi_set(0), below);
+  vint c = above + below; /* one of them is 0 */
+  const int kinds = (some_above(above) ? 1 : 0) | (m_any(inside) ? 2 : 0);
   const long wide = stride == 1 ? 15 : 0; /* a row's lanes stand side by side */
   if (kinds == 0) {
     return c;
@@ -179,7 +176,7 @@ static int16 search_lanes(__global const int* plus, __global const int* minus, i
     }
   }
   c += (int16)((int)(n * n));
-  return select(c, -c, inside);
+  return vi_select(inside, -c, c);
 }
 
 /* Finds the columns of a plane that hold each kind. Returns bit 0: some voxel is effective, bit 1: some is not. */
@@ -207,20 +204,19 @@ static int survey(__global const ulong* bits, long nx, long ny, long words, rang
 }
 
 /* step_on() for 16 voxels, and for the first row, which has none before it. */
-static int16 step_lanes(int16 before, int16 inside, int is_signed, int is_first)
+static vint step_lanes(vint before, vmask inside, int is_signed, int is_first)
 {
-  const int16 far = (int16)(FAR_LINE);
-  int16 now = far;
+  vint now = vi_set(FAR_LINE);
   if (!is_first) {
-    const int16 same = is_signed ? select(before, -before, inside) : before;
-    now = min(max(same, (int16)(0)) + (int16)(1), far);
+    const vint same = is_signed ? vi_select(inside, -before, before) : before;
+    now = vi_min(vi_max(same, vi_set(0)) + 1, now);
   }
-  return is_signed ? select(now, -now, inside) : now & ~inside;
+  return vi_select(inside, is_signed ? -now : vi_set(0), now);
 }
 
 /* rooms: for each group a row of distances along y, and rows plus and minus with margins of `pad` values. kinds: of each plane. A group of
  * one item takes every so many planes. */
-__kernel void planes(__global const ulong* bits, long nx, long ny, long nz, long words, int is_signed, long pad, __global int* rooms,
+PACKET_KERNEL void planes(__global const ulong* bits, long nx, long ny, long nz, long words, int is_signed, long pad, __global int* rooms,
   __global uchar* kinds, __global int* field)
 {
   const long row = (nx + 15) / 16 * 16, groups = (long)get_num_groups(0);
@@ -248,22 +244,20 @@ __kernel void planes(__global const ulong* bits, long nx, long ny, long nz, long
         __global int* to = plane + y * nx;
         for (long x = 0; x < nx; x += 16) {
           const int word = (int)(plane_bits[y * words + x / 64] >> (x & 63)) & 0xffff;
-          const int16 inside = ((int16)(word) >> numbers() & (int16)(1)) > 0;
-          const int16 now = step_lanes(vload16(0, line + x), inside, is_signed, i == 0);
+          const vmask inside = vi_lt(vi_set(0), vi_set(word) & ((vint)(1) << vi_lanes()));
+          const vint now = step_lanes(vload16(0, line + x), inside, is_signed, i == 0);
           vstore16(now, 0, line + x);
           if (!back) {
             store_part(now, nx - x, to + x);
             continue;
           }
-          const int16 up = load_part(to + x, nx - x), sign = up < 0;
-          const int16 least = min(select(up, -up, sign), select(now, -now, sign)), square = least * least;
-          const int16 beyond = numbers() + (int16)((int)x) >= (int16)((int)nx);
-          vstore16(select(square & ~sign, (int16)(FAR), beyond), 0, plus + x);
-          vstore16(select(square & sign, (int16)(FAR), beyond), 0, minus + x);
+          const vint up = load_part(to + x, nx - x), least = vi_min(up < 0 ? -up : up, now < 0 ? -now : now), square = least * least;
+          const vmask within = vi_lt(vi_lanes() + (int)x, vi_set((int)nx)), sign = vi_lt(up, vi_set(0));
+          vstore16(vi_select(within, vi_select(sign, vi_set(0), square), vi_set(FAR)), 0, plus + x);
+          vstore16(vi_select(within, vi_select(sign, square, vi_set(0)), vi_set(FAR)), 0, minus + x);
         }
         for (long x = 0; back && x < nx; x += 16) {
-          const int16 valid = numbers() + (int16)((int)x) < (int16)((int)nx);
-          store_part(search_lanes(plus + x, minus + x, valid, &r, x, 1), nx - x, to + x);
+          store_part(search_lanes(plus + x, minus + x, nx - x, &r, x, 1), nx - x, to + x);
         }
       }
     }
@@ -271,7 +265,7 @@ __kernel void planes(__global const ulong* bits, long nx, long ny, long nz, long
 }
 
 /* rooms: for each group both halves of a tile. A group of one item takes every so many tiles. */
-__kernel void tiles(__global const uchar* kinds, long nx, long ny, long nz, __global int* rooms, __global int* field)
+PACKET_KERNEL void tiles(__global const uchar* kinds, long nx, long ny, long nz, __global int* rooms, __global int* field)
 {
   const long plane = nx * ny, groups = (long)get_num_groups(0);
   __global int *plus = rooms + (long)get_group_id(0) * 2 * 16 * nz, *minus = plus + 16 * nz;
@@ -291,7 +285,7 @@ __kernel void tiles(__global const uchar* kinds, long nx, long ny, long nz, __gl
       vstore16(max(-s, (int16)(0)), 0, minus + 16 * k);
     }
     for (long k = 0; k < nz; ++k) {
-      store_part(search_lanes(plus + 16 * k, minus + 16 * k, (int16)(-1), &r, k, 16), plane - at, field + k * plane + at);
+      store_part(search_lanes(plus + 16 * k, minus + 16 * k, 16, &r, k, 16), plane - at, field + k * plane + at);
     }
   }
 }
