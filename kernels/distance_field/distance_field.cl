@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The exact Euclidean distance transform. The field holds a squared distance for each voxel: positive outside effective voxels; inside
  * them negative where the field is signed, else 0. Along y an item walks a column of bits up and down; along x and z each voxel searches
- * outward, no farther than the best distance found so far. All numbers are integers, so that the results are the host's. */
+ * outward, no farther than the best distance found so far. All numbers are integers, so that the results are the host's. Kernels for a
+ * processor are below. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
