@@ -83,7 +83,7 @@ endforeach ()
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
   $<TARGET_FILE:test_device> test_device_tiny)
-foreach (kind IN ITEMS adjacency density distance_field first_hit radix_sort ray_pages structures tetra_march tree visibility_layers
+foreach (kind IN ITEMS adjacency bvh density distance_field first_hit radix_sort ray_pages structures tetra_march tree visibility_layers
     visibility_signs)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     $<TARGET_FILE:test_device> test_${kind}_device --tiny)

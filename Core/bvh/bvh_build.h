@@ -35,13 +35,20 @@ typedef struct stratus_bvh_build {
  * there. */
 stratus_status stratus_bvh_sort_boxes(stratus_bvh_build* build, const stratus_box* boxes);
 
-/* ---- bvh_device.c: gives the same bits as the host */
+/* ---- bvh_device.c, bvh_ploc_device.c, bvh_layout_device.c: give the same bits as the host */
 /* True if the context's device builds structures and can hold so many boxes. */
 bool stratus_device_takes_boxes(const stratus_context* context, uint32_t count);
 /* Fills `count` codes in the order of the boxes. least: the least lo + hi of all boxes along each axis. */
 stratus_status stratus_device_morton_codes(
   stratus_context* context, const stratus_box* boxes, uint32_t count, const int32_t least[3], int shift, uint64_t* codes);
 stratus_status stratus_device_morton_hierarchy(stratus_context* context, const uint64_t* codes, uint32_t count, stratus_bvh_pair* pairs);
+/* boxes: sorted by their codes. */
+stratus_status stratus_device_ploc(stratus_context* context, const stratus_box* boxes, uint32_t count, stratus_bvh_pair* pairs);
+/* True if the context's device builds structures, has double, and can hold the layout of so many boxes. */
+bool stratus_device_takes_layout(const stratus_context* context, uint32_t count);
+/* Sets *done, and the hierarchy, unless the tree is deeper than build->max_depth, which the host bounds, or 128 levels before subtrees
+ * become leaves. */
+stratus_status stratus_device_layout(const stratus_bvh_build* build, int leaf_boxes, stratus_bvh* bvh, bool* done);
 
 /* ---- builders: each fills pairs and root */
 stratus_status stratus_bvh_build_sah(stratus_bvh_build* build);

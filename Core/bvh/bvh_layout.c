@@ -2,9 +2,10 @@
  * Layout: a builder's binary tree over single boxes becomes an array of nodes. A bottom-up pass computes tight boxes and turns subtrees
  * into leaves where that costs less. Subtrees below the depth's bound are split anew at the median. A top-down pass gives each subtree its
  * own stretch of the nodes and of the order: siblings are neighbours, the rest is depth-first. Threads share the work by subtree, and every
- * index follows from the tree alone. */
+ * index follows from the tree alone. A device lays trees out whose depth needs no bound. */
 #include "bvh_build.h"
 
+#include "device.h"
 #include "radix_sort.h"
 
 #include <stdatomic.h>
@@ -241,7 +242,7 @@ static stratus_status make_nodes(layout* l, stratus_bvh* bvh)
   return STRATUS_OK;
 }
 
-stratus_status stratus_bvh_layout(const stratus_bvh_build* build, int leaf_boxes, stratus_bvh* bvh)
+static stratus_status layout_on_host(const stratus_bvh_build* build, int leaf_boxes, stratus_bvh* bvh)
 {
   stratus_status status = STRATUS_OK;
   stratus_context* context = build->context;
@@ -268,4 +269,16 @@ cleanup:
   stratus_release(context, box_parent);
   stratus_release(context, done);
   return status;
+}
+
+stratus_status stratus_bvh_layout(const stratus_bvh_build* build, int leaf_boxes, stratus_bvh* bvh)
+{
+  if (stratus_device_takes_layout(build->context, build->count)) {
+    bool done;
+    const stratus_status status = stratus_device_layout(build, leaf_boxes, bvh, &done);
+    if (!stratus_device_hands_back(build->context, status) && (status != STRATUS_OK || done)) {
+      return status;
+    }
+  }
+  return layout_on_host(build, leaf_boxes, bvh);
 }

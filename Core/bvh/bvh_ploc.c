@@ -2,8 +2,10 @@
  * Parallel locally-ordered clustering (Meister & Bittner 2018). Clusters are in Morton order. Each finds the neighbour, at most RADIUS
  * places away, that makes the least box with it, and two clusters that chose each other merge. Rounds repeat until one cluster is left.
  * Ties go to the neighbour whose place gives the least XOR with the cluster's own. Both sides then choose the same pair, so that every
- * round merges something, and in a lattice or among boxes in one place half of the clusters. */
+ * round merges something, and in a lattice or among boxes in one place half of the clusters. A device makes the same tree. */
 #include "bvh_build.h"
+
+#include "device.h"
 
 #include <string.h>
 
@@ -161,7 +163,7 @@ static void start_clusters(const stratus_bvh_build* build, const clusters* c)
   }
 }
 
-stratus_status stratus_bvh_build_ploc(stratus_bvh_build* build)
+static stratus_status build_on_host(stratus_bvh_build* build)
 {
   stratus_status status = STRATUS_OK;
   stratus_context* context = build->context;
@@ -180,7 +182,6 @@ stratus_status stratus_bvh_build_ploc(stratus_bvh_build* build)
   while (p.count > 1) {
     run_round(&p);
   }
-  build->root = p.pairs - 1;
 
 cleanup:
   stratus_release(context, p.now.side[0]);
@@ -190,4 +191,16 @@ cleanup:
   stratus_release(context, nearest);
   stratus_release(context, counts);
   return status;
+}
+
+stratus_status stratus_bvh_build_ploc(stratus_bvh_build* build)
+{
+  build->root = build->count - 2; /* the last round's pair */
+  if (stratus_device_takes_boxes(build->context, build->count)) {
+    const stratus_status status = stratus_device_ploc(build->context, build->boxes, build->count, build->pairs);
+    if (!stratus_device_hands_back(build->context, status)) {
+      return status;
+    }
+  }
+  return build_on_host(build);
 }

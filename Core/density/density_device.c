@@ -3,9 +3,16 @@
 #include "density_plan.h"
 #include "device.h"
 
+#define CPU_GROUPS 64 /* of one item, each with a run of bricks */
+
 typedef struct density_buffers {
-  cl_mem bricks, start, rows, table, sums;
+  cl_mem bricks, start, rows, table, sums, rooms;
 } density_buffers;
+
+static size_t groups_of(int64_t count)
+{
+  return count < CPU_GROUPS ? (size_t)count : CPU_GROUPS;
+}
 
 bool stratus_device_takes_density(const stratus_context* context, const density_plan* plan, int64_t count, int64_t voxels)
 {
@@ -25,6 +32,10 @@ static stratus_status make_buffers(
     TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, ((size_t)count + 1) * sizeof *start, start, true, &b->start));
     TRY(stratus_device_buffer(context, CL_MEM_READ_ONLY, (size_t)plan->row_count * sizeof *plan->rows, plan->rows, true, &b->rows));
   }
+  if (plan->exact && stratus_device_is_cpu(context->device)) {
+    const size_t side = (size_t)(2 * plan->reach + 1), room = 17 * side * side * sizeof(cl_ulong);
+    TRY(stratus_device_buffer(context, CL_MEM_READ_WRITE, groups_of(count) * room, NULL, false, &b->rooms));
+  }
   return STRATUS_OK;
 }
 
@@ -35,8 +46,13 @@ static stratus_status run_sums(stratus_context* context, const density_plan* pla
   const stratus_kernel_argument exact[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(b->start), ARGUMENT(plan->reach),
     ARGUMENT(plan->radius), ARGUMENT(plan->width), ARGUMENT(plan->row_count), ARGUMENT(b->rows), ARGUMENT(b->table), ARGUMENT(b->sums),
     { side * side * sizeof(cl_ulong), NULL } };
+  const stratus_kernel_argument runs[] = { exact[0], exact[1], exact[2], exact[3], exact[4], exact[5], exact[6], exact[7], exact[8],
+    exact[9], ARGUMENT(b->rooms) };
   const stratus_kernel_argument binned[] = { ARGUMENT(b->bricks), ARGUMENT(bricks), ARGUMENT(plan->reach), ARGUMENT(b->table),
     ARGUMENT(b->sums) };
+  if (plan->exact && stratus_device_is_cpu(context->device)) {
+    return stratus_device_launch_groups(context, "density", "", "exact_run", runs, COUNT_OF(runs), groups_of(count), 1);
+  }
   /* A brick has a work-group, and each of its 64 places an item. */
   if (plan->exact) {
     const int64_t items[3] = { count * STRATUS_DEVICE_GROUP, 1, 1 };
@@ -63,5 +79,6 @@ cleanup:
   stratus_device_buffer_release(b.rows);
   stratus_device_buffer_release(b.table);
   stratus_device_buffer_release(b.sums);
+  stratus_device_buffer_release(b.rooms);
   return status;
 }

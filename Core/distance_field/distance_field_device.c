@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Distance fields on the context's OpenCL device: whether it makes them; buffers, arguments and launches of distance_field.cl and
  * jump_flooding.cl. */
-#include "device.h"
+#include "device_frame.h"
 #include "jump_flooding_passes.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #define DEFINES_MAX 64
+#define CPU_GROUPS 64 /* of one item, each with a room of its own */
+#define LANES 16
 
 bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes)
 {
@@ -39,6 +41,40 @@ static stratus_status run_axes(
   return stratus_device_launch(context, "distance_field", defines, "search", z, COUNT_OF(z), set->n);
 }
 
+/* 32 bits on a processor: planes, then tiles of columns, in place. */
+static stratus_status run_rows(stratus_context* context, const stratus_bits* set, int is_signed, cl_mem bits, int32_t* values)
+{
+  stratus_status status = STRATUS_OK;
+  cl_mem rooms = NULL, kinds = NULL;
+  stratus_device_slot field = { .memory = NULL };
+  const cl_long nx = set->n[0], ny = set->n[1], nz = set->n[2], words = set->words;
+  const cl_int with_sign = is_signed;
+  const size_t row = ((size_t)nx + LANES - 1) / LANES * LANES, planes = (size_t)nz, tiles = ((size_t)(nx * ny) + LANES - 1) / LANES;
+  const size_t plane_groups = planes < CPU_GROUPS ? planes : CPU_GROUPS, tile_groups = tiles < CPU_GROUPS ? tiles : CPU_GROUPS;
+  const cl_long pad = (cl_long)row + 2 * LANES; /* a search reaches over a row, and its vectors over their ends */
+  const size_t plane_room = plane_groups * (3 * row + 4 * (size_t)pad), tile_room = tile_groups * 2 * LANES * planes;
+  const size_t bytes = (size_t)(nx * ny * nz) * sizeof *values;
+
+  TRY_CLEANUP(make_buffer(context, (plane_room > tile_room ? plane_room : tile_room) * sizeof(cl_int), &rooms));
+  TRY_CLEANUP(make_buffer(context, planes, &kinds));
+  TRY_CLEANUP(stratus_slot_lend(context, &field, CL_MEM_READ_WRITE, values, bytes));
+  const stratus_kernel_argument plane_arguments[] = { ARGUMENT(bits), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(words),
+    ARGUMENT(with_sign), ARGUMENT(pad), ARGUMENT(rooms), ARGUMENT(kinds), ARGUMENT(field.memory) };
+  const stratus_kernel_argument tile_arguments[] = { ARGUMENT(kinds), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz), ARGUMENT(rooms),
+    ARGUMENT(field.memory) };
+  TRY_CLEANUP(stratus_device_launch_groups(
+    context, "distance_field", "-DWIDE=0", "planes", plane_arguments, COUNT_OF(plane_arguments), plane_groups, 1));
+  TRY_CLEANUP(
+    stratus_device_launch_groups(context, "distance_field", "-DWIDE=0", "tiles", tile_arguments, COUNT_OF(tile_arguments), tile_groups, 1));
+  TRY_CLEANUP(stratus_slot_receive(context, &field, values, bytes));
+
+cleanup:
+  stratus_slot_drop(&field);
+  stratus_device_buffer_release(rooms);
+  stratus_device_buffer_release(kinds);
+  return status;
+}
+
 stratus_status stratus_device_field_exact(stratus_context* context, const stratus_bits* set, stratus_field* field)
 {
   stratus_status status = STRATUS_OK;
@@ -51,10 +87,14 @@ stratus_status stratus_device_field_exact(stratus_context* context, const stratu
 
   TRY_CLEANUP(stratus_allocate(context, count, size, &values));
   TRY_CLEANUP(stratus_device_buffer(context, CL_MEM_READ_ONLY, words * sizeof(uint64_t), set->bits, true, &bits));
-  TRY_CLEANUP(make_buffer(context, count * size, &buffers[0]));
-  TRY_CLEANUP(make_buffer(context, count * size, &buffers[1]));
-  TRY_CLEANUP(run_axes(context, set, field->is_signed, wide, bits, buffers));
-  TRY_CLEANUP(stratus_device_read(context, buffers[0], 0, count * size, values));
+  if (stratus_device_is_cpu(context->device) && !wide) {
+    TRY_CLEANUP(run_rows(context, set, field->is_signed, bits, values));
+  } else {
+    TRY_CLEANUP(make_buffer(context, count * size, &buffers[0]));
+    TRY_CLEANUP(make_buffer(context, count * size, &buffers[1]));
+    TRY_CLEANUP(run_axes(context, set, field->is_signed, wide, bits, buffers));
+    TRY_CLEANUP(stratus_device_read(context, buffers[0], 0, count * size, values));
+  }
   field->values = values;
   field->bytes = (int)size;
   values = NULL;

@@ -2,7 +2,7 @@
  * Structures of a volume on the context's OpenCL device: buffers, arguments and launches for the kernels in skipping.cl. */
 #include "volume_device.h"
 
-#include "device.h"
+#include "device_frame.h"
 
 #include <stdio.h>
 
@@ -187,22 +187,42 @@ cleanup:
   return status;
 }
 
-/* Bytes of a row of distances at both its ends: ROW_MARGIN in skipping.cl. */
+/* Bytes between rows of distances: ROW_MARGIN in skipping.cl. */
 #define ROW_MARGIN 64
 
 /* Returns the bytes of one of the four arrays of distances that a processor sweeps. */
 static size_t sweep_bytes(const stratus_distance_map* map)
 {
-  return (map->pitch + 2 * ROW_MARGIN) * (size_t)(map->blocks[1] * map->blocks[2]);
+  return ((map->pitch + ROW_MARGIN) * (size_t)map->blocks[1] + ROW_MARGIN) * (size_t)map->blocks[2];
 }
 
-/* A map of full distances by a processor: the host's sweeps. */
-static stratus_status sweep_map(
-  stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map, cl_mem occupied, cl_mem bytes)
+/* Returns the bytes of the two planes that each octant's sweep keeps. */
+static size_t planes_bytes(const stratus_distance_map* map)
+{
+  return 8 * 2 * ((map->pitch + ROW_MARGIN) * (size_t)(map->blocks[1] + 1) + ROW_MARGIN);
+}
+
+/* Returns the bytes of all maps. */
+static size_t all_bytes(const stratus_distance_map* map)
+{
+  return map->kind == STRATUS_DISTANCE_OCTANT ? 8 * map->map_bytes : map->map_bytes;
+}
+
+static bool sweeps(const stratus_context* context, const stratus_distance_map* map)
+{
+  const size_t largest = stratus_device_largest_allocation(context->device);
+  return map->kind != STRATUS_DISTANCE_PAPER && stratus_device_is_cpu(context->device) && sweep_bytes(map) <= largest &&
+    planes_bytes(map) <= largest && all_bytes(map) <= largest;
+}
+
+/* Maps by a processor: the host's sweeps. */
+static stratus_status sweep_map(stratus_context* context, const stratus_occupancy* occupancy, stratus_distance_map* map, cl_mem occupied)
 {
   stratus_status status = STRATUS_OK;
   cl_kernel kernel;
-  cl_mem d[4] = { NULL };
+  cl_mem d[4] = { NULL }, planes = NULL;
+  stratus_device_slot bytes = { .memory = NULL };
+  const int octants = map->kind == STRATUS_DISTANCE_OCTANT;
   const int64_t* n = map->blocks;
   const cl_long nx = n[0], ny = n[1], nz = n[2], pitch = (cl_long)map->pitch;
   cl_long lo[3] = { 0 }, hi[3] = { 0 }; /* the box in which distances to empty blocks are needed */
@@ -210,23 +230,34 @@ static stratus_status sweep_map(
     lo[a] = occupancy->lo[a] > 0 ? occupancy->lo[a] - 1 : 0;
     hi[a] = occupancy->hi[a] < n[a] ? occupancy->hi[a] + 1 : n[a];
   }
+  TRY_CLEANUP(stratus_slot_lend(context, &bytes, CL_MEM_WRITE_ONLY, map->bytes, all_bytes(map)));
   for (int i = 0; i < 4; ++i) {
     TRY_CLEANUP(make_buffer(context, sweep_bytes(map), &d[i]));
   }
+  if (octants) {
+    TRY_CLEANUP(make_buffer(context, planes_bytes(map), &planes));
+  }
   TRY_CLEANUP(stratus_device_kernel(context, "skipping", NULL, "distance_sweep", &kernel));
-  for (cl_int stage = 0; stage < 3; ++stage) {
+  for (cl_int stage = 0; stage < 5; ++stage) {
+    const size_t items[5] = { 2 * (size_t)nz, 4, octants ? 0 : (size_t)(ny * nz), octants ? (size_t)((hi[1] - lo[1]) * (hi[2] - lo[2])) : 0,
+      octants ? 8 : 0 };
+    const size_t one = 1; /* items are few and long: each is a work-group */
+    if (items[stage] == 0) {
+      continue;
+    }
     const stratus_kernel_argument arguments[] = { ARGUMENT(stage), ARGUMENT(occupied), ARGUMENT(nx), ARGUMENT(ny), ARGUMENT(nz),
       ARGUMENT(pitch), ARGUMENT(lo[1]), ARGUMENT(hi[1]), ARGUMENT(lo[2]), ARGUMENT(hi[2]), ARGUMENT(d[0]), ARGUMENT(d[1]), ARGUMENT(d[2]),
-      ARGUMENT(d[3]), ARGUMENT(bytes) };
-    const size_t items[3] = { 2 * (size_t)nz, 4, (size_t)(ny * nz) }, one = 1; /* few and long: each is a work-group */
+      ARGUMENT(d[3]), ARGUMENT(planes), ARGUMENT(bytes.memory) };
     for (unsigned i = 0; i < COUNT_OF(arguments); ++i) {
       TRY_CLEANUP(stratus_device_argument(context, kernel, i, arguments[i].size, arguments[i].value));
     }
     TRY_CLEANUP(stratus_device_run(context, kernel, 1, &items[stage], &one));
   }
-  TRY_CLEANUP(stratus_device_read(context, bytes, 0, map->map_bytes, map->bytes));
+  TRY_CLEANUP(stratus_slot_receive(context, &bytes, map->bytes, all_bytes(map)));
 
 cleanup:
+  stratus_slot_drop(&bytes);
+  stratus_device_buffer_release(planes);
   release_buffers(d, 4);
   return status;
 }
@@ -264,12 +295,13 @@ stratus_status stratus_device_distance_map(stratus_context* context, const strat
   const size_t count = (size_t)(map->blocks[0] * map->blocks[1] * map->blocks[2]);
 
   TRY_CLEANUP(make_input(context, count, occupancy->occupied, &occupied));
+  if (sweeps(context, map)) {
+    TRY_CLEANUP(sweep_map(context, occupancy, map, occupied));
+    goto cleanup;
+  }
   TRY_CLEANUP(make_buffer(context, map->map_bytes, &bytes));
   if (map->kind == STRATUS_DISTANCE_PAPER) {
     TRY_CLEANUP(paper_map(context, map, occupied, bytes));
-  } else if (map->kind == STRATUS_DISTANCE_FULL && stratus_device_is_cpu(context->device) &&
-    sweep_bytes(map) <= stratus_device_largest_allocation(context->device)) {
-    TRY_CLEANUP(sweep_map(context, occupancy, map, occupied, bytes));
   } else {
     TRY_CLEANUP(search_maps(context, map, occupied, bytes));
   }

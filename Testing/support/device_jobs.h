@@ -275,6 +275,7 @@ static const device_job device_jobs[] = {
   JOB_BUILD("octant tree", STRATUS_TREE_OCTANT, job_tree),
   JOB_BUILD("tree of boxes", STRATUS_TREE_LBVH, job_tree),
   JOB_BUILD("wide hierarchy", STRATUS_TREE_WIDE, job_tree),
+  JOB_BUILD("tree of clustered boxes", STRATUS_TREE_PLOC, job_tree),
   { "tetrahedra", STRATUS_TETRA_COMPOSITE, job_tetra_open, job_tetra_close, NULL, job_tetra },
   { "tetrahedra drawn before", STRATUS_TETRA_MAXIMUM, job_tetra_open, job_tetra_close, job_tetra_before, job_tetra },
   { "visibility order", 0, job_order_open, job_order_close, NULL, job_order },

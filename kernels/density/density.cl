@@ -83,6 +83,65 @@ __kernel void exact(__global const brick* bricks, ulong count, __global const ul
   sums[start[b] + popcount(bricks[b].mask & ((1UL << bit) - 1))] = sum;
 }
 
+/* Gathers the rows of bits in reach of brick b as gather() does. Bricks come in ascending order, and so do the first bricks in reach of
+ * them in a row at a fixed offset: each row has a cursor that only moves forward. It is `count` + 1 before the first brick. */
+static void gather_next(__global const brick* bricks, ulong count, ulong b, int reach, __global ulong* cursors, __global ulong* rows)
+{
+  const int n = 2 * reach + 1, side = 4 * n;
+  for (int i = 0; i < side * side; ++i) {
+    rows[i] = 0;
+  }
+  for (int i = 0; i < n * n; ++i) {
+    const int dy = i % n, dz = i / n;
+    __global ulong* own = rows + dz * 4 * side + dy * 4;
+    const ulong first = place((long)bricks[b].x - reach, (long)bricks[b].y + dy - reach, (long)bricks[b].z + dz - reach);
+    ulong j = cursors[i] > count ? first_brick(bricks, count, first) : cursors[i];
+    while (j < count && place_of(bricks, j) < first) {
+      ++j;
+    }
+    cursors[i] = j;
+    for (; j < count && place_of(bricks, j) <= first + 2 * (ulong)reach; ++j) {
+      const ulong mask = bricks[j].mask;
+      const int shift = 4 * ((int)bricks[j].x - (int)bricks[b].x + reach);
+      for (int r = 0; r < 16; ++r) {
+        own[(r >> 2) * side + (r & 3)] |= (mask >> (4 * r) & 15) << shift;
+      }
+    }
+  }
+}
+
+/* The same as exact(), for a processor: a group of one item takes a run of bricks. rooms: for each group 17 (2 reach + 1)^2 words. */
+__kernel void exact_run(__global const brick* bricks, ulong count, __global const ulong* start, int reach, int radius, int width,
+  int row_count, __global const row* offsets, __global const uint* table, __global ulong* sums, __global ulong* rooms)
+{
+  const ulong group = get_group_id(0), groups = get_num_groups(0);
+  const int n = 2 * reach + 1, side = 4 * n;
+  const ulong window = (1UL << (2 * radius + 1)) - 1, piece = (1UL << width) - 1;
+  __global ulong *cursors = rooms + group * 17 * n * n, *rows = cursors + n * n;
+  for (int i = 0; i < n * n; ++i) {
+    cursors[i] = count + 1;
+  }
+  for (ulong b = count * group / groups; b < count * (group + 1) / groups; ++b) {
+    __global ulong* to = sums + start[b];
+    gather_next(bricks, count, b, reach, cursors, rows);
+    for (ulong mask = bricks[b].mask; mask; mask &= mask - 1) {
+      const int bit = 63 - (int)clz(mask & -mask), shift = 4 * reach + (bit & 3) - radius;
+      __global const ulong* own = rows + (4 * reach + (bit >> 4)) * side + 4 * reach + (bit >> 2 & 3);
+      ulong sum = 0;
+      for (int r = 0; r < row_count; ++r) {
+        int at = offsets[r].table;
+        ulong bits = own[offsets[r].offset] >> shift & window;
+        sum += table[at + (int)(bits & piece)];
+        for (bits >>= width; bits; bits >>= width) {
+          at += 1 << width;
+          sum += table[at + (int)(bits & piece)];
+        }
+      }
+      *to++ = sum;
+    }
+  }
+}
+
 /* One item does RUN bricks, as if all voxels of a brick lay in one place: neighbours weigh by their distance in bricks. Its bricks are in
  * ascending order, and so are the first bricks in reach of them in a row at a fixed offset: one search finds the row for all of them. */
 __kernel void binned(__global const brick* bricks, ulong count, int reach, __global const uint* table, __global ulong* sums)

@@ -195,13 +195,41 @@ __kernel void search(__global const uchar* occupied, __global const uint* sums, 
 
 /* ---- distance maps, for a processor
  * The host's sweeps (Core/volume/distance_sweep.c), 16 blocks at once. Distances to occupied blocks (target 1) and to empty ones (0) each
- * have two arrays, of which one is swept towards +z and one towards -z. A row has ROW_MARGIN bytes of DISTANCE_MAX at either end; behind
+ * have two arrays, of which one is swept towards +z and one towards -z. Octants have distances along x towards - and towards + in place of
+ * the first two. A row has ROW_MARGIN bytes of DISTANCE_MAX at either end; behind
  * its last block, up to the pitch, it has the distances of a wider grid, which change none within. Distances to empty blocks are found in
  * the box (y0, z0) .. (y1, z1), which holds the occupied ones and a layer about them. */
 #define ROW_MARGIN 64
 
-/* Where row (j, k) begins. */
-static long row_at(long pitch, long ny, long j, long k) { return (k * ny + j) * (pitch + 2 * ROW_MARGIN) + ROW_MARGIN; }
+/* Where row (j, k) begins. Rows of a plane share the margins between them; planes share none, for items write theirs. */
+static long row_at(long pitch, long ny, long j, long k)
+{
+  return k * (ny * (pitch + ROW_MARGIN) + ROW_MARGIN) + j * (pitch + ROW_MARGIN) + ROW_MARGIN;
+}
+
+/* Writes 0 to blocks of occupancy `target`, DISTANCE_MAX to all others of a row and to its margins. Returns how many have it. */
+static long seed_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row)
+{
+  const uchar16 far = (uchar16)(DISTANCE_MAX);
+  long count = 0;
+  for (long x = -ROW_MARGIN; x < 0; x += 16) {
+    vstore16(far, 0, row + x);
+  }
+  for (long x = n / 16 * 16; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16(far, 0, row + x);
+  }
+  for (long x = 0; x + 16 <= n; x += 16) {
+    const char16 found = vload16(0, occupied + x) == (uchar16)(target);
+    const long2 parts = as_long2(found);
+    vstore16(select(far, (uchar16)(0), found), 0, row + x);
+    count += (long)(popcount((ulong)parts.x) + popcount((ulong)parts.y)) / 8;
+  }
+  for (long x = n / 16 * 16; x < n; ++x) {
+    row[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
+    count += occupied[x] == target;
+  }
+  return count;
+}
 
 /* Distances along x of one row, by steps of 1, 2, 4 .. 64. `spare`: a second row. */
 static void spread_row(__global const uchar* occupied, uchar target, long n, long pitch, __global uchar* row, __global uchar* spare)
@@ -212,12 +240,12 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
     from = to;
     to = swap;
   }
-  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
-    vstore16((uchar16)(DISTANCE_MAX), 0, from + x);
-    vstore16((uchar16)(DISTANCE_MAX), 0, to + x);
+  const long count = seed_row(occupied, target, n, pitch, row);
+  if (count == 0 || count == n) {
+    return;
   }
-  for (long x = 0; x < n; ++x) {
-    from[x] = occupied[x] == target ? 0 : DISTANCE_MAX;
+  for (long x = -ROW_MARGIN; x < pitch + ROW_MARGIN; x += 16) {
+    vstore16(vload16(0, row + x), 0, spare + x);
   }
   for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) {
     for (long x = 0; x < n; x += 16) {
@@ -227,6 +255,25 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
     __global uchar* swap = from;
     from = to;
     to = swap;
+  }
+}
+
+/* Distances along x of one row to occupied blocks on one side, by steps of 1, 2, 4 .. 64. A step reads only blocks that it has not yet
+ * changed. */
+static void spread_side(__global const uchar* occupied, long n, long pitch, int side, __global uchar* row)
+{
+  const int some = seed_row(occupied, 1, n, pitch, row) > 0;
+  for (int step = 1; some && step < n && step <= ROW_MARGIN; step *= 2) {
+    const uchar16 farther = (uchar16)((uchar)step);
+    if (side > 0) {
+      for (long x = 0; x < n; x += 16) {
+        vstore16(min(vload16(0, row + x), vload16(0, row + x + step) + farther), 0, row + x);
+      }
+    } else {
+      for (long x = (n - 1) / 16 * 16; x >= 0; x -= 16) {
+        vstore16(min(vload16(0, row + x), vload16(0, row + x - step) + farther), 0, row + x);
+      }
+    }
   }
 }
 
@@ -245,6 +292,7 @@ static void step_row(__global const uchar* before, long n, __global uchar* row)
 typedef struct sweep {
   __global uchar* of[4]; /* distances to occupied blocks swept up and down, to empty ones up and down */
   long nx, ny, nz, pitch, y0, y1, z0, z1;
+  __global uchar* planes; /* octants: for each two planes of ny + 1 rows; 0: a map for all directions */
 } sweep;
 
 /* Distances within each plane. One item a plane and target. */
@@ -255,8 +303,16 @@ static void sweep_plane(const sweep* s, __global const uchar* occupied, long ite
   if (item >= 2 * s->nz || (to_empty && (k < s->z0 || k >= s->z1))) {
     return;
   }
+  if (s->planes && !to_empty) {
+    for (long j = 0; j < ny; ++j) {
+      const long at = row_at(pitch, ny, j, k);
+      spread_side(occupied + (k * ny + j) * nx, nx, pitch, -1, s->of[0] + at);
+      spread_side(occupied + (k * ny + j) * nx, nx, pitch, 1, s->of[1] + at);
+    }
+    return;
+  }
   __global uchar *up = to_empty ? s->of[2] : s->of[0], *down = to_empty ? s->of[3] : s->of[1];
-  const long first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny, stride = pitch + 2 * ROW_MARGIN;
+  const long first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny, stride = pitch + ROW_MARGIN;
   const long rows = beyond - first, begin = row_at(pitch, ny, first, k);
   for (int back = 0; back < 2; ++back) {
     for (long i = 0; i < rows; ++i) {
@@ -269,7 +325,7 @@ static void sweep_plane(const sweep* s, __global const uchar* occupied, long ite
       }
     }
   }
-  for (long x = begin - ROW_MARGIN; x < begin - ROW_MARGIN + rows * stride; x += 16) {
+  for (long x = begin - ROW_MARGIN; x < begin + rows * stride; x += 16) {
     vstore16(vload16(0, up + x), 0, down + x);
   }
 }
@@ -277,14 +333,14 @@ static void sweep_plane(const sweep* s, __global const uchar* occupied, long ite
 /* The sweeps along z. One item a target and direction: each plane steps from the 3x3 nearest blocks of the plane before. */
 static void sweep_planes(const sweep* s, long item)
 {
-  if (item >= 4) {
+  if (item >= 4 || (s->planes && item < 2)) {
     return;
   }
   const int to_empty = item >= 2, down = (int)item & 1;
   __global uchar* map = item < 2 ? (down ? s->of[1] : s->of[0]) : down ? s->of[3] : s->of[2];
   const long nx = s->nx, ny = s->ny, pitch = s->pitch, first = to_empty ? s->y0 : 0, beyond = to_empty ? s->y1 : ny;
   const long from = to_empty ? s->z0 : 0, to = to_empty ? s->z1 : s->nz;
-  const long stride = pitch + 2 * ROW_MARGIN;
+  const long stride = pitch + ROW_MARGIN;
   for (long i = 1; i < to - from; ++i) {
     const long k = down ? to - 1 - i : from + i;
     for (long j = first; j < beyond; ++j) {
@@ -320,19 +376,74 @@ static void join_rows(const sweep* s, long row, __global uchar* bytes)
   }
 }
 
-/* The three stages, one after the other: one kernel, for each takes a processor's compiler a while to begin with. */
+/* Distances of occupied blocks, with their marks, where octants look for them. One item a row of the box. */
+static void join_empty(const sweep* s, long row)
+{
+  const long rows = s->y1 - s->y0;
+  if (row >= rows * (s->z1 - s->z0)) {
+    return;
+  }
+  const long at = row_at(s->pitch, s->ny, s->y0 + row % rows, s->z0 + row / rows);
+  for (long x = 0; x < s->nx; x += 16) {
+    const uchar16 least = min(vload16(0, s->of[2] + at + x), vload16(0, s->of[3] + at + x));
+    vstore16(least + (uchar16)(DISTANCE_OCCUPIED), 0, s->of[2] + at + x);
+  }
+}
+
+/* One octant's map. A block's nearest in its octant lies along x, or one step nearer to a neighbour in the row, the plane or the row of the
+ * plane before. The last row of the item's planes stands for rows beyond the grid. */
+static void sweep_octant(const sweep* s, int octant, __global uchar* bytes)
+{
+  const long nx = s->nx, ny = s->ny, nz = s->nz, stride = s->pitch + ROW_MARGIN, plane = (ny + 1) * stride + ROW_MARGIN;
+  const int side = octant & 1 ? 1 : -1, y_up = octant & 2, z_up = octant & 4;
+  __global uchar* planes = s->planes + 2 * octant * plane;
+  __global const uchar* along = s->of[octant & 1];
+  for (long x = 0; x < 2 * plane; x += 16) {
+    vstore16((uchar16)(DISTANCE_MAX), 0, planes + x);
+  }
+  for (long i = 0; i < nz; ++i) {
+    const long k = z_up ? nz - 1 - i : i;
+    __global uchar* now = planes + (i & 1) * plane + ROW_MARGIN;
+    __global const uchar* before = planes + (1 - (i & 1)) * plane + ROW_MARGIN;
+    for (long last = ny, n = 0; n < ny; ++n) {
+      const long j = y_up ? ny - 1 - n : n, at = row_at(s->pitch, ny, j, k);
+      const int in_box = j >= s->y0 && j < s->y1 && k >= s->z0 && k < s->z1;
+      __global const uchar *row = now + last * stride, *behind = before + j * stride, *corner = before + last * stride;
+      __global uchar *to = now + j * stride, *out = bytes + (((octant * nz) + k) * ny + j) * s->pitch;
+      for (long x = 0; x < nx; x += 16) {
+        const uchar16 ahead = min(min(vload16(0, row + x), vload16(0, behind + x)), vload16(0, corner + x));
+        const uchar16 aside = min(min(vload16(0, row + x + side), vload16(0, behind + x + side)), vload16(0, corner + x + side));
+        const uchar16 d = min(vload16(0, along + at + x), min(ahead, aside) + (uchar16)(1));
+        uchar16 inside = (uchar16)(DISTANCE_OCCUPIED + DISTANCE_MAX);
+        if (in_box) {
+          inside = vload16(0, s->of[2] + at + x);
+        }
+        vstore16(d, 0, to + x);
+        vstore16(select(d, inside, d == (uchar16)(0)), 0, out + x);
+      }
+      last = j;
+    }
+  }
+}
+
+/* The stages, one after the other: one kernel, for each takes a processor's compiler a while to begin with. A map for all directions takes
+ * stages 0 to 2, octants 0, 1, 3 and 4. */
 __kernel void distance_sweep(int stage, __global const uchar* occupied, long nx, long ny, long nz, long pitch, long y0, long y1, long z0,
   long z1, __global uchar* up_occupied, __global uchar* down_occupied, __global uchar* up_empty, __global uchar* down_empty,
-  __global uchar* bytes)
+  __global uchar* planes, __global uchar* bytes)
 {
-  const sweep s = { { up_occupied, down_occupied, up_empty, down_empty }, nx, ny, nz, pitch, y0, y1, z0, z1 };
+  const sweep s = { { up_occupied, down_occupied, up_empty, down_empty }, nx, ny, nz, pitch, y0, y1, z0, z1, planes };
   const long item = (long)get_global_id(0);
   if (stage == 0) {
     sweep_plane(&s, occupied, item);
   } else if (stage == 1) {
     sweep_planes(&s, item);
-  } else {
+  } else if (stage == 2) {
     join_rows(&s, item, bytes);
+  } else if (stage == 3) {
+    join_empty(&s, item);
+  } else if (item < 8) {
+    sweep_octant(&s, (int)item, bytes);
   }
 }
 
