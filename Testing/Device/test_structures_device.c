@@ -168,6 +168,19 @@ static void occupancy_equals_the_hosts(void** state)
   }
 }
 
+/* How many kernels make a map. A processor sweeps planes, then along z; then it joins rows, or marks those of the box of occupied blocks
+ * and sweeps octants. A GPU sums along each axis, and searches each map. */
+static uint64_t kernels_of_map(int kind, bool processor, bool has_box)
+{
+  if (kind == STRATUS_DISTANCE_PAPER) {
+    return 5;
+  }
+  if (processor) {
+    return kind == STRATUS_DISTANCE_FULL || !has_box ? 3 : 4;
+  }
+  return kind == STRATUS_DISTANCE_FULL ? 4 : 11;
+}
+
 static void compare_maps_of(stratus_occupancy* o)
 {
   const int64_t nx = o->blocks[0];
@@ -181,9 +194,12 @@ static void compare_maps_of(stratus_occupancy* o)
     filled.bytes = malloc(host->bytes_size);
     assert_non_null(filled.bytes);
     memset(filled.bytes, 0x55, host->bytes_size);
+    const uint64_t launched = device->report.launched;
     if (stratus_device_distance_map(device, o, &filled) != STRATUS_OK) {
       fail_msg("%s", stratus_context_message(device));
     }
+    const bool has_box = o->count > 0 && o->count < nx * o->blocks[1] * o->blocks[2];
+    assert_int_equal(device->report.launched - launched, kernels_of_map(kind, device->device->is_cpu, has_box));
     for (size_t row = 0; row < (host->bytes_size - 64) / host->pitch; ++row) {
       assert_memory_equal(filled.bytes + row * host->pitch, host->bytes + row * host->pitch, (size_t)nx);
     }

@@ -6,6 +6,7 @@
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
+#undef STRATUS_WIDTH
 #define STRATUS_WIDTH 16 /* of the kernels for a processor */
 #include "packet.h"
 
