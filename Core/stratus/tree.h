@@ -113,9 +113,9 @@ STRATUS_API stratus_status stratus_tree_covers(stratus_context* context, const s
  * corners included (but of trees with uncorrected_flooding), for origins up to some 1e9 voxels away; from farther away they may differ
  * where rays graze edges. A direction of length 0, or a number that is not finite (except t_max), gives STRATUS_INVALID_ARGUMENT with the
  * first such ray's index, and leaves `hits` undefined. Hybrid trees and trees of one leaf, up to 52,000 voxels long, are traversed in beams
- * and packets or on the context's device, others ray by ray on the host. Rays go in a beam where 64 that follow each other, counted from
- * the first, run side by side: give those of a picture tile by tile, each of 8 x 8 pixels, which takes half to two thirds of the time of
- * rows. The rays of a beam share `visited`. */
+ * and packets or on the context's device, wide trees of any length in beams, others ray by ray on the host. Rays go in a beam where 64 that
+ * follow each other, counted from the first, run side by side: give those of a picture tile by tile, each of 8 x 8 pixels, which takes half
+ * to two thirds of the time of rows. The rays of a beam share `visited`. */
 STRATUS_API stratus_status stratus_tree_first_hit(
   stratus_context* context, const stratus_tree* tree, const stratus_ray* rays, size_t count, stratus_hit* hits);
 
