@@ -382,8 +382,8 @@ static inline void wide_next_of_beam(const stratus_hit_batch* batch, const strat
   }
 }
 
-/* Whether the rays run side by side, once the beam has visited the root: a third of those that meet children meet the same one, on average.
- * Where 16 boxes lie in a row of four and columns of two, a ray from anywhere meets less than that. */
+/* Whether the rays run side by side, once the beam has visited the root: a child that any of them meets is met by a third of them, on
+ * average. Rays that run apart meet fewer of a full node's children in common. */
 static inline bool wide_beam_narrow(const wide_beam* beam)
 {
   uint64_t rays = 0;

@@ -211,7 +211,7 @@ static void every_brick_has_one_place_and_boxes_enclose(void** state)
   (void)state;
   static const uint32_t counts[] = { 1, 2, 3, 15, 16, 17, 18, 31, 32, 33, 240, 256, 257, 1000, MOST };
   static const int extents[][3] = { { 20, 20, 20 }, { 400, 300, 500 }, { 65536, 2, 2 }, { 3, 65536, 1 }, { 1, 1, 65536 },
-    { 65536, 65536, 65536 }, { 64, 64, 64 } };
+    { 65536, 65536, 65536 }, { 64, 64, 64 }, { 8, 7, 6 }, { 2000, 1500, 1000 } };
   uint32_t random = 3;
   stratus_context* context = open_context(2);
   for (size_t e = 0; e < sizeof extents / sizeof *extents; ++e) {
@@ -259,6 +259,39 @@ static void hard_sets_are_enclosed(void** state)
     set_mask(&bricks[full], ~UINT64_C(0));
   }
   check_set(context, bricks, 4096, &random);
+  stratus_context_destroy(context);
+}
+
+/* A range of up to 16 bricks stays together, and the range whose codes differ in the highest bit is opened first. */
+static void nodes_have_the_children_they_should(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(1);
+  for (uint32_t near = 1; near <= 17; ++near) { /* a row of bricks, and one far away */
+    stratus_wide wide = { 0 };
+    memset(bricks, 0, (near + 1) * sizeof *bricks);
+    for (uint32_t b = 0; b <= near; ++b) {
+      bricks[b].at[0] = b < near ? (uint16_t)b : 1000;
+      set_mask(&bricks[b], 1);
+    }
+    stratus_brick* ordered = copy_bricks(context, bricks, near + 1);
+    assert_int_equal(stratus_wide_create(context, &ordered, near + 1, &wide), STRATUS_OK);
+    if (near < 16) {
+      assert_int_equal(wide.node_count, 1);
+      assert_int_equal(wide.nodes[0].count, near + 1);
+    } else if (near == 16) {
+      assert_int_equal(wide.node_count, 2);
+      assert_int_equal(wide.nodes[0].count, 2);
+      assert_int_equal(wide.nodes[1].count, 16);
+    } else { /* the row is opened once: 16, and 1 */
+      assert_int_equal(wide.node_count, 2);
+      assert_int_equal(wide.nodes[0].count, 3);
+      assert_int_equal(wide.nodes[1].count, 16);
+    }
+    assert_int_equal(wide.nodes[0].inner, near >= 16);
+    stratus_release(context, ordered);
+    stratus_release(context, wide.memory);
+  }
   stratus_context_destroy(context);
 }
 
@@ -319,6 +352,7 @@ int test_wide_tree(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_brick_has_one_place_and_boxes_enclose),
     cmocka_unit_test(hard_sets_are_enclosed),
+    cmocka_unit_test(nodes_have_the_children_they_should),
     cmocka_unit_test(order_and_threads_change_no_byte),
     cmocka_unit_test(a_brick_that_is_there_twice_is_refused),
   };
