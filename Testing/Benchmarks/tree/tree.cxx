@@ -22,8 +22,8 @@ const char* const help = R"(stratus-bench tree [options]
   --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide|
                      auto, all but distance, octant, wide and auto with :N behind it, bricks (the first three) or voxels in a leaf;
                      embree:low|medium|high, embree:packet and embree:bricks with :low or :high behind it or neither (medium),
-                     openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n and
-                     take sets of up to 35,000 voxels)
+                     openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n
+                     and take sets of up to 35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
   --device NAME      ours alone on the host and on this OpenCL device (an index or a part of its name): builds stage by stage, ms, share
                      and kernels; rays, ns, and hits missed or late (default methods: stratus:hybrid|
@@ -48,8 +48,8 @@ constexpr size_t slow_most = 35000;
 constexpr double build_budget_ms = 20.0; // short builds are repeated within a round
 
 // Methods whose builds have stages that a device does.
-const std::vector<std::string> device_methods = { "stratus:hybrid", "stratus:hybrid-paper", "stratus:hybrid-paper-raw",
-  "stratus:distance", "stratus:octant", "stratus:lbvh", "stratus:ploc", "stratus:wide" };
+const std::vector<std::string> device_methods = { "stratus:hybrid", "stratus:hybrid-paper", "stratus:hybrid-paper-raw", "stratus:distance",
+  "stratus:octant", "stratus:lbvh", "stratus:ploc", "stratus:wide" };
 
 struct options {
   std::vector<std::string> scenes, methods;
