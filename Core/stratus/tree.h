@@ -36,10 +36,10 @@ typedef struct stratus_tree_options {
   stratus_tree_method method; /* default auto */
   /* 1..64; default 32. A node at this depth is a leaf; a baseline splits it at the median from there on. */
   int max_depth;
-  int leaf_bricks;        /* most bricks (4^3 voxels, a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
+  int leaf_bricks;        /* hybrid: most bricks (4^3 voxels, a bit mask) in a leaf of the sparse parts, 1..64; default 4 */
   int leaf_voxels;        /* most voxels in a leaf of a baseline, 1..64; default 1 */
-  int64_t field_bricks;   /* most bricks that a distance-field leaf spans, 1..2^29; default 2^25. hybrid-paper: at most 2^18. */
-  double field_emptiness; /* most bricks that such a leaf spans for each occupied brick, >= 1; default 512 */
+  int64_t field_bricks;   /* hybrid: most bricks that a distance-field leaf spans, 1..2^29; default 2^25. hybrid-paper: at most 2^18. */
+  double field_emptiness; /* hybrid: most bricks that such a leaf spans for each occupied brick, >= 1; default 512 */
   /* hybrid: a node is uniform if the axes' deviations of eq. 8 differ by at most this, as a fraction of the node's extent; default .1 */
   double uniform;
   double paper_threshold; /* hybrid-paper: the same difference in voxels, as published; default 8 */

@@ -109,7 +109,7 @@ public:
   //@{
   /**
    * Set/Get the depth at which a node becomes a leaf, 1..64. Hierarchies of voxels may go deeper, but split at the median from there on.
-   * Default 32.
+   * AUTO, DISTANCE, OCTANT and WIDE have no depth to choose. Default 32.
    */
   vtkSetClampMacro(MaximumDepth, int, 1, 64);
   vtkGetMacro(MaximumDepth, int);
@@ -117,8 +117,8 @@ public:
 
   //@{
   /**
-   * Set/Get the most bricks (4^3 voxels) in a leaf of bricks, and the most voxels in a leaf of a hierarchy of voxels; each 1..64. Default 4
-   * and 1.
+   * Set/Get the most bricks (4^3 voxels) in a leaf of bricks of HYBRID and HYBRID_PAPER, and the most voxels in a leaf of a hierarchy of
+   * voxels; each 1..64. Default 4 and 1.
    */
   vtkSetClampMacro(LeafBricks, int, 1, 64);
   vtkGetMacro(LeafBricks, int);
@@ -128,8 +128,8 @@ public:
 
   //@{
   /**
-   * Set/Get the most bricks that a leaf of a distance field covers, 1..2^29, and the most of them per brick that holds a voxel, at least 1.
-   * A value out of range is an error when building. Default 33554432 and 512.
+   * Set/Get, for HYBRID and HYBRID_PAPER, the most bricks that a leaf of a distance field covers, 1..2^29, and, for HYBRID, the most of
+   * them per brick that holds a voxel, at least 1. A value out of range is an error when building. Default 33554432 and 512.
    */
   vtkSetMacro(FieldBricks, vtkIdType);
   vtkGetMacro(FieldBricks, vtkIdType);
