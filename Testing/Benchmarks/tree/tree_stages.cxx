@@ -4,8 +4,10 @@
 #include "tree_methods.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <map>
+#include <thread>
 
 namespace bench {
 
@@ -55,6 +57,12 @@ std::vector<uint8_t> fill(const voxel_set& set)
     }
   }
   return values;
+}
+
+// Lets the host's threads go to sleep: OpenMP's spin for a while after their work, on processors that a device may share with them.
+void rest()
+{
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
 using tree_pointer = std::unique_ptr<stratus_tree, tree_deleter>;
@@ -128,6 +136,7 @@ void run_rays(const context_pointer contexts[2], const tree_pointer trees[2], bo
 {
   std::vector<stratus_hit> hits[2];
   for (int side = 0; side < 2; ++side) {
+    rest();
     const double start = now_ms();
     trace(contexts[side].get(), trees[side].get(), of.rays, hits[side]);
     if (timed) {
@@ -218,6 +227,7 @@ void run_stages(const voxel_set& set, const std::string& method, const std::stri
     tree_pointer trees[2];
     for (int side = 0; side < 2; ++side) {
       stratus_context* c = contexts[side].get();
+      rest();
       stratus_context_start_build_report(c);
       trees[side] = build(c, set, values, options);
       if (round >= 0) {
