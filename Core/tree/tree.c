@@ -189,7 +189,7 @@ static stratus_tree_method cheapest(const stratus_voxels* voxels, char* why, siz
     snprintf(why, size, "one distance field of %.0f kB, which a core's cache holds", field / 1e3);
     return STRATUS_TREE_OCTANT;
   }
-  if (field <= wide) {
+  if (field <= wide && field <= INT32_MAX - 64) { /* up to which a tree numbers a field's bytes */
     snprintf(why, size, "one distance field of %.0f kB; a wide hierarchy would take some %.0f", field / 1e3, wide / 1e3);
     return STRATUS_TREE_OCTANT;
   }
