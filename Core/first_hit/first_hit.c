@@ -38,8 +38,7 @@ static bool run_chunk(const stratus_hit_batch* batch, const stratus_hit_function
 static stratus_status run_host(
   stratus_context* context, const stratus_hit_batch* batch, const stratus_ray* rays, size_t count, stratus_hit* hits)
 {
-  const stratus_hit_functions* functions =
-    stratus_hit_takes_packets(batch) || batch->tree->wide.node_count ? stratus_hit_functions_for(context) : NULL;
+  const stratus_hit_functions* functions = stratus_hit_takes_packets(batch) ? stratus_hit_functions_for(context) : NULL;
   const int64_t chunks = (int64_t)((count + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK);
   const int threads = chunks < context->threads ? (int)chunks : context->threads;
   void* memory;
@@ -81,7 +80,7 @@ stratus_status stratus_tree_first_hit(
     return STRATUS_OK;
   }
   stratus_hit_batch_begin(tree, &batch);
-  if (context->device && (stratus_hit_takes_packets(&batch) || tree->wide.node_count)) {
+  if (context->device && stratus_hit_takes_packets(&batch)) {
     const stratus_status status = stratus_first_hit_device(context, tree, rays, count, hits);
     if (!stratus_device_hands_back(context, status)) {
       return status;

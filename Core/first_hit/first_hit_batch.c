@@ -44,7 +44,8 @@ bool stratus_hit_takes_packets(const stratus_hit_batch* batch)
 {
   const stratus_tree* tree = batch->tree;
   const bool planes = tree->statistics.method == STRATUS_TREE_HYBRID || tree->statistics.method == STRATUS_TREE_HYBRID_PAPER;
-  return tree->node_count > 0 && (!batch->leaves || planes) && !tree->statistics.uncorrected && batch->slack <= 0.05f;
+  return tree->wide.node_count > 0 ||
+    (tree->node_count > 0 && (!batch->leaves || planes) && !tree->statistics.uncorrected && batch->slack <= 0.05f);
 }
 
 stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch)

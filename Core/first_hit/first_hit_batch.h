@@ -18,7 +18,8 @@ typedef struct stratus_hit_batch {
 } stratus_hit_batch;
 
 void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch);
-/* Whether packets and beams may walk the tree: its siblings lie on two sides of a plane, and not every position is in doubt. */
+/* Whether packets and beams, or a device, may walk the tree: it is a wide hierarchy, or its siblings lie on two sides of a plane and not
+ * every position is in doubt. */
 bool stratus_hit_takes_packets(const stratus_hit_batch* batch);
 /* What the kernels are told of a tree that packets may walk; `count` is 0. */
 stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch);

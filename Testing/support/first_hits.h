@@ -14,6 +14,18 @@
 
 #include <cmocka.h>
 
+/* Makes a context of the host with this instruction set, or the best that there is below it. */
+static inline stratus_context* host_with_isa(int isa, int threads)
+{
+  stratus_context_options options = stratus_context_options_default();
+  stratus_context* context = NULL;
+  options.device = "host";
+  options.threads = threads;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  context->isa = isa < context->isa ? isa : context->isa;
+  return context;
+}
+
 static inline uint32_t next_random(uint32_t* state)
 {
   *state = *state * 1664525u + 1013904223u;

@@ -5,17 +5,6 @@
 
 #define RAYS 600
 
-static stratus_context* open_context(int isa, int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  context->isa = isa < context->isa ? isa : context->isa;
-  return context;
-}
-
 static void check_tree(stratus_context* context, const stratus_voxels* voxels, stratus_tree_method method, uint32_t* random)
 {
   stratus_tree_options options = stratus_tree_options_default();
@@ -45,7 +34,7 @@ static void every_tree_hits_what_the_walk_hits(void** state)
   (void)state;
   uint32_t random = 1;
   for (int isa = 0; isa <= 2; ++isa) {
-    stratus_context* context = open_context(isa, 1 + isa % 2);
+    stratus_context* context = host_with_isa(isa, 1 + isa % 2);
     for (int round = 0; round < 30; ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
@@ -124,7 +113,7 @@ static void beams_hit_what_the_walk_hits(void** state)
   for (int isa = 0; isa <= 2; ++isa) {
     uint32_t random = 11;
     uint64_t steps = 0, alone = 0;
-    stratus_context* context = open_context(isa, 1);
+    stratus_context* context = host_with_isa(isa, 1);
     for (int round = 0; round < 80; ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
@@ -160,7 +149,7 @@ static void long_rows_and_both_entry_sizes_hit_right(void** state)
 {
   (void)state;
   uint32_t random = 5;
-  stratus_context* context = open_context(2, 2);
+  stratus_context* context = host_with_isa(2, 2);
   /* Rays in floats end at extents of some 52000 voxels, where slack makes every position doubtful. */
   static const int64_t sizes[5][3] = { { 70000, 3, 2 }, { 3, 5000, 3 }, { 2, 2, 9000 }, { 12, 9, 50000 }, { 4, 262144, 3 } };
   for (int s = 0; s < 5; ++s) {
@@ -189,7 +178,7 @@ static void bits_do_not_depend_on_threads(void** state)
     void* bytes[2];
     for (int threads = 1; threads <= 2; ++threads) {
       uint32_t random = 9;
-      stratus_context* context = open_context(2, threads);
+      stratus_context* context = host_with_isa(2, threads);
       stratus_voxels* voxels = random_voxels(context, dimensions, 0.01, 0, &random);
       stratus_tree_options options = stratus_tree_options_default();
       stratus_tree* tree = NULL;
@@ -221,7 +210,7 @@ static void bits_do_not_depend_on_threads(void** state)
 /* One voxel in a volume of given position, spacing, direction and mirror: rays that are known to hit it must hit it. */
 static void one_voxel_is_hit_where_it_is(double offset, double spacing, double far)
 {
-  stratus_context* context = open_context(2, 1);
+  stratus_context* context = host_with_isa(2, 1);
   uint8_t values[5 * 6 * 7] = { 0 };
   stratus_volume volume = stratus_volume_default();
   stratus_criterion criterion = stratus_criterion_default();
@@ -292,7 +281,7 @@ static void far_rays_large_coordinates_and_small_voxels_hit(void** state)
 static void no_voxel_no_hit(void** state)
 {
   (void)state;
-  stratus_context* context = open_context(2, 2);
+  stratus_context* context = host_with_isa(2, 2);
   const int64_t dimensions[3] = { 8, 8, 8 };
   stratus_voxels* voxels = NULL;
   assert_int_equal(stratus_voxels_create_list(context, dimensions, NULL, 0, &voxels), STRATUS_OK);
@@ -318,7 +307,7 @@ static void no_voxel_no_hit(void** state)
 static void rays_that_are_none_are_refused(void** state)
 {
   (void)state;
-  stratus_context* context = open_context(2, 2);
+  stratus_context* context = host_with_isa(2, 2);
   uint32_t random = 3;
   const int64_t dimensions[3] = { 12, 12, 12 };
   stratus_voxels* voxels = random_voxels(context, dimensions, 0.1, 0, &random);

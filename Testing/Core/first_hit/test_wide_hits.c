@@ -8,17 +8,6 @@
 #define BEAMS 5
 #define RAYS (BEAMS * BEAM + 17) /* the last 17 are no whole beam */
 
-static stratus_context* open_context(int isa, int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  context->isa = isa < context->isa ? isa : context->isa;
-  return context;
-}
-
 /* ---------------------------------------------------------------- sets */
 
 #define SETS 8
@@ -145,7 +134,7 @@ static void beams_of_all_kinds_hit_what_the_walk_hits(void** state)
   static stratus_ray rays[RAYS];
   for (int isa = 0; isa <= 2; ++isa) {
     uint32_t random = 23;
-    stratus_context* context = open_context(isa, 1 + isa % 2);
+    stratus_context* context = host_with_isa(isa, 1 + isa % 2);
     for (int set = 0; set < SETS; ++set) {
       int64_t dimensions[3];
       stratus_voxels* voxels = make_set(context, set, dimensions, &random);
@@ -192,7 +181,7 @@ static void rays_side_by_side_share_what_they_visit(void** state)
     uint32_t random = 31, alone[BEAM];
     int64_t dimensions[3];
     uint64_t apart = 0, together = 0;
-    stratus_context* context = open_context(isa, 1);
+    stratus_context* context = host_with_isa(isa, 1);
     stratus_voxels* voxels = make_set(context, 0, dimensions, &random);
     stratus_tree* tree = make_tree(context, voxels);
     for (int round = 0; round < 100; ++round) {
@@ -221,7 +210,7 @@ static void rays_far_from_each_other_make_no_beam(void** state)
   for (int isa = 0; isa <= 2; ++isa) {
     uint32_t random = 37, alone[BEAM];
     int64_t dimensions[3];
-    stratus_context* context = open_context(isa, 1);
+    stratus_context* context = host_with_isa(isa, 1);
     stratus_voxels* voxels = make_set(context, 7, dimensions, &random);
     stratus_tree* tree = make_tree(context, voxels);
     for (int round = 0; round < 40; ++round) {

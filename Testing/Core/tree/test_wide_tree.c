@@ -6,16 +6,6 @@
 
 #include <stdio.h>
 
-static stratus_context* open_context(int threads)
-{
-  stratus_context_options options = stratus_context_options_default();
-  stratus_context* context = NULL;
-  options.device = "host";
-  options.threads = threads;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  return context;
-}
-
 static int by_place(const void* one, const void* other)
 {
   const stratus_brick *a = one, *b = other;
@@ -213,7 +203,7 @@ static void every_brick_has_one_place_and_boxes_enclose(void** state)
   static const int extents[][3] = { { 20, 20, 20 }, { 400, 300, 500 }, { 65536, 2, 2 }, { 3, 65536, 1 }, { 1, 1, 65536 },
     { 65536, 65536, 65536 }, { 64, 64, 64 }, { 8, 7, 6 }, { 2000, 1500, 1000 } };
   uint32_t random = 3;
-  stratus_context* context = open_context(2);
+  stratus_context* context = host_with_isa(2, 2);
   for (size_t e = 0; e < sizeof extents / sizeof *extents; ++e) {
     for (size_t n = 0; n < sizeof counts / sizeof *counts; ++n) {
       for (int cluster = 0; cluster <= 9; cluster += 9) {
@@ -230,7 +220,7 @@ static void hard_sets_are_enclosed(void** state)
 {
   (void)state;
   uint32_t random = 5;
-  stratus_context* context = open_context(1);
+  stratus_context* context = host_with_isa(2, 1);
   uint32_t count = 0; /* one brick for each bit of a code */
   memset(bricks, 0, sizeof bricks);
   set_mask(&bricks[count++], 1);
@@ -266,7 +256,7 @@ static void hard_sets_are_enclosed(void** state)
 static void nodes_have_the_children_they_should(void** state)
 {
   (void)state;
-  stratus_context* context = open_context(1);
+  stratus_context* context = host_with_isa(2, 1);
   for (uint32_t near = 1; near <= 17; ++near) { /* a row of bricks, and one far away */
     stratus_wide wide = { 0 };
     memset(bricks, 0, (near + 1) * sizeof *bricks);
@@ -301,7 +291,7 @@ static void order_and_threads_change_no_byte(void** state)
   static const int extent[3] = { 3000, 500, 900 };
   uint32_t random = 11;
   const uint32_t count = make_bricks(MOST, extent, 20, &random, bricks);
-  stratus_context* contexts[2] = { open_context(1), open_context(4) };
+  stratus_context* contexts[2] = { host_with_isa(2, 1), host_with_isa(2, 4) };
   stratus_wide wide[4] = { { 0 } };
   stratus_brick* ordered[4];
   for (int i = 0; i < 4; ++i) {
@@ -326,7 +316,7 @@ static void a_brick_that_is_there_twice_is_refused(void** state)
 {
   (void)state;
   static const int extent[3] = { 50, 60, 70 };
-  stratus_context* context = open_context(1);
+  stratus_context* context = host_with_isa(2, 1);
   uint32_t random = 17;
   for (uint32_t wanted = 2; wanted < 400; wanted += 14) {
     const uint32_t count = make_bricks(wanted, extent, 0, &random, bricks);
