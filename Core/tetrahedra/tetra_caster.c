@@ -157,12 +157,16 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 
 /* ---- drawing */
 
+static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
+{
+  return (stratus_tetra_device_source){ caster->mesh_builds, caster->table_builds, caster->view.cell_count, caster->view.point_count };
+}
+
 /* Marches on the device if there is one and it can, else on the host. */
 static stratus_status march_rays(
   stratus_tetra_caster* caster, stratus_tetra_frame* frame, stratus_tetra_counts* counts, stratus_tetra_report* report)
 {
-  const stratus_tetra_device_source source = { caster->mesh_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count };
+  const stratus_tetra_device_source source = device_source(caster);
   bool drawn = false;
   if (caster->context->device) {
     const stratus_status status = stratus_tetra_march_device(
@@ -185,6 +189,22 @@ static stratus_status march(stratus_tetra_caster* caster, stratus_tetra_frame* f
   return STRATUS_OK;
 }
 
+/* Draws tiles on the device if there is one and it can, else on the host. data: the caster. */
+static stratus_status project_tiles(
+  void* data, stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
+{
+  stratus_tetra_caster* caster = data;
+  const stratus_tetra_device_source source = device_source(caster);
+  bool drawn = false;
+  if (context->device) {
+    const stratus_status status = stratus_tetra_project_device(context, &caster->device, &source, projection, counts, &drawn);
+    if (!stratus_device_hands_back(context, status)) {
+      TRY(status);
+    }
+  }
+  return drawn ? STRATUS_OK : stratus_tetra_project_tiles(NULL, context, projection, counts);
+}
+
 static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_leaves* leaves,
   const stratus_tetra_frame* frame, stratus_tetra_report* report)
 {
@@ -193,7 +213,7 @@ static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* 
     TRY(stratus_tetra_projector_create(caster->context, mesh, caster->mesh->values, caster->mesh->bias, &caster->projector));
     report->build_ms += stratus_now_ms() - start;
   }
-  return stratus_tetra_project(caster->projector, mesh, frame, leaves, report);
+  return stratus_tetra_project(caster->projector, mesh, frame, leaves, project_tiles, caster, report);
 }
 
 static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,

@@ -5,7 +5,7 @@
 
 #include "volume.h"
 #include "tetra_march_frame.h"
-#include "tetra_march_device.h"
+#include "tetra_device.h"
 #include "tetra_project.h"
 
 /* A mesh as rays read it, made once for all views. Only shown cells are linked to each other. */

@@ -127,7 +127,7 @@ static stratus_status draw(sample* s, int side, int turn, sample_times* times)
     if (march) {
       TRY(stratus_tetra_march(&s->context, &frame, &s->buffers, &counts, &entries_ms, &march_ms));
     } else {
-      TRY(stratus_tetra_project(s->projector, &s->mesh, &frame, NULL, &report));
+      TRY(stratus_tetra_project(s->projector, &s->mesh, &frame, NULL, stratus_tetra_project_tiles, NULL, &report));
     }
   }
   times->march = fmin(times->march, entries_ms + march_ms);

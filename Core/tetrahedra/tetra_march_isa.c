@@ -19,10 +19,7 @@ static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
     .first = frame->first,
     .entries = frame->entries,
     .colors = frame->table->rgba,
-    .rgba = frame->image.rgba,
-    .rgba8 = frame->image.rgba8,
-    .depth = frame->image.depth,
-    .samples = frame->image.samples };
+    .picture = { frame->image.rgba, frame->image.rgba8, frame->image.depth, frame->image.samples } };
 }
 
 void STRATUS_ISA_NAME(stratus_tetra_tile)(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)

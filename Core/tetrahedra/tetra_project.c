@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Projects tetrahedra on the host: sorts the cells by visibility, puts those in view into bins by tile, nearest first, and draws the tiles
- * in parallel. Threads do not affect the picture, because the order of a tile's cells is fixed. */
+ * Projects tetrahedra: sorts the cells by visibility, puts those in view into bins by tile, nearest first, and draws the tiles, here or on
+ * the device, in parallel. Threads do not affect the picture, because the order of a tile's cells is fixed. */
 #include "tetra_caster.h"
 
 #include "mesh.h"
@@ -216,8 +216,10 @@ static void project_tile(const void* data, int tile, uint64_t counts[STRATUS_TIL
   counts[2] += mine.again;
 }
 
-static stratus_status draw_tiles(stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
+stratus_status stratus_tetra_project_tiles(
+  void* data, stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts)
 {
+  (void)data;
   const project_job job = { projection, tile_for(context) };
   uint64_t sums[STRATUS_TILE_COUNTS];
   const stratus_status status = stratus_each_tile(context, "project", projection->columns * projection->rows, project_tile, &job, sums);
@@ -226,7 +228,7 @@ static stratus_status draw_tiles(stratus_context* context, const stratus_tetra_p
 }
 
 stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_tetra_frame* frame,
-  const stratus_leaves* leaves, stratus_tetra_report* report)
+  const stratus_leaves* leaves, stratus_tetra_draw_tiles* draw, void* data, stratus_tetra_report* report)
 {
   stratus_context* context = projector->context;
   stratus_tetra_project_counts counts = { 0 };
@@ -239,7 +241,6 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
     .cell_count = mesh->cell_count,
     .begin = (float)((frame->camera.near_k - frame->middle - lean) / frame->per_z),
     .end = (float)fmin((frame->camera.far_k - frame->middle + lean) / frame->per_z, 1e30),
-    .rays_differ = frame->image.opaque_depth || lean > 0.0,
     .columns = (frame->image.width + PROJECT_TILE - 1) / PROJECT_TILE,
     .rows = (frame->image.height + PROJECT_TILE - 1) / PROJECT_TILE };
   if (!frame->arguments.maximum) { /* the maximum does not depend on the order */
@@ -251,7 +252,7 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
   report->cells_in_view = find_rects(context, &projection);
   TRY(bin_cells(projector, &projection, cells, &report->pairs));
   const double drawing = stratus_now_ms();
-  TRY(draw_tiles(context, &projection, &counts));
+  TRY(draw(data, context, &projection, &counts));
   report->bin_ms = drawing - start;
   report->project_ms = stratus_now_ms() - drawing;
   report->rays = counts.rays;

@@ -6,15 +6,7 @@
 
 #include "instruction_set.h"
 #include "tetra_march_frame.h"
-
-/* Pixels along a tile's edge. A tile's state fits the innermost cache, and most cells lie in one tile. */
-#define PROJECT_TILE 32
-
-/* The pixels whose rays may meet a cell: columns x0..x1, rows y0..y1; none if x0 > x1. near: the cell's smallest z. */
-typedef struct stratus_tetra_rect {
-  uint16_t x0, x1, y0, y1;
-  float near;
-} stratus_tetra_rect;
+#include "tetra_project_arguments.h"
 
 typedef struct stratus_tetra_project_counts {
   uint64_t rays, segments, again; /* again: pixels redrawn because their pieces came out of order */
@@ -28,7 +20,6 @@ typedef struct stratus_tetra_projection {
   const uint8_t* shown;     /* per cell */
   int64_t cell_count;
   float begin, end; /* the smallest z of the near plane and the largest of the far plane, over all rays */
-  bool rays_differ; /* rays differ in where they begin or end */
   stratus_tetra_rect* rects;
   int columns, rows;         /* of tiles */
   const uint32_t* bin_begin; /* where each tile's cells begin in `bins`, and the end */
@@ -64,8 +55,13 @@ stratus_status stratus_tetra_projector_create(
   stratus_context* context, const stratus_mesh* mesh, const float* values, double bias, stratus_tetra_projector** out);
 void stratus_tetra_projector_destroy(stratus_tetra_projector* projector); /* takes NULL */
 size_t stratus_tetra_projector_bytes(const stratus_tetra_projector* projector);
-/* Draws a frame that stratus_tetra_frame_prepare() has prepared and whose table is set, and fills the report's fields of projection. */
+/* Draws the tiles of a projection whose cells are in their bins; stratus_tetra_project_tiles() does on the host. */
+typedef stratus_status stratus_tetra_draw_tiles(
+  void* data, stratus_context* context, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts);
+stratus_tetra_draw_tiles stratus_tetra_project_tiles; /* data: not read */
+/* Draws a frame that stratus_tetra_frame_prepare() has prepared and whose table is set, its tiles by `draw`, and fills the report's fields
+ * of projection. */
 stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_tetra_frame* frame,
-  const stratus_leaves* leaves, stratus_tetra_report* report);
+  const stratus_leaves* leaves, stratus_tetra_draw_tiles* draw, void* data, stratus_tetra_report* report);
 
 #endif

@@ -105,6 +105,32 @@ static inline void tetra_create(tetra_case* c, int n, double jitter, double miss
   c->options.method = tetra_method;
 }
 
+/* Adds copies of the mesh that overlap it, each moved by `apart` against the one before: no order of whole cells is right. */
+static inline void tetra_copy(tetra_case* c, int copies, double apart)
+{
+  const int64_t points = c->mesh.point_count, cells = c->mesh.cell_count;
+  c->points = realloc(c->points, (size_t)(copies * points) * 3 * sizeof(double));
+  c->values = realloc(c->values, (size_t)(copies * points) * sizeof(float));
+  c->vertices = realloc(c->vertices, (size_t)(copies * cells) * 4 * sizeof(int32_t));
+  assert_true(c->points && c->values && c->vertices);
+  for (int64_t copy = 1; copy < copies; ++copy) {
+    for (int64_t i = 0; i < 3 * points; ++i) {
+      c->points[3 * copy * points + i] = c->points[i] + apart * (double)copy;
+    }
+    for (int64_t i = 0; i < points; ++i) {
+      c->values[copy * points + i] = c->values[i];
+    }
+    for (int64_t i = 0; i < 4 * cells; ++i) {
+      c->vertices[4 * copy * cells + i] = c->vertices[i] + (int32_t)(copy * points);
+    }
+  }
+  c->mesh.points = c->points;
+  c->mesh.values = c->values;
+  c->mesh.vertices = c->vertices;
+  c->mesh.point_count = copies * points;
+  c->mesh.cell_count = copies * cells;
+}
+
 static inline void tetra_destroy(tetra_case* c)
 {
   free(c->points);

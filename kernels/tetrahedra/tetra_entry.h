@@ -4,6 +4,7 @@
 #define STRATUS_TETRA_ENTRY_H
 
 #include "tetra_march.h"
+#include "tetra_pixel.h"
 
 #define TETRA_PIXELS (TETRA_TILE * TETRA_TILE)
 
@@ -18,10 +19,7 @@ typedef struct stratus_tetra_view {
   GLOBAL const uint* first;
   GLOBAL int* entries;        /* two ints an entry: the bits of its z, and the face; nearest first */
   GLOBAL const float* colors; /* maximum: colours of the table's entries */
-  GLOBAL float* rgba;
-  GLOBAL uchar* rgba8; /* rgba8, depth and samples: written only if the arguments want them */
-  GLOBAL float* depth;
-  GLOBAL uint* samples;
+  stratus_tetra_picture picture;
 } stratus_tetra_view;
 
 /* A border face in the coordinates of one packet's columns, which all rows of a tile share. */

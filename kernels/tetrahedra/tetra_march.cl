@@ -59,10 +59,7 @@ PACKET_KERNEL void tetra_march(__constant stratus_tetra_arguments* a, __global c
     .first = first,
     .entries = entries,
     .colors = colors,
-    .rgba = rgba,
-    .rgba8 = rgba8,
-    .depth = depth,
-    .samples = samples };
+    .picture = { rgba, rgba8, depth, samples } };
   int tile, from, beyond;
   if (my_pixels(a, &tile, &from, &beyond)) {
     find_entries(&view, a, tile, from, beyond, 0, found + TETRA_PIXELS * (size_t)tile);

@@ -31,16 +31,6 @@ typedef struct stratus_tetra_walk {
   ushort pixels[STRATUS_WIDTH > 1 ? TETRA_PIXELS : 1]; /* pixels of the tile that have an entry */
 } stratus_tetra_walk;
 
-INLINE vfloat v_root(vfloat a)
-{
-  vfloat r = v_from_bits(vi_set(0x5f375a86) - (v_to_bits(a) >> vi_set(1)));
-  const vfloat halved = v_set(0.5f) * a;
-  for (int iteration = 0; iteration < 3; ++iteration) {
-    r = r * v_fma(halved * r, -r, v_set(1.5f));
-  }
-  return a * r;
-}
-
 /* Loads the rays of lanes that have a new pixel. */
 INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
 {
@@ -54,20 +44,11 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   r->uw = v_select(mask, gather_float(v->lines + a->picture.width + TETRA_PADDING, x, mask), r->uw);
   r->vs = v_select(mask, gather_float(rows, y, mask), r->vs);
   r->vw = v_select(mask, gather_float(rows + a->picture.height + TETRA_PADDING, y, mask), r->vw);
-  const vfloat u = r->us, w = r->vs;
-  const vfloat square = v_fma(u, v_fma(u, v_set(a->square[3]), v_fma(w, v_set(a->square[4]), v_set(a->square[1]))),
-    v_fma(w, v_fma(w, v_set(a->square[5]), v_set(a->square[2])), v_set(a->square[0])));
-  const vfloat length = v_root(square);
-  /* only parallel rays lean, whose uw and vw are u and v */
-  const vfloat lean = v_fma(r->uw, v_set(a->lean[0]), r->vw * v_set(a->lean[1]));
-  r->length = v_select(mask, length * v_set(a->per_z), r->length);
-  r->offset = v_select(mask, length * v_fma(-lean, v_set(a->per_z), v_set(a->per_frame)), r->offset);
-  r->begin = v_select(mask, lean + v_set(a->begin), r->begin);
-  if (a->has_ends) {
-    r->end = v_select(mask, gather_float(v->ends, x + y * vi_set(a->picture.width), mask), r->end);
-  } else {
-    r->end = v_select(mask, lean + v_set(a->end), r->end);
-  }
+  const stratus_tetra_sight sight = tetra_sight(a, v->ends, r->us, r->uw, r->vs, r->vw, x, y, mask);
+  r->length = v_select(mask, sight.length, r->length);
+  r->offset = v_select(mask, sight.offset, r->offset);
+  r->begin = v_select(mask, sight.begin, r->begin);
+  r->end = v_select(mask, sight.end, r->end);
   const vint place = pixel + vi_set(TETRA_PIXELS * t->tile);
   k->pixel = vi_select(mask, pixel, k->pixel);
   k->entry = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place, mask), k->entry);
@@ -108,25 +89,9 @@ INLINE void lanes_enter(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mas
   t->found.entries += (uint)m_count(mask);
 }
 
-INLINE void store_pixel(const stratus_tetra_walk* t, int pixel, const float rgba[4], float depth, int segments)
+INLINE void store_ray(const stratus_tetra_walk* t, int pixel, const float rgba[4], float depth, int segments)
 {
-  const stratus_tetra_view* v = t->view;
-  const int x = t->x0 + pixel % TETRA_TILE, y = t->y0 + pixel / TETRA_TILE;
-  const size_t at = (size_t)y * (size_t)t->arguments->picture.width + (size_t)x;
-  depth = t->arguments->shear > 0.0f && depth < 0.0f ? 0.0f : depth; /* perspective: a depth at the eye may be rounded to behind it */
-  for (int c = 0; c < 4; ++c) {
-    v->rgba[4 * at + (size_t)c] = rgba[c];
-  }
-  for (int c = 0; c < 4 && t->arguments->picture.want_bytes; ++c) {
-    const float value = rgba[c] * 255.0f + 0.5f;
-    v->rgba8[4 * at + (size_t)c] = (uchar)(int)(value < 255.0f ? value : 255.0f); /* premultiplied light is never below 0 */
-  }
-  if (t->arguments->picture.want_depth) {
-    v->depth[at] = rgba[3] > 0.0f && depth < LARGEST_FLOAT ? depth : INFINITY;
-  }
-  if (t->arguments->picture.want_samples) {
-    v->samples[at] = (uint)segments;
-  }
+  store_pixel(&t->view->picture, t->arguments, t->x0 + pixel % TETRA_TILE, t->y0 + pixel / TETRA_TILE, rgba, depth, (uint)segments);
 }
 
 /* Stores the pixels of lanes whose ray has ended. */
@@ -157,7 +122,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
         rgba[c] = most[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
       }
     }
-    store_pixel(t, pixel[lane], rgba, depth[lane], segments[lane]);
+    store_ray(t, pixel[lane], rgba, depth[lane], segments[lane]);
     t->found.segments += (uint)segments[lane];
   }
 }
@@ -300,7 +265,7 @@ INLINE stratus_tetra_found draw_tile(
     if (view->first[place] < view->first[place + 1]) {
       t.pixels[t.count++] = (ushort)pixel;
     } else {
-      store_pixel(&t, pixel, nothing, LARGEST_FLOAT, 0);
+      store_ray(&t, pixel, nothing, LARGEST_FLOAT, 0);
     }
   }
   t.found.rays = (uint)t.count;

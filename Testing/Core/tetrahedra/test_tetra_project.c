@@ -168,27 +168,7 @@ static void cells_that_overlap_are_drawn_again(void** state)
   enum { N = 8, COPIES = 3 };
   tetra_case c;
   tetra_create(&c, N, 0.2, 0.0, 3);
-  const int64_t points = c.mesh.point_count, cells = c.mesh.cell_count;
-  c.points = realloc(c.points, (size_t)(COPIES * points) * 3 * sizeof(double));
-  c.values = realloc(c.values, (size_t)(COPIES * points) * sizeof(float));
-  c.vertices = realloc(c.vertices, (size_t)(COPIES * cells) * 4 * sizeof(int32_t));
-  assert_true(c.points && c.values && c.vertices);
-  for (int64_t copy = 1; copy < COPIES; ++copy) {
-    for (int64_t i = 0; i < 3 * points; ++i) {
-      c.points[3 * copy * points + i] = c.points[i] + 0.31 * (double)copy;
-    }
-    for (int64_t i = 0; i < points; ++i) {
-      c.values[copy * points + i] = c.values[i];
-    }
-    for (int64_t i = 0; i < 4 * cells; ++i) {
-      c.vertices[4 * copy * cells + i] = c.vertices[i] + (int32_t)(copy * points);
-    }
-  }
-  c.mesh.points = c.points;
-  c.mesh.values = c.values;
-  c.mesh.vertices = c.vertices;
-  c.mesh.point_count = COPIES * points;
-  c.mesh.cell_count = COPIES * cells;
+  tetra_copy(&c, COPIES, 0.31);
   c.transfer.unit_distance = 4.0;
   tetra_camera(*state, &c, N, 2, 0);
   draw_both(*state, &c);

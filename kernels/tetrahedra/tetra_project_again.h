@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Redraws the pixels of a tile whose pieces came out of order. Each pass collects the nearest remaining pieces of their rays from all cells
- * of the tile, then draws them in order. Included by tetra_project_isa.c. */
+ * of the tile, then draws them in order. */
 #ifndef STRATUS_TETRA_PROJECT_AGAIN_H
 #define STRATUS_TETRA_PROJECT_AGAIN_H
 
@@ -8,24 +8,21 @@
 
 #define KEPT 64 /* pieces per pixel and pass */
 
-/* Up to WIDTH wrong pixels of a tile, one per lane, with their nearest pieces in order. */
+/* Up to STRATUS_WIDTH wrong pixels of a tile, one per lane, with their nearest pieces in order. */
 typedef struct nearest_pieces {
-  int pixel[WIDTH], pixels; /* their places in the tile, and their number */
-  float us[WIDTH], uw[WIDTH], vs[WIDTH], vw[WIDTH];
-  int x0, x1, y0, y1;            /* bounding rectangle of the pixels in the picture */
-  int count[WIDTH], lost[WIDTH]; /* lost: pieces beyond KEPT were dropped */
-  float at[WIDTH][KEPT], to[WIDTH][KEPT], first[WIDTH][KEPT], last[WIDTH][KEPT];
-  uint32_t rank[WIDTH][KEPT]; /* 1 + the place of the cell in its bin; breaks ties of depth */
-  float after[WIDTH];
-  uint32_t after_rank[WIDTH]; /* depth and rank of the last piece drawn; only pieces behind it remain */
+  int pixel[STRATUS_WIDTH], pixels; /* their places in the tile, and their number */
+  float us[STRATUS_WIDTH], uw[STRATUS_WIDTH], vs[STRATUS_WIDTH], vw[STRATUS_WIDTH];
+  int x0, x1, y0, y1;                            /* bounding rectangle of the pixels in the picture */
+  int count[STRATUS_WIDTH], lost[STRATUS_WIDTH]; /* lost: pieces beyond KEPT were dropped */
+  float at[STRATUS_WIDTH][KEPT], to[STRATUS_WIDTH][KEPT], first[STRATUS_WIDTH][KEPT], last[STRATUS_WIDTH][KEPT];
+  uint rank[STRATUS_WIDTH][KEPT]; /* 1 + the place of the cell in its bin; breaks ties of depth */
+  float after[STRATUS_WIDTH];
+  uint after_rank[STRATUS_WIDTH]; /* depth and rank of the last piece drawn; only pieces behind it remain */
 } nearest_pieces;
 
-static bool comes_before(float at, uint32_t rank, float other, uint32_t other_rank)
-{
-  return at < other || (at <= other && rank < other_rank);
-}
+static int comes_before(float at, uint rank, float other, uint other_rank) { return at < other || (at <= other && rank < other_rank); }
 
-static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint32_t rank)
+static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint rank)
 {
   if (n->count[l] == KEPT) {
     n->lost[l] = 1;
@@ -50,19 +47,19 @@ static void keep_piece(nearest_pieces* n, int l, const float piece[4], uint32_t 
 }
 
 /* Collects the nearest pieces behind those already drawn. */
-static void collect_nearest(const project_tile* t, const uint32_t* cells, uint32_t count, nearest_pieces* n)
+static void collect_nearest(const project_tile* t, GLOBAL const uint* cells, uint count, nearest_pieces* n)
 {
   const vmask on = vi_lt(vi_lanes(), vi_set(n->pixels));
-  for (uint32_t i = 0; i < count; ++i) {
-    const stratus_tetra_rect* rect = t->projection->rects + cells[i];
-    float lanes[4][WIDTH];
-    int met[WIDTH];
+  for (uint i = 0; i < count; ++i) {
+    GLOBAL const stratus_tetra_rect* rect = t->view->rects + cells[i];
+    float lanes[4][STRATUS_WIDTH];
+    int met[STRATUS_WIDTH];
     cell_points c;
     ray_piece piece;
     if (rect->x1 < n->x0 || rect->x0 > n->x1 || rect->y1 < n->y0 || rect->y0 > n->y1) {
       continue;
     }
-    load_points(t->projection, cells[i], &c);
+    load_points(t, cells[i], &c);
     const vmask mask = pass_cell(&c, v_load(n->us), v_load(n->uw), v_load(n->vs), v_load(n->vw), on, &piece);
     if (!m_any(mask)) {
       continue;
@@ -82,9 +79,9 @@ static void collect_nearest(const project_tile* t, const uint32_t* cells, uint32
 }
 
 /* Draws the collected pieces. Returns whether more remain. */
-static bool draw_nearest(project_tile* t, nearest_pieces* n)
+static int draw_nearest(project_tile* t, nearest_pieces* n)
 {
-  bool more = false;
+  int more = 0;
   for (int l = 0; l < n->pixels; ++l) {
     for (int i = 0; i < n->count[l]; ++i) {
       t->at[t->count] = n->after[l] = n->at[l][i];
@@ -106,9 +103,9 @@ static bool draw_nearest(project_tile* t, nearest_pieces* n)
 /* Clears pixel p of the tile and adds it to the pixels to redraw. */
 static void take_pixel(project_tile* t, int p, nearest_pieces* n)
 {
-  const int l = n->pixels++, packet = p / WIDTH, row = packet / ACROSS, column = packet % ACROSS, lane = p % WIDTH;
-  const int x = t->x0 + column * PACKET_X + lane % PACKET_X, y = t->y0 + row * PACKET_Y + lane / PACKET_X;
-  clear_pixel(t, p, true);
+  const int l = n->pixels++, packet = p / STRATUS_WIDTH, row = packet / ACROSS, column = packet % ACROSS, lane = p % STRATUS_WIDTH;
+  const int x = t->own_x + column * PACKET_X + lane % PACKET_X, y = t->own_y + row * PACKET_Y + lane / PACKET_X;
+  clear_pixel(t, p, 1);
   n->pixel[l] = p;
   n->us[l] = t->us[column][lane];
   n->uw[l] = t->uw[column][lane];
@@ -122,25 +119,26 @@ static void take_pixel(project_tile* t, int p, nearest_pieces* n)
   n->after_rank[l] = 0;
 }
 
-static void draw_again(project_tile* t, const uint32_t* cells, uint32_t count)
+static void draw_again(project_tile* t, GLOBAL const uint* cells, uint count)
 {
   nearest_pieces n;
   for (int p = 0; p < PIXELS;) {
     n.pixels = 0;
-    n.x0 = n.y0 = INT32_MAX;
+    n.x0 = n.y0 = 0x7fffffff;
     n.x1 = n.y1 = -1;
-    for (int l = 0; l < WIDTH; ++l) { /* lanes without a pixel need finite numbers */
+    for (int l = 0; l < STRATUS_WIDTH; ++l) { /* lanes without a pixel need finite numbers */
       n.us[l] = n.uw[l] = n.vs[l] = n.vw[l] = 0.0f;
     }
-    for (; p < PIXELS && n.pixels < WIDTH; ++p) {
+    for (; p < PIXELS && n.pixels < STRATUS_WIDTH; ++p) {
       if (t->pixels[p].wrong) {
         take_pixel(t, p, &n);
       }
     }
-    t->counts->again += (uint64_t)n.pixels;
-    for (bool more = n.pixels > 0; more;) {
-      memset(n.count, 0, sizeof n.count);
-      memset(n.lost, 0, sizeof n.lost);
+    t->again += (uint)n.pixels;
+    for (int more = n.pixels > 0; more;) {
+      for (int l = 0; l < STRATUS_WIDTH; ++l) {
+        n.count[l] = n.lost[l] = 0;
+      }
       collect_nearest(t, cells, count, &n);
       more = draw_nearest(t, &n);
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra drawn by an OpenCL device: in packets of 16, as on a CPU, and one ray a work item, as on a GPU. The same as the
- * host's, to the bit. A device that disappears at any call leaves an error, and the picture right once it is back. */
+ * Pictures of tetrahedra drawn by an OpenCL device, by marching and by projection: in packets of 16, as on a CPU, and one ray a work item,
+ * as on a GPU. The same as the host's of packets of 16, to the bit. A device that disappears at any call leaves an error, and the picture
+ * right once it is back. */
 #include "tetra_case.h"
 
 #include "device_state.h"
@@ -9,17 +10,25 @@
 
 #define CALLS_MAX 500
 
+/* How the device draws. */
+typedef struct variant {
+  int as_gpu;
+  stratus_tetra_method method;
+} variant;
+
 static tetra_picture ours, theirs;
 static int seeds = 12, edge = 4; /* cases, and boxes along a mesh's edges */
 
-static stratus_context* open_context(const char* name, int as_gpu)
+/* Opens a context, and lets all cases be drawn by the variant's method. */
+static stratus_context* open_context(const char* name, const variant* how)
 {
   stratus_context_options options = stratus_context_options_default();
   stratus_context* context = NULL;
   options.device = name;
   options.threads = 2;
-  if (stratus_context_create(&options, &context, NULL, 0) == STRATUS_OK && as_gpu) {
-    context->device->is_cpu = false;
+  tetra_method = how->method;
+  if (stratus_context_create(&options, &context, NULL, 0) == STRATUS_OK && context->device) {
+    context->device->is_cpu = !how->as_gpu;
   }
   return context;
 }
@@ -34,6 +43,7 @@ static void assert_same(void)
   assert_int_equal(ours.report.entries, theirs.report.entries);
   assert_int_equal(ours.report.segments, theirs.report.segments);
   assert_int_equal(ours.report.stuck, theirs.report.stuck);
+  assert_int_equal(ours.report.again, theirs.report.again);
 }
 
 /* A mesh, a function and a view at random, each kind of option among them. */
@@ -62,9 +72,8 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
 
 static void device_and_host_draw_the_same(void** state)
 {
-  const int as_gpu = *(const int*)*state;
   static float opaque[TETRA_PIXELS];
-  stratus_context *host = open_context("host", 0), *device = open_context("0", as_gpu);
+  stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
   assert_non_null(device);
   print_message("on %s\n", stratus_context_device(device));
   for (uint32_t seed = 0; seed < (uint32_t)seeds; ++seed) {
@@ -84,10 +93,29 @@ static void device_and_host_draw_the_same(void** state)
   stratus_context_destroy(host);
 }
 
+/* Pixels whose pieces come out of order, with more of them than are sorted at once. */
+static void overlaps_are_drawn_again(void** state)
+{
+  stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
+  tetra_case c;
+  assert_non_null(device);
+  tetra_create(&c, 2 * edge, 0.2, 0.0, 3);
+  tetra_copy(&c, 3, 0.31);
+  c.transfer.unit_distance = 4.0;
+  tetra_camera(host, &c, 2 * edge, 2, 0);
+  tetra_draw(host, &c, &theirs);
+  tetra_draw(device, &c, &ours);
+  assert_same();
+  assert_true(ours.report.again > TETRA_PIXELS / 10);
+  tetra_destroy(&c);
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
 /* What the device keeps is replaced when it has to be, and pictures are those of a new caster. */
 static void a_caster_that_drew_before(void** state)
 {
-  stratus_context* device = open_context("0", *(const int*)*state);
+  stratus_context* device = open_context("0", *state);
   stratus_tetra_caster* caster = NULL;
   tetra_case c;
   assert_non_null(device);
@@ -121,7 +149,7 @@ static void a_caster_that_drew_before(void** state)
 
 static void the_loss_of_the_device_at_any_call(void** state)
 {
-  stratus_context* device = open_context("0", *(const int*)*state);
+  stratus_context* device = open_context("0", *state);
   stratus_tetra_caster* caster = NULL;
   tetra_case c;
   int calls = 0;
@@ -160,7 +188,8 @@ static void refused_memory(void** state)
   tetra_case c;
   int refused = 0;
   assert_int_equal(stratus_context_create(&options, &device, NULL, 0), STRATUS_OK);
-  device->device->is_cpu = !*(const int*)*state;
+  tetra_method = ((const variant*)*state)->method;
+  device->device->is_cpu = !((const variant*)*state)->as_gpu;
   tetra_create(&c, 2, 0.2, 0.2, 10);
   tetra_camera(device, &c, 2, 0, 0);
   tetra_draw(device, &c, &theirs); /* programs are built */
@@ -190,22 +219,27 @@ static void refused_memory(void** state)
 }
 
 /* --few: a third of the meshes. --tiny: two small meshes, for a simulator that checks each access. */
-int test_tetra_march_device(void)
+int test_tetra_device(void)
 {
-  int as_cpu = 0, as_gpu = 1;
+  variant march_cpu = { 0, STRATUS_TETRA_METHOD_MARCH }, march_gpu = { 1, STRATUS_TETRA_METHOD_MARCH },
+          project_cpu = { 0, STRATUS_TETRA_METHOD_PROJECT }, project_gpu = { 1, STRATUS_TETRA_METHOD_PROJECT };
   const struct CMUnitTest few[] = {
-    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_gpu),
+    cmocka_unit_test_prestate(device_and_host_draw_the_same, &march_gpu),
+    cmocka_unit_test_prestate(device_and_host_draw_the_same, &project_gpu),
+    cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
   };
+#define EACH(test)                                                                                                                         \
+  cmocka_unit_test_prestate(test, &march_cpu), cmocka_unit_test_prestate(test, &march_gpu), cmocka_unit_test_prestate(test, &project_cpu), \
+    cmocka_unit_test_prestate(test, &project_gpu)
   const struct CMUnitTest all[] = {
-    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_cpu),
-    cmocka_unit_test_prestate(device_and_host_draw_the_same, &as_gpu),
-    cmocka_unit_test_prestate(a_caster_that_drew_before, &as_cpu),
-    cmocka_unit_test_prestate(a_caster_that_drew_before, &as_gpu),
-    cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_cpu),
-    cmocka_unit_test_prestate(the_loss_of_the_device_at_any_call, &as_gpu),
-    cmocka_unit_test_prestate(refused_memory, &as_cpu),
-    cmocka_unit_test_prestate(refused_memory, &as_gpu),
+    EACH(device_and_host_draw_the_same),
+    cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
+    cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
+    EACH(a_caster_that_drew_before),
+    EACH(the_loss_of_the_device_at_any_call),
+    EACH(refused_memory),
   };
+#undef EACH
   if (stratus_device_count() == 0) {
     return test_skip("no OpenCL device on this machine");
   }

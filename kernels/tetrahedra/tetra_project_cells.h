@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Intersects the rays of a packet with a cell: where they enter and leave it. Included by tetra_project_isa.c.
+ * Intersects the rays of a packet with a cell: where they enter and leave it.
  *
  * pass_cell() serves any cell. Like the march, it decides by the signs of the cell's edges as rays see them, which are exact and the same
  * for all cells that share an edge. meet_planes() serves most cells, by their four planes. A ray meets plane k at s = 1 - w0/w (parallel:
@@ -28,14 +28,15 @@ typedef struct cell_points {
   vfloat a[4], b[4], z[4], s[4];
 } cell_points;
 
-INLINE void load_points(const stratus_tetra_projection* projection, uint32_t cell, cell_points* c)
+INLINE void load_points(const project_tile* t, uint cell, cell_points* c)
 {
+  const stratus_project_view* v = t->view;
   for (int i = 0; i < 4; ++i) {
-    const float* point = projection->frame->points + 4 * (size_t)projection->vertices[4 * (size_t)cell + (size_t)i];
+    GLOBAL const float* point = v->points + 4 * (size_t)v->vertices[4 * (size_t)cell + (size_t)i];
     c->a[i] = v_set(point[0]);
     c->b[i] = v_set(point[1]);
     c->z[i] = v_set(point[2]);
-    c->s[i] = v_set(projection->cell_values ? projection->cell_values[cell] : point[3]);
+    c->s[i] = v_set(t->arguments->cell_values ? v->cell_values[cell] : point[3]);
   }
 }
 
@@ -58,7 +59,7 @@ INLINE void pass_face(const cell_points* c, vmask mask, int p, int q, int r, vfl
 /* Sets the piece of each live ray inside the cell. Returns the rays that meet the cell. */
 INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vfloat vw, vmask live, ray_piece* piece)
 {
-  static const int ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+  const int ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
   const vfloat zero = v_set(0.0f);
   vfloat x[4], y[4], e[6];
   vmask n[6];
@@ -90,10 +91,11 @@ INLINE vmask pass_cell(const cell_points* c, vfloat us, vfloat uw, vfloat vs, vf
 /* The planes of a batch of cells, one cell per lane. Plane k is at s = c + a dx + b dy; the field at s is
  * value + (vc + va dx + vb dy - vs s)/(1 - shear s). */
 typedef struct cell_planes {
-  float a[4][WIDTH], b[4][WIDTH], c[4][WIDTH];
-  float value[WIDTH], va[WIDTH], vb[WIDTH], vc[WIDTH], vs[WIDTH], least[WIDTH], most[WIDTH];
-  float z[WIDTH], w[WIDTH]; /* of the cell's first point */
-  int fronts[WIDTH];        /* bit k: plane k faces the eye; 0: the planes are too inaccurate */
+  float a[4][STRATUS_WIDTH], b[4][STRATUS_WIDTH], c[4][STRATUS_WIDTH];
+  float value[STRATUS_WIDTH], va[STRATUS_WIDTH], vb[STRATUS_WIDTH], vc[STRATUS_WIDTH], vs[STRATUS_WIDTH], least[STRATUS_WIDTH],
+    most[STRATUS_WIDTH];
+  float z[STRATUS_WIDTH], w[STRATUS_WIDTH]; /* of the cell's first point */
+  int fronts[STRATUS_WIDTH];                /* bit k: plane k faces the eye; 0: the planes are too inaccurate */
 } cell_planes;
 
 /* Each component has the relative error of a float, so that collinear or coincident points do not leave a product of rounding errors. */
@@ -108,20 +110,22 @@ INLINE void cross_product(const vfloat p[3], const vfloat q[3], vfloat out[3])
 /* Loads the points as the tile's first pixel sees them: x, y, z, value; those of points 1 to 3 are relative to point 0. */
 INLINE void see_cells(const project_tile* t, const int* cells, vfloat p[4][4], cell_planes* out, vfloat* nearest, vfloat* depth)
 {
-  const stratus_tetra_projection* projection = t->projection;
-  const stratus_tetra_frame* frame = projection->frame;
-  const vfloat zero = v_set(0.0f), us = v_set(frame->us[t->x0]), uw = v_set(frame->uw[t->x0]), vs = v_set(frame->vs[t->y0]),
-               vw = v_set(frame->vw[t->y0]);
+  const stratus_project_view* v = t->view;
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  const int padded = a->picture.width + TETRA_PADDING;
+  GLOBAL const float *columns = v->lines + t->x0, *rows = v->lines + 2 * padded + t->y0;
+  const vfloat zero = v_set(0.0f), us = v_set(columns[0]), uw = v_set(columns[padded]), vs = v_set(rows[0]),
+               vw = v_set(rows[a->picture.height + TETRA_PADDING]);
   const vint cell = vi_load(cells);
   const vmask all = vi_lt(vi_set(-1), cell);
   vfloat near = v_set(LARGEST_FLOAT), far = v_set(-LARGEST_FLOAT), least = near, most = far;
   for (int i = 0; i < 4; ++i) {
     vfloat q[4];
-    gather_four(frame->points, v_gather_ints(projection->vertices, (cell << vi_set(2)) + vi_set(i), all), all, q);
+    gather_four(v->points, v_gather_ints(v->vertices, (cell << vi_set(2)) + vi_set(i), all), all, q);
     p[i][0] = v_fma(zero - us, q[2], q[0] - uw);
     p[i][1] = v_fma(zero - vs, q[2], q[1] - vw);
     p[i][2] = q[2];
-    p[i][3] = projection->cell_values ? gather_floats(projection->cell_values, cell, all) : q[3];
+    p[i][3] = a->cell_values ? gather_float(v->cell_values, cell, all) : q[3];
     near = v_min(near, q[2]);
     far = v_max(far, q[2]);
     least = v_min(least, p[i][3]);
@@ -131,7 +135,7 @@ INLINE void see_cells(const project_tile* t, const int* cells, vfloat p[4][4], c
   v_store(out->most, most);
   v_store(out->value, p[0][3]);
   v_store(out->z, p[0][2]);
-  *nearest = v_fma(v_set(frame->arguments.shear), near, v_set(frame->arguments.middle));
+  *nearest = v_fma(v_set(a->shear), near, v_set(a->middle));
   *depth = far - near;
   for (int i = 1; i < 4; ++i) {
     for (int c = 0; c < 4; ++c) {
@@ -142,12 +146,13 @@ INLINE void see_cells(const project_tile* t, const int* cells, vfloat p[4][4], c
 
 static void find_planes(const project_tile* t, const int* cells, cell_planes* out)
 {
-  const stratus_tetra_frame* frame = t->projection->frame;
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), shear = v_set(frame->arguments.shear);
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), two = v_set(2.0f), shear = v_set(a->shear);
   vfloat p[4][4], m[4][3], side[2][3], nearest, depth, va = zero, vb = zero, vc = zero, vs = zero;
   see_cells(t, cells, p, out, &nearest, &depth);
-  const vfloat w = v_fma(shear, p[0][2], v_set(frame->arguments.middle));
-  const vfloat across = w * v_set(2.0f / (float)frame->image.width), upwards = w * v_set(2.0f / (float)frame->image.height);
+  const vfloat w = v_fma(shear, p[0][2], v_set(a->middle));
+  const vfloat across = w * (two * v_reciprocal(v_set((float)a->picture.width)));
+  const vfloat upwards = w * (two * v_reciprocal(v_set((float)a->picture.height)));
   cross_product(p[2], p[3], m[1]);
   cross_product(p[3], p[1], m[2]);
   cross_product(p[1], p[2], m[3]);
@@ -156,7 +161,7 @@ static void find_planes(const project_tile* t, const int* cells, cell_planes* ou
     side[1][axis] = p[1][axis] - p[3][axis]; /* this way round, m[0] = -(m[1] + m[2] + m[3]) */
   }
   cross_product(side[0], side[1], m[0]);
-  const vfloat volume = v_fma(p[1][0], m[1][0], v_fma(p[1][1], m[1][1], p[1][2] * m[1][2])), per_volume = one / volume;
+  const vfloat volume = v_fma(p[1][0], m[1][0], v_fma(p[1][1], m[1][1], p[1][2] * m[1][2])), per_volume = v_reciprocal(volume);
   /* the cell's extent about its first point, plus that point's distance from the tile's first pixel */
   const vfloat wide = v_max(v_max(v_abs(p[1][0]), v_abs(p[2][0])), v_abs(p[3][0])) + v_abs(p[0][0]);
   const vfloat high = v_max(v_max(v_abs(p[1][1]), v_abs(p[2][1])), v_abs(p[3][1])) + v_abs(p[0][1]);
@@ -164,7 +169,7 @@ static void find_planes(const project_tile* t, const int* cells, cell_planes* ou
   vint fronts = vi_set(0);
   for (int k = 0; k < 4; ++k) { /* barycentric coordinate k; at depth w0 it is `level` at the first pixel */
     const vfloat x = m[k][0] * per_volume, y = m[k][1] * per_volume, z = m[k][2] * per_volume, start = k ? zero : one;
-    const vfloat level = start - v_fma(x, p[0][0], y * p[0][1]), fall = v_fma(shear, level, zero - z * w), per_fall = one / fall;
+    const vfloat level = start - v_fma(x, p[0][0], y * p[0][1]), fall = v_fma(shear, level, zero - z * w), per_fall = v_reciprocal(fall);
     const vfloat doubt = v_fma(v_abs(x), wide, v_abs(y) * high);
     fit = fit & v_le(doubt, v_set(COORDINATE_MOST)) & v_le(doubt * v_abs(per_fall) * w, v_set(CROSSING_MOST) * depth);
     fronts = fronts | vi_select(v_lt(fall, zero), vi_set(1 << k), vi_set(0));
@@ -213,7 +218,7 @@ INLINE void take_cell(const project_tile* t, const cell_planes* planes, int l, o
   c->most = v_set(planes->most[l]);
   c->z = v_set(planes->z[l]);
   c->w = v_set(planes->w[l]);
-  c->shear = v_set(t->projection->frame->arguments.shear);
+  c->shear = v_set(t->arguments->shear);
 }
 
 /* Finds where rays enter and leave the cell, in s, and returns those that meet it. rows: each plane's b dy + c. */

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Drawing tetrahedra on the context's OpenCL device: kernels/tetrahedra/tetra_march.cl and tetra_project.cl. */
+#ifndef STRATUS_TETRA_DEVICE_H
+#define STRATUS_TETRA_DEVICE_H
+
+#include "device_frame.h"
+#include "tetra_project.h"
+
+/* What the device keeps from frame to frame. Both methods use one set of buffers, of which each draws with its own. */
+typedef enum stratus_tetra_slot {
+  /* of the mesh: for the march cells and their values, for projection vertices and values of cells */
+  TETRA_CELLS,
+  TETRA_CELL_VALUES,
+  TETRA_VERTICES,
+  TETRA_MESH_VALUES,
+  /* of the table */
+  TETRA_SUMS,
+  TETRA_COLORS,
+  /* of a frame */
+  TETRA_ARGUMENTS,
+  TETRA_POINTS,
+  TETRA_LINES,
+  TETRA_ENDS,
+  TETRA_FACES,
+  TETRA_RECTS,
+  TETRA_BIN_BEGIN,
+  TETRA_BINS,
+  TETRA_FIRST,
+  TETRA_ENTRIES,
+  TETRA_FOUND,
+  TETRA_WRONG,
+  TETRA_COUNTS,
+  /* of the picture */
+  TETRA_RGBA,
+  TETRA_RGBA8,
+  TETRA_DEPTH,
+  TETRA_SAMPLES,
+  TETRA_SLOTS
+} stratus_tetra_slot;
+
+typedef struct stratus_tetra_device {
+  stratus_device_slot slots[TETRA_SLOTS];
+  uint64_t march_mesh, project_mesh, table; /* build numbers of what the slots hold */
+} stratus_tetra_device;
+
+/* Identifies the mesh and table of a frame by build numbers > 0 that rise, so that the device copies them only once. A device that shares
+ * the host's memory reads them in place: call stratus_tetra_device_drop_table() before freeing the table, and
+ * stratus_tetra_device_destroy() before freeing the mesh. */
+typedef struct stratus_tetra_device_source {
+  uint64_t mesh, table;
+  int64_t cell_count, point_count;
+} stratus_tetra_device_source;
+
+/* stratus_tetra_march() on the device. Makes *device if that is NULL. *drawn false: the device cannot draw this mesh; a warning says why.
+ */
+stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts,
+  double* entries_ms, double* march_ms, bool* drawn);
+/* Draws the tiles of a projection whose cells are in their bins. The rest is as in stratus_tetra_march_device(). */
+stratus_status stratus_tetra_project_device(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts, bool* drawn);
+void stratus_tetra_device_drop_table(stratus_tetra_device* device);                        /* takes NULL */
+void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device); /* takes NULL */
+
+/* ---- steps of both */
+
+/* Whether the device can draw a mesh; a warning says why not. Makes *device if that is NULL. bytes_per_cell: of the largest buffer of
+ * cells. */
+stratus_status stratus_tetra_device_begin(
+  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t bytes_per_cell, bool* can);
+/* Sends the table, where it is another than before, and the frame: arguments, points, lines and ends of rays. points: four floats each. */
+stratus_status stratus_tetra_device_send(stratus_context* context, stratus_tetra_device* device, const stratus_tetra_device_source* source,
+  const stratus_tetra_frame* frame, const float* points);
+/* Makes room for the picture, and gets it. */
+stratus_status stratus_tetra_device_lend_picture(stratus_context* context, stratus_tetra_device* device, const stratus_image* image);
+stratus_status stratus_tetra_device_receive_picture(stratus_context* context, stratus_tetra_device* device, const stratus_image* image);
+/* Launches a kernel of `source` whose parameters are the slots of `order`. packets: a work item does packets of 16 rays. */
+stratus_status stratus_tetra_device_launch(stratus_context* context, stratus_tetra_device* device, const char* source, const char* name,
+  bool packets, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2]);
+
+#endif
