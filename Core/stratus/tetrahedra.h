@@ -27,7 +27,7 @@ typedef enum stratus_tetra_mode {
  * of cells. The methods differ only where cells overlap: projection draws the pieces in order of depth, marching one path through
  * neighbours after the other. */
 typedef enum stratus_tetra_method {
-  /* The method that should cost less, by the numbers of cells, pixels and segments and by what these cost on this machine; with a device:
+  /* The method that should cost less, by the numbers of cells, pixels and segments and by what these cost on this machine; on a GPU:
    * march. It does not change while the camera stands still. */
   STRATUS_TETRA_METHOD_AUTO,
   STRATUS_TETRA_METHOD_MARCH,  /* follows each ray from cell to cell */
@@ -96,12 +96,12 @@ typedef struct stratus_tetra_caster stratus_tetra_caster;
 STRATUS_API stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** caster);
 STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
-/* Draws a picture. Marching uses the context's device, or the host if there is none or the mesh is too large for it; projection always uses
- * the host. The mesh must have values. The caster reads it again when its pointers, counts, type, stride or revision differ from the last
- * call's, else only its matrix. Opacity is per world length. In image, samples receives the number of segments in the pixel, and depth the
- * world distance to the first segment that contributes (maximum: to the largest value). options and report may be NULL. A failed call
- * leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells, INT32_MAX/4 points or INT32_MAX/8
- * faces at the border give STRATUS_UNSUPPORTED. */
+/* Draws a picture. Both methods use the context's device, or the host if there is none or the mesh is too large for it; projection finds
+ * the cells of each tile on the host. The mesh must have values. The caster reads it again when its pointers, counts, type, stride or
+ * revision differ from the last call's, else only its matrix. Opacity is per world length. In image, samples receives the number of
+ * segments in the pixel, and depth the world distance to the first segment that contributes (maximum: to the largest value). options and
+ * report may be NULL. A failed call leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells,
+ * INT32_MAX/4 points or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
 STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
   stratus_tetra_report* report);

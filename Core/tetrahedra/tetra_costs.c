@@ -165,6 +165,7 @@ static stratus_status measure_like(stratus_context* context, void* job, double* 
   TRY(stratus_allocate_zero(context, 1, sizeof(sample), &memory));
   sample* s = memory;
   s->context = *context;
+  s->context.device = NULL;
   s->context.options.progress = NULL;
   s->context.options.log = NULL;
   const stratus_status status = measure(s, costs);

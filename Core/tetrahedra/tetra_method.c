@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Chooses between march and projection by their estimated cost for a view: what the view has to draw, times what each takes on this
- * machine. Earlier frames have no influence, so a still camera never changes the method. */
+ * machine. Earlier frames have no influence, so a still camera never changes the method. A processor's OpenCL draws by the host's costs:
+ * both methods run the host's code there, and slow down alike. */
 #include "tetra_caster.h"
 
 #include "tetra_costs.h"
@@ -25,8 +26,12 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     return STRATUS_OK;
   }
   report->method = STRATUS_TETRA_METHOD_MARCH;
-  if (caster->context->device || !stratus_tetra_count_view(&shown, mesh, camera, image, &view)) {
-    snprintf(report->why, sizeof report->why, "march: devices march only");
+  if (caster->context->device && !stratus_device_is_cpu(caster->context->device)) {
+    snprintf(report->why, sizeof report->why, "march: what projection costs on a GPU is not measured");
+    return STRATUS_OK;
+  }
+  if (!stratus_tetra_count_view(&shown, mesh, camera, image, &view)) {
+    snprintf(report->why, sizeof report->why, "march: the camera spans no space");
     return STRATUS_OK;
   }
   if (caster->costs) {

@@ -6,6 +6,8 @@
 
 #include "device_state.h"
 #include "faulty_allocator.h"
+#include "tetra_caster.h"
+#include "tetra_costs.h"
 #include "testing.h"
 
 #define CALLS_MAX 500
@@ -110,6 +112,31 @@ static void overlaps_are_drawn_again(void** state)
   tetra_destroy(&c);
   stratus_context_destroy(device);
   stratus_context_destroy(host);
+}
+
+/* The automatic method: on a processor what costs less on the host, on a GPU the march. The costs are given, so that no timing decides. */
+static void auto_goes_by_the_costs_of_the_host(void** state)
+{
+  static const stratus_tetra_costs costs[2] = { { .segment = 1e6 }, { .piece = 1e6, .packet = 1e6, .cell = 1e6, .sorted = 1e6 } };
+  const variant* how = *state;
+  stratus_context* device = open_context("0", how);
+  stratus_tetra_caster* caster = NULL;
+  tetra_case c;
+  assert_non_null(device);
+  tetra_create(&c, 3, 0.2, 0.2, 2);
+  tetra_camera(device, &c, 3, 1, 0);
+  c.options.method = STRATUS_TETRA_METHOD_AUTO;
+  assert_int_equal(stratus_tetra_caster_create(device, &caster), STRATUS_OK);
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
+  for (int i = 0; i < 2; ++i) {
+    stratus_tetra_report report;
+    caster->costs = &costs[i];
+    assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, &c.transfer, &c.camera, &c.options, &image, &report), STRATUS_OK);
+    assert_int_equal(report.method, i == 0 && !how->as_gpu ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH);
+  }
+  stratus_tetra_caster_destroy(caster);
+  tetra_destroy(&c);
+  stratus_context_destroy(device);
 }
 
 /* What the device keeps is replaced when it has to be, and pictures are those of a new caster. */
@@ -235,6 +262,8 @@ int test_tetra_device(void)
     EACH(device_and_host_draw_the_same),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
+    cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_cpu),
+    cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_gpu),
     EACH(a_caster_that_drew_before),
     EACH(the_loss_of_the_device_at_any_call),
     EACH(refused_memory),
