@@ -77,7 +77,7 @@ foreach (kernel IN LISTS kernels)
   if (name STREQUAL "distance_field")
     stratus_add_kernel_test(kernel_${name}_avx512 ${compile} -mavx512f)
   endif ()
-  if (name STREQUAL "ray_cast" OR name STREQUAL "first_hit" OR name STREQUAL "first_hit_wide" OR name STREQUAL "tetra_march")
+  if (name MATCHES "^(ray_cast|first_hit|first_hit_wide|tetra_march|tetra_project)$")
     stratus_add_kernel_test(kernel_${name}_packets ${compile} -DSTRATUS_WIDTH=16)
     stratus_add_kernel_test(kernel_${name}_packets_avx512 ${compile} -DSTRATUS_WIDTH=16 -mavx512f)
   endif ()
@@ -86,7 +86,7 @@ endforeach ()
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
   $<TARGET_FILE:test_device> test_device_tiny)
-foreach (kind IN ITEMS adjacency bvh density distance_field first_hit radix_sort ray_pages structures tetra_march tree visibility_layers
+foreach (kind IN ITEMS adjacency bvh density distance_field first_hit radix_sort ray_pages structures tetra tree visibility_layers
     visibility_signs)
   stratus_add_test(${kind}_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"
     $<TARGET_FILE:test_device> test_${kind}_device --tiny)
