@@ -27,10 +27,21 @@ typedef struct device_list {
 
 /* ---------------------------------------------------------------- choice */
 
-/* Serialises the question for OpenCL's devices. OpenCL lets several threads ask at once, but PoCL (3.1) finds its devices on the first
- * question, and a thread that asks meanwhile gets none, or crashes. Every user of a device has asked for the list before, so that nothing
- * else needs the lock: several contexts build programs and draw at the same time. */
-static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
+/* Serialises what a driver does on first use: finding devices, making a context and its threads, and building a program, for which it loads
+ * its compiler. OpenCL lets several threads do so at once. But a thread that asks PoCL (3.1) for devices while it finds them gets none, or
+ * crashes, and of some thousand processes whose first eight contexts began at once, one hung in Intel's runtime (2026.2). Contexts draw at
+ * the same time. */
+static pthread_mutex_t first_uses = PTHREAD_MUTEX_INITIALIZER;
+
+void stratus_device_enter(void)
+{
+  pthread_mutex_lock(&first_uses);
+}
+
+void stratus_device_leave(void)
+{
+  pthread_mutex_unlock(&first_uses);
+}
 
 static device_list find_devices(void)
 {
@@ -58,9 +69,9 @@ static device_list find_devices(void)
 
 static device_list list_devices(void)
 {
-  pthread_mutex_lock(&listing);
+  stratus_device_enter();
   const device_list list = find_devices();
-  pthread_mutex_unlock(&listing);
+  stratus_device_leave();
   return list;
 }
 
@@ -225,10 +236,15 @@ stratus_status stratus_device_open_id(stratus_context* context, cl_device_id id,
   cl_int error = CL_SUCCESS;
   stratus_status status;
   TRY_CLEANUP(describe(context, device));
+  const char* call = "clCreateContext";
+  stratus_device_enter();
   device->context = clCreateContext(NULL, 1, &id, NULL, NULL, &error);
-  TRY_CLEANUP(stratus_device_check(context, device, "clCreateContext", error));
-  device->queue = clCreateCommandQueue(device->context, id, 0, &error);
-  TRY_CLEANUP(stratus_device_check(context, device, "clCreateCommandQueue", error));
+  if (error == CL_SUCCESS) {
+    call = "clCreateCommandQueue";
+    device->queue = clCreateCommandQueue(device->context, id, 0, &error);
+  }
+  stratus_device_leave();
+  TRY_CLEANUP(stratus_device_check(context, device, call, error));
 cleanup:
   if (status != STRATUS_OK) {
     stratus_device_close(device);

@@ -28,6 +28,14 @@ static stratus_status build_failed(stratus_context* context, stratus_device* dev
   return status;
 }
 
+static cl_int build(const stratus_device* device, cl_program program, const char* options)
+{
+  stratus_device_enter();
+  const cl_int error = clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+  stratus_device_leave();
+  return error;
+}
+
 static stratus_status compile(
   stratus_context* context, stratus_device* device, const char* source, const char* text, const char* options, cl_program* program)
 {
@@ -39,7 +47,7 @@ static stratus_status compile(
   TRY(stratus_device_check(context, device, "clCreateProgramWithSource", error));
   error = stratus_device_next_error(device);
   if (error == CL_SUCCESS) {
-    error = clBuildProgram(*program, 1, &device->id, options, NULL, NULL);
+    error = build(device, *program, options);
   }
   if (error == CL_BUILD_PROGRAM_FAILURE || error == CL_INVALID_BUILD_OPTIONS) {
     status = build_failed(context, device, *program, source, error);
@@ -71,7 +79,7 @@ static stratus_status load(stratus_context* context, stratus_device* device, con
   if (error == CL_SUCCESS && answer == CL_SUCCESS) {
     error = stratus_device_next_error(device);
     if (error == CL_SUCCESS) {
-      error = clBuildProgram(*program, 1, &device->id, options, NULL, NULL);
+      error = build(device, *program, options);
     }
   }
   if (*program && (error != CL_SUCCESS || answer != CL_SUCCESS)) {

@@ -46,6 +46,11 @@ cl_int stratus_device_next_error(stratus_device* device);
 #define CALL(context, device, name, call)                                                                                                  \
   stratus_device_check(context, device, name, stratus_device_next_error(device) != CL_SUCCESS ? (device)->injected : (call))
 
+/* Enclose calls that drivers may not be made for if several threads make them at once: finding devices, and the first use of one. Nothing
+ * of the caller's, such as an allocator, may be called in between. */
+void stratus_device_enter(void);
+void stratus_device_leave(void);
+
 /* Frees all programs and kernels. */
 void stratus_device_programs_release(stratus_device* device);
 

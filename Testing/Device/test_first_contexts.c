@@ -7,11 +7,13 @@
 
 #include <pthread.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -19,6 +21,8 @@
 #define THREADS 8
 #define TRIES 12
 #define TRIES_FEW 4 /* with --few */
+#define SECONDS_MOST 120
+#define LOOKS_PER_SECOND 50
 
 static pthread_barrier_t begin;
 
@@ -89,7 +93,14 @@ static void threads_that_make_the_first_contexts_at_once_all_draw(void** state)
       execl(test_program(), test_program(), "test_first_contexts", "--first", (char*)NULL);
       _exit(127);
     }
-    assert_int_equal(waitpid(child, &status, 0), child);
+    for (int waited = 0; waitpid(child, &status, WNOHANG) == 0; ++waited) {
+      if (waited == SECONDS_MOST * LOOKS_PER_SECOND) {
+        (void)kill(child, SIGABRT);
+        (void)waitpid(child, &status, 0);
+        fail_msg("try %d of %d: the threads hang after %d s", number, tries, SECONDS_MOST);
+      }
+      (void)nanosleep(&(struct timespec){ .tv_nsec = 1000000000 / LOOKS_PER_SECOND }, NULL);
+    }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
       fail_msg("try %d of %d: %s %d", number, tries, WIFSIGNALED(status) ? "killed by signal" : "exit status",
         WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));

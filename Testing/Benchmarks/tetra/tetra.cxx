@@ -21,7 +21,7 @@ const char* const help = R"(stratus-bench tetra [options]
   --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice), or a
                             file of tetrahedra with point scalars; default: the four
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
-  --method M,...            stratus:auto|march|project, stratus:march@device (the first OpenCL device), vtk:projected,
+  --method M,...            stratus:auto|march|project, stratus:march|project@device (the first OpenCL device), vtk:projected,
                             vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk), vtk:zsweep; ours with
                             ~TOLERANCE behind it, the last two with :PIXELS from ray to ray (default 1);
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the

@@ -95,6 +95,7 @@ const struct recipe {
   { "stratus:march", nullptr, "", STRATUS_TETRA_METHOD_MARCH, "host" },
   { "stratus:project", nullptr, "stratus:sort-1", STRATUS_TETRA_METHOD_PROJECT, "host" },
   { "stratus:march@device", nullptr, "", STRATUS_TETRA_METHOD_MARCH, "0" },
+  { "stratus:project@device", nullptr, "", STRATUS_TETRA_METHOD_PROJECT, "0" },
   { "vtk:projected", make_projected, "vtk:depthsort", STRATUS_TETRA_METHOD_AUTO, "" },
   { "vtk:projected+stratus-sort", make_projected_sorted<3>, "stratus:sort", STRATUS_TETRA_METHOD_AUTO, "" },
   { "vtk:projected+stratus-sort-1", make_projected_sorted<0>, "stratus:sort-1", STRATUS_TETRA_METHOD_AUTO, "" },
