@@ -70,7 +70,9 @@ typedef struct stratus_tetra_report {
   /* Cells without volume; cells of negative orientation; faces that more than two cells share; faces that two cells on the same side
    * share. */
   int64_t flat, inverted, broken_faces, folded_faces;
-  uint64_t mesh_builds, table_builds;                            /* builds since the caster was created: a camera move adds none */
+  /* Builds since the caster was created: a camera move adds none. Other values on points and cells of the same content, whose cells that
+   * show are the same, add one to value_builds alone. */
+  uint64_t mesh_builds, value_builds, table_builds;
   double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* times in this call; 0: the step was not needed */
   int64_t cells_in_view;                                         /* project: cells that can show in some pixel */
   uint64_t pairs;                                                /* project: pairs of a cell and a tile */

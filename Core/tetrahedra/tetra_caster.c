@@ -100,18 +100,53 @@ static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
     a->hidden == b->hidden && a->revision == b->revision;
 }
 
+/* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
+ * cells show. */
+static stratus_status update_values(stratus_tetra_caster* caster, const stratus_mesh* mesh, bool* taken)
+{
+  stratus_tetra_mesh* known = caster->mesh;
+  const float low = known->low, high = known->high;
+  const double bias = known->bias;
+  *taken = false;
+  if (!stratus_tetra_mesh_fits(known, mesh)) {
+    return STRATUS_OK;
+  }
+  stratus_tetra_device_drop_values(caster->device);
+  TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
+  if (*taken) {
+    if (caster->projector) {
+      stratus_tetra_projector_take(caster->projector, mesh, known);
+    }
+    if (caster->view.type != mesh->type || low != known->low || high != known->high || bias != known->bias) {
+      drop_table(caster); /* it spans the values */
+    }
+    caster->view = *mesh;
+    ++caster->value_builds;
+  }
+  return STRATUS_OK;
+}
+
 static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, double* ms)
 {
   stratus_tetra_mesh* made = NULL;
+  bool taken = false;
   if (caster->mesh && same_mesh(&caster->view, mesh)) {
     return STRATUS_OK;
   }
   const double start = stratus_now_ms();
+  if (caster->mesh) {
+    TRY(update_values(caster, mesh, &taken));
+    if (taken) {
+      *ms = stratus_now_ms() - start;
+      return STRATUS_OK;
+    }
+  }
   TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
   drop_mesh(caster);
   caster->mesh = made;
   caster->view = *mesh;
   ++caster->mesh_builds;
+  ++caster->value_builds;
   *ms = stratus_now_ms() - start;
   return STRATUS_OK;
 }
@@ -159,7 +194,8 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
-  return (stratus_tetra_device_source){ caster->mesh_builds, caster->table_builds, caster->view.cell_count, caster->view.point_count };
+  return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
+    caster->view.point_count };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -210,7 +246,7 @@ static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* 
 {
   const double start = stratus_now_ms();
   if (!caster->projector) {
-    TRY(stratus_tetra_projector_create(caster->context, mesh, caster->mesh->values, caster->mesh->bias, &caster->projector));
+    TRY(stratus_tetra_projector_create(caster->context, caster->mesh, &caster->projector));
     report->build_ms += stratus_now_ms() - start;
   }
   return stratus_tetra_project(caster->projector, mesh, frame, leaves, project_tiles, caster, report);
@@ -251,6 +287,7 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
   report->broken_faces = mesh->broken;
   report->folded_faces = mesh->folded;
   report->mesh_builds = caster->mesh_builds;
+  report->value_builds = caster->value_builds;
   report->table_builds = caster->table_builds;
   report->bytes += (caster->projector ? stratus_tetra_projector_bytes(caster->projector) : 0) + mesh->bytes + b->points.bytes +
     b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes + b->bins.bytes + b->first.bytes +

@@ -8,23 +8,31 @@
 #include "tetra_device.h"
 #include "tetra_project.h"
 
+typedef enum stratus_tetra_show {
+  STRATUS_TETRA_HIDDEN,
+  STRATUS_TETRA_SHOWN,
+  STRATUS_TETRA_FLAT /* shown, but without a volume: its values do not count for the range */
+} stratus_tetra_show;
+
 /* A mesh as rays read it, made once for all views. Only shown cells are linked to each other. */
-typedef struct stratus_tetra_mesh {
+struct stratus_tetra_mesh {
   stratus_context* context;
   int32_t* cells;     /* TETRA_CELL ints per cell, in the order of stratus_tetra_places */
   int32_t* names;     /* number of each mesh point in `cells` and `faces`: points are numbered as cells first use them */
   float* values;      /* a fetched value per mesh point; NULL: values belong to cells */
   float* cell_values; /* a fetched value per cell, in the order of `cells`; NULL: values belong to points */
-  uint8_t* shown;     /* per mesh cell, during the build only */
-  int8_t* nominal;    /* likewise: its orientation, of flat cells that of their neighbours; 0: none */
+  uint8_t* shown;     /* stratus_tetra_show per mesh cell */
+  uint32_t* at;       /* the mesh cell at each place of `cells`; NULL: values belong to points */
+  int8_t* nominal;    /* per mesh cell, during the build only: its orientation, of flat cells that of their neighbours; 0: none */
   stratus_tetra_face* faces;
   size_t face_count;
   double lo[3], hi[3]; /* bounds of the points that shown cells use, in local coordinates */
   float low, high;     /* range of the fetched values of shown cells; low > high: there is none */
   double bias;
-  int64_t cell_count, shown_cells, blanked, repeated, flat, inverted, broken, folded;
+  int64_t cell_count, point_count, shown_cells, blanked, repeated, flat, inverted, broken, folded;
+  uint64_t geometry; /* hash of points and vertices */
   size_t bytes;
-} stratus_tetra_mesh;
+};
 
 typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
 
@@ -39,13 +47,17 @@ struct stratus_tetra_caster {
   int32_t* march_sums;          /* stratus_tetra_sums() */
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
-  uint64_t mesh_builds, table_builds;
+  uint64_t mesh_builds, value_builds, table_builds;
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
+/* Whether the mesh has the content in points and vertices, not merely the pointers, that `tetra` was made from. */
+bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
+/* Takes other values of a mesh that fits. *taken false: other cells show by them, so that the borders differ; then nothing has changed. */
+stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken);
 /* Whether a cell is drawn: it is not hidden, names four different points, and its values are finite. range: their least and greatest.
  * point_values NULL: values belong to cells and are fetched from `volume`, the mesh's values. */
 bool stratus_tetra_shows(

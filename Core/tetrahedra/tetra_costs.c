@@ -143,7 +143,7 @@ static stratus_status measure(sample* s, double* costs)
   make_mesh(s);
   TRY(stratus_tetra_mesh_create(&s->context, &s->mesh, &s->tetra));
   TRY(make_table(s));
-  TRY(stratus_tetra_projector_create(&s->context, &s->mesh, s->tetra->values, s->tetra->bias, &s->projector));
+  TRY(stratus_tetra_projector_create(&s->context, s->tetra, &s->projector));
   for (int i = 0; i < REPEATS; ++i) {
     TRY(draw(s, MANY, 2 * i, &many));
     TRY(draw(s, FEW, 2 * i + 1, &few));

@@ -19,6 +19,15 @@ void stratus_tetra_device_drop_table(stratus_tetra_device* device)
   }
 }
 
+void stratus_tetra_device_drop_values(stratus_tetra_device* device)
+{
+  if (device) {
+    stratus_slot_drop(&device->slots[TETRA_CELL_VALUES]);
+    stratus_slot_drop(&device->slots[TETRA_MESH_VALUES]);
+    device->march_values = device->project_values = 0;
+  }
+}
+
 void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device)
 {
   if (device) {

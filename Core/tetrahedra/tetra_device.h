@@ -40,14 +40,14 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, project_mesh, table; /* build numbers of what the slots hold */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table; /* build numbers of what the slots hold */
 } stratus_tetra_device;
 
-/* Identifies the mesh and table of a frame by build numbers > 0 that rise, so that the device copies them only once. A device that shares
- * the host's memory reads them in place: call stratus_tetra_device_drop_table() before freeing the table, and
- * stratus_tetra_device_destroy() before freeing the mesh. */
+/* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A
+ * device that shares the host's memory reads them in place: call stratus_tetra_device_drop_table() before freeing the table,
+ * stratus_tetra_device_drop_values() before freeing the values, and stratus_tetra_device_destroy() before freeing the mesh. */
 typedef struct stratus_tetra_device_source {
-  uint64_t mesh, table;
+  uint64_t mesh, values, table;
   int64_t cell_count, point_count;
 } stratus_tetra_device_source;
 
@@ -60,6 +60,7 @@ stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetr
 stratus_status stratus_tetra_project_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts, bool* drawn);
 void stratus_tetra_device_drop_table(stratus_tetra_device* device);                        /* takes NULL */
+void stratus_tetra_device_drop_values(stratus_tetra_device* device);                       /* takes NULL */
 void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device); /* takes NULL */
 
 /* ---- steps of both */

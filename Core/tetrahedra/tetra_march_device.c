@@ -30,8 +30,11 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
   const size_t cells = (size_t)source->cell_count;
   if (d->march_mesh != source->mesh) {
     TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELLS, frame->cells, cells * TETRA_CELL * sizeof(int32_t)));
-    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, cells * sizeof(float)));
     d->march_mesh = source->mesh;
+  }
+  if (d->march_values != source->values) {
+    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, cells * sizeof(float)));
+    d->march_values = source->values;
   }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));

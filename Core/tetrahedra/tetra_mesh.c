@@ -3,11 +3,13 @@
  * rays enter. Cells that show nothing (hidden, with a value that is not finite, or with a point named twice) are left out as hollows. */
 #include "mesh.h"
 #include "tetra_caster.h"
+#include "volume_hash.h"
 
 #include <string.h>
 
 #define CELL_INTS_MOST INT32_MAX
 #define POINTS_MOST (INT32_MAX / 4) /* four floats per point */
+#define HASHED_AT_ONCE ((size_t)1 << 16)
 
 bool stratus_tetra_shows(
   const stratus_mesh* mesh, const stratus_volume* volume, const float* point_values, double bias, int64_t cell, float range[2])
@@ -25,31 +27,55 @@ bool stratus_tetra_shows(
   return shows;
 }
 
-static void find_shown(
-  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+/* What the values of a mesh say: which cells show, and the range of those with a volume. */
+typedef struct value_counts {
+  int64_t shown, blanked, repeated, changed; /* changed: cells that show and did not, or the other way round */
+  float low, high;
+} value_counts;
+
+static value_counts count_values(
+  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const float* values, double bias)
 {
-  int64_t shown = 0, blanked = 0, repeated = 0;
+  int64_t shown = 0, blanked = 0, repeated = 0, changed = 0;
   float low = INFINITY, high = -INFINITY;
   const int threads = tetra->context->threads;
-#pragma omp parallel for num_threads(threads) reduction(+ : shown, blanked, repeated) reduction(min : low) reduction(max : high)
+#pragma omp parallel for num_threads(threads) reduction(+ : shown, blanked, repeated, changed) reduction(min : low) reduction(max : high)
   for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
     const bool hidden = mesh->hidden && mesh->hidden[cell], twice = stratus_names_a_point_twice(mesh->vertices + 4 * cell);
     float range[2];
-    const bool shows = stratus_tetra_shows(mesh, volume, tetra->values, tetra->bias, cell, range);
-    tetra->shown[cell] = shows;
+    const bool shows = stratus_tetra_shows(mesh, volume, values, bias, cell, range);
     shown += shows;
     blanked += !shows && !hidden;
     repeated += twice && !hidden;
-    if (shows && adjacency->orientation[cell] != 0) {
+    changed += shows != (tetra->shown[cell] != STRATUS_TETRA_HIDDEN);
+    if (shows && tetra->shown[cell] == STRATUS_TETRA_SHOWN) {
       low = fminf(low, range[0]);
       high = fmaxf(high, range[1]);
     }
   }
-  tetra->shown_cells = shown;
-  tetra->blanked = blanked;
-  tetra->repeated = repeated;
-  tetra->low = low;
-  tetra->high = high;
+  return (value_counts){ shown, blanked, repeated, changed, low, high };
+}
+
+static void keep_counts(stratus_tetra_mesh* tetra, const value_counts* counts)
+{
+  tetra->shown_cells = counts->shown;
+  tetra->blanked = counts->blanked;
+  tetra->repeated = counts->repeated;
+  tetra->low = counts->low;
+  tetra->high = counts->high;
+}
+
+static void find_shown(
+  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume, const stratus_adjacency* adjacency)
+{
+#pragma omp parallel for num_threads(tetra->context->threads)
+  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
+    float range[2];
+    const bool shows = stratus_tetra_shows(mesh, volume, tetra->values, tetra->bias, cell, range);
+    tetra->shown[cell] = !shows ? STRATUS_TETRA_HIDDEN : adjacency->orientation[cell] != 0 ? STRATUS_TETRA_SHOWN : STRATUS_TETRA_FLAT;
+  }
+  const value_counts counts = count_values(tetra, mesh, volume, tetra->values, tetra->bias);
+  keep_counts(tetra, &counts);
 }
 
 static void find_bounds(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
@@ -165,16 +191,12 @@ static void pack_cell(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   }
 }
 
-static void pack_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume,
-  const stratus_adjacency* adjacency, const stratus_tetra_places* places)
+static void pack_cells(
+  stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const stratus_tetra_places* places)
 {
 #pragma omp parallel for num_threads(tetra->context->threads)
   for (int64_t place = 0; place < mesh->cell_count; ++place) {
-    const int64_t cell = places->at[place];
-    pack_cell(tetra, mesh, adjacency, places->of, cell, tetra->cells + TETRA_CELL * place);
-    if (mesh->cell_values) {
-      tetra->cell_values[place] = stratus_volume_fetch(volume, tetra->bias, (size_t)cell);
-    }
+    pack_cell(tetra, mesh, adjacency, places->of, places->at[place], tetra->cells + TETRA_CELL * place);
   }
 }
 
@@ -207,21 +229,37 @@ static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* me
   return count;
 }
 
-static stratus_status fetch_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_volume* volume)
+/* Fetches a value for each point or, where values belong to cells, for each place of `at`. */
+static stratus_status fetch_values(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_volume* volume, double bias, const uint32_t* at, float** values)
 {
   void* memory = NULL;
-  if (mesh->cell_values) {
-    TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, sizeof(float), &memory));
-    tetra->cell_values = memory;
-    return STRATUS_OK;
+  const int64_t count = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  TRY(stratus_allocate(context, (size_t)count, sizeof(float), &memory));
+  float* out = memory;
+#pragma omp parallel for num_threads(context->threads)
+  for (int64_t i = 0; i < count; ++i) {
+    out[i] = stratus_volume_fetch(volume, bias, mesh->cell_values ? (size_t)at[i] : (size_t)i);
   }
-  TRY(stratus_allocate(tetra->context, (size_t)mesh->point_count, sizeof(float), &memory));
-  tetra->values = memory;
-#pragma omp parallel for num_threads(tetra->context->threads)
-  for (int64_t i = 0; i < mesh->point_count; ++i) {
-    tetra->values[i] = stratus_volume_fetch(volume, tetra->bias, (size_t)i);
-  }
+  *values = out;
   return STRATUS_OK;
+}
+
+/* The hash of what neighbours, planes and orders follow from: points and vertices. */
+static uint64_t hash_geometry(const stratus_context* context, const stratus_mesh* mesh)
+{
+  const size_t sizes[2] = { (size_t)mesh->point_count * 3 * sizeof *mesh->points, (size_t)mesh->cell_count * 4 * sizeof *mesh->vertices };
+  const uint8_t* arrays[2] = { (const uint8_t*)mesh->points, (const uint8_t*)mesh->vertices };
+  uint64_t sum = 0;
+  for (int a = 0; a < 2; ++a) {
+    const int64_t parts = (int64_t)((sizes[a] + HASHED_AT_ONCE - 1) / HASHED_AT_ONCE);
+#pragma omp parallel for num_threads(context->threads) reduction(+ : sum)
+    for (int64_t part = 0; part < parts; ++part) {
+      const size_t first = (size_t)part * HASHED_AT_ONCE, left = sizes[a] - first;
+      sum += stratus_hash_bytes(arrays[a] + first, left < HASHED_AT_ONCE ? left : HASHED_AT_ONCE, (uint64_t)part << 1 | (uint64_t)a);
+    }
+  }
+  return sum;
 }
 
 static stratus_status build(
@@ -232,13 +270,13 @@ static stratus_status build(
   tetra->bias = stratus_volume_bias(&volume);
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, 1, &memory));
   tetra->shown = memory;
-  TRY(fetch_values(tetra, mesh, &volume));
+  TRY(fetch_values(tetra->context, mesh, &volume, tetra->bias, places->at, mesh->cell_values ? &tetra->cell_values : &tetra->values));
   find_shown(tetra, mesh, &volume, adjacency);
   find_bounds(tetra, mesh);
   TRY(orient_flat_cells(tetra, mesh, adjacency));
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, TETRA_CELL * sizeof(int32_t), &memory));
   tetra->cells = memory;
-  pack_cells(tetra, mesh, &volume, adjacency, places);
+  pack_cells(tetra, mesh, adjacency, places);
   tetra->face_count = list_faces(tetra, mesh, adjacency, places, NULL);
   if (tetra->face_count > INT32_MAX / TETRA_FACE) {
     return stratus_fail(tetra->context, STRATUS_UNSUPPORTED, "mesh with %zu border faces is too large to draw: at most %d",
@@ -247,13 +285,38 @@ static stratus_status build(
   TRY(stratus_allocate(tetra->context, tetra->face_count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
   (void)list_faces(tetra, mesh, adjacency, places, tetra->faces);
-  stratus_release(tetra->context, tetra->shown);
   stratus_release(tetra->context, tetra->nominal);
-  tetra->shown = NULL;
   tetra->nominal = NULL;
   const size_t values = (size_t)(mesh->cell_values ? mesh->cell_count : mesh->point_count);
   tetra->bytes = (size_t)mesh->cell_count * TETRA_CELL * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
-    (size_t)mesh->point_count * sizeof(int32_t) + values * sizeof(float);
+    (size_t)mesh->point_count * sizeof(int32_t) + values * sizeof(float) +
+    (size_t)mesh->cell_count * (mesh->cell_values ? 1 + sizeof *places->at : 1);
+  return STRATUS_OK;
+}
+
+bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
+{
+  return tetra->cell_count == mesh->cell_count && tetra->point_count == mesh->point_count &&
+    (tetra->values == NULL) == (mesh->cell_values != 0) && tetra->geometry == hash_geometry(tetra->context, mesh);
+}
+
+stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)
+{
+  const stratus_volume volume = stratus_mesh_values(mesh);
+  const double bias = stratus_volume_bias(&volume);
+  float* values = NULL;
+  TRY(fetch_values(tetra->context, mesh, &volume, bias, tetra->at, &values));
+  const value_counts counts = count_values(tetra, mesh, &volume, mesh->cell_values ? NULL : values, bias);
+  *taken = counts.changed == 0;
+  if (*taken) {
+    float** old = mesh->cell_values ? &tetra->cell_values : &tetra->values;
+    float* outdated = *old;
+    *old = values;
+    values = outdated;
+    tetra->bias = bias;
+    keep_counts(tetra, &counts);
+  }
+  stratus_release(tetra->context, values);
   return STRATUS_OK;
 }
 
@@ -272,6 +335,8 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   stratus_tetra_mesh* tetra = memory;
   tetra->context = context;
   tetra->cell_count = mesh->cell_count;
+  tetra->point_count = mesh->point_count;
+  tetra->geometry = hash_geometry(context, mesh);
   TRY_CLEANUP(stratus_adjacency_create(context, mesh, &adjacency));
   tetra->flat = adjacency->flat;
   tetra->inverted = adjacency->inverted;
@@ -281,6 +346,10 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   TRY_CLEANUP(build(tetra, mesh, adjacency, &places));
   stratus_stage_end(context, &stage, "cells and border",
     (size_t)tetra->cell_count * TETRA_CELL * sizeof *tetra->cells + tetra->face_count * sizeof *tetra->faces);
+  if (mesh->cell_values) { /* where to fetch other values from */
+    tetra->at = places.at;
+    places.at = NULL;
+  }
   *out = tetra;
   tetra = NULL;
 
@@ -300,6 +369,7 @@ void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
     stratus_release(mesh->context, mesh->cell_values);
     stratus_release(mesh->context, mesh->names);
     stratus_release(mesh->context, mesh->shown);
+    stratus_release(mesh->context, mesh->at);
     stratus_release(mesh->context, mesh->nominal);
     stratus_release(mesh->context, mesh->faces);
     stratus_release(mesh->context, mesh);

@@ -4,6 +4,8 @@
 #include "tetra_caster.h"
 
 #include "mesh.h"
+#include "visibility_order.h"
+#include "volume_hash.h"
 #include "instruction_set.h"
 #include "tiles.h"
 
@@ -25,43 +27,46 @@ static stratus_tetra_project_tile* tile_for(const stratus_context* context)
 
 /* ---- of a mesh */
 
-static void find_shown(stratus_tetra_projector* projector, const stratus_mesh* mesh, const float* values, double bias)
+/* Brings the values of cells into the mesh's order. */
+static void find_cell_values(stratus_tetra_projector* projector)
 {
-  const stratus_volume volume = stratus_mesh_values(mesh);
+  const stratus_tetra_mesh* tetra = projector->tetra;
 #pragma omp parallel for num_threads(projector->context->threads)
-  for (int64_t cell = 0; cell < mesh->cell_count; ++cell) {
-    float range[2];
-    projector->shown[cell] = stratus_tetra_shows(mesh, &volume, values, bias, cell, range);
-    if (!values) {
-      projector->cell_values[cell] = range[0];
-    }
+  for (int64_t place = 0; place < tetra->cell_count; ++place) {
+    projector->cell_values[tetra->at[place]] = tetra->cell_values[place];
   }
 }
 
-stratus_status stratus_tetra_projector_create(
-  stratus_context* context, const stratus_mesh* mesh, const float* values, double bias, stratus_tetra_projector** out)
+stratus_status stratus_tetra_projector_create(stratus_context* context, const stratus_tetra_mesh* tetra, stratus_tetra_projector** out)
 {
-  stratus_status status = STRATUS_OK;
-  const size_t cells = (size_t)mesh->cell_count;
   void* memory = NULL;
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_projector), &memory));
   stratus_tetra_projector* projector = memory;
   projector->context = context;
-  projector->cell_count = mesh->cell_count;
-  TRY_CLEANUP(stratus_allocate(context, cells, 1, &memory));
-  projector->shown = memory;
-  if (!values) {
-    TRY_CLEANUP(stratus_allocate(context, cells, sizeof(float), &memory));
+  projector->tetra = tetra;
+  if (tetra->cell_values) {
+    const stratus_status status = stratus_allocate(context, (size_t)tetra->cell_count, sizeof(float), &memory);
+    if (status != STRATUS_OK) {
+      stratus_tetra_projector_destroy(projector);
+      return status;
+    }
     projector->cell_values = memory;
+    find_cell_values(projector);
   }
-  find_shown(projector, mesh, values, bias);
-  projector->bytes = cells * (values ? 1 : 1 + sizeof(float));
   *out = projector;
-  projector = NULL;
+  return STRATUS_OK;
+}
 
-cleanup:
-  stratus_tetra_projector_destroy(projector);
-  return status;
+void stratus_tetra_projector_take(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_tetra_mesh* tetra)
+{
+  projector->tetra = tetra;
+  if (projector->cell_values) {
+    find_cell_values(projector);
+  }
+  if (projector->order) {
+    stratus_visibility_order_rebase(projector->order, mesh);
+    projector->leaves_unsure = true;
+  }
 }
 
 void stratus_tetra_projector_destroy(stratus_tetra_projector* projector)
@@ -69,7 +74,6 @@ void stratus_tetra_projector_destroy(stratus_tetra_projector* projector)
   if (projector) {
     stratus_context* context = projector->context;
     stratus_visibility_order_destroy(projector->order);
-    stratus_release(context, projector->shown);
     stratus_release(context, projector->cell_values);
     stratus_release(context, projector->rects.memory);
     stratus_release(context, projector->bin_begin.memory);
@@ -80,15 +84,29 @@ void stratus_tetra_projector_destroy(stratus_tetra_projector* projector)
 
 size_t stratus_tetra_projector_bytes(const stratus_tetra_projector* projector)
 {
-  return projector->bytes + projector->rects.bytes + projector->bin_begin.bytes + projector->bins.bytes;
+  const size_t values = projector->cell_values ? (size_t)projector->tetra->cell_count * sizeof *projector->cell_values : 0;
+  return values + projector->rects.bytes + projector->bin_begin.bytes + projector->bins.bytes;
 }
 
 /* ---- of a frame */
 
-static bool same_leaves(const stratus_leaves* a, const stratus_leaves* b)
+static uint64_t hash_leaves(const stratus_leaves* leaves, int64_t cells)
 {
-  return a->nodes == b->nodes && a->node_count == b->node_count && a->leaf_count == b->leaf_count && a->leaf == b->leaf &&
-    memcmp(a->frame, b->frame, sizeof a->frame) == 0;
+  return leaves->nodes ? stratus_hash_bytes(leaves->nodes, (size_t)leaves->node_count * sizeof *leaves->nodes, 0) +
+      stratus_hash_bytes(leaves->leaf, (size_t)cells * sizeof *leaves->leaf, 1)
+                       : 0;
+}
+
+/* Whether the order was made with these leaves, by their pointers or else by their content. */
+static bool same_leaves(const stratus_tetra_projector* projector, const stratus_leaves* leaves, int64_t cells)
+{
+  const stratus_leaves* known = &projector->leaves;
+  if ((known->nodes == NULL) != (leaves->nodes == NULL) || known->node_count != leaves->node_count ||
+    known->leaf_count != leaves->leaf_count || memcmp(known->frame, leaves->frame, sizeof known->frame) != 0) {
+    return false;
+  }
+  return (known->nodes == leaves->nodes && known->leaf == leaves->leaf && !projector->leaves_unsure) ||
+    projector->leaves_hash == hash_leaves(leaves, cells);
 }
 
 static stratus_status sort_cells(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_camera* camera,
@@ -98,15 +116,17 @@ static stratus_status sort_cells(stratus_tetra_projector* projector, const strat
   stratus_visibility_result result;
   const double start = stratus_now_ms();
   leaves = leaves ? leaves : &none;
-  if (projector->order && !same_leaves(&projector->leaves, leaves)) {
+  if (projector->order && !same_leaves(projector, leaves, mesh->cell_count)) {
     stratus_visibility_order_destroy(projector->order);
     projector->order = NULL;
   }
   if (!projector->order) {
     TRY(stratus_visibility_order_create(projector->context, mesh, leaves->nodes ? leaves : NULL, &projector->order));
-    projector->leaves = *leaves;
+    projector->leaves_hash = hash_leaves(leaves, mesh->cell_count);
     report->build_ms += stratus_now_ms() - start;
   }
+  projector->leaves = *leaves;
+  projector->leaves_unsure = false;
   const double sorting = stratus_now_ms();
   TRY(stratus_visibility_order_sort(projector->order, camera, mesh->matrix, STRATUS_PEELING_NEAREST, &result));
   *cells = result.cells;
@@ -237,7 +257,7 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
   stratus_tetra_projection projection = { .frame = frame,
     .vertices = mesh->vertices,
     .cell_values = projector->cell_values,
-    .shown = projector->shown,
+    .shown = projector->tetra->shown,
     .cell_count = mesh->cell_count,
     .begin = (float)((frame->camera.near_k - frame->middle - lean) / frame->per_z),
     .end = (float)fmin((frame->camera.far_k - frame->middle + lean) / frame->per_z, 1e30),

@@ -38,21 +38,23 @@ stratus_tetra_project_tile stratus_tetra_project_tile_isa0, stratus_tetra_projec
 /* tetra_project_outline.c: finds the rect of a cell that reaches behind the eye, clipped at the near plane. */
 stratus_tetra_rect stratus_tetra_outline_cut(const stratus_tetra_projection* projection, int64_t cell);
 
+typedef struct stratus_tetra_mesh stratus_tetra_mesh; /* tetra_caster.h */
+
 /* The state of projection, made when a mesh is first projected. */
 typedef struct stratus_tetra_projector {
   stratus_context* context;
+  const stratus_tetra_mesh* tetra; /* borrowed */
   stratus_visibility_order* order; /* NULL until something is composited */
   stratus_leaves leaves;           /* of `order` */
-  uint8_t* shown;
-  float* cell_values;
-  int64_t cell_count;
+  uint64_t leaves_hash;            /* of their content */
+  bool leaves_unsure;              /* their content may have changed */
+  float* cell_values;              /* in the mesh's order; NULL: values belong to points */
   stratus_tetra_buffer rects, bin_begin, bins;
-  size_t bytes; /* of shown and cell_values */
 } stratus_tetra_projector;
 
-/* values, bias: of stratus_tetra_mesh; values NULL: values belong to cells. */
-stratus_status stratus_tetra_projector_create(
-  stratus_context* context, const stratus_mesh* mesh, const float* values, double bias, stratus_tetra_projector** out);
+stratus_status stratus_tetra_projector_create(stratus_context* context, const stratus_tetra_mesh* tetra, stratus_tetra_projector** out);
+/* Goes on with other values of the mesh, and with other arrays of the same points and vertices. */
+void stratus_tetra_projector_take(stratus_tetra_projector* projector, const stratus_mesh* mesh, const stratus_tetra_mesh* tetra);
 void stratus_tetra_projector_destroy(stratus_tetra_projector* projector); /* takes NULL */
 size_t stratus_tetra_projector_bytes(const stratus_tetra_projector* projector);
 /* Draws the tiles of a projection whose cells are in their bins; stratus_tetra_project_tiles() does on the host. */

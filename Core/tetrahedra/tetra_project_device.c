@@ -22,7 +22,7 @@ static const stratus_tetra_slot parameters[] = { TETRA_ARGUMENTS, TETRA_VERTICES
   TETRA_LINES, TETRA_ENDS, TETRA_RECTS, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_RGBA, TETRA_RGBA8, TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS,
   TETRA_WRONG };
 
-/* The mesh's arrays are the caller's, and may be gone after the frame: a device that shares the host's memory borrows them for one frame
+/* The mesh's vertices are the caller's, and may be gone after the frame: a device that shares the host's memory borrows them for one frame
  * only, and any other keeps a copy. */
 static stratus_status send_mesh(device_projection* p, const stratus_tetra_device_source* source)
 {
@@ -33,8 +33,11 @@ static stratus_status send_mesh(device_projection* p, const stratus_tetra_device
   if (borrows || d->project_mesh != source->mesh) {
     d->project_mesh = 0;
     TRY(stratus_slot_send(p->context, p->slots + TETRA_VERTICES, CL_MEM_READ_ONLY, projection->vertices, cells * 4 * sizeof(int32_t)));
-    TRY(stratus_slot_send(p->context, p->slots + TETRA_MESH_VALUES, CL_MEM_READ_ONLY, projection->cell_values, cells * sizeof(float)));
     d->project_mesh = borrows ? 0 : source->mesh;
+  }
+  if (d->project_values != source->values) {
+    TRY(stratus_slot_keep(p->context, p->slots + TETRA_MESH_VALUES, projection->cell_values, cells * sizeof(float)));
+    d->project_values = source->values;
   }
   return STRATUS_OK;
 }

@@ -152,6 +152,12 @@ stratus_status stratus_visibility_order_create(
   return STRATUS_OK;
 }
 
+void stratus_visibility_order_rebase(stratus_visibility_order* order, const stratus_mesh* mesh)
+{
+  order->points = mesh->points;
+  order->vertices = mesh->vertices;
+}
+
 void stratus_visibility_order_destroy(stratus_visibility_order* order)
 {
   if (!order) {

@@ -117,6 +117,9 @@ struct stratus_visibility_order {
   stratus_visibility_result result;
 };
 
+/* Goes on with other arrays of the content that the order was made from: those of `mesh`. */
+void stratus_visibility_order_rebase(stratus_visibility_order* order, const stratus_mesh* mesh);
+
 #define STRATUS_LEAVES_MAX 65536
 #define STRATUS_SEED_CELLS 512
 #define STRATUS_GAP_BLOCK 64 /* a power of two */

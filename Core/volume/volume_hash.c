@@ -32,8 +32,9 @@ static uint64_t finish(uint64_t x)
 }
 
 /* Runs four chains, so that no multiplication waits for the one before. */
-static uint64_t hash_bytes(const uint8_t* bytes, size_t size, uint64_t seed)
+uint64_t stratus_hash_bytes(const void* from, size_t size, uint64_t seed)
 {
+  const uint8_t* bytes = from;
   uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
   size_t at = 0;
   for (; at + 32 <= size; at += 32) {
@@ -100,7 +101,7 @@ uint64_t stratus_volume_hash_row(const stratus_volume* volume, int64_t j, int64_
   for (int a = 0; a < 3; ++a) {
     cells[a] = n[a] > 1 ? n[a] - less : 1;
   }
-  uint64_t sum = hash_bytes(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
+  uint64_t sum = stratus_hash_bytes(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
   if (!volume->cell_centered && volume->point_ghosts) {
     const uint8_t wanted = STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_POINT;
     sum += hash_flags(volume->point_ghosts + (k * n[1] + j) * n[0], n[0], wanted, seed ^ MIX_A);

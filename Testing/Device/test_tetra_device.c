@@ -140,13 +140,12 @@ static void auto_goes_by_the_costs_of_the_host(void** state)
 }
 
 /* What the device keeps is replaced when it has to be, and pictures are those of a new caster. */
-static void a_caster_that_drew_before(void** state)
+static void draw_with_changes(stratus_context* device, int cell_values)
 {
-  stratus_context* device = open_context("0", *state);
   stratus_tetra_caster* caster = NULL;
   tetra_case c;
-  assert_non_null(device);
   tetra_create(&c, 3, 0.2, 0.2, 2);
+  c.mesh.cell_values = cell_values;
   assert_int_equal(stratus_tetra_caster_create(device, &caster), STRATUS_OK);
   const stratus_image image = {
     .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba, .depth = ours.depth, .rgba8 = ours.rgba8, .samples = ours.samples
@@ -171,6 +170,14 @@ static void a_caster_that_drew_before(void** state)
   }
   stratus_tetra_caster_destroy(caster);
   tetra_destroy(&c);
+}
+
+static void a_caster_that_drew_before(void** state)
+{
+  stratus_context* device = open_context("0", *state);
+  assert_non_null(device);
+  draw_with_changes(device, 0);
+  draw_with_changes(device, 1);
   stratus_context_destroy(device);
 }
 
