@@ -26,6 +26,10 @@ typedef enum stratus_status {
 /* English name of a status, never NULL. */
 STRATUS_API const char* stratus_status_name(stratus_status status);
 
+/* Returns a hash of `size` bytes, another one for each seed: callers may know content again by it, to leave a revision as it is. bytes
+ * NULL: none. It is no defence against content that is made to collide. */
+STRATUS_API uint64_t stratus_hash(const void* bytes, size_t size, uint64_t seed);
+
 typedef struct stratus_context stratus_context;
 
 typedef enum stratus_log_level { STRATUS_LOG_DEBUG, STRATUS_LOG_INFO, STRATUS_LOG_WARNING } stratus_log_level;

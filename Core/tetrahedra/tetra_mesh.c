@@ -3,7 +3,6 @@
  * rays enter. Cells that show nothing (hidden, with a value that is not finite, or with a point named twice) are left out as hollows. */
 #include "mesh.h"
 #include "tetra_caster.h"
-#include "volume_hash.h"
 
 #include <string.h>
 
@@ -256,7 +255,7 @@ static uint64_t hash_geometry(const stratus_context* context, const stratus_mesh
 #pragma omp parallel for num_threads(context->threads) reduction(+ : sum)
     for (int64_t part = 0; part < parts; ++part) {
       const size_t first = (size_t)part * HASHED_AT_ONCE, left = sizes[a] - first;
-      sum += stratus_hash_bytes(arrays[a] + first, left < HASHED_AT_ONCE ? left : HASHED_AT_ONCE, (uint64_t)part << 1 | (uint64_t)a);
+      sum += stratus_hash(arrays[a] + first, left < HASHED_AT_ONCE ? left : HASHED_AT_ONCE, (uint64_t)part << 1 | (uint64_t)a);
     }
   }
   return sum;

@@ -5,7 +5,6 @@
 
 #include "mesh.h"
 #include "visibility_order.h"
-#include "volume_hash.h"
 #include "instruction_set.h"
 #include "tiles.h"
 
@@ -92,8 +91,8 @@ size_t stratus_tetra_projector_bytes(const stratus_tetra_projector* projector)
 
 static uint64_t hash_leaves(const stratus_leaves* leaves, int64_t cells)
 {
-  return leaves->nodes ? stratus_hash_bytes(leaves->nodes, (size_t)leaves->node_count * sizeof *leaves->nodes, 0) +
-      stratus_hash_bytes(leaves->leaf, (size_t)cells * sizeof *leaves->leaf, 1)
+  return leaves->nodes ? stratus_hash(leaves->nodes, (size_t)leaves->node_count * sizeof *leaves->nodes, 0) +
+      stratus_hash(leaves->leaf, (size_t)cells * sizeof *leaves->leaf, 1)
                        : 0;
 }
 

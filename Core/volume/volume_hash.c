@@ -4,52 +4,10 @@
  * them while they are in the cache. */
 #include "volume_hash.h"
 
+#include "hash.h"
+
 #include <omp.h>
 #include <string.h>
-
-/* Odd constants with well-mixed bits. */
-#define MIX_A UINT64_C(0x9fb21c651e98df25)
-#define MIX_B UINT64_C(0xd6e8feb86659fd93)
-
-static inline uint64_t rotate(uint64_t x, int bits)
-{
-  return x << bits | x >> (64 - bits);
-}
-
-static inline uint64_t read_word(const uint8_t* bytes)
-{
-  uint64_t word;
-  memcpy(&word, bytes, sizeof word);
-  return word;
-}
-
-/* Mixes x: each of its bits changes half of the result's. */
-static uint64_t finish(uint64_t x)
-{
-  x = (x ^ x >> 32) * MIX_A;
-  x = (x ^ x >> 29) * MIX_B;
-  return x ^ x >> 32;
-}
-
-/* Runs four chains, so that no multiplication waits for the one before. */
-uint64_t stratus_hash_bytes(const void* from, size_t size, uint64_t seed)
-{
-  const uint8_t* bytes = from;
-  uint64_t lane[4] = { seed ^ MIX_A, seed ^ MIX_B, seed + MIX_A, seed + MIX_B };
-  size_t at = 0;
-  for (; at + 32 <= size; at += 32) {
-    for (int l = 0; l < 4; ++l) {
-      lane[l] = rotate((lane[l] ^ read_word(bytes + at + 8 * l)) * MIX_A, 31);
-    }
-  }
-  uint64_t result = finish(lane[0]) + rotate(finish(lane[1]), 16) + rotate(finish(lane[2]), 32) + rotate(finish(lane[3]), 48);
-  for (; at < size; at += 8) {
-    uint64_t word = 0;
-    memcpy(&word, bytes + at, size - at < 8 ? size - at : 8);
-    result = rotate((result ^ word) * MIX_B, 29);
-  }
-  return finish(result ^ size);
-}
 
 #define GATHER(type)                                                                                                                       \
   {                                                                                                                                        \
@@ -86,7 +44,7 @@ static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint
   uint64_t sum = 0;
   for (int64_t i = 0; flags && i < n; ++i) {
     if (flags[i] & wanted) {
-      sum += finish(seed ^ ((uint64_t)i << 8 | (flags[i] & wanted)));
+      sum += stratus_hash_finish(seed ^ ((uint64_t)i << 8 | (flags[i] & wanted)));
     }
   }
   return sum;
@@ -95,29 +53,29 @@ static uint64_t hash_flags(const uint8_t* flags, int64_t n, uint8_t wanted, uint
 uint64_t stratus_volume_hash_row(const stratus_volume* volume, int64_t j, int64_t k, const void* row)
 {
   const int64_t* n = volume->dimensions;
-  const uint64_t seed = finish((uint64_t)(k * n[1] + j) + MIX_B);
+  const uint64_t seed = stratus_hash_finish((uint64_t)(k * n[1] + j) + STRATUS_MIX_B);
   const int64_t less = !volume->cell_centered;
   int64_t cells[3];
   for (int a = 0; a < 3; ++a) {
     cells[a] = n[a] > 1 ? n[a] - less : 1;
   }
-  uint64_t sum = stratus_hash_bytes(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
+  uint64_t sum = stratus_hash(row, (size_t)n[0] * stratus_type_size(volume->type), seed);
   if (!volume->cell_centered && volume->point_ghosts) {
     const uint8_t wanted = STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_POINT;
-    sum += hash_flags(volume->point_ghosts + (k * n[1] + j) * n[0], n[0], wanted, seed ^ MIX_A);
+    sum += hash_flags(volume->point_ghosts + (k * n[1] + j) * n[0], n[0], wanted, seed ^ STRATUS_MIX_A);
   }
   if (volume->cell_ghosts && j < cells[1] && k < cells[2]) {
     const uint8_t wanted = STRATUS_GHOST_DUPLICATE | STRATUS_GHOST_HIDDEN_CELL;
-    sum += hash_flags(volume->cell_ghosts + (k * cells[1] + j) * cells[0], cells[0], wanted, seed ^ MIX_B);
+    sum += hash_flags(volume->cell_ghosts + (k * cells[1] + j) * cells[0], cells[0], wanted, seed ^ STRATUS_MIX_B);
   }
   return sum;
 }
 
 uint64_t stratus_volume_hash_shape(const stratus_volume* volume)
 {
-  uint64_t hash = finish((uint64_t)volume->type * 2 + (volume->cell_centered ? 1 : 0));
+  uint64_t hash = stratus_hash_finish((uint64_t)volume->type * 2 + (volume->cell_centered ? 1 : 0));
   for (int a = 0; a < 3; ++a) {
-    hash = finish(rotate(hash, 21) ^ (uint64_t)volume->dimensions[a]);
+    hash = stratus_hash_finish(stratus_hash_rotate(hash, 21) ^ (uint64_t)volume->dimensions[a]);
   }
   return hash;
 }

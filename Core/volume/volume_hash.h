@@ -5,9 +5,6 @@
 
 #include "volume.h"
 
-/* The hash of `size` bytes, another one for each seed. */
-uint64_t stratus_hash_bytes(const void* bytes, size_t size, uint64_t seed);
-
 /* Computes the hash of values (not the stride between them), type, dimensions, centring and ghost flags. */
 stratus_status stratus_volume_hash(stratus_context* context, const stratus_volume* volume, uint64_t* hash);
 

@@ -3,29 +3,85 @@
 
 #include "vtkStratusArrays.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
 
-bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+namespace {
+uint64_t HashArray(vtkAbstractArray* array, uint64_t seed)
+{
+  vtkDataArray* data = vtkDataArray::SafeDownCast(array);
+  if (!data) {
+    return stratus_hash(nullptr, 0, seed);
+  }
+  const vtkIdType tuples = data->GetNumberOfTuples();
+  const int components = data->GetNumberOfComponents();
+  seed = stratus_hash(nullptr, 0, seed + static_cast<uint64_t>(data->GetDataType()) + 64 * static_cast<uint64_t>(components));
+  if (data->HasStandardMemoryLayout()) {
+    return stratus_hash(data->GetVoidPointer(0), static_cast<size_t>(tuples * components * data->GetDataTypeSize()), seed);
+  }
+  std::vector<double> tuple(static_cast<size_t>(components));
+  for (vtkIdType i = 0; i < tuples; ++i) {
+    data->GetTuple(i, tuple.data());
+    seed = stratus_hash(tuple.data(), tuple.size() * sizeof(double), seed);
+  }
+  return seed;
+}
+
+// The hash of all that SetGeometry() reads.
+uint64_t HashGrid(vtkUnstructuredGrid* grid)
+{
+  vtkCellArray* cells = grid->GetCells();
+  vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr, cells->GetConnectivityArray(),
+    cells->GetOffsetsArray(), grid->GetCellTypesArray(), grid->GetFaces(), grid->GetFaceLocations(),
+    grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
+    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
+    grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray), grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
+  uint64_t hash = 1;
+  for (vtkAbstractArray* array : arrays) {
+    hash = HashArray(array, hash);
+  }
+  return hash;
+}
+} // namespace
+
+// Divides the grid into tetrahedra, if its content has changed.
+void vtkStratusMeshView::SetGeometry(vtkUnstructuredGrid* grid)
 {
   const vtkMTimeType time = std::max(grid->GetMTime(), grid->GetMeshMTime());
-  if (this->Grid != grid || this->Time != time) {
-    this->Grid = grid;
-    this->Time = time;
-    this->Divided = nullptr;
-    this->Refusal.clear();
-    this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
-    if (this->Accepted && this->Tetrahedra.Vertices.empty()) {
-      this->Refusal = this->Tetrahedra.TellLeftOut();
-      this->Accepted = false;
-    }
-    this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);
+  if (this->Grid == grid && this->Time == time) {
+    return;
   }
+  this->Grid = grid;
+  this->Time = time;
+  const uint64_t content = HashGrid(grid);
+  if (this->ContentTime > 0 && this->Content == content) {
+    return;
+  }
+  this->Content = content;
+  this->ContentTime = time;
+  this->Divided = nullptr;
+  this->Refusal.clear();
+  this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
+  if (this->Accepted && this->Tetrahedra.Vertices.empty()) {
+    this->Refusal = this->Tetrahedra.TellLeftOut();
+    this->Accepted = false;
+  }
+  this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);
+}
+
+bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+{
+  this->SetGeometry(grid);
   if (!this->Accepted) {
     error = this->Refusal;
     return false;
@@ -53,7 +109,7 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
   this->Mesh.value_stride = values.value_stride;
   this->Mesh.cell_values = cells ? 1 : 0;
   this->Mesh.hidden = hidden.empty() ? nullptr : hidden.data();
-  this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(time) * UINT64_C(0x9E3779B97F4A7C15));
+  this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(this->ContentTime) * UINT64_C(0x9E3779B97F4A7C15));
   if (matrix) {
     std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Mesh.matrix);
   }

@@ -23,7 +23,7 @@ class VTK_STRATUS_PRIVATE vtkStratusMeshView
 {
 public:
   // Returns false, with the reason in `error`, where the core cannot take the grid or the array. `matrix` is the prop's, or nullptr for the
-  // identity. Copies are made only where the input has changed.
+  // identity. Copies are made only where the input's content has changed.
   bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
   const stratus_mesh& GetMesh() const { return this->Mesh; }
   // The grid's partition, or nullptr where it carries none. DropLeaves() forgets a partition that the core has refused because the points
@@ -35,6 +35,7 @@ public:
   stratus_volume GetBox() const;
 
 private:
+  void SetGeometry(vtkUnstructuredGrid* grid);
   bool SetHidden(vtkUnstructuredGrid* grid, std::string& error);
   vtkDataArray* Spread(vtkDataArray* array, bool cells);
   void HideNotFinite();
@@ -44,6 +45,9 @@ private:
   double Bounds[6] = { 0, 1, 0, 1, 0, 1 };
   vtkSmartPointer<vtkUnstructuredGrid> Grid; // kept alive, so that no other grid can get the same address
   vtkMTimeType Time = 0;
+  // Of points, cells, hidden flags and partition: the cells are divided anew only where it changes, not with every step of a simulation.
+  uint64_t Content = 0;
+  vtkMTimeType ContentTime = 0; // 0: no grid has been divided
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;

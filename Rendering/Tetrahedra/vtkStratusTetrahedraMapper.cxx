@@ -167,6 +167,16 @@ vtkTypeUInt64 vtkStratusTetrahedraMapper::GetFunctionBuilds()
   return this->Internal->GetFunctionBuilds();
 }
 
+vtkTypeUInt64 vtkStratusTetrahedraMapper::GetGeometryBuilds()
+{
+  return this->Internal->Report.mesh_builds;
+}
+
+vtkTypeUInt64 vtkStratusTetrahedraMapper::GetValueBuilds()
+{
+  return this->Internal->Report.value_builds;
+}
+
 vtkImageData* vtkStratusTetrahedraMapper::GetLastImage()
 {
   return this->Internal->GetLastImage();
@@ -194,4 +204,6 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Blanked Tetrahedra: " << report.blanked << "\n";
   os << indent << "Segments: " << report.segments << "\n";
   os << indent << "Entries: " << report.entries << "\n";
+  os << indent << "Geometry Builds: " << report.mesh_builds << "\n";
+  os << indent << "Value Builds: " << report.value_builds << "\n";
 }

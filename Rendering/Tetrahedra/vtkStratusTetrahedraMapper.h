@@ -64,7 +64,7 @@ public:
   //@{
   /**
    * Set/Get how a picture is drawn. MARCH_METHOD marches rays from cell to cell. PROJECT_METHOD sorts the cells that can show something and
-   * projects them into tiles of pixels, on the host only. AUTO_METHOD takes the one that should cost less, by the counts of cells, pixels
+   * projects them into tiles of pixels. AUTO_METHOD takes the one that should cost less, by the counts of cells, pixels
    * and segments in view; a camera that stands still never changes the choice. Both methods give the same picture up to the rounding of
    * floats, below .01 of 255 on the mean. Default AUTO_METHOD.
    */
@@ -152,6 +152,16 @@ public:
    * or another one takes its place.
    */
   vtkTypeUInt64 GetFunctionBuilds();
+
+  //@{
+  /**
+   * Get how many times the neighbours and borders of cells were found, and how many times values were taken, since the mapper was made. In
+   * the steps of a simulation whose points and cells keep their content, in whatever objects, values alone are taken, unless other cells
+   * show: those at values that are not finite and hidden ones do not.
+   */
+  vtkTypeUInt64 GetGeometryBuilds();
+  vtkTypeUInt64 GetValueBuilds();
+  //@}
 
   /**
    * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
