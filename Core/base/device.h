@@ -67,6 +67,8 @@ stratus_status stratus_device_argument(stratus_context* context, cl_kernel kerne
 stratus_status stratus_device_run(
   stratus_context* context, cl_kernel kernel, unsigned dimensions, const size_t* global, const size_t* local);
 stratus_status stratus_device_finish(stratus_context* context);
+/* Waits until nothing runs that was enqueued, however it ends. After a failed call kernels may still be writing memory that they borrow. */
+void stratus_device_drain(const stratus_context* context);
 
 typedef struct stratus_kernel_argument {
   size_t size;

@@ -52,8 +52,9 @@ stratus_status stratus_slot_receive(stratus_context* context, const stratus_devi
   return slot->lent ? stratus_device_settle(context, slot->memory, bytes) : stratus_device_read(context, slot->memory, 0, bytes, host);
 }
 
-void stratus_slots_return(stratus_device_slot* slots, int count)
+void stratus_slots_return(const stratus_context* context, stratus_device_slot* slots, int count)
 {
+  stratus_device_drain(context);
   for (int i = 0; i < count; ++i) {
     if (slots[i].lent) {
       stratus_slot_drop(slots + i);

@@ -29,6 +29,6 @@ stratus_status stratus_slot_send(stratus_context* context, stratus_device_slot* 
 /* Waits for the kernels, and gives `host` the bytes that they have written. host NULL: does nothing. */
 stratus_status stratus_slot_receive(stratus_context* context, const stratus_device_slot* slot, void* host, size_t bytes);
 /* Ends all loans after a frame, whether or not it was drawn: the host may use its memory again. */
-void stratus_slots_return(stratus_device_slot* slots, int count);
+void stratus_slots_return(const stratus_context* context, stratus_device_slot* slots, int count);
 
 #endif

@@ -290,3 +290,8 @@ stratus_status stratus_device_finish(stratus_context* context)
   stratus_device* device = context->device;
   return CALL(context, device, "clFinish", clFinish(device->queue));
 }
+
+void stratus_device_drain(const stratus_context* context)
+{
+  (void)clFinish(context->device->queue);
+}

@@ -3,12 +3,12 @@
  * each batch; a device that shares memory with the host reads it in place. */
 #include "first_hit_batch.h"
 
-#include "device.h"
+#include "device_frame.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define CHUNKS 512 /* per launch */
+#define CHUNKS 512 /* per launch: each one costs as much as many chunks, for threads of the host and of a processor's OpenCL take turns */
 #define GROUP 64   /* work items per group, one ray each */
 
 /* The kernel gets the arguments' size by a define and asserts it, too. */
@@ -23,11 +23,11 @@ typedef struct launch {
   stratus_hit_arguments arguments;
   cl_kernel kernel;
   bool packets;
-  cl_mem buffers[BUFFERS];
+  stratus_device_slot slots[BUFFERS];
   const buffer_name* names; /* of the kernel's parameters */
   unsigned parameters;
   stratus_hit_chunk* chunks;
-  int32_t* words; /* input of a launch, then its output */
+  int32_t *input, *output; /* of a launch; a device that shares memory with the host works in them */
 } launch;
 
 /* Copies the arrays of chunk c to their place among those of `count` rays. */
@@ -35,7 +35,7 @@ static void pack_chunk(const launch* l, int c, int count)
 {
   const stratus_hit_chunk* chunk = &l->chunks[c];
   const size_t bytes = (size_t)chunk->count * 4, first = (size_t)c * STRATUS_HIT_CHUNK, n = (size_t)count;
-  int32_t* const words = l->words + first;
+  int32_t* const words = l->input + first;
   for (size_t a = 0; a < 3; ++a) {
     memcpy(words + a * n, chunk->o[a], bytes);
     memcpy(words + (3 + a) * n, chunk->d[a], bytes);
@@ -49,7 +49,7 @@ static void unpack_chunk(const launch* l, int c, int count)
 {
   stratus_hit_chunk* chunk = &l->chunks[c];
   const size_t bytes = (size_t)chunk->count * 4, first = (size_t)c * STRATUS_HIT_CHUNK, n = (size_t)count;
-  const int32_t* const words = l->words + first;
+  const int32_t* const words = l->output + first;
   memcpy(chunk->state, words, bytes);
   for (size_t a = 0; a < 3; ++a) {
     memcpy(chunk->cell[a], words + (1 + a) * n, bytes);
@@ -76,15 +76,16 @@ static stratus_status walk(launch* l, const stratus_ray* rays, int count, stratu
     return STRATUS_OK;
   }
   l->arguments.count = count;
-  TRY(stratus_device_write(l->context, l->buffers[ARGUMENTS], 0, sizeof l->arguments, &l->arguments));
-  TRY(stratus_device_write(l->context, l->buffers[RAYS], 0, (size_t)count * 13 * 4, l->words));
+  TRY(stratus_slot_send(l->context, l->slots + ARGUMENTS, CL_MEM_READ_ONLY, &l->arguments, sizeof l->arguments));
+  TRY(stratus_slot_send(l->context, l->slots + RAYS, CL_MEM_READ_ONLY, l->input, (size_t)count * 13 * 4));
+  TRY(stratus_slot_lend(l->context, l->slots + RESULTS, CL_MEM_WRITE_ONLY, l->output, (size_t)count * 5 * 4));
   for (unsigned p = 0; p < l->parameters; ++p) {
-    TRY(stratus_device_argument(l->context, l->kernel, p, sizeof(cl_mem), &l->buffers[l->names[p]]));
+    TRY(stratus_device_argument(l->context, l->kernel, p, sizeof(cl_mem), &l->slots[l->names[p]].memory));
   }
   const bool packets = l->packets && !l->batch->tree->wide.node_count;
   const size_t items = packets ? ((size_t)count + 15) / 16 : (size_t)count, local = packets ? 4 : GROUP;
   TRY(stratus_device_run(l->context, l->kernel, 1, &items, &local));
-  TRY(stratus_device_read(l->context, l->buffers[RESULTS], 0, (size_t)count * 5 * 4, l->words));
+  TRY(stratus_slot_receive(l->context, l->slots + RESULTS, l->output, (size_t)count * 5 * 4));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(l->context->threads)
   for (int c = 0; c < chunks; ++c) {
     unpack_chunk(l, c, count);
@@ -96,7 +97,7 @@ static stratus_status walk(launch* l, const stratus_ray* rays, int count, stratu
 /* Makes a buffer of an array of the tree; of an empty one a few bytes, which are never read. */
 static stratus_status make_table(launch* l, buffer_name name, size_t bytes, const void* table)
 {
-  return stratus_device_buffer(l->context, CL_MEM_READ_ONLY, bytes ? bytes : 16, bytes ? table : NULL, bytes > 0, &l->buffers[name]);
+  return stratus_slot_keep(l->context, l->slots + name, bytes ? table : NULL, bytes);
 }
 
 static stratus_status make_tables(launch* l)
@@ -138,11 +139,10 @@ static stratus_status begin(launch* l, size_t most)
   TRY(stratus_allocate(l->context, (most + STRATUS_HIT_CHUNK - 1) / STRATUS_HIT_CHUNK, sizeof *l->chunks, &memory));
   l->chunks = memory;
   TRY(stratus_allocate(l->context, most, 13 * 4, &memory));
-  l->words = memory;
-  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, sizeof l->arguments, NULL, false, &l->buffers[ARGUMENTS]));
-  TRY(make_tables(l));
-  TRY(stratus_device_buffer(l->context, CL_MEM_READ_ONLY, most * 13 * 4, NULL, false, &l->buffers[RAYS]));
-  return stratus_device_buffer(l->context, CL_MEM_WRITE_ONLY, most * 5 * 4, NULL, false, &l->buffers[RESULTS]);
+  l->input = memory;
+  TRY(stratus_allocate(l->context, most, 5 * 4, &memory));
+  l->output = memory;
+  return make_tables(l);
 }
 
 stratus_status stratus_first_hit_device(
@@ -160,10 +160,12 @@ stratus_status stratus_first_hit_device(
       status = stratus_ray_refuse(context, batch.to_voxels, rays + first + bad, first + (size_t)bad);
     }
   }
+  stratus_device_drain(context);
   for (int b = 0; b < BUFFERS; ++b) {
-    stratus_device_buffer_release(l.buffers[b]);
+    stratus_slot_drop(l.slots + b);
   }
-  stratus_release(context, l.words);
+  stratus_release(context, l.input);
+  stratus_release(context, l.output);
   stratus_release(context, l.chunks);
   return status;
 }

@@ -227,7 +227,7 @@ static stratus_status draw_and_count(
   TRY(find_kernel(caster, frame->arguments, type, variant, packets, &kernel));
   TRY(stratus_allocate_zero(context, parts, 4 * sizeof(cl_uint), &memory));
   const stratus_status status = draw(caster, frame, kernel, packets, memory, parts * 4 * sizeof(cl_uint));
-  stratus_slots_return(caster->device->slots, BUFFERS);
+  stratus_slots_return(caster->context, caster->device->slots, BUFFERS);
   if (status == STRATUS_OK) {
     add_counts(memory, parts, counts);
   }

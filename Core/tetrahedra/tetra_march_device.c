@@ -101,6 +101,7 @@ static stratus_status draw(device_march* m, const stratus_tetra_device_source* s
     counts->segments += sums[4 * tile + 2];
     counts->stuck += sums[4 * tile + 3];
   }
+  stratus_device_drain(m->context);
   if (status != STRATUS_OK || m->slots[TETRA_COUNTS].lent) {
     stratus_slot_drop(&m->slots[TETRA_COUNTS]);
   }
@@ -123,7 +124,7 @@ stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetr
   const size_t tiles = (size_t)frame->columns * (size_t)frame->rows;
   device_march m = { context, *device, (*device)->slots, frame, stratus_device_is_cpu(context->device), tiles, tiles * PIXELS };
   const stratus_status status = draw(&m, source, buffers, counts, entries_ms, march_ms);
-  stratus_slots_return(m.slots, TETRA_SLOTS);
+  stratus_slots_return(context, m.slots, TETRA_SLOTS);
   TRY(status);
   *drawn = true;
   return stratus_progress(context, "march", 1.0);

@@ -103,6 +103,7 @@ static stratus_status draw(device_projection* p, const stratus_tetra_device_sour
     counts->segments += sums[COUNTS * tile + 1];
     counts->again += sums[COUNTS * tile + 2];
   }
+  stratus_device_drain(p->context);
   if (status != STRATUS_OK || p->slots[TETRA_COUNTS].lent) {
     stratus_slot_drop(&p->slots[TETRA_COUNTS]);
   }
@@ -122,7 +123,7 @@ stratus_status stratus_tetra_project_device(stratus_context* context, stratus_te
   device_projection p = { context, *device, (*device)->slots, projection, stratus_device_is_cpu(context->device),
     (size_t)projection->columns * (size_t)projection->rows };
   const stratus_status status = draw(&p, source, counts);
-  stratus_slots_return(p.slots, TETRA_SLOTS);
+  stratus_slots_return(context, p.slots, TETRA_SLOTS);
   TRY(status);
   *drawn = true;
   return stratus_progress(context, "project", 1.0);

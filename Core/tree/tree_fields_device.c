@@ -144,7 +144,7 @@ stratus_status stratus_device_tree_fields(
   TRY_CLEANUP(make_buffers(&d, voxels, shape));
   TRY_CLEANUP(run(&d));
 cleanup:;
-  stratus_slots_return(d.results, COUNT_OF(d.results));
+  stratus_slots_return(context, d.results, COUNT_OF(d.results));
   for (size_t i = 0; i < COUNT_OF(d.results); ++i) {
     stratus_slot_drop(&d.results[i]);
   }

@@ -164,12 +164,12 @@ stratus_status stratus_device_voxels(stratus_context* context, const stratus_sca
     end_name(type));
   const stratus_status status = run(&d);
   if (status != STRATUS_OK) {
-    stratus_slots_return(&d.bricks, 1);
+    stratus_slots_return(context, &d.bricks, 1);
     stratus_release(context, voxels->bricks);
     voxels->bricks = NULL;
     voxels->brick_count = 0;
   }
-  stratus_slots_return(&d.bricks, 1);
+  stratus_slots_return(context, &d.bricks, 1);
   stratus_slot_drop(&d.bricks);
   stratus_device_buffer_release(d.intervals);
   stratus_device_buffer_release(d.masks);
