@@ -337,9 +337,13 @@ stratus_status stratus_device_write(stratus_context* context, cl_mem buffer, siz
 stratus_status stratus_device_read(stratus_context* context, cl_mem buffer, size_t offset, size_t bytes, void* host)
 {
   stratus_device* device = context->device;
-  return bytes == 0
-    ? STRATUS_OK
-    : CALL(context, device, "clEnqueueReadBuffer", clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL));
+  if (bytes == 0) {
+    return STRATUS_OK;
+  }
+  TRY(
+    CALL(context, device, "clEnqueueReadBuffer", clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, host, 0, NULL, NULL)));
+  device->running = false;
+  return STRATUS_OK;
 }
 
 bool stratus_device_lends(const stratus_device* device, const void* host)
@@ -356,6 +360,7 @@ stratus_status stratus_device_settle(stratus_context* context, cl_mem buffer, si
     mapped = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &error);
   }
   TRY(stratus_device_check(context, device, "clEnqueueMapBuffer", error));
+  device->running = false;
   return CALL(context, device, "clEnqueueUnmapMemObject", clEnqueueUnmapMemObject(device->queue, buffer, mapped, 0, NULL, NULL));
 }
 

@@ -44,6 +44,7 @@ stratus_status stratus_device_check(stratus_context* context, stratus_device* de
   }
   if (device->queue) {
     clFinish(device->queue); /* the caller will release memory that launched kernels may still borrow */
+    device->running = false;
   }
   const bool memory = error == CL_OUT_OF_RESOURCES || error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_HOST_MEMORY;
   device->failure = memory ? STRATUS_OUT_OF_MEMORY : STRATUS_DEVICE_ERROR;

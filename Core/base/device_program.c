@@ -251,6 +251,7 @@ stratus_status stratus_device_run(
   }
   TRY(CALL(context, device, "clEnqueueNDRangeKernel",
     clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, rounded, local, 0, NULL, NULL)));
+  device->running = true;
   ++context->report.launched;
   return STRATUS_OK;
 }
@@ -288,10 +289,16 @@ stratus_status stratus_device_launch(stratus_context* context, const char* sourc
 stratus_status stratus_device_finish(stratus_context* context)
 {
   stratus_device* device = context->device;
-  return CALL(context, device, "clFinish", clFinish(device->queue));
+  TRY(CALL(context, device, "clFinish", clFinish(device->queue)));
+  device->running = false;
+  return STRATUS_OK;
 }
 
 void stratus_device_drain(const stratus_context* context)
 {
-  (void)clFinish(context->device->queue);
+  stratus_device* device = context->device;
+  if (device->running) {
+    (void)clFinish(device->queue);
+    device->running = false;
+  }
 }

@@ -30,6 +30,7 @@ struct stratus_device {
   size_t borrow_alignment;
   bool is_cpu, has_double, shares_memory;
   bool builds;            /* structures */
+  bool running;           /* kernels were launched that no later call has waited for */
   bool named;             /* by the caller: its failures are errors, but for want of memory */
   stratus_status failure; /* of the last call that failed, until stratus_device_hands_back() */
   int64_t calls_left;     /* OpenCL calls until every one fails with `injected`; negative: none fails */
