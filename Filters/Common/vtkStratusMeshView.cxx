@@ -40,10 +40,10 @@ uint64_t HashArray(vtkAbstractArray* array, uint64_t seed)
 // The hash of all that SetGeometry() reads.
 uint64_t HashGrid(vtkUnstructuredGrid* grid)
 {
-  vtkCellArray* cells = grid->GetCells();
-  vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr, cells->GetConnectivityArray(),
-    cells->GetOffsetsArray(), grid->GetCellTypesArray(), grid->GetFaces(), grid->GetFaceLocations(),
-    grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
+  vtkCellArray* cells = grid->GetCells(); // null in a grid after Initialize()
+  vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr,
+    cells ? cells->GetConnectivityArray() : nullptr, cells ? cells->GetOffsetsArray() : nullptr, grid->GetCellTypesArray(),
+    grid->GetFaces(), grid->GetFaceLocations(), grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
     grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
     grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray), grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
   uint64_t hash = 1;

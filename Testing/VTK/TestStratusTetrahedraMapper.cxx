@@ -178,6 +178,7 @@ void TestRefusals()
   scene.Grid->Modified();
   refuses("(71)");
   vtkNew<vtkUnstructuredGrid> empty;
+  empty->Initialize(); // it has no array of cells then
   scene.Tetrahedra->SetInputData(empty);
   const int before = scene.GridErrors->Count;
   CHECK(scene.GridPicture().empty() && scene.GridErrors->Count == before, "an empty grid is an error: %s", scene.GridErrors->Text.c_str());
