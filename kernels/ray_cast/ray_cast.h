@@ -29,28 +29,44 @@
 #include "ray_extremes.h"
 #endif
 
-/* The field at index coordinates: not finite where a corner is not, or where the cell or the value is hidden. */
-INLINE vfloat RAY_NAME(ray_value)(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
+/* The field at a position: not finite where a corner is not, or where the cell or the value is hidden. */
+INLINE vfloat RAY_NAME(ray_value)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const int* grid, const vfloat position[3], vmask mask)
 {
   vfloat x[3] = { position[0], position[1], position[2] };
-  if (a->values.clamp) {
+  const int stretched = RAY_STRETCHED(a), nearest = RAY_RARE(RAY_NEAREST, a->values.nearest);
+  const int hides = RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS);
+  if (stretched && (nearest || hides)) {
+    vfloat y[3] = { x[0], x[1], x[2] };
+    grid_snap(a, grid, y);
+    for (int axis = 0; axis < 3; ++axis) {
+      x[axis] = y[axis];
+    }
+  } else if (a->values.clamp) {
     for (int axis = 0; axis < 3; ++axis) {
       x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
   vfloat value;
-  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
+  if (nearest) {
     const vfloat half_one = v_set(0.5f);
     value = RAY_NAME(fetch_nearest)(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
   } else {
-    const vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
-    const vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
+    vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
+    vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
+    if (stretched) {
+      const vfloat y[3] = { position[0], position[1], position[2] };
+      vint cell[3];
+      vfloat fraction[3];
+      grid_find(a, grid, y, cell, fraction);
+      i = cell[0], j = cell[1], k = cell[2];
+      f = fraction[0], g = fraction[1], h = fraction[2];
+    }
     vfloat v[8];
     RAY_NAME(fetch_cell)(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
-  if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
+  if (hides) {
     value = ray_hide(a, hidden, x, mask, value);
   }
   return value;
@@ -68,12 +84,21 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     const vfloat s = segment_middle(k, fi);
 #endif
     vint block[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      vfloat x = v_fma(s, k->d[axis], k->p[axis]);
-      if (a->values.clamp) {
-        x = v_clamp(x, 0.0f, a->values.last[axis]);
+    if (RAY_STRETCHED(a)) {
+      const vfloat y[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+      vint cell[3];
+      grid_cells(a, k->grid, y, cell);
+      for (int axis = 0; axis < 3; ++axis) {
+        block[axis] = cell[axis] >> vi_set(a->map.block_log2);
       }
-      block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
+    } else {
+      for (int axis = 0; axis < 3; ++axis) {
+        vfloat x = v_fma(s, k->d[axis], k->p[axis]);
+        if (a->values.clamp) {
+          x = v_clamp(x, 0.0f, a->values.last[axis]);
+        }
+        block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
+      }
     }
     const vint index = block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant;
     vint byte;
@@ -127,7 +152,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   stratus_sample sample;
-  sample.value = RAY_NAME(ray_value)(a, values, hidden, x, inside);
+  sample.value = RAY_NAME(ray_value)(a, values, hidden, k->grid, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
   sample.values = values;
@@ -236,8 +261,8 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 #endif
 
 /* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
-INLINE void RAY_NAME(ray_load)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
+INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid, int x,
+  int y, stratus_packet* k, stratus_crop* crop)
 {
   const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
   float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH], fw[STRATUS_WIDTH];
@@ -259,6 +284,7 @@ INLINE void RAY_NAME(ray_load)(
     ray_setup_part(a, fx + part, fy + part, fz + part, fw + part, part, &rays);
   }
   packet_begin(a, &rays, vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height)), k);
+  k->grid = grid;
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
