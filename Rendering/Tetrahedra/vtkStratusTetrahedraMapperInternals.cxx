@@ -7,6 +7,7 @@
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -61,15 +62,33 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   return error.empty();
 }
 
+// The input, which is up to date; nullptr, with the reason in `error`, where it is missing or of another class.
+vtkDataSet* vtkStratusTetrahedraMapper::Internals::FindGrid(std::string& error) const
+{
+  vtkDataObject* input = this->Mapper->GetDataObjectInput();
+  if (vtkUnstructuredGrid::SafeDownCast(input) || vtkStructuredGrid::SafeDownCast(input)) {
+    return vtkDataSet::SafeDownCast(input);
+  }
+  error = (input ? std::string("the input is a ") + input->GetClassName() : std::string("there is no input")) +
+    ", a vtkUnstructuredGrid or vtkStructuredGrid is needed";
+  return nullptr;
+}
+
+const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
+{
+  std::string error;
+  auto* grid = vtkStructuredGrid::SafeDownCast(this->FindGrid(error));
+  return grid && this->Mesh.SetGeometry(grid, error) ? this->Mesh.GetBounds() : nullptr;
+}
+
 bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
 {
   vtkStratusTetrahedraMapper* mapper = this->Mapper;
   if (mapper->GetNumberOfInputConnections(0) > 0) {
     mapper->GetInputAlgorithm()->Update();
   }
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(mapper->GetDataObjectInput());
+  vtkDataSet* grid = this->FindGrid(error);
   if (!grid) {
-    error = "there is no input, a vtkUnstructuredGrid is needed";
     return false;
   }
   empty = grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0;

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataSet;
 class vtkVolumeProperty;
 
 class VTK_STRATUS_PRIVATE vtkStratusTetrahedraMapper::Internals
@@ -28,6 +29,8 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
+  // Of what a structured grid shows; nullptr for other input.
+  const double* FindBounds();
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const { return this->Transfer.GetBuilds(); }
   vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
@@ -43,6 +46,7 @@ public:
 private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  vtkDataSet* FindGrid(std::string& error) const;
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
 
