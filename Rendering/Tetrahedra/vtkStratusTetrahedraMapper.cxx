@@ -4,6 +4,7 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
@@ -25,6 +26,7 @@ int vtkStratusTetrahedraMapper::FillInputPortInformation(int, vtkInformation* in
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   return 1;
 }
 
@@ -36,6 +38,11 @@ void vtkStratusTetrahedraMapper::SetInputData(vtkUnstructuredGridBase* grid)
 void vtkStratusTetrahedraMapper::SetInputData(vtkDataSet* grid)
 {
   this->SetInputDataInternal(0, grid);
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkDataObjectTree* blocks)
+{
+  this->SetInputDataInternal(0, blocks);
 }
 
 double* vtkStratusTetrahedraMapper::GetBounds()

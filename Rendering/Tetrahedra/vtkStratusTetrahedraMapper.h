@@ -13,6 +13,9 @@
  * - structured (curvilinear) grids: hexahedra in layers, around poles, left-handed. Each is divided into six tetrahedra along the ways from
  *   its first corner to its last, which keep their orientation in layers over any ground; where layers cross, the cells that overlap all
  *   count. March needs some 21 bytes a hexahedron besides the grid, project some 490, as do grids in which layers cross;
+ * - composite data sets of such grids, of rectilinear ones and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
+ *   vtkPartitionedDataSetCollection), as one volume: points of the same coordinates and values become one, so that blocks meet in whole
+ *   faces. Blocks without the array or without a volume are left out with a warning. A block alone is drawn as it is;
  * - point and cell scalars of one component and any numeric type but bits;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite and maximum intensity (the largest value on a ray, at the opacity of one unit distance);
@@ -35,6 +38,7 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkDataObjectTree;
 class vtkImageData;
 class vtkTable;
 
@@ -174,15 +178,17 @@ public:
 
   //@{
   /**
-   * Set the input, a vtkUnstructuredGrid or a vtkStructuredGrid.
+   * Set the input: a vtkUnstructuredGrid, a vtkStructuredGrid, or blocks.
    */
   void SetInputData(vtkUnstructuredGridBase* grid) override;
   void SetInputData(vtkDataSet* grid) override;
+  virtual void SetInputData(vtkDataObjectTree* blocks);
   //@}
 
   //@{
   /**
-   * Get the bounds of the input: of a structured grid, those of its cells that are not hidden by a ghost or blanking array.
+   * Get the bounds of the input: of a structured grid, those of its cells that are not hidden by a ghost or blanking array; of blocks,
+   * those of the blocks that are drawn.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

@@ -3,6 +3,7 @@
 #ifndef vtkStratusTetrahedraMapperInternals_h
 #define vtkStratusTetrahedraMapperInternals_h
 
+#include "vtkStratusBlocks.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusMeshView.h"
@@ -29,7 +30,7 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
-  // Of what a structured grid shows; nullptr for other input.
+  // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
   const double* FindBounds();
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const { return this->Transfer.GetBuilds(); }
@@ -46,7 +47,13 @@ public:
 private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
-  vtkDataSet* FindGrid(std::string& error) const;
+  // What of the input is drawn, and its scalars.
+  struct Drawn {
+    vtkDataSet* Grid;
+    vtkDataArray* Scalars;
+    bool Cells;
+  };
+  bool FindDrawn(Drawn& drawn, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
 
@@ -55,6 +62,9 @@ private:
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
   bool HasPicture = false;
+  vtkStratusBlocks Blocks;
+  std::string LastLeftOut; // told already
+  double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth;
   vtkSmartPointer<vtkImageData> LastImage;
 };
