@@ -5,7 +5,8 @@
  *
  * Input: a vtkUnstructuredGrid. Its linear, quadratic, Lagrange and Bezier cells and polyhedra are divided into tetrahedra that meet face
  * to face; of Bezier cells the nodes that only steer them move to the points that belong to them. Vertices, lines and polygons are dropped.
- * Planes then cut the tetrahedra, so that each piece lies in one leaf (Li et al. 2012). Neighbouring pieces share their points, across leaves, too. Together the pieces of a cell fill the cell.
+ * Planes then cut the tetrahedra, so that each piece lies in one leaf (Li et al. 2012). Neighbouring pieces share their points, across
+ * leaves, too. Together the pieces of a cell fill the cell.
  *
  * Output: tetrahedra, leaf by leaf. The input's points keep their numbers. Behind them come the centres of quadratic cells that have no
  * node there (all but tetrahedra and triquadratic hexahedra and pyramids) and the points on cut edges. Point data are interpolated and cell
