@@ -6,8 +6,8 @@ include(CheckLanguage)
 set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore IOCore RenderingCore
   RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
-  IOExportGL2PS IOImage IOLegacy IOXML RenderingAnnotation RenderingContext2D RenderingContextOpenGL2 RenderingFreeType
-  RenderingGL2PSOpenGL2 TestingRendering ViewsContext2D)
+  IOEnSight IOExportGL2PS IOGeometry IOHDF IOImage IOLegacy IOXML IOXMLParser RenderingAnnotation
+  RenderingContext2D RenderingContextOpenGL2 RenderingFreeType RenderingGL2PSOpenGL2 TestingRendering ViewsContext2D)
 
 check_language(CXX)
 if (CMAKE_CXX_COMPILER)

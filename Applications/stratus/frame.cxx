@@ -22,8 +22,8 @@ bool ends_with_exr(const std::string& path)
 } // namespace
 
 frame::frame(const options& o)
-    : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color), IsExr(ends_with_exr(o.output)),
-      ShowsSamples(o.shows_samples)
+    : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color),
+      IsExr(ends_with_exr(o.frames.empty() ? o.output : o.frames)), ShowsSamples(o.shows_samples)
 {
 #ifndef STRATUS_EXR
   if (this->IsExr) {

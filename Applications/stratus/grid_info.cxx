@@ -139,12 +139,10 @@ void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
 }
 } // namespace
 
-void cli::print_grid(const options& o)
+void cli::print_grid(const options& o, vtkUnstructuredGrid* grid)
 {
   context core(o.device, o.threads);
-  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   double b[6] = { 0, 0, 0, 0, 0, 0 };
-  std::printf("%s\n", o.source.c_str());
   row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(grid->GetNumberOfPoints()) + " points");
   print_cells(grid);
   if (grid->GetNumberOfPoints() > 0) {
@@ -154,7 +152,8 @@ void cli::print_grid(const options& o)
   print_arrays(grid);
   print_tetrahedra(core, grid);
   try {
-    const mesh m(grid, o.array, o.source);
+    mesh m;
+    m.set(grid, o.array, o.source);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
     const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
     const stratus_transfer view = look.view();

@@ -14,6 +14,8 @@ struct options {
   std::string command; // render, info, tree, sort, devices, help
   std::string source;
   std::string output;
+  std::string frames; // render: the names of the pictures of all steps, with one %d
+  std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
   std::string opacity;
   std::string color;
