@@ -170,7 +170,7 @@ void cli::render(const options& o)
     render_one(o, routed(), "");
     return;
   }
-  series in(o.source);
+  series in(o.source, o.array);
   if (!o.frames.empty()) {
     render_film(o, in);
     return;
