@@ -91,11 +91,14 @@ void info(const cli::options& o)
   }
   cli::series in(o.source, o.array);
   const size_t step = in.find(o.time);
-  const cli::routed data = cli::route(in.read(step), o.source);
+  const cli::routed data = cli::route(in.read(step), o.source, o.array);
   cli::context core("host", o.threads);
   const std::unique_ptr<cli::input> image(data.image ? new cli::input(core, o.source, data.image, o.array) : nullptr);
   std::printf("%s\n", o.source.c_str());
   row("kind", data.kind + (image ? ", drawn by rays through its cells" : ", drawn as tetrahedra"));
+  if (!data.arrays.empty()) {
+    row("arrays", data.arrays);
+  }
   if (!in.grid().empty()) {
     row("coordinates", in.grid());
   }
