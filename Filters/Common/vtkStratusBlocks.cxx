@@ -192,6 +192,10 @@ bool vtkStratusBlocks::Check(const Block& block, std::string& error) const
       std::to_string(values) + (this->Cells ? " cells" : " points");
     return false;
   }
+  if (block.Set->GetCellData()->GetHigherOrderDegrees() || block.Set->GetPointData()->GetRationalWeights()) {
+    error = "cells with degrees or rational weights of their own cannot be joined with other blocks";
+    return false;
+  }
   auto* curved = vtkStructuredGrid::SafeDownCast(block.Set);
   int n[3];
   if (curved && FindDimensions(curved, n) && curved->GetNumberOfPoints() < static_cast<vtkIdType>(n[0]) * n[1] * n[2]) {

@@ -45,8 +45,9 @@ uint64_t HashGrid(vtkUnstructuredGrid* grid)
   vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr,
     cells ? cells->GetConnectivityArray() : nullptr, cells ? cells->GetOffsetsArray() : nullptr, grid->GetCellTypesArray(),
     grid->GetFaces(), grid->GetFaceLocations(), grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
-    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
-    grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray), grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
+    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()), grid->GetCellData()->GetHigherOrderDegrees(),
+    grid->GetPointData()->GetRationalWeights(), grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray),
+    grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
   uint64_t hash = 1;
   for (vtkAbstractArray* array : arrays) {
     hash = HashArray(array, hash);

@@ -9,6 +9,8 @@
  * Supported are:
  * - linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
  *   cells. Cells are divided into linear tetrahedra, in which the field is linear; neighbours divide their common face alike.
+ *   Lagrange and Bezier hexahedra, wedges and tetrahedra, rational ones, too, are divided at their nodes, of Bezier cells at the points
+ *   that belong to these: the picture errs by what linear interpolation between nodes does, which falls with the square of their distance.
  *   Vertices, lines and polygons are ignored and counted; a grid that has nothing else is an error.
  * - structured (curvilinear) grids: hexahedra in layers, around poles, left-handed. Each is divided into six tetrahedra along the ways from
  *   its first corner to its last, which keep their orientation in layers over any ground; where layers cross, the cells that overlap all
@@ -23,7 +25,7 @@
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping
+ * All else (shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping
  * planes) is refused by an error, and nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
