@@ -62,7 +62,7 @@ typedef struct stratus_tetra_report {
   uint64_t segments;
   /* Paths through cells that ended inside the mesh because no exit face was found: 0 unless coordinates underflow. */
   uint64_t stuck;
-  int64_t cells, shown_cells; /* cells of the mesh; cells neither hidden nor blanked */
+  int64_t cells, shown_cells; /* cells of the mesh, of a lattice six for each hexahedron; cells neither hidden nor blanked */
   /* Cells left out that are not hidden: their values are not finite floats, or they name a point more than once. */
   int64_t blanked;
   int64_t repeated;     /* those of them that name a point more than once, and so have no volume */
@@ -100,10 +100,12 @@ STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
 /* Draws a picture. Both methods use the context's device, or the host if there is none or the mesh is too large for it; projection finds
  * the cells of each tile on the host. The mesh must have values. The caster reads it again when its pointers, counts, type, stride or
- * revision differ from the last call's, else only its matrix. Opacity is per world length. In image, samples receives the number of
- * segments in the pixel, and depth the world distance to the first segment that contributes (maximum: to the largest value). options and
- * report may be NULL. A failed call leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells,
- * INT32_MAX/4 points or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
+ * revision differ from the last call's, else only its matrix. A lattice marches by its points' numbers, and keeps some 21 bytes for each
+ * point and 56 for each face at the border; where it is to be projected, or its cells turn both ways (a layer that lies partly below the
+ * one beneath), its tetrahedra are listed first. Opacity is per world length. In image, samples receives the number of segments in the
+ * pixel, and depth the world distance to the first segment that contributes (maximum: to the largest value). options and report may be
+ * NULL. A failed call leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells, INT32_MAX/4 points
+ * or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
 STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
   stratus_tetra_report* report);

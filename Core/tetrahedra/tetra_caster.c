@@ -2,6 +2,7 @@
  * The renderer of tetrahedra: checks its input, rebuilds what changed (mesh: cells and border faces; transfer function: table), draws and
  * reports. */
 #include "tetra_caster.h"
+#include "tetra_lattice.h"
 
 #include "device.h"
 #include "picture.h"
@@ -60,6 +61,8 @@ void stratus_tetra_caster_release(stratus_tetra_caster* caster)
 {
   if (caster) {
     drop_mesh(caster);
+    stratus_tetra_list_destroy(caster->list);
+    caster->list = NULL;
     stratus_tetra_buffers_release(caster->context, &caster->buffers);
   }
 }
@@ -96,8 +99,9 @@ static stratus_status check_options(stratus_context* context, const stratus_tetr
 static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
 {
   return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
-    a->values == b->values && a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values &&
-    a->hidden == b->hidden && a->revision == b->revision;
+    a->float_points == b->float_points && memcmp(a->lattice, b->lattice, sizeof a->lattice) == 0 && a->values == b->values &&
+    a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values && a->hidden == b->hidden &&
+    a->revision == b->revision;
 }
 
 /* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
@@ -112,7 +116,11 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
     return STRATUS_OK;
   }
   stratus_tetra_device_drop_values(caster->device);
-  TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
+  if (stratus_mesh_is_lattice(mesh)) {
+    TRY(stratus_tetra_lattice_take_values(known, mesh, taken));
+  } else {
+    TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
+  }
   if (*taken) {
     if (caster->projector) {
       stratus_tetra_projector_take(caster->projector, mesh, known);
@@ -126,10 +134,12 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
   return STRATUS_OK;
 }
 
-static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, double* ms)
+/* *mixed: the mesh is a lattice whose cells turn both ways, and is to be listed; then nothing has changed. */
+static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, bool* mixed, double* ms)
 {
   stratus_tetra_mesh* made = NULL;
   bool taken = false;
+  *mixed = false;
   if (caster->mesh && same_mesh(&caster->view, mesh)) {
     return STRATUS_OK;
   }
@@ -137,17 +147,71 @@ static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_me
   if (caster->mesh) {
     TRY(update_values(caster, mesh, &taken));
     if (taken) {
-      *ms = stratus_now_ms() - start;
+      *ms += stratus_now_ms() - start;
       return STRATUS_OK;
     }
   }
-  TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
+  if (stratus_mesh_is_lattice(mesh)) {
+    TRY(stratus_tetra_lattice_create(caster->context, mesh, &made, mixed));
+    if (*mixed) {
+      caster->mixed = made->geometry;
+      stratus_tetra_mesh_destroy(made);
+      *ms += stratus_now_ms() - start;
+      return STRATUS_OK;
+    }
+  } else {
+    TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
+  }
   drop_mesh(caster);
   caster->mesh = made;
   caster->view = *mesh;
   ++caster->mesh_builds;
   ++caster->value_builds;
-  *ms = stratus_now_ms() - start;
+  *ms += stratus_now_ms() - start;
+  return STRATUS_OK;
+}
+
+/* Takes the list of a lattice's cells. *drawn: the list's mesh. */
+static stratus_status update_list(stratus_tetra_caster* caster, const stratus_mesh* lattice, const stratus_mesh** drawn, double* ms)
+{
+  const double start = stratus_now_ms();
+  stratus_tetra_list* list = caster->list;
+  bool mixed = false;
+  if (!list || !same_mesh(&list->source, lattice)) {
+    TRY(stratus_tetra_list_create(caster->context, lattice, &list));
+    *ms += stratus_now_ms() - start;
+  }
+  memcpy(list->mesh.matrix, lattice->matrix, sizeof lattice->matrix);
+  const stratus_status status = update_mesh(caster, &list->mesh, &mixed, ms);
+  if (list != caster->list) {
+    stratus_tetra_list* outdated = status == STRATUS_OK ? caster->list : list;
+    caster->list = status == STRATUS_OK ? list : caster->list;
+    stratus_tetra_list_destroy(outdated);
+  }
+  *drawn = &list->mesh;
+  return status;
+}
+
+/* Takes a mesh, or the list of a lattice that cannot be drawn as it is. *drawn: what the caster has taken. */
+static stratus_status update(
+  stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options, const stratus_mesh** drawn, double* ms)
+{
+  bool listed = false;
+  *drawn = mesh;
+  if (stratus_mesh_is_lattice(mesh)) {
+    const bool known = caster->list && same_mesh(&caster->list->source, mesh);
+    listed = options->method == STRATUS_TETRA_METHOD_PROJECT ||
+      (caster->mixed != 0 && (known || caster->mixed == stratus_tetra_hash(caster->context, mesh)));
+  }
+  if (!listed) {
+    TRY(update_mesh(caster, mesh, &listed, ms));
+  }
+  if (listed) {
+    return update_list(caster, mesh, drawn, ms);
+  }
+  stratus_tetra_list_destroy(caster->list);
+  caster->list = NULL;
+  caster->mixed = stratus_mesh_is_lattice(mesh) ? 0 : caster->mixed;
   return STRATUS_OK;
 }
 
@@ -195,7 +259,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
   return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count };
+    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -308,17 +372,19 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_camera_check(caster->context, camera, image));
   /* a mesh is checked only when it changes, so that a moved camera costs no pass over it */
-  if (!mesh || !caster->mesh || !same_mesh(&caster->view, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
+  const stratus_mesh* known = caster->list ? &caster->list->source : &caster->view;
+  if (!mesh || !caster->mesh || !same_mesh(known, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
     TRY(stratus_mesh_check(caster->context, mesh));
   }
   const int64_t values = mesh->cell_values ? mesh->cell_count : mesh->point_count;
   if (!mesh->values && values > 0) {
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
-  TRY(update_mesh(caster, mesh, &mine.build_ms));
+  const stratus_mesh* drawn = NULL;
+  TRY(update(caster, mesh, options, &drawn, &mine.build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
   TRY(update_table(caster, transfer, options->mode, &mine.table_ms));
-  TRY(draw(caster, mesh, camera, options, image, &mine));
+  TRY(draw(caster, drawn, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {
     *report = mine;

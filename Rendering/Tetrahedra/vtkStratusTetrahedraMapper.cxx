@@ -4,12 +4,15 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderer.h"
+#include "vtkUnstructuredGridBase.h"
 #include "vtkVolume.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -22,7 +25,37 @@ vtkStratusTetrahedraMapper::~vtkStratusTetrahedraMapper() = default;
 int vtkStratusTetrahedraMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   return 1;
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkUnstructuredGridBase* grid)
+{
+  this->SetInputDataInternal(0, grid);
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkDataSet* grid)
+{
+  this->SetInputDataInternal(0, grid);
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkDataObjectTree* blocks)
+{
+  this->SetInputDataInternal(0, blocks);
+}
+
+double* vtkStratusTetrahedraMapper::GetBounds()
+{
+  if (this->GetNumberOfInputConnections(0) > 0) {
+    this->GetInputAlgorithm()->Update();
+  }
+  const double* bounds = this->Internal->FindBounds();
+  if (!bounds) {
+    return this->Superclass::GetBounds();
+  }
+  std::copy_n(bounds, 6, this->Bounds);
+  return this->Bounds;
 }
 
 void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)

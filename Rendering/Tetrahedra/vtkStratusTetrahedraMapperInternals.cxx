@@ -3,10 +3,13 @@
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
+#include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -61,29 +64,79 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   return error.empty();
 }
 
-bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
+// Finds the grid of an input that is up to date. No grid: the input is a composite data set without cells.
+bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string& error)
 {
   vtkStratusTetrahedraMapper* mapper = this->Mapper;
-  if (mapper->GetNumberOfInputConnections(0) > 0) {
-    mapper->GetInputAlgorithm()->Update();
+  const auto find = [mapper](vtkDataSet* grid, int& cells) {
+    return vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
+  };
+  vtkDataObject* input = mapper->GetDataObjectInput();
+  drawn = { nullptr, nullptr, false };
+  if (vtkUnstructuredGrid::SafeDownCast(input) || vtkStructuredGrid::SafeDownCast(input)) {
+    drawn.Grid = vtkDataSet::SafeDownCast(input);
+    if (drawn.Grid->GetNumberOfCells() == 0 || drawn.Grid->GetNumberOfPoints() == 0) {
+      drawn.Grid = nullptr;
+      return true;
+    }
+    int cells = 0;
+    drawn.Scalars = find(drawn.Grid, cells);
+    drawn.Cells = cells == 1;
+    if (!drawn.Scalars || cells > 1) {
+      error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
+    }
+    return error.empty();
   }
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(mapper->GetDataObjectInput());
-  if (!grid) {
-    error = "there is no input, a vtkUnstructuredGrid is needed";
+  if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
+    const bool taken = this->Blocks.Set(whole, find, error);
+    drawn = { this->Blocks.GetGrid(), this->Blocks.GetScalars(), this->Blocks.OfCells() };
+    return taken;
+  }
+  error = (input ? std::string("the input is a ") + input->GetClassName() : std::string("there is no input")) +
+    ", a vtkUnstructuredGrid, a vtkStructuredGrid or a composite data set of such is needed";
+  return false;
+}
+
+const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
+{
+  std::string error;
+  vtkDataObject* input = this->Mapper->GetDataObjectInput();
+  if (auto* grid = vtkStructuredGrid::SafeDownCast(input)) {
+    return this->Mesh.SetGeometry(grid, error) ? this->Mesh.GetBounds() : nullptr;
+  }
+  if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
+    Drawn drawn;
+    vtkMath::UninitializeBounds(this->Box);
+    if (this->FindDrawn(drawn, error) && drawn.Grid) {
+      drawn.Grid->GetBounds(this->Box);
+    } else {
+      whole->GetBounds(this->Box);
+    }
+    return this->Box;
+  }
+  return nullptr;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
+{
+  Drawn drawn;
+  if (this->Mapper->GetNumberOfInputConnections(0) > 0) {
+    this->Mapper->GetInputAlgorithm()->Update();
+  }
+  if (!this->FindDrawn(drawn, error)) {
     return false;
   }
-  empty = grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0;
+  empty = !drawn.Grid;
   if (empty) {
     return true;
   }
-  int cells = 0;
-  vtkDataArray* array =
-    vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
-  if (!array || cells > 1) {
-    error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
-    return false;
+  const bool blocks = vtkDataObjectTree::SafeDownCast(this->Mapper->GetDataObjectInput()) != nullptr;
+  const std::string left = blocks ? this->Blocks.TellLeftOut() : std::string();
+  if (!left.empty() && left != this->LastLeftOut) { // told once, not with every picture
+    vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
-  return this->Mesh.Set(grid, array, cells == 1, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
+  this->LastLeftOut = left;
+  return this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)

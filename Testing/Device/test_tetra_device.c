@@ -89,6 +89,10 @@ static void device_and_host_draw_the_same(void** state)
     assert_true(theirs.report.segments > 0);
     tetra_draw(device, &c, &ours);
     assert_same();
+    tetra_as_lattice(&c, edge);
+    tetra_draw(host, &c, &theirs);
+    tetra_draw(device, &c, &ours);
+    assert_same();
     tetra_destroy(&c);
   }
   stratus_context_destroy(device);

@@ -35,6 +35,7 @@ typedef struct stratus_tetra_arguments {
   float per_z, per_frame; /* world lengths along `forward` of a unit of z, and of the middle's c */
   int columns;            /* of tiles */
   int cell_values;
+  int lattice; /* 1: cells are those of a lattice, whose neighbours follow from the names of their points */
   int maximum;
   int steps_most; /* the most cells that a ray can pass from one border face to the next */
   int has_ends;   /* 1: rays end at opaque geometry, each pixel at a depth of its own */
