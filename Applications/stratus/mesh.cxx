@@ -12,14 +12,15 @@ namespace cli {
 
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path)
 {
-  const routed data = route(read_data(path), path);
-  if (!data.grid) {
-    throw failure("'" + path + "' holds an image, not an unstructured grid");
+  const routed data = route(read_data(path), path, "");
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data.grid);
+  if (!grid) {
+    throw failure("'" + path + "' holds " + data.kind + ", not an unstructured grid");
   }
-  return data.grid;
+  return grid;
 }
 
-void mesh::set(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path)
+void mesh::set(vtkDataSet* grid, const std::string& array, const std::string& path)
 {
   if (grid->GetNumberOfCells() < 1) {
     throw failure("'" + path + "' holds no cells, only " + std::to_string(grid->GetNumberOfPoints()) + " points; there is nothing to draw");

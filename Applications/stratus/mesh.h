@@ -11,7 +11,7 @@
 
 namespace cli {
 
-// Reads the first step of a file as an unstructured grid, and fails for images.
+// Reads the first step of a file as an unstructured grid, and fails for other data.
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path);
 
 // A grid's cells divided into tetrahedra, with the values of the array to draw.
@@ -20,7 +20,7 @@ class VTK_STRATUS_PRIVATE mesh
 public:
   // Takes a grid in place of the last one. What did not change is kept. `array` is the array's name. If it is empty, choose_array() chooses
   // the array.
-  void set(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path);
+  void set(vtkDataSet* grid, const std::string& array, const std::string& path);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
   // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity

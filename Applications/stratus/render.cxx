@@ -19,12 +19,12 @@ namespace {
 using cli::row;
 
 // Reads a step into memory of its own, so that the reader is free for the next one in another thread.
-cli::routed read_apart(cli::series& in, size_t step, const std::string& path)
+cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
 {
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
   own->DeepCopy(shared);
-  return cli::route(own, path);
+  return cli::route(own, o.source, o.array);
 }
 
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
@@ -66,7 +66,7 @@ std::string frame_name(const std::string& pattern, size_t number)
 }
 
 // Takes the one of the first, middle and last step whose values range widest, and looks at it: a field often starts as one value.
-void look_at_widest(cli::drawing& drawing, cli::series& in, const std::string& path)
+void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& o)
 {
   const size_t candidates[] = { 0, in.steps() / 2, in.steps() - 1 };
   size_t best = 0;
@@ -75,14 +75,14 @@ void look_at_widest(cli::drawing& drawing, cli::series& in, const std::string& p
     if (i > 0 && candidates[i] == candidates[i - 1]) {
       continue;
     }
-    drawing.take(read_apart(in, candidates[i], path));
+    drawing.take(read_apart(in, candidates[i], o));
     const std::pair<double, double> range = drawing.range();
     if (range.second - range.first > widest) {
       widest = range.second - range.first;
       best = candidates[i];
     }
   }
-  drawing.take(read_apart(in, best, path));
+  drawing.take(read_apart(in, best, o));
   drawing.look();
   row("functions", "and camera by " + in.describe(best));
 }
@@ -130,16 +130,16 @@ void render_film(const cli::options& o, cli::series& in)
     cli::output_file first(frame_name(o.frames, 0));
   } // a path that cannot be written is reported at once
   std::printf("%s\n", o.source.c_str());
-  cli::routed data = read_apart(in, 0, o.source);
+  cli::routed data = read_apart(in, 0, o);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
-  look_at_widest(*drawing, in, o.source);
+  look_at_widest(*drawing, in, o);
   const stratus_image image = frame.view();
   {
     film_progress progress(in.steps());
     for (size_t step = 0; step < in.steps(); ++step) {
       std::future<cli::routed> next;
       if (step + 1 < in.steps()) {
-        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o.source); });
+        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o); });
       }
       drawing->take(data);
       drawing->draw(image);
@@ -170,11 +170,11 @@ void cli::render(const options& o)
     render_one(o, routed(), "");
     return;
   }
-  series in(o.source);
+  series in(o.source, o.array);
   if (!o.frames.empty()) {
     render_film(o, in);
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route(in.read(step), o.source), in.describe(step));
+  render_one(o, route(in.read(step), o.source, o.array), in.describe(step));
 }

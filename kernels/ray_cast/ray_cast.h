@@ -84,22 +84,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     const vfloat s = segment_middle(k, fi);
 #endif
     vint block[3];
-    if (RAY_STRETCHED(a)) {
-      const vfloat y[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-      vint cell[3];
-      grid_cells(a, k->grid, y, cell);
-      for (int axis = 0; axis < 3; ++axis) {
-        block[axis] = cell[axis] >> vi_set(a->map.block_log2);
-      }
-    } else {
-      for (int axis = 0; axis < 3; ++axis) {
-        vfloat x = v_fma(s, k->d[axis], k->p[axis]);
-        if (a->values.clamp) {
-          x = v_clamp(x, 0.0f, a->values.last[axis]);
-        }
-        block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
-      }
-    }
+    packet_blocks(a, k, s, block);
     const vint index = block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant;
     vint byte;
     if (RAY_RARE(RAY_TREE, a->map.tree)) {
@@ -264,26 +249,9 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid, int x,
   int y, stratus_packet* k, stratus_crop* crop)
 {
-  const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
-  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH], fw[STRATUS_WIDTH];
   stratus_rays rays;
-  v_store(fx, v_from_int(px));
-  v_store(fy, v_from_int(py));
-  if (a->camera.has_opaque_depth) {
-    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      const int lx = x + (lane & (PACKET_X - 1)), ly = y + (lane >> PACKET_X_LOG2);
-      fz[lane] = lx < a->picture.width && ly < a->picture.height ? opaque_depth[(size_t)ly * (size_t)a->picture.width + (size_t)lx] : 1.0f;
-    }
-  }
-  if (RAY_RARE(RAY_JITTER, a->lattice.jitter)) {
-    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->lattice.seed);
-    }
-  }
-  for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
-    ray_setup_part(a, fx + part, fy + part, fz + part, fw + part, part, &rays);
-  }
-  packet_begin(a, &rays, vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height)), k);
+  const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
+  packet_begin(a, &rays, inside, k);
   k->grid = grid;
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
