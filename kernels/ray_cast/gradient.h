@@ -62,7 +62,7 @@ INLINE void RAY_NAME(voxel_gradient)(
   }
   for (int axis = 0; axis < 3; ++axis) {
     vfloat place = snapped[axis];
-    if (a->values.clamp && !RAY_STRETCHED(a)) {
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       place = v_clamp(place, 0.0f, a->values.last[axis]);
     }
     at[axis] = v_to_int(place + v_set(0.5f));

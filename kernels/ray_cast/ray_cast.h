@@ -36,11 +36,13 @@ INLINE vfloat RAY_NAME(ray_value)(CONSTANT stratus_ray_cast_arguments* a, value_
   vfloat x[3] = { position[0], position[1], position[2] };
   const int stretched = RAY_STRETCHED(a), nearest = RAY_RARE(RAY_NEAREST, a->values.nearest);
   const int hides = RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS);
-  if (stretched && (nearest || hides)) {
-    vfloat y[3] = { x[0], x[1], x[2] };
-    grid_snap(a, grid, y);
-    for (int axis = 0; axis < 3; ++axis) {
-      x[axis] = y[axis];
+  if (stretched) {
+    if (nearest | hides) {
+      vfloat y[3] = { x[0], x[1], x[2] };
+      grid_snap(a, grid, y);
+      for (int axis = 0; axis < 3; ++axis) {
+        x[axis] = y[axis];
+      }
     }
   } else if (a->values.clamp) {
     for (int axis = 0; axis < 3; ++axis) {

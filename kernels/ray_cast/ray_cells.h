@@ -338,7 +338,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
     return;
   }
   const int halves = (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) && !a->values.clamp;
-  const int twice = halves && !RAY_STRETCHED(a), moved = !halves && !RAY_STRETCHED(a); /* stretched grids have planes of both kinds */
+  const int even = !RAY_STRETCHED(a), twice = even & halves, moved = even & !halves; /* stretched grids have planes of both kinds */
   const vfloat scale = v_set(twice ? 2.0f : 1.0f), shift = v_set(moved ? 0.5f : 0.0f), shrink = v_set(twice ? 0.5f : 1.0f);
   const vfloat p[3] = { k->p[0], k->p[1], k->p[2] }, d[3] = { k->d[0], k->d[1], k->d[2] },
                inverse[3] = { k->inverse[0], k->inverse[1], k->inverse[2] };

@@ -21,7 +21,7 @@
 
 /* Not inlined on the host: most volumes have no such grid, and the march should be compiled as if there were none. */
 #ifdef STRATUS_DEVICE
-#define GRID_OUTLINE static
+#define GRID_OUTLINE static __attribute__((unused))
 #else
 #define GRID_OUTLINE static __attribute__((noinline, unused)) /* not every mode needs each */
 #endif

@@ -37,7 +37,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
   vfloat x[3];
   for (int axis = 0; axis < 3; ++axis) {
     x[axis] = v_fma(s, k->d[axis], k->p[axis]);
-    if (a->values.clamp && !RAY_STRETCHED(a)) {
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }

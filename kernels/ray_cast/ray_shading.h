@@ -143,7 +143,7 @@ OUTLINE vint RAY_NAME(label_at)(
   }
   for (int axis = 0; axis < 3; ++axis) {
     vfloat at = snapped[axis];
-    if (a->values.clamp && !RAY_STRETCHED(a)) {
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       at = v_clamp(at, 0.0f, a->values.last[axis]);
     }
     v_store(place[axis], at);
