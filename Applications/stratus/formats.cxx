@@ -5,6 +5,7 @@
 
 #ifdef STRATUS_NETCDF
 #include "vtkStratusCFReader.h"
+#include "vtkStratusUgridReader.h"
 #endif
 #include "vtkStratusTetGenReader.h"
 
@@ -69,7 +70,7 @@ made ensight(const std::string& path)
 made netcdf(const std::string& path)
 {
 #ifdef STRATUS_NETCDF
-  return reader_for<vtkStratusCFReader>(path);
+  return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
 #else
   throw cli::failure("cannot read '" + path + "': this program was built without libnetcdf, which reads netCDF files");
 #endif
