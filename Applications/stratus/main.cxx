@@ -59,7 +59,7 @@ void print_volume(const cli::options& o, cli::context& core, const cli::input& i
     row("range", cli::format("%.9g .. %.9g", h.low, h.high));
   }
   row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
-  row("opacity", cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance).origin);
+  row("opacity", cli::make_transfer(in.volume, in.scene, o).origin);
 }
 
 void print_time(const cli::series& in)

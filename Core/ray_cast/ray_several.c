@@ -124,8 +124,11 @@ static stratus_status update(several* s, several_input* in)
   if (!caster->owns_all) {
     return stratus_fail(s->context, STRATUS_UNSUPPORTED, "a volume of several has DUPLICATE ghosts: only whole volumes mix");
   }
-  TRY(stratus_ray_update_structures(caster, in->options.structure, false, &in->used, in->why, sizeof in->why,
-    &in->report)); /* no times: what is drawn is no volume's own */
+  /* times of a picture of several tell nothing of one volume's structure */
+  TRY(stratus_ray_update_structures(caster, in->options.structure, false, &in->used, in->why, sizeof in->why, &in->report));
+  if (in->options.structure == STRATUS_STRUCTURE_AUTO && in->used != STRATUS_STRUCTURE_NONE) {
+    snprintf(in->why, sizeof in->why, "%s: several volumes are not timed apart", stratus_structure_name(in->used));
+  }
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, in->of->volume, &in->options, &in->report));
   }

@@ -146,6 +146,7 @@ std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
       file.Fail("time '" + time->Name + "' has no steps");
     }
   }
+  this->LengthUnits = mesh.IsInMetres() ? "m" : "";
   this->Description = mesh.Describe() + "; " + layers.Describe();
   return "vtkUnstructuredGrid";
 }

@@ -6,6 +6,10 @@
 
 #include "reference.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define REFERENCE_SEVERAL_MAX 8
 
 /* Draws 1..8 scenes, all from the camera and with the opaque depth of the first, as reference_render() does, in midpoint steps between the
@@ -16,4 +20,7 @@ int reference_render_several(const reference_scene* scenes, int count, int width
 int reference_converged_several(
   const reference_scene* scenes, int count, int width, int height, double wanted_db, float* rgba, float* depth, double* reference_db);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
