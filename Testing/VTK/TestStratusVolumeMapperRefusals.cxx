@@ -124,7 +124,7 @@ void Props()
     "structured grid", "vtkStructuredGrid is not supported",
     [&](Scene& s) {
       s.Mapper->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, pipeline); // it says so, too
-      static_cast<vtkVolumeMapper*>(s.Mapper)->SetInputData(grid);
+      s.Mapper->SetInputDataObject(grid);
     },
     [](Scene& s) { s.Mapper->SetInputData(s.Image); });
 }
