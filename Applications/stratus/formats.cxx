@@ -3,7 +3,15 @@
 
 #include "support.h"
 
+#ifdef STRATUS_NETCDF
+#include "vtkStratusCFReader.h"
+#include "vtkStratusUgridReader.h"
+#endif
 #include "vtkStratusTetGenReader.h"
+
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+#include <vtkCellData.h>
 
 #include <vtkDataSetReader.h>
 #include <vtkGenericEnSightReader.h>
@@ -14,6 +22,7 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtkNrrdReader.h>
 #include <vtkOpenFOAMReader.h>
+#include <vtkPointData.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
@@ -58,6 +67,15 @@ made ensight(const std::string& path)
   return reader;
 }
 
+made netcdf(const std::string& path)
+{
+#ifdef STRATUS_NETCDF
+  return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
+#else
+  throw cli::failure("cannot read '" + path + "': this program was built without libnetcdf, which reads netCDF files");
+#endif
+}
+
 constexpr struct {
   const char* extension;
   made (*make)(const std::string& path);
@@ -75,6 +93,9 @@ constexpr struct {
   { ".vtk", reader_for<vtkDataSetReader> },
   { ".vtkhdf", reader_for<vtkHDFReader> },
   { ".hdf", reader_for<vtkHDFReader> },
+  { ".nc", netcdf },
+  { ".nc4", netcdf },
+  { ".cdf", netcdf },
   { ".foam", openfoam },
   { "controldict", openfoam },
   { ".case", ensight },
@@ -129,6 +150,113 @@ file_format choose_format(const std::string& path)
   }
   return { other, "" };
 }
+
+#ifdef STRATUS_NETCDF
+std::string time_units_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  return netcdf ? netcdf->GetTimeUnits() : "";
+}
+
+std::string description_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  return netcdf ? netcdf->GetDescription() : "";
+}
+
+std::string length_units_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  return netcdf ? netcdf->GetLengthUnits() : "";
+}
+
+std::string value_units_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  const std::string chosen = netcdf && netcdf->GetVariableName() ? netcdf->GetVariableName() : "";
+  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
+    if (chosen.empty() || chosen == netcdf->GetNameOfVariable(i)) {
+      return netcdf->GetUnitsOfVariable(i);
+    }
+  }
+  return "";
+}
+
+bool has_variable(vtkAlgorithm* reader, const std::string& name)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
+    if (name == netcdf->GetNameOfVariable(i)) {
+      return true;
+    }
+  }
+  return !netcdf;
+}
+
+void choose_variable(vtkAlgorithm* reader, const std::string& name)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  if (netcdf) {
+    netcdf->SetVariableName(name.empty() ? nullptr : name.c_str());
+  }
+}
+
+std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
+{
+  std::vector<variable_entry> list;
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
+    list.push_back({ netcdf->GetNameOfVariable(i), netcdf->GetUnitsOfVariable(i), netcdf->GetLongNameOfVariable(i), 1.0, 0.0 });
+  }
+  for (variable_entry& one : list) {
+    netcdf->SetVariableName(one.name.c_str());
+    netcdf->UpdateTimeStep(time);
+    vtkDataSet* const data = netcdf->GetOutput();
+    vtkDataArray* values = data ? data->GetPointData()->GetArray(one.name.c_str()) : nullptr;
+    values = values || !data ? values : data->GetCellData()->GetArray(one.name.c_str());
+    if (values) {
+      double range[2];
+      values->GetFiniteRange(range);
+      one.low = range[0];
+      one.high = range[1];
+    }
+  }
+  choose_variable(reader, "");
+  return list;
+}
+#else
+std::string time_units_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+std::string description_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+std::string length_units_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+std::string value_units_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+bool has_variable(vtkAlgorithm*, const std::string&)
+{
+  return true;
+}
+
+void choose_variable(vtkAlgorithm*, const std::string&) {}
+
+std::vector<variable_entry> list_variables(vtkAlgorithm*, double)
+{
+  return {};
+}
+#endif
 
 std::vector<collection_step> read_collection(const std::string& path)
 {

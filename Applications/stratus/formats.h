@@ -24,6 +24,21 @@ struct file_format {
 };
 file_format choose_format(const std::string& path);
 
+// What a file that is read by variables has: the range is of one step.
+struct variable_entry {
+  std::string name, units, long_name;
+  double low, high; // low > high: nothing finite
+};
+// Lists the variables at a step; empty for a reader of whole files. The reader's variable is the first afterwards.
+std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
+// What a reader of variables tells of time and grid, "" from others.
+std::string time_units_of(vtkAlgorithm* reader);
+std::string description_of(vtkAlgorithm* reader);
+std::string length_units_of(vtkAlgorithm* reader);
+std::string value_units_of(vtkAlgorithm* reader);                 // of the chosen variable
+bool has_variable(vtkAlgorithm* reader, const std::string& name); // true where the reader does not read by variables
+void choose_variable(vtkAlgorithm* reader, const std::string& name);
+
 // The parts of a step of a .pvd: all files of one time.
 struct collection_step {
   double time;

@@ -10,5 +10,5 @@ namespace cli {
 // Places a camera that looks at the whole mesh.
 stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view);
 // Describes a grid: stratus info.
-void print_grid(const options& o, vtkUnstructuredGrid* grid);
+void print_grid(const options& o, vtkDataSet* grid);
 } // namespace cli

@@ -50,7 +50,7 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path)
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");
   }
-  return route(image, path).image;
+  return route(image, path, "").image;
 }
 
 bool stratus_type_of(vtkDataArray* array, stratus_type& type)

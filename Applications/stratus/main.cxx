@@ -59,7 +59,7 @@ void print_volume(const cli::options& o, cli::context& core, const cli::input& i
     row("range", cli::format("%.9g .. %.9g", h.low, h.high));
   }
   row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
-  row("opacity", cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance).origin);
+  row("opacity", cli::make_transfer(in.volume, in.scene, o).origin);
 }
 
 void print_time(const cli::series& in)
@@ -89,16 +89,27 @@ void info(const cli::options& o)
     print_volume(o, core, in);
     return;
   }
-  cli::series in(o.source);
+  cli::series in(o.source, o.array);
   const size_t step = in.find(o.time);
-  const cli::routed data = cli::route(in.read(step), o.source);
+  const cli::routed data = cli::route(in.read(step), o.source, o.array);
   cli::context core("host", o.threads);
   const std::unique_ptr<cli::input> image(data.image ? new cli::input(core, o.source, data.image, o.array) : nullptr);
   std::printf("%s\n", o.source.c_str());
   row("kind", data.kind + (image ? ", drawn by rays through its cells" : ", drawn as tetrahedra"));
+  if (!data.arrays.empty()) {
+    row("arrays", data.arrays);
+  }
+  if (!in.grid().empty()) {
+    row("coordinates", in.grid());
+  }
   print_time(in);
   if (in.steps() > 1) {
     row("", "told of: " + in.describe(step));
+  }
+  for (const cli::variable_entry& one : in.variables(step)) {
+    row("variable",
+      "'" + one.name + "'" + (one.units.empty() ? "" : " in " + one.units) + (one.long_name.empty() ? "" : ", " + one.long_name) + ", " +
+        (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"));
   }
   if (image) {
     print_volume(o, core, *image);

@@ -4,6 +4,8 @@
 #include "input.h"
 
 #include <vtkDataArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,24 +14,29 @@ namespace cli {
 
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path)
 {
-  const routed data = route(read_data(path), path);
-  if (!data.grid) {
-    throw failure("'" + path + "' holds an image, not an unstructured grid");
+  const routed data = route(read_data(path), path, "");
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data.grid);
+  if (!grid) {
+    throw failure("'" + path + "' holds " + data.kind + ", not an unstructured grid");
   }
-  return data.grid;
+  return grid;
 }
 
-void mesh::set(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path)
+void mesh::set(vtkDataSet* grid, const options& o)
 {
+  const std::string& path = o.source;
   if (grid->GetNumberOfCells() < 1) {
     throw failure("'" + path + "' holds no cells, only " + std::to_string(grid->GetNumberOfPoints()) + " points; there is nothing to draw");
   }
   bool on_cells = false;
-  vtkDataArray* values = choose_array(grid, array, on_cells);
+  vtkDataArray* values = choose_array(grid, o.array, on_cells);
   this->array_name = values->GetName() ? values->GetName() : "(unnamed)";
   this->points = grid->GetNumberOfPoints();
   std::string error;
-  if (!this->View.Set(grid, values, on_cells, nullptr, error)) {
+  vtkNew<vtkMatrix4x4> matrix;
+  const int up = o.up.empty() ? 2 : o.up[0] - 'x';
+  matrix->SetElement(up, up, o.exaggeration);
+  if (!this->View.Set(grid, values, on_cells, matrix, error)) {
     throw failure("'" + path + "': " + error);
   }
 }

@@ -19,12 +19,23 @@ namespace {
 using cli::row;
 
 // Reads a step into memory of its own, so that the reader is free for the next one in another thread.
-cli::routed read_apart(cli::series& in, size_t step, const std::string& path)
+cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
 {
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
   own->DeepCopy(shared);
-  return cli::route(own, path);
+  return cli::route(own, o.source, o.array);
+}
+
+// Puts what was asked for around the picture that was drawn.
+void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
+{
+  cli::scene_frame place = drawing.place();
+  if (in) {
+    place.length_units = in->length_units();
+    place.title += in->value_units().empty() ? "" : " (" + in->value_units() + ")";
+  }
+  frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
 }
 
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
@@ -32,8 +43,10 @@ std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& co
   return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
 }
 
-void render_one(const cli::options& o, const cli::routed& data, const std::string& time)
+// `in` is null for a scene.
+void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
 {
+  const std::string time = in ? in->describe(step) : "";
   cli::context core(o.device, o.threads);
   cli::frame frame(o);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
@@ -42,6 +55,7 @@ void render_one(const cli::options& o, const cli::routed& data, const std::strin
   cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
   const stratus_image image = frame.view();
   drawing->draw(image);
+  annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
   if (!time.empty()) {
     row("time", time);
@@ -66,7 +80,7 @@ std::string frame_name(const std::string& pattern, size_t number)
 }
 
 // Takes the one of the first, middle and last step whose values range widest, and looks at it: a field often starts as one value.
-void look_at_widest(cli::drawing& drawing, cli::series& in, const std::string& path)
+void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& o)
 {
   const size_t candidates[] = { 0, in.steps() / 2, in.steps() - 1 };
   size_t best = 0;
@@ -75,14 +89,14 @@ void look_at_widest(cli::drawing& drawing, cli::series& in, const std::string& p
     if (i > 0 && candidates[i] == candidates[i - 1]) {
       continue;
     }
-    drawing.take(read_apart(in, candidates[i], path));
+    drawing.take(read_apart(in, candidates[i], o));
     const std::pair<double, double> range = drawing.range();
     if (range.second - range.first > widest) {
       widest = range.second - range.first;
       best = candidates[i];
     }
   }
-  drawing.take(read_apart(in, best, path));
+  drawing.take(read_apart(in, best, o));
   drawing.look();
   row("functions", "and camera by " + in.describe(best));
 }
@@ -130,19 +144,20 @@ void render_film(const cli::options& o, cli::series& in)
     cli::output_file first(frame_name(o.frames, 0));
   } // a path that cannot be written is reported at once
   std::printf("%s\n", o.source.c_str());
-  cli::routed data = read_apart(in, 0, o.source);
+  cli::routed data = read_apart(in, 0, o);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
-  look_at_widest(*drawing, in, o.source);
+  look_at_widest(*drawing, in, o);
   const stratus_image image = frame.view();
   {
     film_progress progress(in.steps());
     for (size_t step = 0; step < in.steps(); ++step) {
       std::future<cli::routed> next;
       if (step + 1 < in.steps()) {
-        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o.source); });
+        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o); });
       }
       drawing->take(data);
       drawing->draw(image);
+      annotate(frame, o, *drawing, &in, step);
       cli::output_file out(frame_name(o.frames, step));
       frame.write(out);
       drawing->judge();
@@ -167,14 +182,14 @@ void cli::render(const options& o)
     if (!o.time.empty() || !o.frames.empty()) {
       throw usage("'" + o.source + "' is a scene, which has no time: leave out " + (o.time.empty() ? "--frames" : "--time"));
     }
-    render_one(o, routed(), "");
+    render_one(o, routed(), nullptr, 0);
     return;
   }
-  series in(o.source);
+  series in(o.source, o.array);
   if (!o.frames.empty()) {
     render_film(o, in);
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route(in.read(step), o.source), in.describe(step));
+  render_one(o, route(in.read(step), o.source, o.array), &in, step);
 }

@@ -4,22 +4,21 @@
 #include "support.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusBlocks.h"
 
-#include <vtkAppendFilter.h>
 #include <vtkCellData.h>
-#include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPolyData.h>
+#include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <vector>
 
 namespace {
 
@@ -44,43 +43,21 @@ void check_axes(vtkRectilinearGrid* grid, const std::string& path)
   check_axis(grid->GetZCoordinates(), 'z', path);
 }
 
-// The data sets within, without those that have no volume. `kinds` counts them by class.
-std::vector<vtkDataSet*> leaves_of(vtkCompositeDataSet* whole, std::map<std::string, int>& kinds)
+// Points at the crossings of the axes. They take 24 bytes each.
+vtkSmartPointer<vtkStructuredGrid> structured(vtkRectilinearGrid* axes)
 {
-  std::vector<vtkDataSet*> leaves;
-  vtkSmartPointer<vtkCompositeDataIterator> at;
-  at.TakeReference(whole->NewIterator());
-  at->SkipEmptyNodesOn();
-  for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
-    vtkDataSet* leaf = vtkDataSet::SafeDownCast(at->GetCurrentDataObject());
-    if (leaf && leaf->GetNumberOfCells() > 0 && !vtkPolyData::SafeDownCast(leaf)) {
-      ++kinds[leaf->GetClassName()];
-      leaves.push_back(leaf);
-    }
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(axes->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < axes->GetNumberOfPoints(); ++i) {
+    points->SetPoint(i, axes->GetPoint(i));
   }
-  return leaves;
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> joined(const std::vector<vtkDataSet*>& parts, const std::string& path)
-{
-  vtkNew<vtkAppendFilter> append;
-  for (vtkDataSet* part : parts) {
-    std::string error;
-    vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(part);
-    if ((grid && !vtkStratusCheckGrid(grid, error)) ||
-      !vtkStratusCheckArrays(part->GetPointData(), part->GetNumberOfPoints(), "points of a part", error) ||
-      !vtkStratusCheckArrays(part->GetCellData(), part->GetNumberOfCells(), "cells of a part", error)) {
-      throw cli::failure("'" + path + "': " + error);
-    }
-    if (vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(part)) {
-      check_axes(axes, path);
-    }
-    append->AddInputData(part);
-  }
-  append->SetMergePoints(parts.size() > 1);
-  append->SetTolerance(0.0);
-  append->Update();
-  return append->GetOutput();
+  const auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetExtent(axes->GetExtent());
+  grid->SetPoints(points);
+  grid->GetPointData()->ShallowCopy(axes->GetPointData());
+  grid->GetCellData()->ShallowCopy(axes->GetCellData());
+  return grid;
 }
 
 std::string points_of(const int* dimensions, const char* what)
@@ -118,11 +95,44 @@ std::string names_of(vtkDataSet* data_set)
   }
   return names.empty() ? "none" : names;
 }
+// Joins the parts that have the array. `result` gets the grid and tells of the parts.
+void join(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
+{
+  vtkStratusBlocks blocks;
+  std::string error;
+  vtkDataSet* first = nullptr;
+  std::map<std::string, int> kinds;
+  const auto find = [&](vtkDataSet* part, int& cells) {
+    first = first ? first : part;
+    ++kinds[part->GetClassName()];
+    vtkDataArray* values = nullptr;
+    for (cells = 0; cells < 2 && !values; cells += values ? 0 : 1) {
+      vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(part->GetCellData()) : part->GetPointData();
+      values = array.empty() ? first_single(data) : data->GetArray(array.c_str());
+    }
+    return values;
+  };
+  if (!blocks.Set(whole, find, error)) {
+    throw cli::failure("'" + path + "': " + error + (first ? "; the first part's arrays are: " + names_of(first) : std::string()));
+  }
+  if (!blocks.GetGrid()) {
+    throw cli::failure("'" + path + "' holds no part with a volume");
+  }
+  int parts = 0;
+  for (const auto& kind : kinds) {
+    parts += kind.second;
+    result.kind += cli::format(" %d ", kind.second) + kind.first;
+  }
+  result.kind = std::to_string(parts) + (parts == 1 ? " part:" : " parts:") + result.kind +
+    (blocks.TellLeftOut().empty() ? "" : "; left out: " + blocks.TellLeftOut());
+  result.arrays = names_of(first);
+  result.grid = blocks.GetGrid();
+}
 } // namespace
 
 namespace cli {
 
-routed route(vtkDataObject* data, const std::string& path)
+routed route(vtkDataObject* data, const std::string& path, const std::string& array)
 {
   routed result;
   if (vtkImageData* image = vtkImageData::SafeDownCast(data)) {
@@ -140,26 +150,15 @@ routed route(vtkDataObject* data, const std::string& path)
     result.grid = grid;
   } else if (vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(data)) {
     result.kind = points_of(axes->GetDimensions(), "rectilinear grid");
-    result.grid = joined({ axes }, path);
+    check_axes(axes, path);
+    result.grid = structured(axes);
   } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(data)) {
     int dimensions[3];
     curved->GetDimensions(dimensions);
     result.kind = points_of(dimensions, "curvilinear grid");
-    result.grid = joined({ curved }, path);
+    result.grid = curved;
   } else if (vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data)) {
-    std::map<std::string, int> kinds;
-    const std::vector<vtkDataSet*> leaves = leaves_of(whole, kinds);
-    if (leaves.empty()) {
-      throw failure("'" + path + "' holds no part with a volume");
-    }
-    if (leaves.size() == 1) {
-      return route(leaves[0], path);
-    }
-    result.kind = std::to_string(leaves.size()) + " parts:";
-    for (const auto& kind : kinds) {
-      result.kind += format(" %d ", kind.second) + kind.first;
-    }
-    result.grid = joined(leaves, path);
+    join(whole, path, array, result);
   } else {
     throw failure("'" + path + "' holds " + (data ? data->GetClassName() : "nothing") + ", which has no volume to draw");
   }

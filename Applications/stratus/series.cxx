@@ -21,6 +21,7 @@
 #include <new>
 #include <sstream>
 #include <sys/stat.h>
+#include <utility>
 
 namespace {
 
@@ -139,8 +140,9 @@ double seconds_of(const std::string& units)
   return 0.0;
 }
 
-series::series(const std::string& path) : Path(path)
+void series::open()
 {
+  const std::string& path = this->Path;
   guard watch(path);
   check_file(path);
   if (is_collection(path)) {
@@ -153,24 +155,59 @@ series::series(const std::string& path) : Path(path)
   const file_format found = choose_format(path);
   if (!found.reader) {
     throw failure("'" + path + "' is no image file that VTK reads (.vti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
-      "and no grid (.vtr .vts .vtu .vtm .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
+      "and no grid (.nc .vtr .vts .vtu .vtm .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
   }
   this->Units = found.time_units;
   this->Reader = found.reader;
   watch.run(this->Reader, [this] {
     this->Reader->UpdateInformation();
+    if (!this->Variable.empty() && has_variable(this->Reader, this->Variable)) {
+      choose_variable(this->Reader, this->Variable);
+      this->Reader->UpdateInformation();
+    }
+    this->Units += time_units_of(this->Reader);
     vtkInformation* information = this->Reader->GetOutputInformation(0);
     if (information && information->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) {
       const double* times = information->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
       this->Times.assign(times, times + information->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
     }
   });
+}
+
+series::series(const std::string& path, const std::string& variable) : Path(path), Variable(variable)
+{
+  this->open();
+  if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {
+    std::string names;
+    const std::string wanted = std::exchange(this->Variable, "");
+    for (const variable_entry& one : this->variables(0)) {
+      names += (names.empty() ? "" : ", ") + one.name + " (" +
+        (one.low <= one.high ? format("%g .. %g", one.low, one.high) : "nothing finite") + (one.units.empty() ? "" : " " + one.units) + ")";
+    }
+    throw failure("no variable '" + wanted + "' in '" + path + "'; the variables are: " + names);
+  }
   for (size_t i = 1; i < this->Times.size(); ++i) {
     if (!(this->Times[i] > this->Times[i - 1])) {
       throw failure("cannot read '" + path +
         "': " + format("its time does not increase: step %zu is at %.9g, after %.9g", i, this->Times[i], this->Times[i - 1]));
     }
   }
+}
+
+std::vector<variable_entry> series::variables(size_t step)
+{
+  std::vector<variable_entry> list;
+  if (this->Reader) {
+    guard watch(this->Path);
+    watch.run(this->Reader, [&] { list = list_variables(this->Reader, this->Times.empty() ? 0.0 : this->Times[step]); });
+    choose_variable(this->Reader, this->Variable);
+  }
+  return list;
+}
+
+std::string series::grid() const
+{
+  return this->Reader ? description_of(this->Reader) : "";
 }
 
 vtkSmartPointer<vtkDataObject> series::read(size_t step)
@@ -201,12 +238,24 @@ vtkSmartPointer<vtkDataObject> series::read_parts(const collection_step& step)
   return parts;
 }
 
+std::string series::time_of(size_t step) const
+{
+  return this->Times.empty() ? "" : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+}
+
+std::string series::length_units() const
+{
+  return this->Reader ? length_units_of(this->Reader) : "";
+}
+
+std::string series::value_units() const
+{
+  return this->Reader ? value_units_of(this->Reader) : "";
+}
+
 std::string series::describe(size_t step) const
 {
-  if (this->Times.empty()) {
-    return "";
-  }
-  return format("step %zu of %zu, at %.9g", step, this->Times.size(), this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+  return this->Times.empty() ? "" : format("step %zu of %zu, at ", step, this->Times.size()) + this->time_of(step);
 }
 
 size_t series::find(const std::string& time) const

@@ -121,7 +121,8 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
 }
 
 /* What the caster's choice follows from, besides values and transfer functions. */
-static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
+static stratus_ray_choice_inputs choice_inputs(
+  const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   stratus_ray_choice_inputs in;
   memset(&in, 0, sizeof in); /* padding, too: inputs are compared as bytes */
@@ -131,6 +132,7 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   in.tolerance = options->tolerance;
   in.interpolation = options->interpolation;
   in.shade = options->shade != 0;
+  in.in_several = caster->in_several;
   in.voxel = stratus_ray_voxel_length(volume);
   return in;
 }
@@ -165,10 +167,12 @@ static bool table_fits(const stratus_ray_made_table* made, bool sums, int entrie
 
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
+  /* the probe draws by the tables of one volume alone */
+  const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT || (caster->in_several && !caster->choice.provisional);
   const stratus_sampling rule = sums ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
-  const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
+  const bool midpoint = caster->choice.sampling == STRATUS_SAMPLING_MIDPOINT; /* its samples take the value of an entry alone */
+  const int entries = stratus_table_entries_for(midpoint ? STRATUS_SAMPLING_MIDPOINT : rule, stratus_ray_tolerance(options));
   const stratus_ray_made_table last = caster->made;
   stratus_ray_made_table made = last;
   if (!table_fits(&last, sums, entries, distance)) {
@@ -198,7 +202,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
  * are as they were, as after the coarse pictures of a moving camera. */
 static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
-  const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
+  const stratus_ray_choice_inputs inputs = choice_inputs(caster, volume, options);
   if (changed) {
     caster->measured_for.tolerance = -1.0;
   }

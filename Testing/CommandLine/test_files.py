@@ -7,11 +7,12 @@ import shutil
 import subprocess
 import sys
 
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
     vtkXMLUnstructuredGridWriter)
@@ -121,7 +122,8 @@ def test_kinds():
         fail("a curvilinear grid is another picture than its cells")
     if picture("stretched.vtu", "--variable", "part") == same:
         fail("--variable changes nothing")
-    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\), part \(0 \.\. 59\)$", "render", "stretched.vts", "-o", "no.png", "--variable", "x")
+    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\), part \(0 \.\. 59\)$",
+           "render", "stretched.vts", "-o", "no.png", "--variable", "x")
     # two halves that meet
     halves = vtkMultiBlockDataSet()
     for number, part in enumerate(([0, 1, 2], [2, 4, 7, 11])):
@@ -234,8 +236,8 @@ def resident(steps):
 def test_memory():
     for step in range(2):
         data = vtkImageData()
-        data.SetDimensions(64, 64, 64)
-        array = numpy_to_vtk((numpy.arange(64 ** 3, dtype=numpy.float32) % 31) + step, deep=True)
+        data.SetDimensions(40, 40, 40)
+        array = numpy_to_vtk((numpy.arange(40 ** 3, dtype=numpy.float32) % 31) + step, deep=True)
         array.SetName("qc")
         data.GetPointData().AddArray(array)
         writer = vtkXMLImageDataWriter()
@@ -245,8 +247,82 @@ def test_memory():
         writer.Write()
     few, many = resident(20), resident(1000)
     print(f"resident at most: {few} MiB in 20 steps, {many} MiB in 1,000")
-    if many > few + 8:  # a step has 1 MiB of values: a leak of one array a step would be 1,000
+    if many > few + 8:  # a step has 0.25 MiB of values: a leak of one array a step would be 250 MiB
         fail(f"memory grows: {few} MiB in 20 steps, {many} MiB in 1,000")
+
+
+def pixels(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    data = reader.GetOutput()
+    return vtk_to_numpy(data.GetPointData().GetScalars()).reshape(data.GetDimensions()[1], data.GetDimensions()[0], -1).astype(int)
+
+
+def drawn(name, *words):
+    picture(name, *words)
+    return pixels("out.png")
+
+
+def test_exaggeration():
+    tall = image()
+    tall.SetSpacing(1, 1, 3)
+    write(vtkXMLImageDataWriter, tall, "tall.vti")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), [0, 3, 6, 9, 12, 15])), "tall.vts")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), range(6))), "low.vts")
+    for low, high in (("image.vti", "tall.vti"), ("low.vts", "tall.vts")):
+        one, other = drawn(low, "--exaggerate", "3"), drawn(high)
+        if abs(one - other).max() > 1:  # by other roundings of the same positions
+            fail(f"{low} three times as high differs from {high} by {abs(one - other).max()}")
+        if abs(one - drawn(low)).max() < 20:
+            fail(f"--exaggerate changes nothing of {low}")
+    expect(2, "not above 0", "render", "image.vti", "-o", "no.png", "--exaggerate", "0")
+
+
+def test_annotations():
+    clear = ("--opacity", "0:0", "--background", "black")
+    if drawn("image.vti", *clear).max() != 0:
+        fail("nothing is to be seen")
+    for words in (("--axes",), ("--color-bar",), ("--caption", "at {time}")):
+        if not 200 < drawn("image.vti", *clear, "--size", "300x200", *words).max():
+            fail(f"{words[0]} draws nothing")
+    # The far edges of the box are behind the volume, the near ones before it: through an opaque box the latter alone are seen.
+    solid = ("--opacity", "0:1", "--color", "0:1:0:0", "--background", "black", "--size", "300x200", "--parallel", "--axes")
+    box = drawn("image.vti", *clear, "--size", "300x200", "--parallel", "--axes")
+    both = drawn("image.vti", *solid)
+    hidden = (both == [255, 0, 0]).all(axis=2) & (box.max(axis=2) > 100)
+    seen = (both[:, :, 1] > 100) & (box.max(axis=2) > 100)
+    if hidden.sum() < 50 or seen.sum() < 300:
+        fail(f"an opaque box hides {hidden.sum()} pixels of its far edges, and shows {seen.sum()} of the near ones")
+    for size in ("1x1", "30x20", "40x400"):
+        drawn("image.vti", "--size", size, "--axes", "--color-bar", "--caption", "x", "--log", "--zoom", "3")
+    expect(2, "leave out --axes", "render", "image.vti", "-o", "no.png", "--axes", "--show", "samples")
+    expect(2, "OpenEXR", "render", "image.vti", "-o", "no.exr", "--caption", "x")
+    if (drawn("image.vti", *clear, "--caption", "x") == drawn("image.vti", *clear, "--caption", "y")).all():
+        fail("captions of other letters are the same")
+
+
+def test_colors_and_logarithm():
+    told = run("--help").stdout.replace("\n", " ")
+    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", told).group(1).split(", ")
+    if not {"viridis", "cividis", "temperature", "salinity", "algae", "sediment", "oxygen", "depth"} <= set(names):
+        fail(f"colour maps are {names}")
+    if len({picture("image.vti", "--color", name) for name in names}) != len(names):
+        fail("two colour maps are the same")
+    with_log = expect(0, "over the logarithm: opacity 0 at 1e-06, ", "render", write_range("wide.vti", 1e-9, 1e-2), "-o", "log.png",
+                      "--log", "--size", "64x64")
+    if "histogram" in with_log and (pixels("log.png") == drawn("wide.vti", "--size", "64x64")).all():
+        fail("--log changes nothing")
+    expect(1, "no value above 0", "render", write_range("minus.vti", -5, -1), "-o", "no.png", "--log")
+
+
+def write_range(name, low, high):
+    data = vtkImageData()
+    data.SetDimensions(*SIDE)
+    array = numpy_to_vtk(numpy.linspace(low, high, 120), deep=True)
+    array.SetName("qc")
+    data.GetPointData().AddArray(array)
+    return write(vtkXMLImageDataWriter, data, name)
 
 
 def openfoam(cells=(2, 2, 2)):
