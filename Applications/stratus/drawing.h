@@ -2,12 +2,14 @@
 // A picture of a kind of data: it takes a step, is told how to look at it once, and draws every step from there with one caster.
 #pragma once
 
+#include "annotation.h"
 #include "options.h"
 #include "route.h"
 #include "support.h"
 #include "transfer.h"
 
 #include <memory>
+#include <utility>
 
 namespace cli {
 
@@ -21,6 +23,9 @@ public:
   virtual void look() = 0;
   // The range of the finite values that were taken; first > second: there are none.
   virtual std::pair<double, double> range() const = 0;
+  // What annotations need to know: camera, box, and the values' name.
+  virtual scene_frame place() const = 0;
+  virtual const transfer& functions() const = 0;
   virtual void draw(const stratus_image& image) = 0;
   // Prints the rows of the last picture, those that come before and after "a pixel".
   virtual void tell() const = 0;

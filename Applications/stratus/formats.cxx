@@ -164,6 +164,24 @@ std::string description_of(vtkAlgorithm* reader)
   return netcdf ? netcdf->GetDescription() : "";
 }
 
+std::string length_units_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  return netcdf ? netcdf->GetLengthUnits() : "";
+}
+
+std::string value_units_of(vtkAlgorithm* reader)
+{
+  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
+  const std::string chosen = netcdf && netcdf->GetVariableName() ? netcdf->GetVariableName() : "";
+  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
+    if (chosen.empty() || chosen == netcdf->GetNameOfVariable(i)) {
+      return netcdf->GetUnitsOfVariable(i);
+    }
+  }
+  return "";
+}
+
 bool has_variable(vtkAlgorithm* reader, const std::string& name)
 {
   vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
@@ -213,6 +231,16 @@ std::string time_units_of(vtkAlgorithm*)
 }
 
 std::string description_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+std::string length_units_of(vtkAlgorithm*)
+{
+  return "";
+}
+
+std::string value_units_of(vtkAlgorithm*)
 {
   return "";
 }

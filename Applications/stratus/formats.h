@@ -34,6 +34,8 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
 // What a reader of variables tells of time and grid, "" from others.
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
+std::string length_units_of(vtkAlgorithm* reader);
+std::string value_units_of(vtkAlgorithm* reader);                 // of the chosen variable
 bool has_variable(vtkAlgorithm* reader, const std::string& name); // true where the reader does not read by variables
 void choose_variable(vtkAlgorithm* reader, const std::string& name);
 

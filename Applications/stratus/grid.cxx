@@ -53,6 +53,8 @@ public:
   void take(const cli::routed& data) override;
   void look() override;
   std::pair<double, double> range() const override;
+  cli::scene_frame place() const override;
+  const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
   void tell() const override;
 
@@ -68,14 +70,14 @@ private:
 
 void grid_drawing::take(const cli::routed& data)
 {
-  this->Mesh.set(data.grid, this->Options.array, this->Options.source);
+  this->Mesh.set(data.grid, this->Options);
   this->Core.check(stratus_mesh_check(this->Core, &this->Mesh.view()), "'" + this->Options.source + "'");
 }
 
 void grid_drawing::look()
 {
   const cli::options& o = this->Options;
-  this->Transfer = cli::make_transfer(this->Mesh.box(), nullptr, o.opacity, o.color, o.unit_distance);
+  this->Transfer = cli::make_transfer(this->Mesh.box(), nullptr, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   this->Camera = cli::place_camera(this->Core, o, this->Mesh, view);
@@ -85,6 +87,17 @@ std::pair<double, double> grid_drawing::range() const
 {
   const cli::histogram h = cli::histogram_of(this->Mesh.box());
   return { h.low, h.high };
+}
+
+cli::scene_frame grid_drawing::place() const
+{
+  cli::scene_frame frame;
+  frame.camera = this->Camera;
+  const stratus_volume box = this->Mesh.box();
+  this->Core.check(stratus_volume_bounds(this->Core, &box, frame.bounds), "bounds");
+  frame.scale[this->Options.up.empty() ? 2 : this->Options.up[0] - 'x'] = this->Options.exaggeration;
+  frame.title = this->Mesh.array_name;
+  return frame;
 }
 
 void grid_drawing::draw(const stratus_image& image)

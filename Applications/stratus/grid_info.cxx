@@ -159,9 +159,9 @@ void cli::print_grid(const options& o, vtkDataSet* grid)
   row("memory", format("%.1f MiB", static_cast<double>(grid->GetActualMemorySize()) / 1024.0));
   try {
     mesh m;
-    m.set(grid, o.array, o.source);
+    m.set(grid, o);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-    const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
+    const transfer look = make_transfer(m.box(), nullptr, o);
     const stratus_transfer view = look.view();
     core.check(stratus_transfer_check(core, &view), "transfer function");
     const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);

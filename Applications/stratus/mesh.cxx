@@ -4,6 +4,8 @@
 #include "input.h"
 
 #include <vtkDataArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,17 +22,21 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path)
   return grid;
 }
 
-void mesh::set(vtkDataSet* grid, const std::string& array, const std::string& path)
+void mesh::set(vtkDataSet* grid, const options& o)
 {
+  const std::string& path = o.source;
   if (grid->GetNumberOfCells() < 1) {
     throw failure("'" + path + "' holds no cells, only " + std::to_string(grid->GetNumberOfPoints()) + " points; there is nothing to draw");
   }
   bool on_cells = false;
-  vtkDataArray* values = choose_array(grid, array, on_cells);
+  vtkDataArray* values = choose_array(grid, o.array, on_cells);
   this->array_name = values->GetName() ? values->GetName() : "(unnamed)";
   this->points = grid->GetNumberOfPoints();
   std::string error;
-  if (!this->View.Set(grid, values, on_cells, nullptr, error)) {
+  vtkNew<vtkMatrix4x4> matrix;
+  const int up = o.up.empty() ? 2 : o.up[0] - 'x';
+  matrix->SetElement(up, up, o.exaggeration);
+  if (!this->View.Set(grid, values, on_cells, matrix, error)) {
     throw failure("'" + path + "': " + error);
   }
 }

@@ -2,6 +2,7 @@
 // Reads a file of an unstructured grid as the core's view of tetrahedra.
 #pragma once
 
+#include "options.h"
 #include "support.h"
 
 #include "vtkStratusMeshView.h"
@@ -18,9 +19,8 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path);
 class VTK_STRATUS_PRIVATE mesh
 {
 public:
-  // Takes a grid in place of the last one. What did not change is kept. `array` is the array's name. If it is empty, choose_array() chooses
-  // the array.
-  void set(vtkDataSet* grid, const std::string& array, const std::string& path);
+  // Takes a grid in place of the last one. What did not change is kept. choose_array() chooses the array.
+  void set(vtkDataSet* grid, const options& o);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
   // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
+#include "colors.h"
 #include "support.h"
-#include "transfer.h"
 
 #include <algorithm>
 #include <cctype>
@@ -53,6 +53,11 @@ What is drawn
                           (default 8192: between all of them)
   --mask FILE             an image of one byte a value, 0 where nothing is to be seen
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
+  --exaggerate F          heights F times as large (along the upward axis)
+  --log                   colours, and a guessed opacity, over the logarithm of the value, four decades at most
+  --axes                  a box around the data, with its coordinates
+  --color-bar             the colours of values, with the variable's name and unit
+  --caption TEXT          a line at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
   --shade                 light from the eye on the field's gradient (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
@@ -316,6 +321,8 @@ constexpr struct {
   { "--crop-regions", [](options& o, text word, text value) { o.crop_regions = whole_number(value, word, 0, STRATUS_CROP_ALL); } },
   { "--mask", keep<&options::mask> },
   { "--unit-distance", keep_positive<&options::unit_distance> },
+  { "--exaggerate", keep_positive<&options::exaggeration> },
+  { "--caption", keep<&options::caption> },
   { "--background", keep<&options::background> },
   { "--size", [](options& o, text, text value) { set_size(o, value); } },
   { "--azimuth", keep_number<&options::azimuth> },
@@ -347,6 +354,9 @@ constexpr struct {
   bool options::*flag;
 } flags[] = {
   { "--nearest", &options::nearest },
+  { "--log", &options::logarithmic },
+  { "--axes", &options::axes },
+  { "--color-bar", &options::color_bar },
   { "--shade", &options::shade },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
@@ -383,6 +393,9 @@ void check_complete(const options& o)
       throw usage(o.command + ": which INPUT?");
     }
     check_output(o);
+    if (o.shows_samples && (o.axes || o.color_bar || !o.caption.empty())) {
+      throw usage("--show samples is no picture of values: leave out --axes, --color-bar and --caption");
+    }
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");
     }

@@ -34,6 +34,11 @@ struct options {
   int threads = 0;
   double read_timeout = usual_read_timeout; // seconds; 0: no limit
   int depth = 3;                            // sort: depth of the K-D tree
+  double exaggeration = 1.0;                // of heights
+  bool logarithmic = false;
+  bool axes = false;
+  bool color_bar = false;
+  std::string caption; // {time} is the step's
   bool parallel = false;
   bool nearest = false;
   bool shade = false;

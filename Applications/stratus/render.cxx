@@ -27,13 +27,26 @@ cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
   return cli::route(own, o.source, o.array);
 }
 
+// Puts what was asked for around the picture that was drawn.
+void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
+{
+  cli::scene_frame place = drawing.place();
+  if (in) {
+    place.length_units = in->length_units();
+    place.title += in->value_units().empty() || in->value_units() == "1" ? "" : " (" + in->value_units() + ")";
+  }
+  frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
+}
+
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
 {
   return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
 }
 
-void render_one(const cli::options& o, const cli::routed& data, const std::string& time)
+// `in` is null for a scene.
+void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
 {
+  const std::string time = in ? in->describe(step) : "";
   cli::context core(o.device, o.threads);
   cli::frame frame(o);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
@@ -42,6 +55,7 @@ void render_one(const cli::options& o, const cli::routed& data, const std::strin
   cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
   const stratus_image image = frame.view();
   drawing->draw(image);
+  annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
   if (!time.empty()) {
     row("time", time);
@@ -143,6 +157,7 @@ void render_film(const cli::options& o, cli::series& in)
       }
       drawing->take(data);
       drawing->draw(image);
+      annotate(frame, o, *drawing, &in, step);
       cli::output_file out(frame_name(o.frames, step));
       frame.write(out);
       drawing->judge();
@@ -167,7 +182,7 @@ void cli::render(const options& o)
     if (!o.time.empty() || !o.frames.empty()) {
       throw usage("'" + o.source + "' is a scene, which has no time: leave out " + (o.time.empty() ? "--frames" : "--time"));
     }
-    render_one(o, routed(), "");
+    render_one(o, routed(), nullptr, 0);
     return;
   }
   series in(o.source, o.array);
@@ -176,5 +191,5 @@ void cli::render(const options& o)
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route(in.read(step), o.source, o.array), in.describe(step));
+  render_one(o, route(in.read(step), o.source, o.array), &in, step);
 }

@@ -238,12 +238,24 @@ vtkSmartPointer<vtkDataObject> series::read_parts(const collection_step& step)
   return parts;
 }
 
+std::string series::time_of(size_t step) const
+{
+  return this->Times.empty() ? "" : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+}
+
+std::string series::length_units() const
+{
+  return this->Reader ? length_units_of(this->Reader) : "";
+}
+
+std::string series::value_units() const
+{
+  return this->Reader ? value_units_of(this->Reader) : "";
+}
+
 std::string series::describe(size_t step) const
 {
-  if (this->Times.empty()) {
-    return "";
-  }
-  return format("step %zu of %zu, at %.9g", step, this->Times.size(), this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+  return this->Times.empty() ? "" : format("step %zu of %zu, at ", step, this->Times.size()) + this->time_of(step);
 }
 
 size_t series::find(const std::string& time) const

@@ -24,6 +24,11 @@ public:
   // Reads a step. Any complaint of VTK is a failure, so that a damaged file is never drawn in part. The result may share arrays with the
   // reader: take a deep copy where the next step is read while this one is used.
   vtkSmartPointer<vtkDataObject> read(size_t step);
+  // "1.5 hours since ...", "" for a file without time.
+  std::string time_of(size_t step) const;
+  // The unit of coordinates, and of the variable: "" where the file or the format does not tell.
+  std::string length_units() const;
+  std::string value_units() const;
   // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.

@@ -28,6 +28,8 @@ public:
   void take(const cli::routed& data) override;
   void look() override;
   std::pair<double, double> range() const override;
+  cli::scene_frame place() const override;
+  const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
   void tell() const override;
   void judge() const override;
@@ -43,6 +45,7 @@ private:
   stratus_camera Camera = {};
   stratus_ray_caster* Caster = nullptr;
   stratus_ray_cast_report Report = {};
+  int Up = 2;
   uint64_t Steps = 0; // the volume's revision, because a step's values may lie where the last one's were
 };
 
@@ -51,22 +54,34 @@ void volume_drawing::take(const cli::routed& data)
   const cli::options& o = this->Options;
   this->Input.reset(data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array));
   this->Input->volume.revision = ++this->Steps;
+  this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
+  this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
 }
 
 void volume_drawing::look()
 {
   const cli::options& o = this->Options;
   const cli::input& in = *this->Input;
-  this->Transfer = cli::make_transfer(in.volume, in.scene, o.opacity, o.color, o.unit_distance);
+  this->Transfer = cli::make_transfer(in.volume, in.scene, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
-  this->Camera = cli::place_camera(this->Core, o, in.volume, view, o.up.empty() ? in.up_axis : o.up[0] - 'x');
+  this->Camera = cli::place_camera(this->Core, o, in.volume, view, this->Up);
 }
 
 std::pair<double, double> volume_drawing::range() const
 {
   const cli::histogram h = cli::histogram_of(this->Input->volume);
   return { h.low, h.high };
+}
+
+cli::scene_frame volume_drawing::place() const
+{
+  cli::scene_frame frame;
+  frame.camera = this->Camera;
+  this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
+  frame.scale[this->Up] = this->Options.exaggeration;
+  frame.title = this->Input->array_name;
+  return frame;
 }
 
 // Sets the crop and the mask, which is read once.

@@ -274,7 +274,9 @@ void vtkStratusCFGrid::ConvertUnits()
     const double metres = MetresOf(units[a]);
     this->Factors[a] = metres > 0.0 ? metres : 1.0;
   }
-  if (IsDegrees(units[0]) && IsDegrees(units[1])) {
+  const bool degrees = IsDegrees(units[0]) && IsDegrees(units[1]);
+  this->Metres = (degrees || (MetresOf(units[0]) > 0.0 && MetresOf(units[1]) > 0.0)) && (MetresOf(units[2]) > 0.0 || IsPressure(units[2]));
+  if (degrees) {
     double low = INFINITY, high = -INFINITY;
     const std::vector<double> latitudes = this->Horizontal[1] ? this->File.ReadComplete(*this->Horizontal[1], "coordinate") : this->Axes[1];
     for (double latitude : latitudes) {

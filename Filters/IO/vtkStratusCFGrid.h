@@ -30,6 +30,7 @@ public:
   bool IsCurved() const { return this->Horizontal[0] || this->Height || this->Formula > 0; }
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
+  bool IsInMetres() const { return this->Metres; }
   const Variable* GetTime() const { return this->Time; }
   size_t GetLength(int axis) const { return this->Axes[axis].size(); }
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
@@ -71,6 +72,7 @@ private:
   std::vector<const Variable*> Terms;
   std::array<double, 3> Factors = { { 1.0, 1.0, 1.0 } }; // of coordinates, to metres
   bool Pressure = false;
+  bool Metres = true;
   std::string Description;
 };
 

@@ -56,6 +56,7 @@ std::string vtkStratusCFReader::Inspect(const vtkStratusNetCDFFile& file)
     }
   }
   this->Description = grid.Describe();
+  this->LengthUnits = grid.IsInMetres() ? "m" : "";
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }
 

@@ -61,6 +61,11 @@ const char* vtkStratusNetCDFReader::GetTimeUnits()
   return this->TimeUnits.c_str();
 }
 
+const char* vtkStratusNetCDFReader::GetLengthUnits()
+{
+  return this->LengthUnits.c_str();
+}
+
 const char* vtkStratusNetCDFReader::GetDescription()
 {
   return this->Description.c_str();
@@ -92,6 +97,7 @@ bool vtkStratusNetCDFReader::Look()
   this->Times.clear();
   this->TimeUnits.clear();
   this->Description.clear();
+  this->LengthUnits.clear();
   this->SetErrorCode(vtkErrorCode::NoError);
   if (!this->FileName || !*this->FileName) {
     this->SetErrorCode(vtkErrorCode::NoFileNameError);

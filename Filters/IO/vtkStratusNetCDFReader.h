@@ -60,6 +60,12 @@ public:
   const char* GetTimeUnits();
 
   /**
+   * Get the unit of all three of the output's coordinates: "m", or "" where the file does not tell or they differ. After
+   * UpdateInformation().
+   */
+  const char* GetLengthUnits();
+
+  /**
    * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and what was made of their
    * units.
    */
@@ -92,6 +98,7 @@ protected:
   std::vector<double> Times;
   std::string TimeUnits;
   std::string Description;
+  std::string LengthUnits;
   int WholeExtent[6]; // of an output with an extent
 
 private:

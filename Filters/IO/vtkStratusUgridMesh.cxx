@@ -67,7 +67,9 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
   if (this->X.empty()) {
     this->File.Fail("the mesh has no nodes");
   }
-  if (this->File.Text(x, "units").compare(0, 6, "degree") == 0) {
+  const std::string units = this->File.Text(x, "units");
+  this->Metres = units == "m" || units == "meters" || units == "metres" || units.compare(0, 6, "degree") == 0;
+  if (units.compare(0, 6, "degree") == 0) {
     const auto ends = std::minmax_element(this->Y.begin(), this->Y.end());
     const double degree = std::acos(-1.0) / 180.0, middle = 0.5 * (*ends.first + *ends.second);
     const double across = EarthRadius * degree * std::cos(middle * degree);

@@ -36,6 +36,7 @@ public:
     corners = static_cast<int>(this->Offsets[face + 1] - this->Offsets[face]);
     return &this->Corners[this->Offsets[face]];
   }
+  bool IsInMetres() const { return this->Metres; }
   const std::string& Describe() const { return this->Description; }
 
   bool IsCoordinate(const Variable& variable) const { return variable.Name == this->XName || variable.Name == this->YName; }
@@ -62,6 +63,7 @@ private:
   std::vector<size_t> Offsets = { 0 };
   std::vector<int> Corners;
   std::string Description;
+  bool Metres = false;
 };
 
 #endif

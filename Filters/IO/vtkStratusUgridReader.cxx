@@ -55,6 +55,9 @@ void AddPrism(vtkUnstructuredGrid* grid, const int* corners, int count, vtkIdTyp
   if (count <= 6) {
     for (vtkIdType border : { below, above }) {
       std::transform(corners, corners + count, std::back_inserter(ids), [border](int node) { return border + node; });
+      if (count == 3) { // VTK counts a wedge's first triangle as seen from outside, other prisms' first faces as seen from within
+        std::reverse(ids.end() - count, ids.end());
+      }
     }
     grid->InsertNextCell(types[count - 3], 2 * count, ids.data());
     return;
@@ -146,6 +149,7 @@ std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
       file.Fail("time '" + time->Name + "' has no steps");
     }
   }
+  this->LengthUnits = mesh.IsInMetres() ? "m" : "";
   this->Description = mesh.Describe() + "; " + layers.Describe();
   return "vtkUnstructuredGrid";
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER"""
+"""Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
+[PATHS OF MAKE-CUMULUS AND MAKE-RIVER, where libnetcdf was there to build with]"""
 import math
 import os
 import re
@@ -7,17 +8,19 @@ import shutil
 import subprocess
 import sys
 
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
     vtkXMLUnstructuredGridWriter)
 import numpy
 
 STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
+MAKERS = [os.path.realpath(path) for path in sys.argv[3:]]
 SIDE = (5, 4, 6)
 LOOK = ("--size", "48x40", "--device", "host", "--opacity", "0:0,30:.6", "--color", "viridis", "--unit-distance", "1")
 failures = 0
@@ -121,7 +124,8 @@ def test_kinds():
         fail("a curvilinear grid is another picture than its cells")
     if picture("stretched.vtu", "--variable", "part") == same:
         fail("--variable changes nothing")
-    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\), part \(0 \.\. 59\)$", "render", "stretched.vts", "-o", "no.png", "--variable", "x")
+    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\), part \(0 \.\. 59\)$",
+           "render", "stretched.vts", "-o", "no.png", "--variable", "x")
     # two halves that meet
     halves = vtkMultiBlockDataSet()
     for number, part in enumerate(([0, 1, 2], [2, 4, 7, 11])):
@@ -247,6 +251,113 @@ def test_memory():
     print(f"resident at most: {few} MiB in 20 steps, {many} MiB in 1,000")
     if many > few + 8:  # a step has 0.25 MiB of values: a leak of one array a step would be 250 MiB
         fail(f"memory grows: {few} MiB in 20 steps, {many} MiB in 1,000")
+
+
+def pixels(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    data = reader.GetOutput()
+    return vtk_to_numpy(data.GetPointData().GetScalars()).reshape(data.GetDimensions()[1], data.GetDimensions()[0], -1).astype(int)
+
+
+def drawn(name, *words):
+    picture(name, *words)
+    return pixels("out.png")
+
+
+def test_exaggeration():
+    tall = image()
+    tall.SetSpacing(1, 1, 3)
+    write(vtkXMLImageDataWriter, tall, "tall.vti")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), [0, 3, 6, 9, 12, 15])), "tall.vts")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), range(6))), "low.vts")
+    for low, high in (("image.vti", "tall.vti"), ("low.vts", "tall.vts")):
+        one, other = drawn(low, "--exaggerate", "3"), drawn(high)
+        if abs(one - other).max() > 1:  # by other roundings of the same positions
+            fail(f"{low} three times as high differs from {high} by {abs(one - other).max()}")
+        if abs(one - drawn(low)).max() < 20:
+            fail(f"--exaggerate changes nothing of {low}")
+    expect(2, "not above 0", "render", "image.vti", "-o", "no.png", "--exaggerate", "0")
+
+
+def test_annotations():
+    clear = ("--opacity", "0:0", "--background", "black")
+    if drawn("image.vti", *clear).max() != 0:
+        fail("nothing is to be seen")
+    for words in (("--axes",), ("--color-bar",), ("--caption", "at {time}")):
+        if not 200 < drawn("image.vti", *clear, "--size", "300x200", *words).max():
+            fail(f"{words[0]} draws nothing")
+    # The far edges of the box are behind the volume, the near ones before it: through an opaque box the latter alone are seen.
+    solid = ("--opacity", "0:1", "--color", "0:1:0:0", "--background", "black", "--size", "300x200", "--parallel", "--axes")
+    box = drawn("image.vti", *clear, "--size", "300x200", "--parallel", "--axes")
+    both = drawn("image.vti", *solid)
+    hidden = (both == [255, 0, 0]).all(axis=2) & (box.max(axis=2) > 100)
+    seen = (both[:, :, 1] > 100) & (box.max(axis=2) > 100)
+    if hidden.sum() < 50 or seen.sum() < 300:
+        fail(f"an opaque box hides {hidden.sum()} pixels of its far edges, and shows {seen.sum()} of the near ones")
+    for size in ("1x1", "30x20", "40x400"):
+        drawn("image.vti", "--size", size, "--axes", "--color-bar", "--caption", "x", "--log", "--zoom", "3")
+    expect(2, "leave out --axes", "render", "image.vti", "-o", "no.png", "--axes", "--show", "samples")
+    expect(2, "OpenEXR", "render", "image.vti", "-o", "no.exr", "--caption", "x")
+    if (drawn("image.vti", *clear, "--caption", "x") == drawn("image.vti", *clear, "--caption", "y")).all():
+        fail("captions of other letters are the same")
+
+
+def test_colors_and_logarithm():
+    told = run("--help").stdout.replace("\n", " ")
+    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", told).group(1).split(", ")
+    if not {"viridis", "cividis", "temperature", "salinity", "algae", "sediment", "oxygen", "depth"} <= set(names):
+        fail(f"colour maps are {names}")
+    if len({picture("image.vti", "--color", name) for name in names}) != len(names):
+        fail("two colour maps are the same")
+    with_log = expect(0, "over the logarithm: opacity 0 at 1e-06, ", "render", write_range("wide.vti", 1e-9, 1e-2), "-o", "log.png",
+                      "--log", "--size", "64x64")
+    if "histogram" in with_log and (pixels("log.png") == drawn("wide.vti", "--size", "64x64")).all():
+        fail("--log changes nothing")
+    expect(1, "no value above 0", "render", write_range("minus.vti", -5, -1), "-o", "no.png", "--log")
+
+
+def write_range(name, low, high):
+    data = vtkImageData()
+    data.SetDimensions(*SIDE)
+    array = numpy_to_vtk(numpy.linspace(low, high, 120), deep=True)
+    array.SetName("qc")
+    data.GetPointData().AddArray(array)
+    return write(vtkXMLImageDataWriter, data, name)
+
+
+def test_netcdf():
+    if not MAKERS:
+        open("some.nc", "w").close()
+        expect(1, "built without libnetcdf", "render", "some.nc", "-o", "no.png")
+        return
+    subprocess.run([MAKERS[0], "cumulus.nc", "24"], check=True)
+    said = expect(0, "rectilinear grid of 24 x 24 x 64 points", "info", "cumulus.nc", "--time", "2h")
+    for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2 hours",
+                    r"variable +'qc' in g kg-1, cloud liquid water mixing ratio, 0 \.\. [0-9.]+$", r"z by 'z' \(m\)"):
+        if not re.search(pattern, said, re.MULTILINE):
+            fail(f"info of cumulus.nc does not say '{pattern}':\n{said}")
+    for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8"):
+        expect(0, r"time +step 8 of 13, at 2 hours since", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
+    expect(1, r"no variable 'qi' in 'cumulus.nc'; the variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
+           "--variable", "qi")
+    with open("cumulus.nc", "rb") as file:
+        text = file.read()
+    with open("cut.nc", "wb") as file:
+        file.write(text[:-1000])
+    expect(1, "the file is cut short: it has ", "render", "cut.nc", "-o", "no.png")
+    subprocess.run([MAKERS[1], "river.nc", "1"], check=True)
+    said = expect(0, "10 layers by sigma", "info", "river.nc", "--variable", "dye", "--time", "5h")
+    for pattern in (r"vtkHexahedron \(12\)", r"vtkWedge \(13\)", r"0 without volume, 0 of negative orientation", r"variable +'salinity' in psu",
+                    r"drawn +'dye' on points"):
+        if not re.search(pattern, said):
+            fail(f"info of river.nc does not say '{pattern}':\n{said}")
+    expect(0, "frames +31, river-%02d.png", "render", "river.nc", "--variable", "dye", "--frames", "river-%02d.png", "--size", "48x32",
+           "--exaggerate", "60", "--opacity", "0:0,1:.5", "--unit-distance", "300", "--device", "host")
+    if len({open(f"river-{i:02d}.png", "rb").read() for i in range(31)}) < 25:
+        fail("the film of a tide stands still")
+    expect(0, "array 'salinity' on cells", "render", "river.nc", "--variable", "salinity", "-o", "salt.png", "--size", "32x32")
 
 
 def openfoam(cells=(2, 2, 2)):
