@@ -17,8 +17,24 @@ extern "C" {
 
 typedef enum stratus_tetra_mode {
   STRATUS_TETRA_COMPOSITE, /* light absorbed and emitted along the whole ray */
-  STRATUS_TETRA_MAXIMUM    /* the largest value on a ray, in its colour and the opacity of one unit distance */
+  STRATUS_TETRA_MAXIMUM,   /* the largest value on a ray, in its colour and the opacity of one unit distance */
+  STRATUS_TETRA_MINIMUM,   /* the smallest value, likewise */
+  /* Grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in average_range. */
+  STRATUS_TETRA_AVERAGE,
+  STRATUS_TETRA_ADDITIVE, /* grey: the integral of opacity times value along the ray, with lengths in unit_distance */
+  /* Surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind the other, at their exact
+   * places. Values of points only. */
+  STRATUS_TETRA_ISOSURFACE
 } stratus_tetra_mode;
+
+/* Average and additive take each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
+ * additive wherever a ray meets a cell, average wherever a value counts. */
+
+/* Returns "composite", "maximum", "minimum", "average", "additive" or "isosurface". */
+STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
+
+#define STRATUS_TETRA_CLIP_PLANES_MAX 6
+#define STRATUS_TETRA_CONTOURS_MAX 16
 
 /* Both methods draw the same picture: they find the same faces at the same depths, and shade pieces of cells by the same sums. They differ
  * by the rounding of floats: below .01 of 255 in the mean (root mean square), at any distance, and however much a parallel camera's right
@@ -30,8 +46,10 @@ typedef enum stratus_tetra_method {
   /* The method that should cost less, by the numbers of cells, pixels and segments and by what these cost on this machine; on a GPU:
    * march. It does not change while the camera stands still. */
   STRATUS_TETRA_METHOD_AUTO,
-  STRATUS_TETRA_METHOD_MARCH,  /* follows each ray from cell to cell */
-  STRATUS_TETRA_METHOD_PROJECT /* sorts the cells that can show, assigns them to tiles of pixels, and composites them there */
+  STRATUS_TETRA_METHOD_MARCH, /* follows each ray from cell to cell */
+  /* Sorts the cells that can show, assigns them to tiles of pixels, and composites them there. It draws composite and maximum; asked for
+   * another mode it gives STRATUS_UNSUPPORTED, while auto marches. */
+  STRATUS_TETRA_METHOD_PROJECT
 } stratus_tetra_method;
 
 STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
@@ -48,6 +66,15 @@ typedef struct stratus_tetra_options {
   /* Leaves of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster draws with others or
    * is released. Default NULL: one leaf. */
   const stratus_leaves* leaves;
+  /* Rays are cut exactly where they pass a plane: cells are cut, not left out. */
+  int clip_plane_count;                                 /* 0..6 */
+  double clip_planes[STRATUS_TETRA_CLIP_PLANES_MAX][4]; /* world: points with a x + b y + c z + d >= 0 show */
+  int crop;                                             /* 1: only what lies within crop_bounds shows. Default 0. */
+  double crop_bounds[6];                                /* xmin xmax ymin ymax zmin zmax, local coordinates; infinities allowed */
+  /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
+  double average_range[2];
+  int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */
+  double contours[STRATUS_TETRA_CONTOURS_MAX]; /* finite, in any order */
 } stratus_tetra_options;
 
 STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);

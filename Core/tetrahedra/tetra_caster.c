@@ -17,7 +17,7 @@
 
 stratus_tetra_options stratus_tetra_options_default(void)
 {
-  return (stratus_tetra_options){ .tolerance = 0.001 };
+  return (stratus_tetra_options){ .tolerance = 0.001, .average_range = { -(double)INFINITY, (double)INFINITY } };
 }
 
 stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)
@@ -77,9 +77,9 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_TETRA_MAXIMUM) {
+  if ((unsigned)options->mode > STRATUS_TETRA_ISOSURFACE) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_MAXIMUM);
+      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_ISOSURFACE);
   }
   if ((unsigned)options->method > STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
@@ -215,16 +215,23 @@ static stratus_status update(
   return STRATUS_OK;
 }
 
-/* Updates the table. Composite: running sums per world unit. Maximum: colour and alpha over one unit distance. */
-static stratus_status update_table(stratus_tetra_caster* caster, const stratus_transfer* transfer, stratus_tetra_mode mode, double* ms)
+/* Updates the table. Composite: running sums per world unit. Other modes: colour and alpha over one unit distance, and sums where values
+ * are added. */
+static stratus_status update_table(
+  stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, double* ms)
 {
+  const stratus_tetra_mode mode = options->mode;
+  static const double all[2] = { -(double)INFINITY, (double)INFINITY };
+  const bool adds = mode == STRATUS_TETRA_AVERAGE || mode == STRATUS_TETRA_ADDITIVE;
+  const double* range = mode == STRATUS_TETRA_AVERAGE ? options->average_range : all;
   const double start = stratus_now_ms();
   const stratus_tetra_mesh* mesh = caster->mesh;
   const bool any = mesh->low <= mesh->high;
   stratus_table* table = NULL;
   int32_t* sums = NULL;
   stratus_transfer* copy = NULL;
-  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode) {
+  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode &&
+    memcmp(caster->average_range, range, sizeof caster->average_range) == 0) {
     return STRATUS_OK;
   }
   TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
@@ -234,10 +241,11 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
     .hi = any ? mesh->high : 0.0f,
     .uniform = true };
   stratus_status status = stratus_table_create_fine(caster->context, transfer, &values,
-    mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
-    mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, ENTRIES, &table);
+    mode == STRATUS_TETRA_COMPOSITE ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
+    mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, ENTRIES, &table);
   if (status == STRATUS_OK) {
-    status = stratus_tetra_sums(caster->context, table, &sums);
+    status =
+      adds ? stratus_tetra_value_sums(caster->context, table, mesh, range, &sums) : stratus_tetra_sums(caster->context, table, &sums);
   }
   if (status != STRATUS_OK) {
     stratus_table_destroy(table);
@@ -248,6 +256,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   caster->table = table;
   caster->march_sums = sums;
   caster->mode = mode;
+  memcpy(caster->average_range, range, sizeof caster->average_range);
   caster->transfer = copy;
   ++caster->table_builds;
   *ms = stratus_now_ms() - start;
@@ -321,7 +330,8 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
-  if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
+  const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
+  if ((caster->table->shown == 0 && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);
@@ -333,6 +343,8 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   frame.table = caster->table;
   frame.march_sums = caster->march_sums;
   stratus_tetra_frame_shade(&frame, options);
+  stratus_tetra_frame_contours(&frame, caster->mesh, caster->transfer, options);
+  stratus_tetra_frame_clip(&frame, mesh, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
@@ -381,9 +393,10 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
   const stratus_mesh* drawn = NULL;
+  TRY(stratus_tetra_modes_check(caster->context, options, mesh));
   TRY(update(caster, mesh, options, &drawn, &mine.build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
-  TRY(update_table(caster, transfer, options->mode, &mine.table_ms));
+  TRY(update_table(caster, transfer, options, &mine.table_ms));
   TRY(draw(caster, drawn, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {

@@ -49,9 +49,10 @@ struct stratus_tetra_caster {
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
   stratus_transfer* transfer;         /* a copy; NULL: none yet */
-  stratus_tetra_mode mode;            /* of the table */
+  stratus_tetra_mode mode;            /* of the table, as the next */
+  double average_range[2];
   stratus_table* table;
-  int32_t* march_sums;          /* stratus_tetra_sums() */
+  int32_t* march_sums;          /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, value_builds, table_builds;
@@ -89,8 +90,21 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
  * tile. Buffers grow as needed and are kept for the next frame. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
-/* Sets how a frame's cells are drawn by its table. */
+/* Sets how a frame's cells are drawn by its table, and which part of rays is seen. */
 void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+/* tetra_modes.c: modes that gather no light. */
+stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh);
+/* Whether nothing but marching draws with these options. */
+bool stratus_tetra_modes_march(const stratus_tetra_options* options);
+/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of what counts. A
+ * value is a fraction of the mesh's range. */
+stratus_status stratus_tetra_value_sums(
+  stratus_context* context, const stratus_table* table, const stratus_tetra_mesh* mesh, const double range[2], int32_t** sums);
+/* Sets mode, contours and planes of a frame whose table is set. */
+void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+void stratus_tetra_frame_contours(
+  stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
+void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_method.c: sets the report's method, march or project, and the reason. */
 stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
   const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);

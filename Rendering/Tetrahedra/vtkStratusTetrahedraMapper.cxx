@@ -221,6 +221,13 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   const stratus_tetra_report& report = this->Internal->Report;
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
+  os << indent << "AverageIPScalarRange: " << this->AverageIPScalarRange[0] << " " << this->AverageIPScalarRange[1] << "\n";
+  os << indent << "Cropping: " << (this->Cropping ? "On" : "Off") << "\n";
+  os << indent << "CroppingRegionPlanes:";
+  for (const double plane : this->CroppingRegionPlanes) {
+    os << " " << plane;
+  }
+  os << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "Method: " << this->GetMethodAsString() << "\n";

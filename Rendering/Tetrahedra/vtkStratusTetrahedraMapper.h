@@ -20,13 +20,16 @@
  *   faces. Blocks without the array or without a volume are left out with a warning. A block alone is drawn as it is;
  * - point and cell scalars of one component and any numeric type but bits;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
- * - the blend modes composite and maximum intensity (the largest value on a ray, at the opacity of one unit distance);
+ * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
+ *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
+ *   tetrahedron). All but composite and maximum are marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
+ * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping
- * planes) is refused by an error, and nothing is drawn.
+ * All else (shading, gradient opacity, more components, two-dimensional transfer functions, label maps, slices) is refused by an error, and
+ * nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
@@ -68,6 +71,37 @@ public:
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
+  //@}
+
+  //@{
+  /**
+   * Set the blend mode, which SetBlendMode() takes as a number, too. They have vtkVolumeMapper's numbers.
+   */
+  enum MoreBlendModes { MINIMUM_INTENSITY_BLEND = 2, AVERAGE_INTENSITY_BLEND, ADDITIVE_BLEND, ISOSURFACE_BLEND };
+  void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
+  void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
+  void SetBlendModeToAdditive() { this->SetBlendMode(ADDITIVE_BLEND); }
+  void SetBlendModeToIsoSurface() { this->SetBlendMode(ISOSURFACE_BLEND); }
+  //@}
+
+  //@{
+  /**
+   * Set/Get the values that count in average intensity, first and last, ends included. Default: all (the largest floats of either sign).
+   */
+  vtkSetVector2Macro(AverageIPScalarRange, double);
+  vtkGetVectorMacro(AverageIPScalarRange, double, 2);
+  //@}
+
+  //@{
+  /**
+   * Set/Get whether only what lies within CroppingRegionPlanes is drawn, a box of the input's coordinates: xmin, xmax, ymin, ymax, zmin,
+   * zmax. A box whose ends do not rise is refused. Default off, and 0 to 1.
+   */
+  vtkSetMacro(Cropping, bool);
+  vtkGetMacro(Cropping, bool);
+  vtkBooleanMacro(Cropping, bool);
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
   //@}
 
   //@{
@@ -208,6 +242,9 @@ protected:
   double Termination = 0.0;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
+  double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
+  bool Cropping = false;
+  double CroppingRegionPlanes[6] = { 0, 1, 0, 1, 0, 1 };
 
 private:
   vtkStratusTetrahedraMapper(const vtkStratusTetrahedraMapper&) = delete;

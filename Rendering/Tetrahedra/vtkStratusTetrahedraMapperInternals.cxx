@@ -2,10 +2,12 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkContourValues.h"
 #include "vtkDataArray.h"
 #include "vtkDataObjectTree.h"
 #include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -13,6 +15,8 @@
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
+
+#include <algorithm>
 
 vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
@@ -40,11 +44,9 @@ bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
 
 bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
-  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
-  if (planes && planes->GetNumberOfItems() > 0) {
-    error = std::to_string(planes->GetNumberOfItems()) + " clipping planes are not supported, none may be set";
-  } else if (this->Mapper->BlendMode != COMPOSITE_BLEND && this->Mapper->BlendMode != MAXIMUM_INTENSITY_BLEND) {
-    error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) and maximum intensity (1) are";
+  if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
+    error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
+      " is not supported, only composite (0), maximum (1), minimum (2), average (3), additive (4) and isosurface (5) are";
   } else if (property->GetShade()) {
     error = "shading is not supported, only ShadeOff is";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
@@ -62,6 +64,49 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
     }
   }
   return error.empty();
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options& options, std::string& error) const
+{
+  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
+  const int count = planes ? planes->GetNumberOfItems() : 0;
+  if (count > STRATUS_TETRA_CLIP_PLANES_MAX) {
+    error = std::to_string(count) + " clipping planes are not supported, at most " + std::to_string(STRATUS_TETRA_CLIP_PLANES_MAX) + " are";
+    return false;
+  }
+  options.clip_plane_count = count;
+  for (int p = 0; p < count; ++p) {
+    vtkPlane* plane = planes->GetItem(p);
+    if (plane->GetTransform()) {
+      error = "clipping planes with a transform are not supported, only those of origin and normal";
+      return false;
+    }
+    double normal[3], origin[3];
+    plane->GetNormal(normal);
+    plane->GetOrigin(origin);
+    std::copy(normal, normal + 3, options.clip_planes[p]);
+    options.clip_planes[p][3] = -vtkMath::Dot(normal, origin);
+  }
+  options.crop = this->Mapper->Cropping ? 1 : 0;
+  std::copy_n(this->Mapper->CroppingRegionPlanes, 6, options.crop_bounds);
+  return true;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+{
+  options.mode = static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to isosurface alike
+  std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+  vtkContourValues* contours = options.mode == STRATUS_TETRA_ISOSURFACE ? property->GetIsoSurfaceValues() : nullptr;
+  const int count = contours ? contours->GetNumberOfContours() : 0;
+  if (count > STRATUS_TETRA_CONTOURS_MAX) {
+    error = std::to_string(count) + " isosurface values are not supported, at most " + std::to_string(STRATUS_TETRA_CONTOURS_MAX) + " are";
+    return false;
+  }
+  options.contour_count = count;
+  for (int n = 0; n < count; ++n) {
+    options.contours[n] = contours->GetValue(n);
+  }
+  return true;
 }
 
 // Finds the grid of an input that is up to date. No grid: the input is a composite data set without cells.
@@ -153,7 +198,8 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
 
 // ---------------------------------------------------------------- a picture
 
-bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error)
+bool vtkStratusTetrahedraMapper::Internals::Cast(
+  vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error)
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
   this->Rgba.resize(4 * pixels);
@@ -168,8 +214,10 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   options.termination = this->Mapper->Termination;
   options.tolerance = this->Mapper->ImageErrorTolerance;
   options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
-  options.mode = this->Mapper->BlendMode == MAXIMUM_INTENSITY_BLEND ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
   options.leaves = this->Mesh.GetLeaves();
+  if (!this->SetMode(property, options, error) || !this->SetClipPlanes(options, error)) {
+    return false;
+  }
   this->Renderer = renderer;
   const auto draw = [&] {
     return stratus_tetra_caster_render(
@@ -215,7 +263,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   }
   const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp*) { return false; });
   const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
-  if (!this->Cast(renderer, opaqueDepth, error)) {
+  if (!this->Cast(renderer, prop->GetProperty(), opaqueDepth, error)) {
     return false;
   }
   this->HasPicture = true;

@@ -55,7 +55,9 @@ private:
   };
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
-  bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
+  bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
+  bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
+  bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;

@@ -158,9 +158,11 @@ void TestRefusals()
   scene.Volume->GetProperty()->ShadeOn();
   refuses("shading");
   scene.Volume->GetProperty()->ShadeOff();
-  vtkNew<vtkPlane> plane;
-  scene.Tetrahedra->AddClippingPlane(plane);
-  refuses("clipping planes");
+  for (int p = 0; p < 7; ++p) {
+    vtkNew<vtkPlane> plane;
+    scene.Tetrahedra->AddClippingPlane(plane);
+  }
+  refuses("7 clipping planes");
   scene.Tetrahedra->RemoveAllClippingPlanes();
   vtkNew<vtkFloatArray> flags;
   vtkNew<vtkUnsignedCharArray> few;

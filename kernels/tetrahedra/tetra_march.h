@@ -9,7 +9,7 @@
 #ifndef STRATUS_TETRA_MARCH_H
 #define STRATUS_TETRA_MARCH_H
 
-#include "tetra_shade.h"
+#include "tetra_modes.h"
 
 /* The mesh and the sums, which all rays read. */
 typedef struct stratus_tetra_scene {
@@ -176,8 +176,8 @@ INLINE stratus_tetra_passage tetra_pass(
   return passage;
 }
 
-/* Keeps the largest value so far, and where it is. */
-INLINE void tetra_maximum(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
+/* Keeps the largest value so far, and where it is. Minima are maxima of the negative values. */
+INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
 {
   const vfloat larger = v_max(first, last);
   const vmask more = mask & v_lt(light->most, larger);
@@ -199,8 +199,11 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     last = v_select(cut, v_fma(slope, end - passage->from, start), last);
   }
   const vfloat near = v_fma(begin, r->length, r->offset);
-  if (a->maximum) {
-    tetra_maximum(light, mask, first, last, near, v_fma(end, r->length, r->offset));
+  if (a->mode == TETRA_EXTREMES) {
+    const vfloat sign = v_set(a->sign);
+    tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
+  } else if (a->mode == TETRA_SURFACES) {
+    tetra_surfaces(a, light, mask, first, last, near, (end - begin) * r->length);
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);
@@ -212,7 +215,11 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       from = tetra_place_select(cut, &cut_from, &from);
       to = tetra_place_select(cut, &cut_to, &to);
     }
-    tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
+    if (a->mode == TETRA_ADD) {
+      tetra_add(a, scene->sums, light, mask, &from, &to, (end - begin) * r->length, near);
+    } else {
+      tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
+    }
   }
   return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));
 }
@@ -229,7 +236,7 @@ INLINE void tetra_enter(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
   tetra_cross(r->edge, r->z, r->s, &at, &value);
   r->at = v_select(mask, at, r->at);
   r->value = v_select(mask, value, r->value);
-  if (!a->maximum) {
+  if (a->mode == TETRA_LIGHT || a->mode == TETRA_ADD) {
     const stratus_tetra_place place = tetra_place(a, scene->sums, value, mask);
     r->place = tetra_place_select(mask, &place, &r->place);
   }
