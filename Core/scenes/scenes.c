@@ -34,6 +34,7 @@ typedef struct scene_storage {
   void* values;
   scene_functions functions;
   stratus_transfer transfers[2];
+  double heights[CUMULUS_LEVELS]; /* of a scene on levels */
 } scene_storage;
 
 /* clang-format off */
@@ -52,6 +53,7 @@ static const recipe recipes[] = {
   { "plate",   1, { 256, 256, 256 }, STRATUS_FLOAT32, 1, .05, 1.0,    0.0, fog_field,     plate_shade },
   { "archipelago-1024", 1, { ARCHIPELAGO_SIDE, ARCHIPELAGO_SIDE, ARCHIPELAGO_SIDE }, STRATUS_UINT8, 2, 0.0, 255.0, 0.5, NULL, NULL },
   { "labels",  1, { LABEL_SIDE, LABEL_SIDE, LABEL_SIDE }, STRATUS_UINT8, 1, 0.0, 10.0, 0.0, labels_field, labels_shade },
+  { "cumulus-rectilinear", 1, { 256, 256, CUMULUS_LEVELS }, STRATUS_FLOAT32, 2, .95, 1.0, 0.6, cumulus_field, cumulus_shade },
 };
 /* clang-format on */
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
@@ -233,7 +235,7 @@ const char* stratus_scene_name(int index)
 
 static stratus_status find_recipe(stratus_context* context, const char* name, const recipe** result)
 {
-  char names[192] = "";
+  char names[224] = "";
   for (int i = 0; i < RECIPES; ++i) {
     if (name && strcmp(name, recipes[i].name) == 0) {
       *result = recipes + i;
@@ -276,6 +278,11 @@ stratus_status stratus_scene_create(stratus_context* context, const char* name, 
   for (int a = 0; a < 3; ++a) {
     storage->scene.volume.dimensions[a] = recipe->n[a];
     storage->scene.volume.spacing[a] = 1.0;
+  }
+  for (int k = 0; recipe->field == cumulus_field && k < CUMULUS_LEVELS; ++k) {
+    storage->heights[k] = cumulus_height(k);
+    storage->scene.volume.coordinates[2] = storage->heights;
+    storage->scene.volume.spacing[2] = storage->heights[k] / (k > 0 ? k : 1); /* the mean one, at last */
   }
   set_transfer(storage, recipe);
   measure(&storage->scene, context->threads);

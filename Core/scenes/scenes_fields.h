@@ -36,7 +36,8 @@ static void cloud_tables(field_tables* tables)
   }
 }
 
-static void cloud_field(const field_tables* tables, int j, int k, float* row)
+/* A row of the cloud's field at a height, and at `away` along the third axis. */
+static void cloud_row(const field_tables* tables, float height, float away, float* row)
 {
   for (int i = 0; i < 256; ++i) {
     row[i] = -9.0f;
@@ -44,8 +45,8 @@ static void cloud_field(const field_tables* tables, int j, int k, float* row)
   for (int b = 0; b < BLOBS; ++b) {
     const float y = tables->blobs[b].y;
     const float r = tables->blobs[b].r;
-    const float dy = ((float)j - y) / (r * ((float)j < y ? 0.35f : 1.3f));
-    const float dz = ((float)k - tables->blobs[b].z) / r;
+    const float dy = (height - y) / (r * (height < y ? 0.35f : 1.3f));
+    const float dz = (away - tables->blobs[b].z) / r;
     const float dy2 = dy * dy;
     const float dz2 = dz * dz;
     const float* dx2 = tables->blobs[b].dx2;
@@ -55,7 +56,7 @@ static void cloud_field(const field_tables* tables, int j, int k, float* row)
     }
   }
   noise_row noise;
-  noise_row_start(&noise, (float)j * .07f, (float)k * .07f, 5, 11);
+  noise_row_start(&noise, height * .07f, away * .07f, 5, 11);
   for (int i = 0; i < 256; ++i) {
     if (row[i] > -1.5f) {
       row[i] = row[i] + 1.8f * (noise_row_value(&noise, (float)i * .07f) - .5f);
@@ -63,11 +64,16 @@ static void cloud_field(const field_tables* tables, int j, int k, float* row)
   }
 }
 
-static void cloud_shade(int j, int k, const float* row, float threshold, float height, void* values)
+static void cloud_field(const field_tables* tables, int j, int k, float* row)
+{
+  cloud_row(tables, (float)j, (float)k, row);
+}
+
+static void cloud_shade_row(float up, float away, const float* row, float threshold, float height, void* values)
 {
   float* out = values;
   noise_row noise;
-  noise_row_start(&noise, (float)j * .15f, (float)k * .15f, 4, 77);
+  noise_row_start(&noise, up * .15f, away * .15f, 4, 77);
   for (int i = 0; i < 256; ++i) {
     const float e = (row[i] - threshold) / height;
     float value = 0.0f;
@@ -77,6 +83,36 @@ static void cloud_shade(int j, int k, const float* row, float threshold, float h
     }
     out[i] = value < 1.0f ? value : 1.0f;
   }
+}
+
+static void cloud_shade(int j, int k, const float* row, float threshold, float height, void* values)
+{
+  cloud_shade_row((float)j, (float)k, row, threshold, height, values);
+}
+
+/* ---------------------------------------------------------------- cumulus-rectilinear: the cloud on levels that stretch with height */
+
+#define CUMULUS_LEVELS 96
+
+/* The height of a level: the lowest two are .4 apart, and each step is 3 % longer than the one below it. */
+static double cumulus_height(int level)
+{
+  double height = 0.0, step = 0.4;
+  for (int k = 0; k < level; ++k) {
+    height += step;
+    step *= 1.03;
+  }
+  return height;
+}
+
+static void cumulus_field(const field_tables* tables, int j, int k, float* row)
+{
+  cloud_row(tables, (float)cumulus_height(k), (float)j, row);
+}
+
+static void cumulus_shade(int j, int k, const float* row, float threshold, float height, void* values)
+{
+  cloud_shade_row((float)cumulus_height(k), (float)j, row, threshold, height, values);
 }
 
 /* ---------------------------------------------------------------- plume: meandering, 1 % occupied */

@@ -31,6 +31,7 @@ typedef struct stratus_scene {
  * - stripes, a constant opacity and 20 colours that meet in vertical steps;
  * - shell and plate, thin fog in 95 % of the voxels, and in it a thin opaque sphere, or a plate in .1 % of the blocks of 4^3 cells;
  * - archipelago-1024, clouds of particles whose sizes and densities differ by orders of magnitude, in 1024^3 voxels (uint8, 1 GiB);
+ * - cumulus-rectilinear, the cloud on 96 levels whose distance grows with height, from .4 to 6.4;
  * - labels 0 to 10 (uint8), each with an opacity and colour of its own in a window of width 1 between vertical steps. */
 STRATUS_EXPERIMENTAL int stratus_scene_count(void);
 STRATUS_EXPERIMENTAL const char* stratus_scene_name(int index); /* NULL for other indices */

@@ -5,6 +5,7 @@
 #include "stratus.h"
 
 #include <vtkImageData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkSmartPointer.h>
 
 #include <chrono>
@@ -34,7 +35,10 @@ struct transfer {
 struct scene {
   std::string name;
   vtkSmartPointer<vtkImageData> image;
-  stratus_volume volume; // borrows the image's values
+  // A rectilinear grid, which Stratus draws; then `image` is what vtkResampleToImage makes of it, for peers. nullptr: none.
+  vtkSmartPointer<vtkRectilinearGrid> grid;
+  double resample_ms = 0.0; // what that took
+  stratus_volume volume;    // borrows the values of the image, or of the grid
   transfer first, edited;
   std::vector<transfer> others; // of all components but the first
   bool shaded = false;          // lit by a headlight, in the default material of vtkVolumeProperty

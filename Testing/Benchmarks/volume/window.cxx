@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window.h"
 
+#include "vtkStratusVolumeMapper.h"
+
 #include <vtkActor.h>
 #include <vtkAxesActor.h>
 #include <vtkCamera.h>
@@ -41,7 +43,8 @@ window::window(stratus_context* context, const scene& s, vtkVolumeMapper* mapper
   this->Renderer->AddLight(light);
   this->Volume->SetProperty(this->Property);
   this->Volume->SetMapper(mapper);
-  mapper->SetInputDataObject(0, s.image);
+  const bool ours = vtkStratusVolumeMapper::SafeDownCast(mapper) != nullptr;
+  mapper->SetInputDataObject(0, ours && s.grid ? static_cast<vtkDataObject*>(s.grid) : s.image);
   this->use(s.first);
   this->put_on(d);
 }

@@ -83,6 +83,22 @@ static void cloud_has_the_figures_of_record(void** state)
   assert_figures("cloud", 256, 128, 256, STRATUS_FLOAT32, 251659, .0047676, 1e-7);
 }
 
+/* Its levels stretch 16:1, of which the last is 207.7 high. */
+static void cumulus_has_the_figures_of_record(void** state)
+{
+  (void)state;
+  stratus_context* context = open_context(2);
+  stratus_scene* scene = NULL;
+  assert_int_equal(stratus_scene_create(context, "cumulus-rectilinear", &scene), STRATUS_OK);
+  assert_int_equal(stratus_volume_check(context, &scene->volume), STRATUS_OK);
+  const double* z = scene->volume.coordinates[2];
+  assert_true(z[0] == 0.0 && z[1] == 0.4 && fabs((z[95] - z[94]) / (z[1] - z[0]) - pow(1.03, 94)) < 1e-9);
+  assert_true(fabs(z[95] - 0.4 * (pow(1.03, 95) - 1.0) / 0.03) < 1e-9);
+  stratus_scene_destroy(context, scene);
+  stratus_context_destroy(context);
+  assert_figures("cumulus-rectilinear", 256, 256, 96, STRATUS_FLOAT32, 314573, .0097367, 1e-7);
+}
+
 static void plume_has_the_figures_of_record(void** state)
 {
   (void)state;
@@ -280,9 +296,9 @@ static void names_are_listed_and_an_unknown_one_is_told(void** state)
   (void)state;
   stratus_context* context = open_context(1);
   stratus_scene* scene = NULL;
-  assert_int_equal(stratus_scene_count(), 14);
+  assert_int_equal(stratus_scene_count(), 15);
   assert_null(stratus_scene_name(-1));
-  assert_null(stratus_scene_name(14));
+  assert_null(stratus_scene_name(15));
   assert_int_equal(stratus_scene_create(context, "clowd", &scene), STRATUS_INVALID_ARGUMENT);
   assert_null(scene);
   assert_non_null(strstr(stratus_context_message(context), "clowd"));
@@ -366,6 +382,7 @@ int test_scenes(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(cloud_has_the_figures_of_record),
+    cmocka_unit_test(cumulus_has_the_figures_of_record),
     cmocka_unit_test(plume_has_the_figures_of_record),
     cmocka_unit_test(fog_has_the_figures_of_record),
     cmocka_unit_test(voxel_is_one_voxel_at_its_place),
