@@ -201,7 +201,7 @@ void annotation::draw_axis(layer& over, const scene_frame& frame, int axis, cons
     over.write(short_number(tick), x + 9.0 * out_x, y + 9.0 * out_y, 0.5 - 0.5 * out_x, 0.5 - 0.5 * out_y, text_size);
   }
   const std::string units = kilo ? "km" : frame.length_units;
-  over.write(std::string(1, "xyz"[axis]) + (units.empty() ? "" : " (" + units + ")"), 0.5 * (x0 + x1) + 40.0 * out_x,
+  over.write(std::string(1, "xyz"[axis]) + (units.empty() ? "" : " (" + units + ")"), 0.5 * (x0 + x1) + 50.0 * out_x,
     0.5 * (y0 + y1) + 34.0 * out_y, 0.5 - 0.5 * out_x, 0.5 - 0.5 * out_y, title_size);
 }
 
@@ -257,7 +257,7 @@ void annotation::draw(
     caption.replace(at, 6, time);
   }
   if (!caption.empty()) {
-    over.write(caption, margin, margin, 0.0, 0.0, title_size);
+    over.write(caption, margin, height - margin, 0.0, 1.0, title_size);
   }
   for (size_t i = 0; i < rgba.size(); i += 4) {
     const float* const o = &over.rgba()[i];

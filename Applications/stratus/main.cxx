@@ -22,6 +22,7 @@
 #include <memory>
 #include <new>
 #include <sys/resource.h>
+#include <vector>
 
 namespace {
 
@@ -91,6 +92,7 @@ void info(const cli::options& o)
   }
   cli::series in(o.source, o.array);
   const size_t step = in.find(o.time);
+  const std::vector<cli::variable_entry> variables = in.variables(step); // before the step, because the reader's output is one object
   const cli::routed data = cli::route(in.read(step), o.source, o.array);
   cli::context core("host", o.threads);
   const std::unique_ptr<cli::input> image(data.image ? new cli::input(core, o.source, data.image, o.array) : nullptr);
@@ -106,7 +108,7 @@ void info(const cli::options& o)
   if (in.steps() > 1) {
     row("", "told of: " + in.describe(step));
   }
-  for (const cli::variable_entry& one : in.variables(step)) {
+  for (const cli::variable_entry& one : variables) {
     row("variable",
       "'" + one.name + "'" + (one.units.empty() ? "" : " in " + one.units) + (one.long_name.empty() ? "" : ", " + one.long_name) + ", " +
         (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"));

@@ -57,7 +57,7 @@ What is drawn
   --log                   colours, and a guessed opacity, over the logarithm of the value, four decades at most
   --axes                  a box around the data, with its coordinates
   --color-bar             the colours of values, with the variable's name and unit
-  --caption TEXT          a line below; {time} is the step's time
+  --caption TEXT          a line at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
   --shade                 light from the eye on the field's gradient (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)

@@ -33,7 +33,7 @@ void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& draw
   cli::scene_frame place = drawing.place();
   if (in) {
     place.length_units = in->length_units();
-    place.title += in->value_units().empty() ? "" : " (" + in->value_units() + ")";
+    place.title += in->value_units().empty() || in->value_units() == "1" ? "" : " (" + in->value_units() + ")";
   }
   frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
 }

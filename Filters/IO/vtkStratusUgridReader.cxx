@@ -55,6 +55,9 @@ void AddPrism(vtkUnstructuredGrid* grid, const int* corners, int count, vtkIdTyp
   if (count <= 6) {
     for (vtkIdType border : { below, above }) {
       std::transform(corners, corners + count, std::back_inserter(ids), [border](int node) { return border + node; });
+      if (count == 3) { // VTK counts a wedge's first triangle as seen from outside, other prisms' first faces as seen from within
+        std::reverse(ids.end() - count, ids.end());
+      }
     }
     grid->InsertNextCell(types[count - 3], 2 * count, ids.data());
     return;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER"""
+"""Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
+[PATHS OF MAKE-CUMULUS AND MAKE-RIVER, where libnetcdf was there to build with]"""
 import math
 import os
 import re
@@ -19,6 +20,7 @@ from vtkmodules.vtkIOXML import (
 import numpy
 
 STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
+MAKERS = [os.path.realpath(path) for path in sys.argv[3:]]
 SIDE = (5, 4, 6)
 LOOK = ("--size", "48x40", "--device", "host", "--opacity", "0:0,30:.6", "--color", "viridis", "--unit-distance", "1")
 failures = 0
@@ -323,6 +325,39 @@ def write_range(name, low, high):
     array.SetName("qc")
     data.GetPointData().AddArray(array)
     return write(vtkXMLImageDataWriter, data, name)
+
+
+def test_netcdf():
+    if not MAKERS:
+        open("some.nc", "w").close()
+        expect(1, "built without libnetcdf", "render", "some.nc", "-o", "no.png")
+        return
+    subprocess.run([MAKERS[0], "cumulus.nc", "24"], check=True)
+    said = expect(0, "rectilinear grid of 24 x 24 x 64 points", "info", "cumulus.nc", "--time", "2h")
+    for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2 hours",
+                    r"variable +'qc' in g kg-1, cloud liquid water mixing ratio, 0 \.\. [0-9.]+$", r"z by 'z' \(m\)"):
+        if not re.search(pattern, said, re.MULTILINE):
+            fail(f"info of cumulus.nc does not say '{pattern}':\n{said}")
+    for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8"):
+        expect(0, r"time +step 8 of 13, at 2 hours since", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
+    expect(1, r"no variable 'qi' in 'cumulus.nc'; the variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
+           "--variable", "qi")
+    with open("cumulus.nc", "rb") as file:
+        text = file.read()
+    with open("cut.nc", "wb") as file:
+        file.write(text[:-1000])
+    expect(1, "the file is cut short: it has ", "render", "cut.nc", "-o", "no.png")
+    subprocess.run([MAKERS[1], "river.nc", "1"], check=True)
+    said = expect(0, "10 layers by sigma", "info", "river.nc", "--variable", "dye", "--time", "5h")
+    for pattern in (r"vtkHexahedron \(12\)", r"vtkWedge \(13\)", r"0 without volume, 0 of negative orientation", r"variable +'salinity' in psu",
+                    r"drawn +'dye' on points"):
+        if not re.search(pattern, said):
+            fail(f"info of river.nc does not say '{pattern}':\n{said}")
+    expect(0, "frames +31, river-%02d.png", "render", "river.nc", "--variable", "dye", "--frames", "river-%02d.png", "--size", "48x32",
+           "--exaggerate", "60", "--opacity", "0:0,1:.5", "--unit-distance", "300", "--device", "host")
+    if len({open(f"river-{i:02d}.png", "rb").read() for i in range(31)}) < 25:
+        fail("the film of a tide stands still")
+    expect(0, "array 'salinity' on cells", "render", "river.nc", "--variable", "salinity", "-o", "salt.png", "--size", "32x32")
 
 
 def openfoam(cells=(2, 2, 2)):

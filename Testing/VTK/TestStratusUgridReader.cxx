@@ -74,13 +74,13 @@ void check_cells(vtkUnstructuredGrid* grid)
 {
   check(grid->GetNumberOfCells() == 4 && grid->GetNumberOfPoints() == 15, "two layers of two faces over five nodes");
   const int types[] = { VTK_HEXAHEDRON, VTK_WEDGE, VTK_HEXAHEDRON, VTK_WEDGE };
-  const std::vector<std::vector<vtkIdType>> points = { { 0, 1, 2, 3, 5, 6, 7, 8 }, { 4, 2, 1, 9, 7, 6 }, { 5, 6, 7, 8, 10, 11, 12, 13 },
-    { 9, 7, 6, 14, 12, 11 } };
+  const std::vector<std::vector<vtkIdType>> points = { { 0, 1, 2, 3, 5, 6, 7, 8 }, { 1, 2, 4, 6, 7, 9 }, { 5, 6, 7, 8, 10, 11, 12, 13 },
+    { 6, 7, 9, 11, 12, 14 } };
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
     const auto i = static_cast<size_t>(cell);
     check(grid->GetCellType(cell) == types[i], "squares are hexahedra, triangles wedges");
     vtkIdList* ids = grid->GetCell(cell)->GetPointIds();
-    check(std::vector<vtkIdType>(ids->begin(), ids->end()) == points[i], "corners counterclockwise, the bottom first");
+    check(std::vector<vtkIdType>(ids->begin(), ids->end()) == points[i], "corners in the order that VTK wants, the bottom first");
   }
 }
 
