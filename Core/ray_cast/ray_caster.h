@@ -69,7 +69,10 @@ struct stratus_ray_caster {
   stratus_ray_made_table made;            /* the table that is drawn by */
   stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
   stratus_shown values;               /* the fetched values that matter; of NULL: not known yet */
-  bool in_several;        /* this picture is one of several volumes: rules that go from cell to cell are out, and tables are running sums */
+  float* layers;                      /* of several volumes, by midpoint: what each entry of a table shows over a segment; NULL: none */
+  uint64_t layers_of;                 /* that table's number */
+  double layers_step;                 /* the segment's length */
+  bool in_several;                    /* this picture is one of several volumes: rules that go from cell to cell are out */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;

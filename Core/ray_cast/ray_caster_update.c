@@ -167,12 +167,10 @@ static bool table_fits(const stratus_ray_made_table* made, bool sums, int entrie
 
 stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  /* the probe draws by the tables of one volume alone */
-  const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT || (caster->in_several && !caster->choice.provisional);
+  const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
   const stratus_sampling rule = sums ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
-  const bool midpoint = caster->choice.sampling == STRATUS_SAMPLING_MIDPOINT; /* its samples take the value of an entry alone */
-  const int entries = stratus_table_entries_for(midpoint ? STRATUS_SAMPLING_MIDPOINT : rule, stratus_ray_tolerance(options));
+  const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
   const stratus_ray_made_table last = caster->made;
   stratus_ray_made_table made = last;
   if (!table_fits(&last, sums, entries, distance)) {

@@ -20,6 +20,10 @@
 #define SEGMENTS_MOST 1e9
 /* Most segments to a sample. */
 #define STRIDE_MOST 65536.0
+/* How finely the shortest step may be divided, what a layer of light costs in samples, and what a finer lattice must cost at most. */
+#define PARTS_MOST 4
+#define EVENT_COST 0.3
+#define GAIN 0.95
 
 /* What is made of one input for this picture. */
 typedef struct several_input {
@@ -132,11 +136,59 @@ static stratus_status update(several* s, several_input* in)
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, in->of->volume, &in->options, &in->report));
   }
-  if (caster->choice.provisional) { /* where memory ran out for the probe the last choice stays, with a table of its own kind */
-    caster->choice.provisional = false;
-    const stratus_status status = stratus_ray_update_table(caster, &in->options);
-    caster->choice.provisional = true;
-    TRY(status);
+  return STRATUS_OK;
+}
+
+static int stride_of(const stratus_ray_caster* caster, double step)
+{
+  return (int)fmax(1.0, fmin(floor(caster->choice.sample_distance / step * (1.0 + 1e-9)), STRIDE_MOST));
+}
+
+/* Chooses the lattice: segments of the shortest step that a volume has, or of a half, a third or a quarter of it where other volumes'
+ * steps, whole numbers of segments, then come so much nearer to what they may be that fewer samples are taken. Volumes whose samples fall
+ * together share a layer of light, which counts EVENT_COST of a sample. */
+static void choose_step(several* s)
+{
+  double least = INFINITY, shortest = INFINITY;
+  for (int n = 0; n < s->count; ++n) {
+    shortest = fmin(shortest, s->inputs[n].of->caster->choice.sample_distance);
+  }
+  for (int parts = 1; parts <= PARTS_MOST; ++parts) {
+    double samples = 0.0;
+    bool together = true;
+    for (int n = 0; n < s->count; ++n) {
+      const int stride = stride_of(s->inputs[n].of->caster, shortest / parts);
+      samples += (double)parts / stride;
+      together = together && stride % parts == 0;
+    }
+    const double cost = samples + EVENT_COST * (together ? 1.0 : samples);
+    if (cost < GAIN * least) {
+      least = cost;
+      s->step = shortest / parts;
+    }
+  }
+}
+
+/* Makes the layers of a midpoint table: colour times optical depth, and optical depth, of each entry over a segment of the lattice. */
+static stratus_status update_layers(stratus_ray_caster* caster, double step)
+{
+  const stratus_table* table = caster->made.table;
+  void* memory = NULL;
+  if (caster->layers && caster->layers_of == caster->made.number && caster->layers_step == step) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_allocate(caster->context, 4 * (size_t)table->size, sizeof(float), &memory));
+  stratus_release(caster->context, caster->layers);
+  caster->layers = memory;
+  caster->layers_of = caster->made.number;
+  caster->layers_step = step;
+  const float scale = (float)(step / caster->made.distance), *rgba = table->rgba, *depth = rgba + 4 * (size_t)table->size;
+  for (size_t e = 0; e < 4 * (size_t)table->size; e += 4) {
+    const float alpha = rgba[e + 3], tau = depth[e] * scale;
+    for (size_t c = 0; c < 3; ++c) {
+      caster->layers[e + c] = alpha > 0.0f ? rgba[e + c] / alpha * tau : 0.0f;
+    }
+    caster->layers[e + 3] = tau;
   }
   return STRATUS_OK;
 }
@@ -147,20 +199,26 @@ static stratus_status set_part(const several* s, several_input* in, stratus_ray_
   stratus_ray_caster* caster = in->of->caster;
   const bool with_map = in->used != STRATUS_STRUCTURE_NONE;
   bool empty = false;
-  stratus_table_set_distance(caster->made.table, s->step);
+  const bool preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  if (preintegrated) {
+    stratus_table_set_distance(caster->made.table, s->step);
+  } else {
+    TRY(update_layers(caster, s->step));
+  }
   TRY(stratus_ray_frame_arguments(caster, s->camera, &in->options, s->image, s->step, a, &empty));
   in->shown = !empty && stratus_ray_shading_show(caster) && !(with_map && caster->occupancy->count == 0);
-  in->stride = (int)fmax(1.0, fmin(floor(caster->choice.sample_distance / s->step * (1.0 + 1e-9)), STRIDE_MOST));
+  in->stride = stride_of(caster, s->step);
   if (in->shown) {
     a->values.has_hidden = caster->hides;
     stratus_ray_shading_arguments(caster, in->of->volume, s->camera, &in->options, a);
     stratus_ray_frame_structures(
       caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);
     *part = (stratus_several_part){ .frame = stratus_ray_frame_of(caster, a, s->image, with_map),
+      .layers = preintegrated ? NULL : caster->layers,
       .type = stratus_ray_fetch_type(&caster->traversed),
       .stride = in->stride,
       .lit = caster->shades,
-      .preintegrated = caster->choice.sampling == STRATUS_SAMPLING_PREINTEGRATED };
+      .preintegrated = preintegrated };
   }
   return STRATUS_OK;
 }
@@ -267,11 +325,10 @@ static stratus_status render(several* s, stratus_ray_cast_arguments* arguments, 
   uint64_t differing = 0;
   int window[4] = { 0, 0, 0, 0 };
   float termination = 1.0f;
-  s->step = INFINITY;
   for (int n = 0; n < s->count; ++n) {
     TRY(update(s, &s->inputs[n]));
-    s->step = fmin(s->step, s->inputs[n].of->caster->choice.sample_distance);
   }
+  choose_step(s);
   TRY(check_extent(s));
   const double start = stratus_now_ms();
   for (int n = 0; n < s->count; ++n) {

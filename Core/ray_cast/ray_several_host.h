@@ -9,7 +9,8 @@
 
 /* A volume as the rays read it. */
 typedef struct stratus_several_part {
-  stratus_ray_cast_frame frame; /* its table holds running sums; what rays write is not read */
+  stratus_ray_cast_frame frame; /* what rays write is not read */
+  const float* layers;          /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
   int type;                     /* of its fetch, as of stratus_ray_fetch_type() */
   int stride;                   /* segments of the lattice to one of its samples */
   int lit;                      /* 1: it has light or gradient opacity */

@@ -202,9 +202,9 @@ typedef struct stratus_ray_cast_input {
  * and clip planes are each volume's own. jitter, jitter_seed and audit are those of inputs[0].
  *
  * Sampling: each volume has the rule, midpoint or pre-integrated, and the step that its own probe finds for its tolerance divided by the
- * square root of count, for errors of several volumes add up by their squares; or those that its options set. The shortest of these steps
- * is the lattice's, which all volumes share. A volume of longer steps takes a sample every so many whole steps of the lattice as fit in
- * its own. A segment of the lattice is cut into pieces where its colour changes much, as with one volume.
+ * square root of count, for errors of several volumes add up by their squares; or those that its options set. All volumes share one
+ * lattice, whose segments are the shortest of these steps, or a half, a third or a quarter of it; each volume takes a sample every so many
+ * whole segments as fit in its own step. What is composited at once is cut into pieces where its colour changes much, as with one volume.
  *
  * reports: NULL, or one for each input. Each tells of its own volume what was built, chosen and expected, and of the whole picture the
  * rays, samples, skipped segments, look-ups, differing pixels, window and cast_ms. The host draws, whatever the context's device. Each

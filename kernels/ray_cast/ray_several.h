@@ -25,7 +25,9 @@ typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
   value_source values;
   GLOBAL const uchar *hidden, *map;
-  GLOBAL const void* table; /* running sums */
+  /* Pre-integrated: running sums. Midpoint: for each entry its colour times optical depth, and optical depth, of a segment's length; and
+   * with light or gradient opacity, what these read besides. */
+  GLOBAL const void *table, *besides;
   several_value* value;
   several_gradient* gradient;
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
@@ -37,7 +39,7 @@ typedef struct several_source {
 typedef struct several_way {
   vfloat lo, hi, front, rise; /* the field goes from `front` at lo to `front` + `rise` at hi */
   vfloat rate[4];             /* colour times optical depth, and optical depth, of a segment's length */
-  vfloat entries;             /* of the table on the way, of each segment */
+  vfloat entries;             /* of the table, for each segment's length of the way */
   vmask stops;                /* rays that end at hi, in the colour `wall` */
   vfloat wall[3];
   stratus_lit_sample lighting; /* set where the volume has light or gradient opacity */
@@ -49,27 +51,32 @@ typedef struct several_volume {
   int phase;        /* segments from the beginning of a sample's way to the packet's first */
   int next, run;    /* the segment at which a sample or a look-up is due; before `run` the structure need not be asked */
   int last;         /* the first segment behind all rays' ends */
-  int shows;        /* whether anything does on `way` */
   vfloat ahead;     /* pre-integrated: the value at the end of the way, which is the next one's front */
   vmask knows;      /* the rays that have it */
-  several_way way;
+  several_way ways[2];
+  int now;          /* which of them is the way that rays are on; the other is the coming one */
+  int shows, comes; /* whether anything shows on these */
 } several_volume;
 
 /* The smallest number in the lanes of the mask. */
 INLINE int several_least(vint a, vmask mask)
 {
+#if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  return _mm512_mask_reduce_min_epi32(mask, (__m512i)a);
+#else
   int lanes[STRATUS_WIDTH], least = SEVERAL_NEVER;
   vi_store(lanes, vi_select(mask, a, vi_set(SEVERAL_NEVER)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     least = lanes[lane] < least ? lanes[lane] : least;
   }
   return least;
+#endif
 }
 
 /* Where the way of the sample begins in which segment i is. */
 INLINE int several_aligned(const several_source* from, const several_volume* v, int i)
 {
-  return i == SEVERAL_NEVER ? i : i - (i + v->phase) % from->stride;
+  return i == SEVERAL_NEVER || from->stride == 1 ? i : i - (i + v->phase) % from->stride;
 }
 
 /* ---- the structure */
@@ -118,7 +125,10 @@ INLINE int several_leap(const several_source* from, several_volume* v, int i, vf
   }
   next = next > i + from->stride ? next : i + from->stride;
   next = next < v->last ? next : SEVERAL_NEVER;
-  k->skipped -= mask_int(inside) * vi_set(((next < v->last ? next : v->last) - i + from->stride - 1) / from->stride);
+  if (m_any(inside)) {
+    const int segments = (next < v->last ? next : v->last) - i;
+    k->skipped -= mask_int(inside) * vi_set(from->stride == 1 ? segments : (segments + from->stride - 1) / from->stride);
+  }
   return next;
 }
 
@@ -176,13 +186,22 @@ INLINE void several_light(const several_source* from, const stratus_packet* k, v
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3];
   from->gradient(a, from->values, x, mask, g);
-  way->lighting.factor = gradient_factor(a, from->table, 0, g, mask);
+  way->lighting.factor = gradient_factor(a, from->besides, 0, g, mask);
   for (int c = 0; c < 3; ++c) {
     way->lighting.diffuse[c] = v_set(1.0f);
     way->lighting.specular[c] = v_set(0.0f);
   }
   if (a->light.on) {
     ray_light(a, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+  }
+}
+
+/* Lights what a segment's length of a way shows. */
+INLINE void several_light_rate(const several_way* way, vmask mask, vfloat rate[4])
+{
+  light_layer(&way->lighting, rate);
+  for (int c = 0; c < 4; ++c) {
+    rate[c] = v_select(mask, rate[c] * way->lighting.factor, v_set(0.0f));
   }
 }
 
@@ -195,30 +214,42 @@ INLINE vmask several_rate(
   sums_between(sums, low, beyond, mask, rate);
   mask = mask & v_lt(v_set(0.0f), rate[3]);
   *width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
-  vfloat scale = v_select(mask, v_set(a->table.tau_scale) * v_reciprocal(*width), v_set(0.0f));
+  const vfloat scale = v_select(mask, v_set(a->table.tau_scale) * v_reciprocal(*width), v_set(0.0f));
   for (int c = 0; c < 4; ++c) {
     rate[c] = rate[c] * scale;
   }
   if (from->lit) {
-    light_layer(&way->lighting, rate);
-    for (int c = 0; c < 4; ++c) {
-      rate[c] = v_select(mask, rate[c] * way->lighting.factor, v_set(0.0f));
-    }
+    several_light_rate(way, mask, rate);
   }
   return mask;
 }
 
-/* Makes the way of what the field does on it, in the lanes of the mask. */
+/* Makes the coming way one of the value in its middle. */
+INLINE void several_shade_middle(const several_source* from, several_volume* v, vmask mask)
+{
+  several_way* way = &v->ways[1 - v->now];
+  gather_four((GLOBAL const float*)from->table, table_entry(&from->a->table, from->besides, way->front), mask, way->rate);
+  const vmask shown = mask & v_lt(v_set(0.0f), way->rate[3]);
+  way->stops = m_none();
+  way->entries = v_set(0.0f);
+  v->comes = m_any(shown) != 0;
+  if (from->lit && v->comes) {
+    several_light(from, &v->k, shown, way);
+    several_light_rate(way, shown, way->rate);
+  }
+}
+
+/* Makes the coming way of what the field does on it, in the lanes of the mask. */
 INLINE void several_shade(const several_source* from, several_volume* v, vmask mask)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   GLOBAL const int* sums = (GLOBAL const int*)from->table;
-  several_way* way = &v->way;
+  several_way* way = &v->ways[1 - v->now];
   const vfloat zero = v_set(0.0f), length = way->hi - way->lo;
   const vfloat front_place = table_place(&a->table, way->front), place = table_place(&a->table, way->front + way->rise);
   mask =
     mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
-  v->shows = 0;
+  v->comes = 0;
   way->stops = m_none();
   way->rate[0] = way->rate[1] = way->rate[2] = way->rate[3] = zero;
   if (!m_any(mask)) {
@@ -243,16 +274,15 @@ INLINE void several_shade(const several_source* from, several_volume* v, vmask m
   }
   vfloat width;
   shown = several_rate(from, way, vi_min(front, entry), vi_max(front, entry) + vi_set(1), shown, way->rate, &width);
-  /* a table takes no fewer entries for a part of the way, so that their number is no measure below one */
-  way->entries = width * v_reciprocal(v_max(length, v_set(1.0f)));
-  v->shows = m_any(shown | way->stops);
+  way->entries = width * v_reciprocal(v_max(length, v_set(1e-3f)));
+  v->comes = m_any(shown | way->stops) != 0;
 }
 
 /* Takes the sample that is due at segment i, or leaps. live: rays that are not at their end. */
 INLINE void several_advance(const several_source* from, several_volume* v, int i, vmask live)
 {
   stratus_packet* k = &v->k;
-  v->shows = 0;
+  v->comes = 0;
   if (i >= v->last) {
     v->next = SEVERAL_NEVER;
     return;
@@ -294,54 +324,84 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
     v->ahead = value;
     v->knows = inside;
   }
-  v->way.lo = lo;
-  v->way.hi = hi;
-  v->way.front = front;
-  v->way.rise = value - front;
-  several_shade(from, v, inside & v_finite(value) & v_finite(front));
+  v->ways[1 - v->now].lo = lo;
+  v->ways[1 - v->now].hi = hi;
+  v->ways[1 - v->now].front = front;
+  v->ways[1 - v->now].rise = value - front;
+  const vmask valid = inside & v_finite(value) & v_finite(front);
+  if (from->preintegrated) {
+    several_shade(from, v, valid);
+  } else {
+    several_shade_middle(from, v, valid);
+  }
 }
 
-/* ---- a segment */
+/* ---- intervals
+ * Of what the rays are on, nothing changes before a volume whose way shows anything takes its next sample. So a ray composites from one
+ * such change to the next. Where a way shows nothing, and whether it was sampled or skipped, makes no difference to that. */
 
-/* The part of segment i between u0 and u1 (0..1) that is on the way. */
-INLINE void several_part(const several_volume* v, int i, vfloat u0, vfloat u1, vfloat* from, vfloat* to)
+/* The part of the way that is between u0 and u1 segments behind the beginning of segment `since`. */
+INLINE void several_part(const several_volume* v, vint since, vfloat u0, vfloat u1, vfloat* from, vfloat* to)
 {
-  const vfloat s0 = v_from_int(vi_set(i) - v->offset);
-  *from = v_max(s0 + u0, v->way.lo);
-  *to = v_max(v_min(s0 + u1, v->way.hi), *from);
+  const several_way* way = &v->ways[v->now];
+  const vfloat s0 = v_from_int(since - v->offset);
+  *from = v_max(s0 + u0, way->lo);
+  *to = v_max(v_min(s0 + u1, way->hi), *from);
 }
 
 /* Adds what the volume shows between two places, by the values there. */
 INLINE void several_add_part(const several_source* from, const several_volume* v, vfloat begin, vfloat end, vmask mask, vfloat sum[4])
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
-  const several_way* way = &v->way;
+  const several_way* way = &v->ways[v->now];
+  mask = mask & v_lt(begin, end) & v_lt(v_set(0.0f), way->rate[3]);
+  if (!from->preintegrated) {
+    for (int c = 0; c < 4; ++c) {
+      sum[c] = v_select(mask, v_fma(way->rate[c], end - begin, sum[c]), sum[c]);
+    }
+    return;
+  }
   const vfloat per_length = v_reciprocal(v_max(way->hi - way->lo, v_set(1e-6f)));
   const vfloat t0 = v_clamp((begin - way->lo) * per_length, 0.0f, 1.0f), t1 = v_clamp((end - way->lo) * per_length, 0.0f, 1.0f);
   const vint e0 = table_entry(&a->table, from->table, v_fma(way->rise, t0, way->front)),
              e1 = table_entry(&a->table, from->table, v_fma(way->rise, t1, way->front));
   vfloat rate[4], width;
-  mask = mask & v_lt(begin, end) & v_lt(v_set(0.0f), way->rate[3]);
   several_rate(from, way, vi_min(e0, e1), vi_max(e0, e1) + vi_set(1), mask, rate, &width);
   for (int c = 0; c < 4; ++c) {
     sum[c] = v_select(mask, v_fma(rate[c], end - begin, sum[c]), sum[c]);
   }
 }
 
+/* (1 - exp(-x)) / x, the part of light that each unit of optical depth takes: by its series where x is small. */
+INLINE vfloat several_absorbed_share(vfloat x, vmask mask)
+{
+  const float small = 0.25f;
+  vfloat share = v_fma(v_set(-1.0f / 720.0f), x, v_set(1.0f / 120.0f));
+  share = v_fma(share, x, v_set(-1.0f / 24.0f));
+  share = v_fma(share, x, v_set(1.0f / 6.0f));
+  share = v_fma(share, x, v_set(-0.5f));
+  share = v_fma(share, x, v_set(1.0f));
+  const vmask large = v_lt(v_set(small), x);
+  if (m_any(mask & large)) {
+    share = v_select(large, v_absorbed(x) * v_reciprocal(v_max(x, v_set(small))), share);
+  }
+  return share;
+}
+
 /* Composites light and optical depth as one layer. lo: where it begins, for depth. */
 INLINE void several_composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, const vfloat sum[4], vfloat lo)
 {
   vfloat layer[4];
-  layer[3] = v_select(mask, v_absorbed(v_select(mask, sum[3], v_set(0.0f))), v_set(0.0f));
-  const vfloat per_depth = v_select(mask, layer[3] * v_reciprocal(v_max(sum[3], v_set(1e-30f))), v_set(0.0f));
-  for (int c = 0; c < 3; ++c) {
-    layer[c] = sum[c] * per_depth;
+  const vfloat share = v_select(mask, several_absorbed_share(v_select(mask, sum[3], v_set(0.0f)), mask), v_set(0.0f));
+  for (int c = 0; c < 4; ++c) {
+    layer[c] = sum[c] * share;
   }
+  layer[3] = v_min(layer[3], v_set(1.0f)); /* the product is rounded */
   composite(a, k, mask, layer, lo);
 }
 
-/* Composites segment i up to `stop` in several pieces on the rays of the mask. */
-INLINE void several_pieces(const several_source* from, const several_volume* volumes, int count, int i, vmask mask, vfloat pieces,
+/* Composites the interval from `since` on, `stop` long, in several pieces on the rays of the mask. */
+INLINE void several_pieces(const several_source* from, const several_volume* volumes, int count, vint since, vmask mask, vfloat pieces,
   vfloat stop, vfloat lo, stratus_packet* k)
 {
   const vfloat share = stop * v_reciprocal(pieces), one = v_set(1.0f);
@@ -353,7 +413,7 @@ INLINE void several_pieces(const several_source* from, const several_volume* vol
     for (int n = 0; n < count; ++n) {
       if (volumes[n].shows) {
         vfloat begin, end;
-        several_part(&volumes[n], i, u0, u1, &begin, &end);
+        several_part(&volumes[n], since, u0, u1, &begin, &end);
         several_add_part(&from[n], &volumes[n], begin, end, mask, sum);
       }
     }
@@ -366,16 +426,16 @@ INLINE void several_pieces(const several_source* from, const several_volume* vol
   } while (m_any(mask));
 }
 
-/* Where in segment i the first ray-ending value is, 0..1; 1 where there is none. wall: its colour. */
+/* Rays that end in the interval from `since` on, which is *stop long and then ends there. wall: the colour that ends them. */
 INLINE vmask several_walls(
-  const several_source* from, const several_volume* volumes, int count, int i, vmask live, vfloat* stop, vfloat wall[3])
+  const several_source* from, const several_volume* volumes, int count, vint since, vmask mask, vfloat* stop, vfloat wall[3])
 {
   vmask stops = m_none();
   for (int n = 0; n < count; ++n) {
-    const several_way* way = &volumes[n].way;
+    const several_way* way = &volumes[n].ways[volumes[n].now];
     if (volumes[n].shows && m_any(way->stops)) {
-      const vfloat at = v_max(way->hi - v_from_int(vi_set(i) - volumes[n].offset), v_set(0.0f));
-      const vmask first = live & way->stops & v_le(at, *stop);
+      const vfloat at = v_max(way->hi - v_from_int(since - volumes[n].offset), v_set(0.0f));
+      const vmask first = mask & way->stops & v_le(at, *stop);
       *stop = v_select(first, at, *stop);
       for (int c = 0; c < 3; ++c) {
         vfloat color = way->wall[c];
@@ -390,35 +450,39 @@ INLINE vmask several_walls(
   return stops;
 }
 
-/* Composites segment i of all volumes. */
-INLINE void several_segment(const several_source* from, const several_volume* volumes, int count, int i, stratus_packet* k)
+/* Composites what all volumes show from segment `since` to i on the rays of the mask. */
+INLINE void several_interval(
+  const several_source* from, const several_volume* volumes, int count, vint since, int i, vmask mask, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  vfloat sum[4] = { zero, zero, zero, zero }, wall[3] = { zero, zero, zero }, stop = one, error = zero, nearest = v_set(LARGEST_FLOAT);
-  const vmask stops = several_walls(from, volumes, count, i, k->live, &stop, wall);
+  vfloat sum[4] = { zero, zero, zero, zero }, wall[3] = { zero, zero, zero }, error = zero, nearest = v_set(LARGEST_FLOAT);
+  vfloat stop = v_from_int(vi_set(i) - since);
+  const vmask stops = several_walls(from, volumes, count, since, mask, &stop, wall);
   for (int n = 0; n < count; ++n) {
     const several_volume* v = &volumes[n];
     if (v->shows) {
       CONSTANT stratus_table_arguments* t = &from[n].a->table;
+      const several_way* way = &v->ways[v->now];
       vfloat begin, end;
-      several_part(v, i, zero, stop, &begin, &end);
+      several_part(v, since, zero, stop, &begin, &end);
+      const vfloat length = end - begin;
       for (int c = 0; c < 4; ++c) {
-        sum[c] = v_fma(v->way.rate[c], end - begin, sum[c]);
+        sum[c] = v_fma(way->rate[c], length, sum[c]);
       }
-      const vmask here = v_lt(begin, end) & v_lt(zero, v->way.rate[3]);
-      const vmask there = here | (stops & v->way.stops);
+      const vmask here = v_lt(begin, end) & v_lt(zero, way->rate[3]);
+      const vmask there = here | (stops & way->stops);
       nearest = v_select(there, v_min(begin + v->k.first, nearest), nearest);
-      error = v_select(here, v_max(v_min(v->way.entries * v_set(t->color_slope), v_set(t->color_most)), error), error);
+      error = v_select(here, v_max(v_min(way->entries * length * v_set(t->color_slope), v_set(t->color_most)), error), error);
     }
   }
-  const vmask shown = k->live & v_lt(zero, sum[3]);
-  const vfloat pieces = pieces_for(sum[3] * error);
-  const vmask several = shown & v_lt(one, pieces), single = m_andnot(shown, several);
+  const vmask shown = mask & v_lt(zero, sum[3]);
+  const vfloat q = sum[3] * error;
+  const vmask several = shown & v_lt(one, q), single = m_andnot(shown, several);
   if (m_any(single)) {
     several_composite(from[0].a, k, single, sum, nearest);
   }
   if (m_any(several)) {
-    several_pieces(from, volumes, count, i, several, v_select(several, pieces, one), stop, nearest, k);
+    several_pieces(from, volumes, count, since, several, v_select(several, pieces_for(q), one), stop, nearest, k);
   }
   if (m_any(stops)) {
     vfloat layer[4] = { wall[0], wall[1], wall[2], v_select(stops, one, zero) };
@@ -428,6 +492,16 @@ INLINE void several_segment(const several_source* from, const several_volume* vo
     composite(from[0].a, k, stops, layer, nearest);
   }
   k->live = m_andnot(k->live, v_lt(k->transparency, v_set(from[0].a->termination)));
+}
+
+/* Lanes on which a way shows anything. */
+INLINE vmask several_shown(const several_way* way, int shows)
+{
+  vmask mask = m_none();
+  if (shows) {
+    mask = v_lt(v_set(0.0f), way->rate[3]) | way->stops;
+  }
+  return mask;
 }
 
 /* ---- the march */
@@ -470,7 +544,7 @@ INLINE void several_load(
     CONSTANT stratus_ray_cast_arguments* a = from[n].a;
     several_volume* v = &volumes[n];
     stratus_rays rays;
-    v->shows = 0;
+    v->now = v->shows = v->comes = 0;
     v->knows = m_none();
     v->ahead = v_set(0.0f);
     if (packet_outside(a, x, y)) {
@@ -492,24 +566,35 @@ INLINE void several_load(
 
 INLINE void several_march(const several_source* from, several_volume* volumes, int count, stratus_packet* k)
 {
+  vint since = vi_set(0);
   int i = 0;
-  while (m_any(k->live)) {
-    int shows = 0, next = SEVERAL_NEVER;
+  while (m_any(k->live) && i != SEVERAL_NEVER) {
+    int next = SEVERAL_NEVER, shows = 0;
+    vmask changed = m_none();
     for (int n = 0; n < count; ++n) {
-      if (volumes[n].next <= i) {
-        several_advance(&from[n], &volumes[n], i, k->live);
+      several_volume* v = &volumes[n];
+      shows |= v->shows;
+      if (v->next <= i) {
+        several_advance(&from[n], v, i, k->live);
+        changed = changed | several_shown(&v->ways[v->now], v->shows) | several_shown(&v->ways[1 - v->now], v->comes);
+      } else {
+        v->comes = -1; /* stays on its way */
       }
-      shows |= volumes[n].shows;
-      next = volumes[n].next < next ? volumes[n].next : next;
+      next = v->next < next ? v->next : next;
     }
-    if (shows) {
-      several_segment(from, volumes, count, i, k);
-      ++i;
-    } else if (next == SEVERAL_NEVER) {
-      break;
-    } else {
-      i = next;
+    if (m_any(changed)) {
+      if (shows) {
+        several_interval(from, volumes, count, since, i, changed & k->live, k);
+      }
+      since = vi_select(changed, vi_set(i), since);
     }
+    for (int n = 0; n < count; ++n) {
+      if (volumes[n].comes >= 0) {
+        volumes[n].now = 1 - volumes[n].now;
+        volumes[n].shows = volumes[n].comes;
+      }
+    }
+    i = next;
   }
   for (int n = 0; n < count; ++n) {
     k->samples = k->samples + volumes[n].k.samples;
