@@ -5,19 +5,29 @@
 #include "drawing.h"
 #include "mesh.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
 
 namespace {
 
-// Refuses options that apply to regular grids only, so that none is ignored silently.
-void refuse_options(const cli::options& o)
+// The mode of meshes of the same name. Modes that meshes lack, and options for regular grids only, are refused, so that none is ignored
+// silently.
+stratus_tetra_mode mode_of(const cli::options& o)
 {
-  if (o.mode != STRATUS_MODE_COMPOSITE || o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest ||
-    o.shade || o.audit || o.sample_distance != 0.0 || o.cell_error != 0.0 || !o.crop.empty() || !o.mask.empty() || o.jitter >= 0) {
+  if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.shade || o.audit ||
+    o.sample_distance != 0.0 || o.cell_error != 0.0 || o.crop_regions != STRATUS_CROP_INSIDE || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +
-      "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, cell error, " +
-      "crop, mask, jitter and audit are for images");
+      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, light, crop regions, mask, jitter and " +
+      "audit are for images");
   }
+  for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_ISOSURFACE; ++i) {
+    const auto mode = static_cast<stratus_tetra_mode>(i);
+    if (std::string(stratus_tetra_mode_name(mode)) == stratus_mode_name(o.mode)) {
+      return mode;
+    }
+  }
+  throw cli::usage("'" + o.source + "' is a grid of cells: --mode " + stratus_mode_name(o.mode) + " is for images");
 }
 } // namespace
 
@@ -45,7 +55,7 @@ using cli::row;
 class grid_drawing : public cli::drawing
 {
 public:
-  grid_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core) { refuse_options(o); }
+  grid_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core), Mode(mode_of(o)) {}
   ~grid_drawing() override { stratus_tetra_caster_destroy(this->Caster); }
   grid_drawing(const grid_drawing&) = delete;
   grid_drawing& operator=(const grid_drawing&) = delete;
@@ -61,6 +71,7 @@ public:
 private:
   const cli::options& Options;
   cli::context& Core;
+  stratus_tetra_mode Mode;
   cli::mesh Mesh;
   cli::transfer Transfer;
   stratus_camera Camera = {};
@@ -106,8 +117,15 @@ void grid_drawing::draw(const stratus_image& image)
     this->Core.check(stratus_tetra_caster_create(this->Core, &this->Caster), "caster of tetrahedra");
   }
   stratus_tetra_options how = stratus_tetra_options_default();
-  how.method = this->Options.tetra_method;
-  how.tolerance = this->Options.tolerance;
+  const cli::options& o = this->Options;
+  how.mode = this->Mode;
+  how.method = o.tetra_method;
+  how.tolerance = o.tolerance;
+  how.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), how.crop_bounds);
+  std::copy(o.average.begin(), o.average.end(), how.average_range);
+  how.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), how.contours);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");
@@ -131,6 +149,7 @@ void grid_drawing::tell() const
     cli::format("%.2f ms for %d x %d pixels, %s rays met the mesh",
       r.transform_ms + r.entries_ms + r.march_ms + r.sort_ms + r.bin_ms + r.project_ms, this->Options.width, this->Options.height,
       cli::grouped(r.rays).c_str()));
+  row("mode", stratus_tetra_mode_name(this->Mode));
   row("method", r.why);
   row("cells passed", cli::grouped(r.segments) + ", in from outside " + cli::grouped(r.entries) + " times");
   row("flat", cli::grouped(static_cast<unsigned long long>(r.flat)) + " cells have no volume");

@@ -39,7 +39,7 @@ def run(*words):
 def expect(status, pattern, *words):
     """Runs the command; returns what it said."""
     done = run(*words)
-    if done.returncode != status or not re.search(pattern, done.stdout):
+    if done.returncode != status or not re.search(pattern, done.stdout, re.MULTILINE):
         fail(f"{' '.join(words)} returned {done.returncode}, not {status} and '{pattern}':\n{done.stdout}")
     if status and len(done.stdout.splitlines()) > status:  # a usage error has a second line
         fail(f"{' '.join(words)} printed more than an error:\n{done.stdout}")
@@ -119,6 +119,13 @@ def test_kinds():
     expect(0, "kind +curvilinear grid of 5 x 4 x 6 points", "info", "stretched.vts")
     expect(0, "kind +unstructured grid", "info", "stretched.vtu")
     expect(0, "kind +image of 5 x 4 x 6 points", "info", write(vtkXMLImageDataWriter, image(), "image.vti"))
+    expect(0, "kind .*drawn by rays", "info", "stretched.vtr")
+    expect(0, "mean spacing 1 x 1 x 2.2", "info", "stretched.vtr")
+    write(vtkXMLRectilinearGridWriter, fill(axes(range(5), range(4), range(6))), "even.vtr")
+    if picture("even.vtr") != picture("image.vti"):
+        fail("a rectilinear grid of equal spacing is another picture than the image")
+    if picture("stretched.vtr") == picture("even.vtr"):
+        fail("coordinates change nothing")
     same = picture("stretched.vtu")
     if picture("stretched.vts") != same:
         fail("a curvilinear grid is another picture than its cells")
@@ -140,6 +147,20 @@ def test_kinds():
         fail("parts that meet do not share their points")
     if picture("halves.vtm") != same:
         fail("two halves are another picture than the whole")
+
+
+def test_modes_of_grids():
+    seen = {picture("stretched.vts")}
+    for words in (("maximum",), ("minimum",), ("average",), ("additive",), ("isosurface", "--contours", "12,20"),
+                  ("average", "--average-range", "5,9")):
+        expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
+        seen.add(open("out.png", "rb").read())
+    seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
+    if len(seen) != 8:
+        fail(f"of 8 pictures in other modes and cropped, {len(seen)} differ")
+    expect(2, "--mode first-hit is for images", "render", "stretched.vts", "-o", "no.png", "--mode", "first-hit")
+    for words in (("--shade",), ("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
+        expect(2, "are for images", "render", "stretched.vts", "-o", "no.png", *words)
 
 
 def test_bad_grids():
