@@ -69,6 +69,10 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "tolerance %g, must be at least 0 and finite", options->tolerance);
   }
+  if (!(options->gradient_distance >= 0.0) || !isfinite(options->gradient_distance)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient distance %g, must be positive and finite, or 0 for optical depths",
+      options->gradient_distance);
+  }
   const int size = options->block_size;
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);

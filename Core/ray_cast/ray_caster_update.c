@@ -131,6 +131,8 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   in.tolerance = options->tolerance;
   in.interpolation = options->interpolation;
   in.shade = options->shade != 0;
+  in.mean_components = options->mean_components != 0;
+  in.gradient_distance = options->gradient_distance;
   in.voxel = stratus_ray_voxel_length(volume);
   return in;
 }

@@ -24,6 +24,8 @@ bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_tran
 
 /* A positional light at least this many voxel edges away counts as directional. */
 #define LIGHT_FAR 1e15
+/* Samples in the way of gradient_distance, at most: products with the optical depth of opacity 1, 1e30, stay floats. */
+#define REACH_MOST 1e7
 
 static double length_of(const double v[3])
 {
@@ -67,13 +69,15 @@ static void set_lights(
   }
 }
 
-static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_arguments* a)
+static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const stratus_ray_shading_tables* shading = &caster->shading_tables;
   const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   a->media.components = shading->components;
   a->media.dependent = caster->dependent;
+  a->media.mean = options->mean_components && !caster->dependent;
+  a->media.factor_reach = 0.0f;
   a->media.label_first = shading->label_first;
   a->media.label_steps = shading->label_tables ? shading->label_steps : 0;
   a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
@@ -82,6 +86,9 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
     const stratus_table* table = shading->tables[c];
     const bool has = caster->shades && c < shading->components;
     a->media.factor_first[c] = has ? shading->factor_first[c] : -1;
+    if (a->media.factor_first[c] >= 0) {
+      a->media.factor_reach = (float)fmin(options->gradient_distance / caster->choice.sample_distance, REACH_MOST);
+    }
     a->media.factor_scale[c] = shading->factor_scale[c];
     a->media.factor_last[c] = (float)STRATUS_SHADING_FACTORS;
     a->media.first[c] = shading->first[c];
@@ -118,7 +125,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   for (int axis = 0; axis < 3; ++axis) {
     a->media.gradient_length[axis] = (float)(mean / volume->spacing[axis]);
   }
-  set_tables(caster, a);
+  set_tables(caster, options, a);
   if (!options->shade) { /* the lights are unchecked and unused */
     return;
   }

@@ -118,6 +118,13 @@ typedef struct stratus_ray_cast_options {
    * components, the first has the colour and the second the opacity. Of 4 (STRATUS_UINT8 only), the first three are red, green and blue in
    * 0..255, and the fourth has the opacity. The gradient is the last component's. */
   int dependent;
+  /* Composite, independent components. 0 (default): their optical depths add up, as where two media share a place. 1: each counts by its
+   * share of them, so that depths d give (sum of d^2) / (sum of d), while their emitted light adds up, as VTK's mappers mix components. */
+  int mean_components;
+  /* Composite, with a gradient opacity F. 0 (default): F multiplies the optical depth, which no length enters; a value of opacity 1 stays
+   * opaque. Greater than 0, finite: F multiplies the opacity A of a way of this world length, as VTK's mappers multiply the
+   * opacity of a sample: such a way lets 1 - F A pass. Samples are never pre-integrated then. */
+  double gradient_distance;
   /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
   double average_range[2];
   int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */

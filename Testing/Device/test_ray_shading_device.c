@@ -61,6 +61,8 @@ static void device_and_host_show_the_same(void** state)
   c.transfer.gradient_count = 2;
   c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   compare(host, device, &c, &c.transfer, "lit, gradient opacity, pre-integrated");
+  c.options.gradient_distance = 1.5;
+  compare(host, device, &c, &c.transfer, "lit, gradient opacity of opacities");
   case_destroy(&c);
 
   case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 6); /* every second value the other component */
@@ -71,6 +73,8 @@ static void device_and_host_show_the_same(void** state)
   case_camera(host, &c, 1, 0);
   const stratus_transfer both[2] = { c.transfer, c.transfer };
   compare(host, device, &c, both, "two components");
+  c.options.mean_components = 1;
+  compare(host, device, &c, both, "two components by their share");
   c.options.dependent = 1;
   compare(host, device, &c, both, "two dependent components");
   case_destroy(&c);

@@ -182,9 +182,19 @@ static double depth_of(double opacity)
   return opacity < 1.0 ? fmin(-log1p(-opacity), OPAQUE_DEPTH) : OPAQUE_DEPTH;
 }
 
-/* Adds the light and optical depth of one medium. shown: the component whose gradient counts. */
+/* The optical depth per unit distance that is left of `depth` by a gradient opacity. */
+static double thinned(const reference_scene* scene, const stratus_transfer* transfer, double factor, double depth)
+{
+  const double units = scene->gradient_distance / transfer->unit_distance;
+  if (!(units > 0.0) || factor >= 1.0) {
+    return factor * depth;
+  }
+  return -log1p(factor * expm1(-depth * units)) / units;
+}
+
+/* Adds the light and optical depth of one medium. shown: the component whose gradient counts. squares: the sum of squared depths. */
 static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
-  double opacity, double weight, double rgb[3], double* tau, double glow[3])
+  double opacity, double weight, double rgb[3], double* tau, double* squares, double glow[3])
 {
   double g[3] = { 0.0, 0.0, 0.0 };
   if (opacity <= 0.0) {
@@ -194,11 +204,13 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
     const stratus_volume view = reference_component(scene->volume, shown);
     gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
   }
-  const double depth = weight * depth_of(opacity) * gradient_factor(scene->volume, transfer, g) / transfer->unit_distance;
+  const double factor = gradient_factor(scene->volume, transfer, g);
+  const double depth = weight * thinned(scene, transfer, factor, depth_of(opacity)) / transfer->unit_distance;
   if (scene->shading) {
     illuminate(scene, place, g, rgb);
   }
   *tau += depth;
+  *squares += depth * depth;
   for (int a = 0; a < 3; ++a) {
     glow[a] += depth * rgb[a];
   }
@@ -207,7 +219,7 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3])
 {
   const int components = reference_components(scene->volume), last = components - 1;
-  double rgb[3];
+  double rgb[3], squares = 0.0;
   bool whole = true;
   *tau = glow[0] = glow[1] = glow[2] = 0.0;
   for (int c = 0; c < components; ++c) {
@@ -217,8 +229,8 @@ void reference_shade(const reference_scene* scene, const reference_place* place,
     const stratus_transfer* transfer = components > 1 ? scene->transfer + c : function_of(scene, place);
     if (!isnan(values[c])) {
       reference_color(transfer, values[c], rgb);
-      add_medium(
-        scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);
+      add_medium(scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau,
+        &squares, glow);
     }
   }
   if (scene->dependent && whole) {
@@ -226,6 +238,9 @@ void reference_shade(const reference_scene* scene, const reference_place* place,
     for (int c = 0; c < 3 && last == 3; ++c) {
       rgb[c] = values[c] / 255.0;
     }
-    add_medium(scene, place, scene->transfer, last, reference_opacity(scene->transfer, values[last]), 1.0, rgb, tau, glow);
+    add_medium(scene, place, scene->transfer, last, reference_opacity(scene->transfer, values[last]), 1.0, rgb, tau, &squares, glow);
+  }
+  if (scene->mean_components && !scene->dependent && *tau > 0.0) {
+    *tau = squares / *tau;
   }
 }

@@ -41,9 +41,8 @@ INLINE void v_normalize3(vfloat v[3], float least)
   }
 }
 
-/* a^power for 0 < a <= 1, with an error of about 1e-6. The exponent and a series about 1 give the logarithm, v_absorbed() the exponential.
- */
-INLINE vfloat v_power(vfloat a, float power)
+/* The logarithm of a, 0 < a <= 1: by the exponent, and a series about 1. */
+INLINE vfloat v_logarithm(vfloat a)
 {
   const vint bits = v_to_bits(a) - vi_set(0x3f3504f3); /* so that the exponent changes at sqrt(1/2), not at 1 */
   const vint exponent = bits >> vi_set(23);
@@ -54,9 +53,14 @@ INLINE vfloat v_power(vfloat a, float power)
   series = v_fma(square, series, v_set(2.0f / 5.0f));
   series = v_fma(square, series, v_set(2.0f / 3.0f));
   series = v_fma(square * s, series, s + s);
-  const vfloat logarithm = v_fma(v_from_int(exponent), v_set(0.69314718f), series);
-  const vfloat depth = v_clamp(v_set(0.0f) - logarithm * v_set(power), 0.0f, 80.0f);
-  return one - v_absorbed(depth);
+  return v_fma(v_from_int(exponent), v_set(0.69314718f), series);
+}
+
+/* a^power for 0 < a <= 1, with an error of about 1e-6. */
+INLINE vfloat v_power(vfloat a, float power)
+{
+  const vfloat depth = v_clamp(v_set(0.0f) - v_logarithm(a) * v_set(power), 0.0f, 80.0f);
+  return v_set(1.0f) - v_absorbed(depth);
 }
 
 /* The entry of a value in component c's table. */
@@ -91,6 +95,22 @@ INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
   GLOBAL const int* factors = (GLOBAL const int*)table + a->media.factor_first[c];
   const vfloat low = v_from_bits(gather_int32(factors, entry, mask)), high = v_from_bits(gather_int32(factors + 1, entry, mask));
   return v_lerp(low, high, place - v_from_int(entry));
+}
+
+/* What multiplies the optical depth of a sample, `depth` over a whole one, where `factor`, 0..1, multiplies the opacity of the way that
+ * factor_reach tells. 1 - F A lets pass what a depth of -ln(1 - F A) does. */
+INLINE vfloat factor_of_opacity(CONSTANT stratus_ray_cast_arguments* a, vfloat factor, vfloat depth)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), way = depth * v_set(a->media.factor_reach), opacity = v_absorbed(way);
+  const vfloat y = factor * opacity;
+  /* Near 1 the logarithm loses what 1 - y has rounded, so that a series takes y from 0 to 1/8. */
+  vfloat thin = v_set(1.0f / 8.0f);
+  for (int n = 7; n > 0; --n) {
+    thin = v_fma(thin, y, v_set(1.0f / (float)n));
+  }
+  const vfloat passes = v_clamp((one - factor) + factor * (one - opacity), 1e-35f, 1.0f);
+  const vfloat effective = v_select(v_lt(y, v_set(0.125f)), thin * y, zero - v_logarithm(passes));
+  return v_select(v_lt(factor, one), effective * v_reciprocal(v_max(way, v_set(1e-30f))), one);
 }
 
 /* Lights samples at index coordinates x with the index gradient g, on rays of index direction d. A colour C of opacity A becomes C diffuse

@@ -150,6 +150,7 @@ typedef struct stratus_ray_lights {
  * array of floats. */
 typedef struct stratus_ray_media {
   int components, dependent;          /* components 0 and 1: one value */
+  int mean;                           /* independent components count by their share of the optical depth */
   int component_bytes;                /* from a value to the next component's */
   float gradient_length[3];           /* takes a value's index gradient to value per mean spacing */
   int first[4];                       /* where each component's table begins */
@@ -157,6 +158,7 @@ typedef struct stratus_ray_media {
   int search_steps[4], first_at[4], bound_at[4];
   int factor_first[4]; /* where each component's gradient opacity begins; -1: it has none */
   float factor_scale[4], factor_last[4];
+  float factor_reach; /* > 0: gradient opacities multiply the opacity of so many samples' way; 0: the optical depth */
   float weight[4];
   /* label_first: where the records of labels 0..label_count begin. Four floats: scale, offset and last cell of a label's grid, 0. Four
    * ints: its table's first entry / 4; the number of its entries; where the first entries of its cells begin, 0 if entries are cells; where

@@ -83,6 +83,8 @@ static void check(const char* what, stratus_context* context, const many* m, dou
   double reference_db = 0.0;
   scene.transfer = m->transfers;
   scene.dependent = m->c.options.dependent;
+  scene.mean_components = m->c.options.mean_components;
+  scene.gradient_distance = m->c.options.gradient_distance;
   scene.shading = m->c.options.shade ? &m->c.options.shading : NULL;
   draw(context, m, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
@@ -117,6 +119,117 @@ static void gradient_opacity_thins_as_the_reference_says(void** state)
   m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   check("pre-integrated", context, &m, MIDPOINT_DB);
   many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+/* Opacities that are multiplied show less than depths that are, the less the longer the way; and a way of length 0 is the depth. */
+static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.1, 0.2, 0.4, 0.45, 0.9 };
+  static const double lengths[] = { 0.001, 0.5, 3.0, 50.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int opaque = 0; opaque < 2; ++opaque) {
+    many m;
+    double before = INFINITY;
+    many_create(context, &m, STRATUS_FLOAT32, 1, 26, 24, 28, 71);
+    m.transfers[0].gradient = steep;
+    m.transfers[0].gradient_count = 3;
+    if (opaque) { /* the largest values have opacity 1, which depths cannot thin */
+      m.c.opacity[5] = m.c.opacity[7] = 1.0;
+    }
+    draw(context, &m, &other);
+    for (int i = 0; i < 4; ++i) {
+      char what[64];
+      double alpha = 0.0;
+      m.c.options.gradient_distance = lengths[i];
+      m.c.options.shade = i == 2;
+      m.c.options.sample_distance = opaque ? 0.02 : m.c.options.sample_distance; /* opacity 1 begins like a step */
+      snprintf(what, sizeof what, "over %g%s%s", lengths[i], opaque ? ", opacity 1" : "", i == 2 ? ", lit" : "");
+      check(what, context, &m, opaque ? 58.0 : MIDPOINT_DB);
+      for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
+        alpha += (double)drawn.rgba[4 * pixel + 3];
+      }
+      assert_true(alpha < before);
+      before = alpha;
+      if (i == 0 && !opaque) {
+        assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 55.0);
+      }
+    }
+    m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+    draw(context, &m, &drawn);
+    assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_MIDPOINT);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* A white slab of opacity 1 in a field of constant gradient: of gradient opacity F, a way of the length that is set shows F. */
+static void a_slab_of_opacity_one_shows_its_gradient_opacity(void** state)
+{
+  (void)state;
+  static const double fifth[] = { 0.0, 0.2, 1.0, 0.2 };
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 8, 8, 5, 3);
+  float* values = c.values;
+  for (int v = 0; v < 8 * 8 * 5; ++v) {
+    values[v] = (float)(v / 64);
+  }
+  c.opacity[0] = 0.0, c.opacity[2] = 1.0, c.opacity[4] = 2.0, c.opacity[6] = 4.0;
+  c.opacity[1] = c.opacity[3] = c.opacity[5] = c.opacity[7] = 1.0;
+  c.transfer.gradient = fifth;
+  c.transfer.gradient_count = 2;
+  c.volume.spacing[0] = c.volume.spacing[1] = c.volume.spacing[2] = 1.0;
+  c.camera = (stratus_camera){ .eye = { 3.5, 3.5, -10.0 },
+    .forward = { 0.0, 0.0, 1.0 },
+    .right = { 5.0, 0.0, 0.0 },
+    .up = { 0.0, 5.0, 0.0 },
+    .far_k = INFINITY,
+    .parallel = 1 };
+  c.options.sample_distance = 0.1;
+  for (int times = 0; times < 4; ++times) { /* the slab is 4 long */
+    const double length = times == 0 ? 0.0 : 4.0 / times, wanted = times == 0 ? 1.0 : 1.0 - pow(0.8, times);
+    stratus_ray_caster* caster = NULL;
+    const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+    c.options.gradient_distance = length;
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
+    const double alpha = (double)drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2) + 3];
+    print_message("             over %g: %.6f, wanted %.6f\n", length, alpha, wanted);
+    assert_true(fabs(alpha - wanted) < 2e-5); /* floats of 40 samples */
+    stratus_ray_caster_destroy(caster);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void components_that_count_by_their_share_mix_as_the_reference_mixes_them(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.0, 0.2, 10.0, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= COMPONENTS; ++count) {
+    many m;
+    char what[64];
+    double sum = 0.0, mean = 0.0;
+    many_create(context, &m, count == 3 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 20, 17, 19, 5u + (uint32_t)(10 * count));
+    m.transfers[1].weight = 0.4;
+    m.transfers[count - 1].gradient = steep;
+    m.transfers[count - 1].gradient_count = count == 3 ? 2 : 0;
+    m.c.options.shade = count == 2;
+    case_camera(context, &m.c, count, 0);
+    draw(context, &m, &other);
+    m.c.options.mean_components = 1;
+    snprintf(what, sizeof what, "mean of %d%s", count, m.c.options.shade ? ", lit" : "");
+    check(what, context, &m, MIDPOINT_DB);
+    for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
+      sum += (double)other.rgba[4 * pixel + 3];
+      mean += (double)drawn.rgba[4 * pixel + 3];
+    }
+    assert_true(mean < 0.97 * sum);
+    many_destroy(&m);
+  }
   stratus_context_destroy(context);
 }
 
@@ -272,6 +385,8 @@ static void no_structure_changes_a_bit(void** state)
     memcpy(m.c.opacity, narrow, sizeof narrow); /* of all components: mostly empty */
     m.transfers[0].gradient = steep;
     m.transfers[0].gradient_count = 2;
+    m.c.options.gradient_distance = seed % 5 == 0 ? 1.5 : 0.0;
+    m.c.options.mean_components = seed % 6 == 0;
     m.c.options.dependent = seed > 8 && (count == 2 || (count == 4 && m.c.volume.type == STRATUS_UINT8));
     m.c.options.shade = seed % 3 == 0;
     m.c.options.sample_distance = 0.7;
@@ -345,6 +460,10 @@ static void what_it_cannot_show_is_refused(void** state)
   m.c.options.mode = STRATUS_MODE_MAXIMUM;
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
+  m.c.options.gradient_distance = -2.5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "-2.5"));
+  m.c.options.gradient_distance = 0.0;
   m.c.options.label_count = 2;
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT); /* without a mask */
   m.c.options.label_count = 0;
@@ -439,6 +558,9 @@ int test_ray_components(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(gradient_opacity_thins_as_the_reference_says),
+    cmocka_unit_test(gradient_opacity_of_opacities_thins_as_the_reference_says),
+    cmocka_unit_test(a_slab_of_opacity_one_shows_its_gradient_opacity),
+    cmocka_unit_test(components_that_count_by_their_share_mix_as_the_reference_mixes_them),
     cmocka_unit_test(independent_components_mix_as_the_reference_mixes_them),
     cmocka_unit_test(each_component_has_its_own_units),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
