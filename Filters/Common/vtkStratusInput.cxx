@@ -103,7 +103,7 @@ void vtkStratusImageView::Release()
 }
 
 bool vtkStratusImageView::Set(
-  vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
+  vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents, int component)
 {
   this->Volume = stratus_volume_default();
   this->Volume.cell_centered = cells ? 1 : 0;
@@ -113,7 +113,7 @@ bool vtkStratusImageView::Set(
     // VTK counts one layer of cells along an axis of one point.
     this->Volume.dimensions[a] = cells ? std::max(points[a] - 1, 1) : points[a];
   }
-  if (!this->SetValues(image, array, cells, mostComponents, error) || !this->SetGhosts(image, cells, error)) {
+  if (!this->SetValues(image, array, cells, mostComponents, component, error) || !this->SetGhosts(image, cells, error)) {
     return false;
   }
   this->SetGeometry(image, matrix);
@@ -133,7 +133,8 @@ bool vtkStratusImageView::SetInput(vtkImageData* image, vtkDataArray* array, int
   return this->Set(image, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error);
 }
 
-bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error)
+bool vtkStratusImageView::SetValues(
+  vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error)
 {
   stratus_volume& volume = this->Volume;
   if (!CoreType(array->GetDataType(), volume.type)) {
@@ -142,12 +143,17 @@ bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bo
     return false;
   }
   const int components = array->GetNumberOfComponents();
-  if (components < 1 || components > mostComponents) {
+  if (component >= components) {
+    error = "array " + ArrayName(array) + " has " + std::to_string(components) + " components, VectorComponent is " +
+      std::to_string(component) + ", must be 0 to " + std::to_string(components - 1);
+    return false;
+  }
+  if (components < 1 || (component < 0 && components > mostComponents)) {
     error = "array " + ArrayName(array) + " has " + std::to_string(components) + " components, only arrays of 1 " +
       (mostComponents > 1 ? "to " + std::to_string(mostComponents) + " components" : "component") + " are supported";
     return false;
   }
-  volume.components = components;
+  volume.components = component < 0 ? components : 1;
   volume.value_stride = components;
   const vtkIdType expected = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
   if (array->GetNumberOfTuples() < expected) {
@@ -168,7 +174,7 @@ bool vtkStratusImageView::SetValues(vtkImageData* image, vtkDataArray* array, bo
     this->Plain = nullptr;
   }
   this->Source = array;
-  volume.values = plain->GetVoidPointer(0);
+  volume.values = plain->GetVoidPointer(std::max(component, 0)); // values, not tuples, are counted
   // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
   return true;

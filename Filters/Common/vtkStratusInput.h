@@ -26,7 +26,9 @@ class VTK_STRATUS_PRIVATE vtkStratusImageView
 {
 public:
   // Returns false, with the reason in `error`, where the core cannot take the array. `matrix` is the prop's, or nullptr for the identity.
-  bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
+  // `component`: the only one that is taken of an array of any number; -1: all, of which there may be `mostComponents`.
+  bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1,
+    int component = -1);
   // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
   bool SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
@@ -35,7 +37,7 @@ public:
   void Release();
 
 private:
-  bool SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error);
+  bool SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error);
   void SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix);
   bool SetGhosts(vtkImageData* image, bool cells, std::string& error);
 
