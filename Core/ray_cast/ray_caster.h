@@ -81,6 +81,8 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
+  stratus_ray_caster* parts[4]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
+
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
   stratus_ray_device* device; /* buffers on the OpenCL device; NULL: none */
@@ -116,6 +118,12 @@ stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structur
 /* times: what was measured may decide where the structure is automatic. */
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
   char* why, size_t capacity, stratus_ray_cast_report* report);
+
+/* ray_caster_render.c: one picture, of one component or of all that mix along a ray. The arguments have to be checked before. */
+stratus_status stratus_ray_check_input(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, const stratus_image* image);
+stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes. */
 stratus_ray_cast_frame stratus_ray_frame_of(

@@ -241,31 +241,20 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+stratus_status stratus_ray_check_input(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_ray_cast_options* options, const stratus_image* image)
 {
-  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
-  stratus_ray_cast_report mine = { 0 };
-  if (!caster) {
-    return STRATUS_INVALID_ARGUMENT;
-  }
-  options = options ? options : &defaults;
   TRY(stratus_volume_check(caster->context, volume));
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_ray_shading_check_volume(caster->context, volume, transfer, options));
   TRY(check_options(caster->context, options));
-  TRY(stratus_image_check(caster->context, image));
-  mine.expected_error = NAN;
-  mine.tolerance_met = 1;
-  mine.window[1] = image->width;
-  mine.window[3] = image->height;
-  if (options->mode == STRATUS_MODE_FIRST_HIT) {
-    TRY(stratus_first_hit_render(caster, volume, transfer, camera, options, image, &mine));
-  } else {
-    TRY(render(caster, volume, transfer, camera, options, image, &mine));
-  }
-  if (report) {
-    *report = mine;
-  }
-  return STRATUS_OK;
+  return stratus_image_check(caster->context, image);
+}
+
+stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  *report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1, .window = { 0, image->width, 0, image->height } };
+  return options->mode == STRATUS_MODE_FIRST_HIT ? stratus_first_hit_render(caster, volume, transfer, camera, options, image, report)
+                                                 : render(caster, volume, transfer, camera, options, image, report);
 }

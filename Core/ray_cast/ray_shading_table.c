@@ -51,9 +51,11 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d components: only composite takes more than 1",
-      stratus_mode_name(options->mode), components);
+  const bool surfaces = options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE;
+  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->dependent)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d %s components: %s", stratus_mode_name(options->mode),
+      components, options->dependent ? "dependent" : "independent",
+      surfaces ? "only modes without surfaces take more than 1" : "only composite takes dependent ones");
   }
   if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",

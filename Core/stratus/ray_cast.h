@@ -113,7 +113,9 @@ typedef struct stratus_ray_cast_options {
   stratus_normals normals;
   stratus_shading shading; /* used in first hits, and in composite and isosurface if `shade` is 1 */
   int shade;               /* composite and isosurface; 1: `shading` lights the samples. Default 0. */
-  /* Composite, volumes of several components. 0 (default): each component is a medium of its own, with a transfer function of its own;
+  /* Volumes of several components, which all modes but first hits and isosurface draw, dependent ones composite alone. In modes other than
+   * composite each independent component is drawn by itself; then their premultiplied colours, times the components' weights, add up to at
+   * most 1, and so do the alphas of extremes. Composite, 0 (default): each component is a medium of its own, with a transfer function of its own;
    * where media mix, their optical depths and their emitted light add up. 1: the components are one medium with one transfer function. Of 2
    * components, the first has the colour and the second the opacity. Of 4 (STRATUS_UINT8 only), the first three are red, green and blue in
    * 0..255, and the fourth has the opacity. The gradient is the last component's. */

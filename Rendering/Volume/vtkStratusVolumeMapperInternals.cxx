@@ -143,9 +143,10 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
-  if (components > 1 && !composite) {
-    error =
-      "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
+  const bool surfaces = this->IsFirstHit() || this->Mapper->BlendMode == vtkVolumeMapper::ISOSURFACE_BLEND;
+  if (components > 1 && !composite && (surfaces || media == 1)) {
+    error = "the array has " + std::to_string(components) +
+      " components: first hits and isosurfaces take 1, or one by VectorMode, and only " + "blend mode composite (0) takes dependent ones";
     return false;
   }
   for (int c = 0; c < media; ++c) {

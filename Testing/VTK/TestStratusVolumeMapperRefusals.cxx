@@ -36,13 +36,15 @@ void Shading()
   pairs->GetPointData()->GetScalars()->Fill(1);
   for (int blend = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; blend <= vtkVolumeMapper::ISOSURFACE_BLEND; ++blend) {
     Refused(
-      "two components in another mode", "2 components",
+      "two dependent components in another mode, and any of surfaces", "2 components",
       [&](Scene& s) {
         s.Mapper->SetInputData(pairs);
         s.Mapper->SetBlendMode(blend);
+        s.Volume->GetProperty()->SetIndependentComponents(blend == vtkVolumeMapper::ISOSURFACE_BLEND);
       },
       [](Scene& s) {
         s.Mapper->SetInputData(s.Image);
+        s.Volume->GetProperty()->IndependentComponentsOn();
         s.Mapper->SetBlendModeToComposite();
       });
   }
