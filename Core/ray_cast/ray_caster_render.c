@@ -248,6 +248,7 @@ stratus_status stratus_ray_check_input(stratus_ray_caster* caster, const stratus
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_ray_shading_check_volume(caster->context, volume, transfer, options));
   TRY(check_options(caster->context, options));
+  TRY(stratus_ray_shading_check_materials(caster->context, volume, options));
   return stratus_image_check(caster->context, image);
 }
 

@@ -24,6 +24,7 @@ typedef struct stratus_ray_choice_inputs {
   stratus_interpolation interpolation;
   int shade, mean_components;
   double gradient_distance;
+  stratus_material materials[4];
 } stratus_ray_choice_inputs;
 
 /* Makes the choice that holds where the user sets rule and step, or where every step gives the same picture. Else the choice is

@@ -55,7 +55,7 @@ public:
   // Reads the functions of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
   // Reads the functions of a label. Those of `component0` replace one that the property lacks for the label; it must outlive the use of
-  // this view. Labels have no gradient opacity.
+  // this view. A label without a gradient opacity of its own has none here, which the core takes for that of component 0.
   bool SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }

@@ -24,16 +24,19 @@
  * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers; it multiplies the optical depth, or, as VTK means it,
  *   the opacity (GradientOpacityDistance);
  * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up, or, as VTK
- *   means it, each counts by its share (ComponentMixing); their shading must be alike. Dependent components are colour and opacity (2), or
- * red, green, blue and opacity (4 of unsigned char);
- * - label maps.
+ *   means it, each counts by its share (ComponentMixing); each has a Shade and a material of its own. Dependent components are colour and
+ * opacity (2), or red, green, blue and opacity (4 of unsigned char);
+ * - label maps, with colours, opacities and gradient opacities of their own.
  *
- * All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, shaders of the
- * prop's own, other data than vtkImageData) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
+ * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
+ * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
+ *
+ * All else (blend mode slice, two-dimensional transfer functions, UseClippedVoxelIntensity, shaders of the prop's own, other data than
+ * vtkImageData) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
- * Ambient, Diffuse, Specular and SpecularPower apply. Positional lights have no attenuation and no cone (a cone below 90 degrees is
- * refused). A voxel of point data is a cube about its point, so that the mapper's bounds extend half a voxel farther.
+ * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a cube about its point, so that the mapper's bounds extend
+ * half a voxel farther.
  *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.

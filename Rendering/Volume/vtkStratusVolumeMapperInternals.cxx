@@ -112,8 +112,6 @@ bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* propert
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
     error = "there are functions of labels, but no MaskInput of type label map to tell where";
-  } else if (property->HasLabelGradientOpacity()) {
-    error = "gradient opacity of labels is not supported, only the property's, for all of them";
   } else if (property->GetUseClippedVoxelIntensity()) {
     error = "UseClippedVoxelIntensity is not supported, only off is";
   }
@@ -157,14 +155,6 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
     if (this->Functions[c].gradient_count > 0 && !composite) {
       error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
               "DisableGradientOpacityOn";
-      return false;
-    }
-    const bool alike = property->GetShade(c) == property->GetShade(0) && property->GetAmbient(c) == property->GetAmbient(0) &&
-      property->GetDiffuse(c) == property->GetDiffuse(0) && property->GetSpecular(c) == property->GetSpecular(0) &&
-      property->GetSpecularPower(c) == property->GetSpecularPower(0);
-    if (!alike && (property->GetShade(c) || property->GetShade(0))) {
-      error = "components of different shading are not supported: component " + std::to_string(c) +
-        "'s Shade, Ambient, Diffuse, Specular and SpecularPower must be component 0's";
       return false;
     }
   }

@@ -76,7 +76,8 @@ private:
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // Light, first hits and carried trees (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
-  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
+  bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   void OfferTree();
 
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
@@ -104,7 +105,8 @@ private:
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;
   vtkSmartPointer<vtkImageData> LastImage;
-  vtkSmartPointer<vtkDataArray> MagnitudeOf, Magnitudes; // an array, and its magnitudes as of MagnitudeTime
+  std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
+  vtkSmartPointer<vtkDataArray> MagnitudeOf, Magnitudes;            // an array, and its magnitudes as of MagnitudeTime
   vtkMTimeType MagnitudeTime = 0;
   int FirstFunction = 0;     // the property's component whose functions component 0 of the volume takes
   vtkMTimeType WarnedOf = 0; // the property's time when it was last looked at for WarnOfGradientOpacity()

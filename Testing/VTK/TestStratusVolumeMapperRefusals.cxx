@@ -91,12 +91,12 @@ void Lights()
     },
     [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
   Refused(
-    "a lamp that fades", "attenuation",
+    "a lamp that gets brighter with the distance without end", "attenuation",
     [](Scene& s) {
       vtkNew<vtkLight> lamp;
       lamp->SetPositional(1);
       lamp->SetConeAngle(90);
-      lamp->SetAttenuationValues(1, 0.1, 0);
+      lamp->SetAttenuationValues(-1, 0.1, 0);
       s.Renderer->AddLight(lamp);
       s.Volume->GetProperty()->ShadeOn();
     },

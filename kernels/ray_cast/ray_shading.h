@@ -24,27 +24,39 @@ INLINE value_source component_values(value_source values, int c)
 #endif
 
 /* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
- * over a whole sample; read only where media.factor_reach is not 0. */
-OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
-  const stratus_packet* k, vfloat s, vfloat depth, vmask mask, stratus_lit_sample* lighting)
+ * over a whole sample; read only where media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity;
+ * factor_first is negative where a lane has none. */
+OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vfloat depth, vint factor_first, vfloat factor_scale, vmask mask, stratus_lit_sample* lighting)
 {
-  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) }, one = v_set(1.0f);
+  const vmask thins = mask & vi_ge(factor_first, vi_set(0));
+  const int lit = a->light.on >> c & 1;
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
-  if (a->light.on || a->media.factor_first[c] >= 0) {
+  lighting->factor = one;
+  if (lit || m_any(thins)) {
     RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), x, mask, g);
   }
-  lighting->factor = gradient_factor(a, table, c, g, mask);
-  if (a->media.factor_reach > 0.0f && a->media.factor_first[c] >= 0) {
-    lighting->factor = factor_of_opacity(a, lighting->factor, depth);
+  if (m_any(thins)) {
+    const vfloat factor = gradient_opacity(a, table, factor_first, factor_scale, g, thins);
+    lighting->factor = v_select(thins, a->media.factor_reach > 0.0f ? factor_of_opacity(a, factor, depth) : factor, one);
   }
-  if (a->light.on) {
-    ray_light(a, x, k->d, g, lighting->diffuse, lighting->specular);
+  if (lit) {
+    ray_light(a, c, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
-      lighting->diffuse[i] = v_set(1.0f);
+      lighting->diffuse[i] = one;
       lighting->specular[i] = v_set(0.0f);
     }
   }
+}
+
+/* The same, where all lanes have the gradient opacity of component c. */
+INLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vfloat depth, vmask mask, stratus_lit_sample* lighting)
+{
+  RAY_NAME(ray_light_by)
+  (a, values, table, c, k, s, depth, vi_set(a->media.factor_first[c]), v_set(a->media.factor_scale[c]), mask, lighting);
 }
 
 #if !STRATUS_PREINTEGRATED
@@ -179,7 +191,7 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
   GLOBAL const int* ints = (GLOBAL const int*)table;
-  const vint label = RAY_NAME(label_at)(a, sample->hidden, x, valid), record = label + label, numbers = record + vi_set(1);
+  const vint label = RAY_NAME(label_at)(a, sample->hidden, x, valid), record = label + label + label, numbers = record + vi_set(1);
   vfloat of[4], layer[4];
   vint place[4];
   gather_four(floats + a->media.label_first, record, valid, of);
@@ -203,8 +215,12 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vmask shows = valid & v_lt(zero, layer[3]);
   if (m_any(shows)) {
     stratus_lit_sample lighting;
-    RAY_NAME(ray_light_sample)
-    (a, sample->values, table, 0, k, s, RAY_NAME(entry_depth)(a, floats, entry + place[1], shows), shows, &lighting);
+    const vfloat depth = RAY_NAME(entry_depth)(a, floats, entry + place[1], shows);
+    vint factors = vi_set(-1);
+    if (a->media.label_factors) {
+      factors = v_gather_ints(ints + a->media.label_first, (record + vi_set(2)) << vi_set(2), shows);
+    }
+    RAY_NAME(ray_light_by)(a, sample->values, table, 0, k, s, depth, factors, of[3], shows, &lighting);
     const vfloat thick = sample->weight * lighting.factor;
     const vmask part = shows & v_lt(thick, v_set(1.0f));
     if (m_any(part)) { /* as shorten_layer() */

@@ -86,7 +86,8 @@ static void check(const char* what, stratus_context* context, const many* m, dou
   scene.dependent = m->c.options.dependent;
   scene.mean_components = m->c.options.mean_components;
   scene.gradient_distance = m->c.options.gradient_distance;
-  scene.shading = m->c.options.shade ? &m->c.options.shading : NULL;
+  scene.shading = m->c.options.shade || m->c.options.materials ? &m->c.options.shading : NULL;
+  scene.materials = m->c.options.materials;
   draw(context, m, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
@@ -344,11 +345,19 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
     set_labels(&m, labels);
     m.c.volume.cell_centered = type == STRATUS_UINT32;
     m.c.options.shade = type == STRATUS_FLOAT64;
+    const double scale = case_type_values[type].scale;
+    const double thin[2][4] = { { 0.0, 0.3, 0.3 * scale, 1.0 }, { 0.02 * scale, 1.0, 0.2 * scale, 0.1 } };
+    for (int l = 0; l < 2; ++l) { /* label 1 has a gradient opacity of its own, and label 2 that of no label, where there is one */
+      m.transfers[l].gradient = thin[l];
+      m.transfers[l].gradient_count = type == STRATUS_FLOAT64 || (type == STRATUS_UINT32 && l == 1) ? 2 : 0;
+    }
+    m.c.options.gradient_distance = type == STRATUS_FLOAT64 ? 2.0 : 0.0;
     m.c.options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
     reference_scene scene = case_scene(&m.c);
     scene.transfer = m.transfers;
     scene.labels = labels;
     scene.label_count = 2;
+    scene.gradient_distance = m.c.options.gradient_distance;
     scene.shading = m.c.options.shade ? &m.c.options.shading : NULL;
     draw(context, &m, &drawn);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
@@ -406,6 +415,43 @@ static void no_structure_changes_a_bit(void** state)
   assert_true(lit > 12 && skipped > 100000);
   stratus_context_destroy(contexts[0]);
   stratus_context_destroy(contexts[1]);
+}
+
+/* One component is lit and shines, one is lit without a shine, and one is not. */
+static void each_component_has_a_material_of_its_own(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  stratus_material materials[COMPONENTS] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, NAN, NAN, NAN, NAN }, { 1, 0.3, 0.9, 0.0, 1.0 } };
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 3, 20, 17, 19, 55);
+  m.c.options.materials = materials;
+  check("three materials", context, &m, MIDPOINT_DB);
+  draw(context, &m, &other);
+  m.c.options.shade = 1; /* says nothing where there are materials */
+  draw(context, &m, &drawn);
+  assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  for (int c = 0; c < COMPONENTS; ++c) { /* all alike is as without */
+    const stratus_shading* s = &m.c.options.shading;
+    materials[c] = (stratus_material){ 1, s->ambient, s->diffuse, s->specular, s->specular_power };
+  }
+  draw(context, &m, &drawn);
+  assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  m.c.options.materials = NULL;
+  draw(context, &m, &other);
+  assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  m.c.options.shade = 0;
+  m.c.options.materials = materials;
+  materials[2].diffuse = -0.5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "-0.5"));
+  materials[2].diffuse = 0.5;
+  m.c.options.shading.light_count = 9;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  materials[0].shade = materials[1].shade = materials[2].shade = 0; /* no light is read */
+  draw(context, &m, &drawn);
+  many_destroy(&m);
+  stratus_context_destroy(context);
 }
 
 /* In modes that find one value a ray: pictures of the reference, one for each component, added in double precision. */
@@ -641,6 +687,7 @@ int test_ray_components(void)
     cmocka_unit_test(components_and_labels_take_the_entries_of_the_tolerance),
     cmocka_unit_test(a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit),
     cmocka_unit_test(no_structure_changes_a_bit),
+    cmocka_unit_test(each_component_has_a_material_of_its_own),
     cmocka_unit_test(one_value_a_ray_is_found_in_each_component),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
