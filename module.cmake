@@ -6,8 +6,8 @@ include(CheckLanguage)
 set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore ImagingMath IOCore
   RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
-  IOExportGL2PS IOImage IOLegacy IOXML RenderingAnnotation RenderingContext2D RenderingContextOpenGL2 RenderingFreeType
-  RenderingGL2PSOpenGL2 TestingRendering ViewsContext2D)
+  IOEnSight IOExportGL2PS IOGeometry IOHDF IOImage IOLegacy IOXML IOXMLParser RenderingAnnotation
+  RenderingContext2D RenderingContextOpenGL2 RenderingFreeType RenderingGL2PSOpenGL2 TestingRendering ViewsContext2D)
 
 check_language(CXX)
 if (CMAKE_CXX_COMPILER)
@@ -33,6 +33,7 @@ vtk_module_find_modules(stratus_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Filter
 vtk_module_find_modules(stratus_module_files_rendering "${CMAKE_CURRENT_SOURCE_DIR}/Rendering")
 list(APPEND stratus_module_files ${stratus_module_files_rendering})
 include(cmake/openexr.cmake)
+include(cmake/netcdf.cmake)
 include(cmake/tetgen.cmake)
 include(cmake/common.cmake)
 if (NOT stratus_tetgen)

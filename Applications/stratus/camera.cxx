@@ -61,7 +61,11 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
   double focal[3];
   double half[3];
   double eye[3];
-  shown_bounds(core, volume, transfer, bounds);
+  if (o.axes) { // the box is seen as a whole
+    core.check(stratus_volume_bounds(core, &volume, bounds), "bounds");
+  } else {
+    shown_bounds(core, volume, transfer, bounds);
+  }
   for (int a = 0; a < 3; ++a) {
     focal[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     half[a] = 0.5 * (bounds[2 * a + 1] - bounds[2 * a]);
@@ -82,7 +86,8 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
   double wide;
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
-  const double scale = 1.02 * std::max(high, wide / aspect) / o.zoom;
+  const double room = o.axes ? 1.3 : 1.02; // numbers stand beside the box
+  const double scale = room * std::max(high, wide / aspect) / o.zoom;
   stratus_camera camera;
   if (o.parallel) {
     core.check(stratus_camera_parallel(core, eye, focal, view_up, scale, aspect, &camera), "camera");

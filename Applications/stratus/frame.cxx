@@ -22,8 +22,8 @@ bool ends_with_exr(const std::string& path)
 } // namespace
 
 frame::frame(const options& o)
-    : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color), IsExr(ends_with_exr(o.output)),
-      ShowsSamples(o.shows_samples)
+    : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color),
+      IsExr(ends_with_exr(o.frames.empty() ? o.output : o.frames)), ShowsSamples(o.shows_samples)
 {
 #ifndef STRATUS_EXR
   if (this->IsExr) {
@@ -32,6 +32,9 @@ frame::frame(const options& o)
 #endif
   if (this->IsExr && this->ShowsSamples) {
     throw usage("--show samples is a picture for people, in PNG; '" + o.output + "' has the samples themselves without it");
+  }
+  if (this->IsExr && (o.axes || o.color_bar || !o.caption.empty())) {
+    throw usage("an OpenEXR file has values alone: leave out --axes, --color-bar and --caption");
   }
   const size_t pixels = static_cast<size_t>(o.width) * static_cast<size_t>(o.height);
   this->Rgba.resize(4 * pixels);
@@ -87,6 +90,13 @@ std::vector<uint8_t> frame::encode_exr() const
 #else
   return {};
 #endif
+}
+
+void frame::annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
+{
+  if (wish.any()) {
+    wish.draw(this->Rgba, this->Width, this->Height, place, look, time);
+  }
 }
 
 void frame::write(output_file& file) const

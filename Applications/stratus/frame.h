@@ -2,6 +2,7 @@
 // The pixels of a picture and the values of each, written as a PNG of colours or samples, or as an OpenEXR file of all.
 #pragma once
 
+#include "annotation.h"
 #include "options.h"
 #include "output.h"
 #include "picture.h"
@@ -19,6 +20,8 @@ public:
   stratus_image view();
   // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;
+  // Puts annotations around the picture.
+  void annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time);
   void write(output_file& file) const;
 
 private:

@@ -2,23 +2,32 @@
 #include "grid.h"
 
 #include "camera.h"
-#include "frame.h"
+#include "drawing.h"
 #include "mesh.h"
-#include "transfer.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
 
 namespace {
 
-// Refuses options that apply to regular grids only, so that none is ignored silently.
-void refuse_options(const cli::options& o)
+// The mode of meshes of the same name. Modes that meshes lack, and options for regular grids only, are refused, so that none is ignored
+// silently.
+stratus_tetra_mode mode_of(const cli::options& o)
 {
-  if (o.mode != STRATUS_MODE_COMPOSITE || o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest ||
-    o.shade || o.audit || o.sample_distance != 0.0 || o.cell_error != 0.0 || !o.crop.empty() || !o.mask.empty() || o.jitter >= 0) {
+  if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.shade || o.audit ||
+    o.sample_distance != 0.0 || o.cell_error != 0.0 || o.crop_regions != STRATUS_CROP_INSIDE || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +
-      "' is an unstructured grid: other modes than composite, structure, sampling, interpolation, sample distance, cell error, " +
-      "crop, mask, jitter and audit are for images");
+      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, light, crop regions, mask, jitter and " +
+      "audit are for images");
   }
+  for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_ISOSURFACE; ++i) {
+    const auto mode = static_cast<stratus_tetra_mode>(i);
+    if (std::string(stratus_tetra_mode_name(mode)) == stratus_mode_name(o.mode)) {
+      return mode;
+    }
+  }
+  throw cli::usage("'" + o.source + "' is a grid of cells: --mode " + stratus_mode_name(o.mode) + " is for images");
 }
 } // namespace
 
@@ -37,57 +46,119 @@ stratus_camera place_camera(const context& core, const options& o, const mesh& m
   return place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
 }
 
-void render_grid(const options& o)
-{
-  refuse_options(o);
-  context core(o.device, o.threads);
-  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
-  const mesh m(grid, o.array, o.source);
-  core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-  frame picture(o);
-  const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
-  const stratus_transfer view = look.view();
-  core.check(stratus_transfer_check(core, &view), "transfer function");
-  const stratus_camera camera = place_camera(core, o, m, view);
-  output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
+} // namespace cli
 
-  stratus_image image = picture.view();
-  stratus_tetra_report report = {};
-  stratus_tetra_caster* caster = nullptr;
-  core.check(stratus_tetra_caster_create(core, &caster), "caster of tetrahedra");
+namespace {
+
+using cli::row;
+
+class grid_drawing : public cli::drawing
+{
+public:
+  grid_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core), Mode(mode_of(o)) {}
+  ~grid_drawing() override { stratus_tetra_caster_destroy(this->Caster); }
+  grid_drawing(const grid_drawing&) = delete;
+  grid_drawing& operator=(const grid_drawing&) = delete;
+
+  void take(const cli::routed& data) override;
+  void look() override;
+  std::pair<double, double> range() const override;
+  cli::scene_frame place() const override;
+  const cli::transfer& functions() const override { return this->Transfer; }
+  void draw(const stratus_image& image) override;
+  void tell() const override;
+
+private:
+  const cli::options& Options;
+  cli::context& Core;
+  stratus_tetra_mode Mode;
+  cli::mesh Mesh;
+  cli::transfer Transfer;
+  stratus_camera Camera = {};
+  stratus_tetra_caster* Caster = nullptr;
+  stratus_tetra_report Report = {};
+};
+
+void grid_drawing::take(const cli::routed& data)
+{
+  this->Mesh.set(data.grid, this->Options);
+  this->Core.check(stratus_mesh_check(this->Core, &this->Mesh.view()), "'" + this->Options.source + "'");
+}
+
+void grid_drawing::look()
+{
+  const cli::options& o = this->Options;
+  this->Transfer = cli::make_transfer(this->Mesh.box(), nullptr, o);
+  const stratus_transfer view = this->Transfer.view();
+  this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
+  this->Camera = cli::place_camera(this->Core, o, this->Mesh, view);
+}
+
+std::pair<double, double> grid_drawing::range() const
+{
+  const cli::histogram h = cli::histogram_of(this->Mesh.box());
+  return { h.low, h.high };
+}
+
+cli::scene_frame grid_drawing::place() const
+{
+  cli::scene_frame frame;
+  frame.camera = this->Camera;
+  const stratus_volume box = this->Mesh.box();
+  this->Core.check(stratus_volume_bounds(this->Core, &box, frame.bounds), "bounds");
+  frame.scale[this->Options.up.empty() ? 2 : this->Options.up[0] - 'x'] = this->Options.exaggeration;
+  frame.title = this->Mesh.array_name;
+  return frame;
+}
+
+void grid_drawing::draw(const stratus_image& image)
+{
+  if (!this->Caster) {
+    this->Core.check(stratus_tetra_caster_create(this->Core, &this->Caster), "caster of tetrahedra");
+  }
   stratus_tetra_options how = stratus_tetra_options_default();
+  const cli::options& o = this->Options;
+  how.mode = this->Mode;
   how.method = o.tetra_method;
   how.tolerance = o.tolerance;
-  const stratus_status status = stratus_tetra_caster_render(caster, &m.view(), &view, &camera, &how, &image, &report);
-  stratus_tetra_caster_destroy(caster);
-  core.check(status, "render");
-
-  std::printf("%s\n", o.source.c_str());
-  row("mesh",
-    grouped(static_cast<unsigned long long>(report.cells)) + " tetrahedra, " +
-      grouped(static_cast<unsigned long long>(grid->GetNumberOfPoints())) + " points, array '" + m.array_name + "' on " +
-      (m.view().cell_values ? "cells" : "points"));
-  if (m.ignored() > 0) {
-    row("ignored", grouped(static_cast<unsigned long long>(m.ignored())) + " vertices, lines and polygons");
-  }
-  row("camera", describe(camera));
-  row("opacity", look.origin);
-  row("device", stratus_context_device(core));
-  row("build", format("%.2f ms: cells and border %.2f, table %.2f", report.build_ms + report.table_ms, report.build_ms, report.table_ms));
-  row("frame",
-    format("%.2f ms for %d x %d pixels, %s rays met the mesh",
-      report.transform_ms + report.entries_ms + report.march_ms + report.sort_ms + report.bin_ms + report.project_ms, o.width, o.height,
-      grouped(report.rays).c_str()));
-  row("method", report.why);
-  row("cells passed", grouped(report.segments) + ", in from outside " + grouped(report.entries) + " times");
-  row("flat", grouped(static_cast<unsigned long long>(report.flat)) + " cells have no volume");
-  if (image.samples) {
-    row("a pixel", picture.describe_samples());
-  }
-  if (o.report) {
-    core.print_build_report();
-  }
-  picture.write(out);
-  row("picture", o.output);
+  how.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), how.crop_bounds);
+  std::copy(o.average.begin(), o.average.end(), how.average_range);
+  how.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), how.contours);
+  const stratus_transfer view = this->Transfer.view();
+  this->Core.check(
+    stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");
 }
-} // namespace cli
+
+void grid_drawing::tell() const
+{
+  const stratus_tetra_report& r = this->Report;
+  row("mesh",
+    cli::grouped(static_cast<unsigned long long>(r.cells)) + " tetrahedra, " +
+      cli::grouped(static_cast<unsigned long long>(this->Mesh.points)) + " points, array '" + this->Mesh.array_name + "' on " +
+      (this->Mesh.view().cell_values ? "cells" : "points"));
+  if (this->Mesh.ignored() > 0) {
+    row("ignored", cli::grouped(static_cast<unsigned long long>(this->Mesh.ignored())) + " vertices, lines and polygons");
+  }
+  row("camera", cli::describe(this->Camera));
+  row("opacity", this->Transfer.origin);
+  row("device", stratus_context_device(this->Core));
+  row("build", cli::format("%.2f ms: cells and border %.2f, table %.2f", r.build_ms + r.table_ms, r.build_ms, r.table_ms));
+  row("frame",
+    cli::format("%.2f ms for %d x %d pixels, %s rays met the mesh",
+      r.transform_ms + r.entries_ms + r.march_ms + r.sort_ms + r.bin_ms + r.project_ms, this->Options.width, this->Options.height,
+      cli::grouped(r.rays).c_str()));
+  row("mode", stratus_tetra_mode_name(this->Mode));
+  row("method", r.why);
+  row("cells passed", cli::grouped(r.segments) + ", in from outside " + cli::grouped(r.entries) + " times");
+  row("flat", cli::grouped(static_cast<unsigned long long>(r.flat)) + " cells have no volume");
+  row("built",
+    cli::format("%s times the mesh, %s times its values", cli::grouped(r.mesh_builds).c_str(), cli::grouped(r.value_builds).c_str()));
+}
+} // namespace
+
+std::unique_ptr<cli::drawing> cli::make_grid_drawing(const options& o, context& core)
+{
+  return std::make_unique<grid_drawing>(o, core);
+}

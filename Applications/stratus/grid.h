@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws and describes unstructured grids.
+// Looks at and describes unstructured grids.
 #pragma once
 
 #include "mesh.h"
@@ -9,6 +9,6 @@ namespace cli {
 
 // Places a camera that looks at the whole mesh.
 stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view);
-void render_grid(const options& o);
-void print_grid(const options& o); // stratus info
+// Describes a grid: stratus info.
+void print_grid(const options& o, vtkDataSet* grid);
 } // namespace cli

@@ -28,7 +28,7 @@ std::string count(vtkIdType number)
   return cli::grouped(static_cast<unsigned long long>(number));
 }
 
-void print_cells(vtkUnstructuredGrid* grid)
+void print_cells(vtkDataSet* grid)
 {
   std::array<vtkIdType, 256> of_type = {};
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
@@ -61,7 +61,7 @@ void print_array(const char* where, vtkAbstractArray* array)
   cli::row(where, text);
 }
 
-void print_arrays(vtkUnstructuredGrid* grid)
+void print_arrays(vtkDataSet* grid)
 {
   for (bool cells : { false, true }) {
     vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
@@ -139,24 +139,29 @@ void print_tetrahedra(const cli::context& core, vtkUnstructuredGrid* grid)
 }
 } // namespace
 
-void cli::print_grid(const options& o)
+void cli::print_grid(const options& o, vtkDataSet* grid)
 {
   context core(o.device, o.threads);
-  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(o.source);
   double b[6] = { 0, 0, 0, 0, 0, 0 };
-  std::printf("%s\n", o.source.c_str());
   row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(grid->GetNumberOfPoints()) + " points");
-  print_cells(grid);
+  vtkUnstructuredGrid* const listed = vtkUnstructuredGrid::SafeDownCast(grid);
+  if (listed) {
+    print_cells(listed);
+  }
   if (grid->GetNumberOfPoints() > 0) {
     grid->GetBounds(b);
     row("bounds", format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", b[0], b[1], b[2], b[3], b[4], b[5]));
   }
   print_arrays(grid);
-  print_tetrahedra(core, grid);
+  if (listed) {
+    print_tetrahedra(core, listed);
+  }
+  row("memory", format("%.1f MiB", static_cast<double>(grid->GetActualMemorySize()) / 1024.0));
   try {
-    const mesh m(grid, o.array, o.source);
+    mesh m;
+    m.set(grid, o);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-    const transfer look = make_transfer(m.box(), nullptr, o.opacity, o.color, o.unit_distance);
+    const transfer look = make_transfer(m.box(), nullptr, o);
     const stratus_transfer view = look.view();
     core.check(stratus_transfer_check(core, &view), "transfer function");
     const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);

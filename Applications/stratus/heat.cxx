@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "heat.h"
 
+#include "colors.h"
 #include "support.h"
-#include "transfer.h"
+#include "text.h"
 
 #include <vtkColorTransferFunction.h>
-#include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkTextProperty.h>
-#include <vtkTextRenderer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,39 +41,16 @@ void look_up(vtkColorTransferFunction* colors, double value, uint8_t rgb[3])
 // Writes text over the canvas, the middle of its left edge at x, y.
 void write_text(canvas& to, const std::string& text, int x, int y)
 {
-  vtkNew<vtkTextProperty> look;
-  look->SetFontSize(text_size);
-  look->SetFontFamilyToArial();
-  vtkNew<vtkImageData> image;
-  int size[2] = { 0, 0 };
-  vtkTextRenderer* renderer = vtkTextRenderer::GetInstance();
-  if (!renderer || !renderer->RenderString(look, text, image, size, 72)) {
-    throw failure("VTK has no font to write '" + text + "' with");
-  }
-  int extent[6];
-  image->GetExtent(extent);
-  for (int j = 0; j < size[1]; ++j) {
-    for (int i = 0; i < size[0]; ++i) {
-      const auto* pixel = static_cast<const uint8_t*>(image->GetScalarPointer(extent[0] + i, extent[2] + j, 0));
-      const uint8_t level = static_cast<uint8_t>(pixel[3] * text_level / 255);
+  const text_image image = render_text(text, text_size);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      const uint8_t level = static_cast<uint8_t>(image.coverage[static_cast<size_t>(j * image.width + i)] * text_level / 255);
       const uint8_t color[3] = { level, level, level };
       if (level > 0) {
-        to.set(x + i, y + j - size[1] / 2, color);
+        to.set(x + i, y + j - image.height / 2, color);
       }
     }
   }
-}
-
-// Returns the smallest of 1, 2 or 5 times a power of ten that is at least `least`.
-double round_step(double least)
-{
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (double factor : { 1.0, 2.0, 5.0 }) {
-    if (factor * power >= least * (1.0 - 1e-12)) {
-      return factor * power;
-    }
-  }
-  return 10.0 * power;
 }
 
 void draw_bar(canvas& to, int left, uint32_t most, vtkColorTransferFunction* colors)

@@ -2,26 +2,15 @@
 // Reads an image file, or makes a scene of record, as the core's view of a volume.
 #pragma once
 
+#include "route.h"
 #include "support.h"
-
-#include <vtkImageData.h>
-#include <vtkSmartPointer.h>
-
-class vtkDataArray;
 
 namespace cli {
 
-// Reads any image or unstructured grid that VTK reads, and TetGen's files. Any complaint of VTK is a failure, so that a damaged file is
-// never drawn in part.
+// Reads the first step of any file that series reads.
 vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
-// Returns whether the name is that of a TetGen file: .node, .ele, .face, .edge, .neigh.
-bool is_tetgen(const std::string& path);
 // Reads an image as read_data() does, and fails for other data.
 vtkSmartPointer<vtkImageData> read_image(const std::string& path);
-
-// Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component. Points come
-// before cells.
-vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells);
 
 // Borrows the array's values. A sheet (an image with one point along an axis) gets the thickness of a cell, because it would be invisible
 // otherwise.
@@ -33,10 +22,15 @@ const char* name_of(stratus_type type);
 // Describes size, type and spacing in one line.
 std::string describe(const stratus_volume& volume);
 
+// Returns whether the name is that of a scene and no file has it. Throws failure for a bare word that is neither.
+bool is_scene(const std::string& source);
+
 class input
 {
 public:
   input(context& core, const std::string& source, const std::string& array);
+  // Takes an image that was read from the file `source`.
+  input(context& core, const std::string& source, vtkImageData* image, const std::string& array);
   ~input();
   input(const input&) = delete;
   input& operator=(const input&) = delete;
@@ -48,6 +42,8 @@ public:
   int up_axis = 2;
 
 private:
+  void set(vtkImageData* from, const std::string& source, const std::string& array);
+
   context& Core;
 };
 } // namespace cli

@@ -2,64 +2,41 @@
 #include "mesh.h"
 
 #include "input.h"
-#include "reading.h"
-
-#include "vtkStratusArrays.h"
 
 #include <vtkDataArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-
-namespace {
-constexpr size_t header = 1024; // a legacy file names its data set type within these bytes
-}
 
 namespace cli {
 
-bool is_grid(const std::string& path)
-{
-  const size_t dot = path.find_last_of('.');
-  std::string extension = dot == std::string::npos ? "" : path.substr(dot);
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".vtu" || extension == ".pvtu" || is_tetgen(path)) {
-    return true;
-  }
-  if (extension != ".vtk") {
-    return false;
-  }
-  const reading watched(path, "the look for its kind");
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(header, ' ');
-  file.read(&begin[0], static_cast<std::streamsize>(begin.size()));
-  return begin.find("UNSTRUCTURED_GRID") != std::string::npos;
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path)
 {
-  const vtkSmartPointer<vtkDataObject> data = read_data(path);
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
+  const routed data = route(read_data(path), path, "");
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data.grid);
   if (!grid) {
-    throw failure("'" + path + "' holds " + (data ? data->GetClassName() : "nothing") + ", not an unstructured grid");
-  }
-  std::string error;
-  if (!vtkStratusCheckGrid(grid, error)) {
-    throw failure("'" + path + "': " + error);
+    throw failure("'" + path + "' holds " + data.kind + ", not an unstructured grid");
   }
   return grid;
 }
 
-mesh::mesh(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path)
+void mesh::set(vtkDataSet* grid, const options& o)
 {
+  const std::string& path = o.source;
   if (grid->GetNumberOfCells() < 1) {
     throw failure("'" + path + "' holds no cells, only " + std::to_string(grid->GetNumberOfPoints()) + " points; there is nothing to draw");
   }
   bool on_cells = false;
-  vtkDataArray* values = choose_array(grid, array, on_cells);
+  vtkDataArray* values = choose_array(grid, o.array, on_cells);
   this->array_name = values->GetName() ? values->GetName() : "(unnamed)";
+  this->points = grid->GetNumberOfPoints();
   std::string error;
-  if (!this->View.Set(grid, values, on_cells, nullptr, error)) {
+  vtkNew<vtkMatrix4x4> matrix;
+  const int up = o.up.empty() ? 2 : o.up[0] - 'x';
+  matrix->SetElement(up, up, o.exaggeration);
+  if (!this->View.Set(grid, values, on_cells, matrix, error)) {
     throw failure("'" + path + "': " + error);
   }
 }

@@ -2,6 +2,7 @@
 // Reads a file of an unstructured grid as the core's view of tetrahedra.
 #pragma once
 
+#include "options.h"
 #include "support.h"
 
 #include "vtkStratusMeshView.h"
@@ -11,17 +12,15 @@
 
 namespace cli {
 
-// Returns whether the file's name (.vtu, .pvtu, TetGen's .node, .ele ...) or its first lines (.vtk) tell that it holds an unstructured
-// grid.
-bool is_grid(const std::string& path);
+// Reads the first step of a file as an unstructured grid, and fails for other data.
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path);
 
 // A grid's cells divided into tetrahedra, with the values of the array to draw.
 class VTK_STRATUS_PRIVATE mesh
 {
 public:
-  // `array` is the array's name. If it is empty, choose_array() chooses the array.
-  mesh(vtkUnstructuredGrid* grid, const std::string& array, const std::string& path);
+  // Takes a grid in place of the last one. What did not change is kept. choose_array() chooses the array.
+  void set(vtkDataSet* grid, const options& o);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
   // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity
@@ -29,6 +28,7 @@ public:
   stratus_volume box() const;
 
   std::string array_name;
+  vtkIdType points = 0; // of the grid
 
 private:
   vtkStratusMeshView View;

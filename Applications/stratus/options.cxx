@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
+#include "colors.h"
 #include "support.h"
-#include "transfer.h"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <limits>
 
@@ -23,18 +24,25 @@ std::string help()
   return R"(stratus - draws volumes
 
   stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
+  stratus render INPUT --frames OUT-%04d.png  draw every step in time
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
   stratus devices                             list the OpenCL devices
   stratus --help
 
-INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels; to be drawn, told of or sorted also an
-unstructured grid (.vtu .pvtu .vtk, TetGen's .node .ele), whose cells are divided into tetrahedra.
+INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf and what else VTK reads as an image)
+or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels; to be drawn, told of or sorted also a
+grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf, TetGen's .node .ele), rectilinear (.vtr .pvtr),
+curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam, system/controlDict) or EnSight
+(.case).
 
 What is drawn
-  --array NAME            point or cell array of one component (default: the active scalars, else the first that fits)
+  --array NAME            point or cell array of one component (default: the active scalars, else the first that fits); --variable is the
+                          same
+  --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
+                          "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
+  --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
   --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, else guessed from
                           the histogram: transparent over the background's value, a ramp beyond it)
   --color NAME|LIST       a colour map, )" +
@@ -45,6 +53,11 @@ What is drawn
                           (default 8192: between all of them)
   --mask FILE             an image of one byte a value, 0 where nothing is to be seen
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
+  --exaggerate F          heights F times as large (along the upward axis)
+  --log                   colours, and a guessed opacity, over the logarithm of the value, four decades at most
+  --axes                  a box around the data, with its coordinates
+  --color-bar             the colours of values, with the variable's name and unit
+  --caption TEXT          a line at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
   --shade                 light from the eye on the field's gradient (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
@@ -275,6 +288,20 @@ void set_show(options& o, const std::string& word, const std::string& value)
   o.shows_samples = value == "samples";
 }
 
+// Takes "out-%04d.png": one %d, with a width or without.
+void set_frames(options& o, const std::string& word, const std::string& value)
+{
+  const size_t percent = value.find('%');
+  size_t end = percent == std::string::npos ? value.size() : percent + 1;
+  while (end < value.size() && std::isdigit(static_cast<unsigned char>(value[end]))) {
+    ++end;
+  }
+  if (end >= value.size() || value[end] != 'd' || end - percent > 3 || value.find('%', percent + 1) != std::string::npos) {
+    throw usage(word + ": '" + value + "' needs one number like %d or %04d, the step's");
+  }
+  o.frames = value;
+}
+
 using text = const std::string&;
 
 // In the order of help().
@@ -285,12 +312,17 @@ constexpr struct {
   { "-o", keep<&options::output> },
   { "--output", keep<&options::output> },
   { "--array", keep<&options::array> },
+  { "--variable", keep<&options::array> },
+  { "--time", keep<&options::time> },
+  { "--frames", set_frames },
   { "--opacity", keep<&options::opacity> },
   { "--color", keep<&options::color> },
   { "--crop", [](options& o, text word, text value) { o.crop = numbers(value, word, 6, 6); } },
   { "--crop-regions", [](options& o, text word, text value) { o.crop_regions = whole_number(value, word, 0, STRATUS_CROP_ALL); } },
   { "--mask", keep<&options::mask> },
   { "--unit-distance", keep_positive<&options::unit_distance> },
+  { "--exaggerate", keep_positive<&options::exaggeration> },
+  { "--caption", keep<&options::caption> },
   { "--background", keep<&options::background> },
   { "--size", [](options& o, text, text value) { set_size(o, value); } },
   { "--azimuth", keep_number<&options::azimuth> },
@@ -322,6 +354,9 @@ constexpr struct {
   bool options::*flag;
 } flags[] = {
   { "--nearest", &options::nearest },
+  { "--log", &options::logarithmic },
+  { "--axes", &options::axes },
+  { "--color-bar", &options::color_bar },
   { "--shade", &options::shade },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
@@ -335,14 +370,31 @@ template <class Table> auto find_word(const Table& table, const std::string& wor
   return found == std::end(table) ? nullptr : found;
 }
 
+void check_output(const options& o)
+{
+  if (o.command != "render") {
+    return;
+  }
+  if (o.time == "all" && o.frames.empty()) {
+    throw usage("--time all: where to? Give --frames 'out-%04d.png'");
+  }
+  if (!o.frames.empty() && (!o.output.empty() || !(o.time.empty() || o.time == "all"))) {
+    throw usage("--frames draws all steps: leave out " + std::string(o.output.empty() ? "--time " + o.time : "-o"));
+  }
+  if (o.output.empty() && o.frames.empty()) {
+    throw usage("render: where to? Give -o OUT.png");
+  }
+}
+
 void check_complete(const options& o)
 {
   if (o.command == "render" || o.command == "info" || o.command == "tree" || o.command == "sort") {
     if (o.source.empty()) {
       throw usage(o.command + ": which INPUT?");
     }
-    if (o.command == "render" && o.output.empty()) {
-      throw usage("render: where to? Give -o OUT.png");
+    check_output(o);
+    if (o.shows_samples && (o.axes || o.color_bar || !o.caption.empty())) {
+      throw usage("--show samples is no picture of values: leave out --axes, --color-bar and --caption");
     }
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");

@@ -14,6 +14,8 @@ struct options {
   std::string command; // render, info, tree, sort, devices, help
   std::string source;
   std::string output;
+  std::string frames; // render: the names of the pictures of all steps, with one %d
+  std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
   std::string opacity;
   std::string color;
@@ -32,6 +34,11 @@ struct options {
   int threads = 0;
   double read_timeout = usual_read_timeout; // seconds; 0: no limit
   int depth = 3;                            // sort: depth of the K-D tree
+  double exaggeration = 1.0;                // of heights
+  bool logarithmic = false;
+  bool axes = false;
+  bool color_bar = false;
+  std::string caption; // {time} is the step's
   bool parallel = false;
   bool nearest = false;
   bool shade = false;

@@ -46,6 +46,7 @@ char crash_text[8192];
 struct sigaction before[crash_count];
 stack_t stack_before;
 std::vector<char> own_stack;
+long reading_thread;
 
 void put(const char* text)
 {
@@ -55,8 +56,28 @@ void put(const char* text)
   }
 }
 
-void tell_crash(int number)
+long thread_number()
 {
+#ifdef __linux__
+  return syscall(SYS_gettid);
+#else
+  return 0;
+#endif
+}
+
+// A crash of another thread than the one that reads is not the reader's: it ends the program as it would without this handler. A signal
+// that another process sends comes to any thread.
+void tell_crash(int number, siginfo_t* from, void*)
+{
+  if (from->si_code != SI_USER && thread_number() != reading_thread) {
+    for (size_t i = 0; i < crash_count; ++i) {
+      if (crashes[i].number == number) {
+        sigaction(number, &before[i], nullptr);
+      }
+    }
+    raise(number);
+    return;
+  }
   put(crash_text);
   for (const auto& crash : crashes) {
     put(crash.number == number ? crash.name : "");
@@ -84,7 +105,7 @@ public:
   watchdog(const std::string& path, const std::string& by, double seconds) : Path(path), By(by), Seconds(seconds)
   {
 #ifdef __linux__
-    this->Counters = "/proc/self/task/" + std::to_string(syscall(SYS_gettid)) + "/io";
+    this->Counters = "/proc/self/task/" + std::to_string(thread_number()) + "/io";
 #endif
     if (this->bytes() == "") {
       return;
@@ -171,6 +192,7 @@ reading::reading(const std::string& path, const std::string& by) : Path(path)
 void reading::catch_crashes()
 {
 #ifdef CATCH_CRASHES
+  reading_thread = thread_number();
   own_stack.resize(stack_bytes);
   stack_t stack = {};
   stack.ss_sp = own_stack.data();
@@ -178,8 +200,8 @@ void reading::catch_crashes()
   sigaltstack(&stack, &stack_before);
   for (size_t i = 0; i < crash_count; ++i) {
     struct sigaction action = {};
-    action.sa_handler = &tell_crash;
-    action.sa_flags = SA_ONSTACK;
+    action.sa_sigaction = &tell_crash;
+    action.sa_flags = SA_ONSTACK | SA_SIGINFO;
     sigemptyset(&action.sa_mask);
     sigaction(crashes[i].number, &action, &before[i]);
   }
@@ -188,6 +210,9 @@ void reading::catch_crashes()
 
 reading::~reading()
 {
+  if (this->Followed) {
+    this->Followed->RemoveObserver(this->Observer);
+  }
 #ifdef CATCH_CRASHES
   for (size_t i = 0; i < crash_count; ++i) {
     sigaction(crashes[i].number, &before[i], nullptr);
@@ -211,7 +236,8 @@ void reading::follow(vtkAlgorithm* reader)
       std::atomic<unsigned long long>& Events;
     };
     vtkCommand* command = new counter(events);
-    reader->AddObserver(vtkCommand::ProgressEvent, command);
+    this->Followed = reader;
+    this->Observer = reader->AddObserver(vtkCommand::ProgressEvent, command);
     command->Delete();
   }
 }

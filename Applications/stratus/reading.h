@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guards against third-party readers that hang or crash on a file. The program then ends with exit status 1 and one sentence that names the
-// file and the reader, and writes no file.
+// file and the reader, and writes no file. One thread reads at a time; others may draw meanwhile.
 #pragma once
+
+#include <vtkAlgorithm.h>
+#include <vtkSmartPointer.h>
 
 #include <memory>
 #include <string>
-
-class vtkAlgorithm;
 
 namespace cli {
 
@@ -26,7 +27,7 @@ public:
   reading(const reading&) = delete;
   reading& operator=(const reading&) = delete;
 
-  void follow(vtkAlgorithm* reader);
+  void follow(vtkAlgorithm* reader); // also counts its progress, until this object ends
 
 private:
   class watchdog;
@@ -34,5 +35,7 @@ private:
 
   std::string Path;
   std::unique_ptr<watchdog> Watchdog;
+  vtkSmartPointer<vtkAlgorithm> Followed;
+  unsigned long Observer = 0;
 };
 } // namespace cli

@@ -34,6 +34,8 @@ public:
   void check(stratus_status status, const std::string& what) const;
   // Prints a row for each stage of what was built since the context was made, and where.
   void print_build_report() const;
+  // Draws no bar from now on, because a film has its own.
+  void quiet() { this->Terminal = false; }
 
 private:
   static int progress(void* user, const char* stage, double fraction);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "transfer.h"
 
+#include "colors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,28 +10,6 @@
 #include <limits>
 
 namespace {
-
-struct color_map {
-  const char* name;
-  std::vector<double> points; // position 0..1, r, g, b
-};
-
-const std::vector<color_map>& color_maps()
-{
-  static const std::vector<color_map> maps = {
-    { "storm", { 0, .06, .16, .42, .2, .12, .42, .72, .42, .55, .82, .88, .62, .98, .95, .80, .8, .98, .62, .22, 1, .80, .12, .12 } },
-    { "cloud", { 0, .35, .45, .75, .5, .85, .9, .95, 1, 1, .95, .85 } },
-    { "rainbow", { 0, .1, .2, .8, .5, .9, .9, .3, 1, .9, .1, .1 } },
-    { "cool-warm", { 0, .23, .30, .75, .5, .87, .87, .87, 1, .71, .02, .15 } },
-    { "viridis",
-      { 0, .267, .005, .329, .2, .254, .265, .530, .4, .164, .471, .558, .6, .135, .659, .518, .8, .478, .821, .318, 1, .993, .906,
-        .144 } },
-    { "fire", { 0, .05, .0, .02, .35, .55, .06, .04, .65, .95, .45, .05, .88, 1, .88, .35, 1, 1, 1, .92 } },
-    { "gray", { 0, 0, 0, 0, 1, 1, 1, 1 } },
-    { "white", { 0, 1, 1, 1 } },
-  };
-  return maps;
-}
 
 template <class T> void count_values(const stratus_volume& volume, cli::histogram& h)
 {
@@ -117,14 +97,15 @@ double ramp(double t)
   return t < knee_at ? t / knee_at * knee_height : knee_height + (t - knee_at) / (1.0 - knee_at) * (1.0 - knee_height);
 }
 
-// Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2.
-double top_opacity(const stratus_volume& volume, const cli::histogram& h, double from, double to)
+// Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2. `place` tells where
+// a value stands on the ramp, 0..1.
+template <class Place> double top_opacity(const stratus_volume& volume, const cli::histogram& h, const Place& place)
 {
   double weight = 0.0;
   double shown = 0.0;
   for (size_t i = 0; i < h.count.size(); ++i) {
     const double center = h.first + (static_cast<double>(i) + 0.5) * h.width();
-    const double height = (center - from) / (to - from);
+    const double height = place(center);
     if (height > 0.0) {
       weight += ramp(std::min(height, 1.0)) * h.count[i];
       shown += h.count[i];
@@ -192,6 +173,21 @@ stratus_transfer transfer::view() const
   return result;
 }
 
+void transfer::color_at(double value, float rgb[3]) const
+{
+  const std::vector<double>& c = this->color;
+  size_t at = 0;
+  while (at + 8 < c.size() && c[at + 4] < value) {
+    at += 4;
+  }
+  const size_t next = at + 4 < c.size() ? at + 4 : at;
+  const double width = c[next] - c[at];
+  const double part = width > 0.0 ? std::min(std::max((value - c[at]) / width, 0.0), 1.0) : 0.0;
+  for (size_t i = 0; i < 3; ++i) {
+    rgb[i] = static_cast<float>(c[at + 1 + i] + part * (c[next + 1 + i] - c[at + 1 + i]));
+  }
+}
+
 void transfer::shown(double& low, double& high) const
 {
   const size_t n = this->opacity.size() / 2;
@@ -227,7 +223,7 @@ void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& r
   double from = bright ? h.last - bins * h.width() : h.first + bins * h.width();
   from = std::min(std::max(from, h.low), h.high);
   const double to = bright ? h.low : h.high;
-  const double top = top_opacity(volume, h, from, to);
+  const double top = top_opacity(volume, h, [from, to](double value) { return (value - from) / (to - from); });
   const double knee = from + knee_at * (to - from);
   if (bright) {
     result.opacity = { to, top, knee, knee_height * top, from, 0.0, h.high, 0.0 };
@@ -257,69 +253,71 @@ std::vector<double> parse_opacity(const std::string& text)
   return points;
 }
 
-std::vector<double> parse_color(const std::string& text, double low, double high)
+// The lowest value of a logarithmic scale: four decades below the largest, or the lowest value if that is larger.
+static double lowest_of_log(const histogram& h)
 {
-  for (const color_map& map : color_maps()) {
-    if (text == map.name) {
-      std::vector<double> points = map.points;
-      for (size_t i = 0; i < points.size(); i += 4) {
-        points[i] = low + points[i] * (high - low);
-      }
-      return points;
-    }
+  if (!(h.high > 0.0)) {
+    throw failure(format("--log: the largest value is %g, there is no value above 0", h.low <= h.high ? h.high : 0.0));
   }
-  std::vector<double> points;
-  for (const std::string& point : split(text, ',')) {
-    const std::vector<std::string> fields = split(point, ':');
-    if (fields.size() != 4) {
-      throw usage("--color: '" + point + "' is neither value:r:g:b nor one of " + color_names());
-    }
-    for (const std::string& field : fields) {
-      points.push_back(number(field, "--color"));
-    }
-  }
-  if (points.empty()) {
-    throw usage("--color: no points");
-  }
-  return points;
+  return std::max(h.low, 1e-4 * h.high);
 }
 
-std::string color_names()
+// A straight ramp over the logarithm of the value.
+static void guess_log_opacity(const stratus_volume& volume, const histogram& h, transfer& result)
 {
-  std::string names;
-  for (const color_map& map : color_maps()) {
-    names += std::string(names.empty() ? "" : ", ") + map.name;
+  constexpr int pieces = 32;
+  const double low = lowest_of_log(h), decades = std::log(h.high / low);
+  if (decades <= 0.0) {
+    guess_opacity(volume, h, result);
+    return;
   }
-  return names;
+  const double top = top_opacity(volume, h, [=](double value) { return value > low ? std::log(value / low) / decades : 0.0; });
+  result.opacity = { std::min(0.0, low), 0.0 };
+  for (int i = 0; i <= pieces; ++i) {
+    const double t = static_cast<double>(i) / pieces;
+    result.opacity.push_back(low * std::exp(t * decades));
+    result.opacity.push_back(ramp(t) * top);
+  }
+  result.origin = format("histogram, over the logarithm: opacity 0 at %.4g, %.3g at %.4g", low, top, h.high);
 }
 
-transfer make_transfer(
-  const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color, double unit_distance)
+static void set_opacity(const stratus_volume& volume, const stratus_scene* scene, const options& o, double voxel, transfer& result)
 {
-  transfer result;
-  const double voxel = std::cbrt(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]);
-  result.unit_distance = unit_distance > 0.0 ? unit_distance : scene ? scene->transfer.unit_distance : voxel;
-  if (!opacity.empty()) {
-    result.opacity = parse_opacity(opacity);
+  if (!o.opacity.empty()) {
+    result.opacity = parse_opacity(o.opacity);
     result.origin = "as given";
-  } else if (scene) {
+  } else if (scene && !o.logarithmic) {
     result.opacity.assign(scene->transfer.opacity, scene->transfer.opacity + 2 * scene->transfer.opacity_count);
     result.origin = "the scene's own";
   } else {
-    guess_opacity(volume, histogram_of(volume), result);
-    if (unit_distance > 0.0) { // the guess is per voxel edge
-      for (size_t i = 1; i < result.opacity.size(); i += 2) {
-        result.opacity[i] = -std::expm1(unit_distance / voxel * std::log1p(-result.opacity[i]));
-      }
+    (o.logarithmic ? guess_log_opacity : guess_opacity)(volume, histogram_of(volume), result);
+    for (size_t i = 1; i < result.opacity.size() && result.unit_distance != voxel; i += 2) { // the guess is per voxel edge
+      result.opacity[i] = -std::expm1(result.unit_distance / voxel * std::log1p(-result.opacity[i]));
     }
   }
-  double low = 0.0;
-  double high = 1.0;
-  result.shown(low, high);
-  if (color.empty() && scene) {
+}
+
+transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const options& o)
+{
+  transfer result;
+  const double* m = volume.matrix;
+  const double bigger =
+    std::fabs(m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]));
+  const double voxel = std::cbrt(volume.spacing[0] * volume.spacing[1] * volume.spacing[2] * bigger);
+  result.unit_distance = o.unit_distance > 0.0 ? o.unit_distance : scene ? scene->transfer.unit_distance : voxel;
+  set_opacity(volume, scene, o, voxel, result);
+  result.shown(result.low, result.high);
+  result.logarithmic = o.logarithmic;
+  if (o.logarithmic && !(result.low > 0.0)) { // opacities that were given may begin at 0
+    result.low = lowest_of_log(histogram_of(volume));
+    result.high = std::max(result.high, result.low);
+  }
+  if (o.color.empty() && scene && !o.logarithmic) {
     result.color.assign(scene->transfer.color, scene->transfer.color + 4 * scene->transfer.color_count);
   } else {
-    result.color = parse_color(color.empty() ? "storm" : color, low, high);
+    const std::string name = o.color.empty() ? "storm" : o.color;
+    const bool given = name.find(':') != std::string::npos;
+    result.color = o.logarithmic && !given ? logarithmic_color(name, result.low, result.high) : parse_color(name, result.low, result.high);
   }
   return result;
 }

@@ -2,6 +2,7 @@
 // Transfer functions given by the user, taken from the scene, or guessed from the histogram.
 #pragma once
 
+#include "options.h"
 #include "support.h"
 
 #include <string>
@@ -28,9 +29,12 @@ public:
   std::vector<double> opacity; // pairs
   std::vector<double> color;   // quadruples
   double unit_distance = 1.0;
+  double low = 0.0, high = 1.0; // what is shown, over which colours are stretched
+  bool logarithmic = false;
   std::string origin; // where the function comes from, for the user
 
   stratus_transfer view() const;
+  void color_at(double value, float rgb[3]) const;
   // Finds the values between which the function shows something.
   void shown(double& low, double& high) const;
 };
@@ -40,11 +44,6 @@ public:
 void guess_opacity(const stratus_volume& volume, const histogram& values, transfer& result);
 // Parses "value:alpha,value:alpha,...".
 std::vector<double> parse_opacity(const std::string& text);
-// Returns a named colour map, stretched from low to high, or parses "value:r:g:b,...".
-std::vector<double> parse_color(const std::string& text, double low, double high);
-std::string color_names();
-
-// Empty options take the scene's own function, or a guess where `scene` is null.
-transfer make_transfer(
-  const stratus_volume& volume, const stratus_scene* scene, const std::string& opacity, const std::string& color, double unit_distance);
+// Options that were not given take the scene's own function, or a guess where `scene` is null or the scale is logarithmic.
+transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const options& o);
 } // namespace cli

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Checks of a mesh of tetrahedra: they pass before anything is read through its point numbers. */
+ * Checks of a mesh of tetrahedra or of a lattice: they pass before anything is read through its point numbers. */
 #include "mesh.h"
 
 #include "matrix.h"
@@ -28,6 +28,32 @@ stratus_volume stratus_mesh_values(const stratus_mesh* mesh)
   return volume;
 }
 
+static stratus_status check_lattice(stratus_context* context, const stratus_mesh* mesh)
+{
+  const int32_t* n = mesh->lattice;
+  int64_t points = 1, cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (n[axis] < 2 || (points *= n[axis]) > POINTS_MAX) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "mesh lattice of %d x %d x %d points, must be at least 2 along each axis and at most %lld in all", (int)n[0], (int)n[1], (int)n[2],
+        POINTS_MAX);
+    }
+    cells *= n[axis] - 1;
+  }
+  if (mesh->point_count != points || mesh->cell_count != cells) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "mesh lattice of %d x %d x %d points with a point_count of %lld and a cell_count of %lld, must be %lld and %lld", (int)n[0],
+      (int)n[1], (int)n[2], (long long)mesh->point_count, (long long)mesh->cell_count, (long long)points, (long long)cells);
+  }
+  if (mesh->vertices || !mesh->points == !mesh->float_points) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh lattice with %s, must have no vertices, and either points or float_points",
+      mesh->vertices   ? "vertices"
+        : mesh->points ? "points and float_points"
+                       : "neither points nor float_points");
+  }
+  return STRATUS_OK;
+}
+
 static stratus_status check_counts(stratus_context* context, const stratus_mesh* mesh)
 {
   if (mesh->point_count < 0 || mesh->point_count > POINTS_MAX) {
@@ -37,8 +63,14 @@ static stratus_status check_counts(stratus_context* context, const stratus_mesh*
   if (mesh->cell_count < 0 || mesh->cell_count > CELLS_MAX) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_count %lld outside 0..%lld", (long long)mesh->cell_count, CELLS_MAX);
   }
+  if (stratus_mesh_is_lattice(mesh)) {
+    return check_lattice(context, mesh);
+  }
   if (!mesh->points && mesh->point_count > 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh points is NULL, with a point_count of %lld", (long long)mesh->point_count);
+  }
+  if (mesh->float_points) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh float_points is not NULL, as it may be of a lattice alone");
   }
   if (!mesh->vertices && mesh->cell_count > 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh vertices is NULL, with a cell_count of %lld", (long long)mesh->cell_count);
@@ -129,6 +161,18 @@ stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* 
   TRY(check_counts(context, mesh));
   TRY(check_values(context, mesh));
   TRY(check_matrix(context, mesh));
+  if (stratus_mesh_is_lattice(mesh)) {
+    return STRATUS_OK; /* points that are not finite hide their hexahedra */
+  }
   TRY(check_points(context, mesh));
   return check_vertices(context, mesh);
+}
+
+stratus_status stratus_mesh_check_listed(stratus_context* context, const stratus_mesh* mesh)
+{
+  TRY(stratus_mesh_check(context, mesh));
+  return stratus_mesh_is_lattice(mesh)
+    ? stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh is a lattice of %d x %d x %d points, its cells must be listed in vertices",
+        (int)mesh->lattice[0], (int)mesh->lattice[1], (int)mesh->lattice[2])
+    : STRATUS_OK;
 }

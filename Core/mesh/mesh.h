@@ -26,6 +26,20 @@ typedef struct stratus_adjacency {
 
 /* mesh.c: a mesh's values as a volume of one row, so that both are fetched alike. */
 stratus_volume stratus_mesh_values(const stratus_mesh* mesh);
+/* stratus_mesh_check(), which also refuses lattices. */
+stratus_status stratus_mesh_check_listed(stratus_context* context, const stratus_mesh* mesh);
+
+static inline bool stratus_mesh_is_lattice(const stratus_mesh* mesh)
+{
+  return mesh->lattice[0] != 0 || mesh->lattice[1] != 0 || mesh->lattice[2] != 0;
+}
+
+static inline void stratus_mesh_point(const stratus_mesh* mesh, int64_t point, double at[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    at[axis] = mesh->points ? mesh->points[3 * point + axis] : (double)mesh->float_points[3 * point + axis];
+  }
+}
 
 /* The mesh has passed stratus_mesh_check(). */
 stratus_status stratus_adjacency_create(stratus_context* context, const stratus_mesh* mesh, stratus_adjacency** adjacency);

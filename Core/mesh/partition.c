@@ -202,7 +202,7 @@ stratus_status stratus_partition_create(
   const stratus_partition_options defaults = stratus_partition_options_default();
   void* memory = NULL;
   TRY(check_options(context, options ? options : &defaults));
-  TRY(stratus_mesh_check(context, mesh));
+  TRY(stratus_mesh_check_listed(context, mesh));
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_partition), &memory));
   stratus_partition* partition = memory;
   partition->context = context;

@@ -28,8 +28,10 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_ray_drop_transfer(caster);
     stratus_value_range_destroy(caster->ranges);
     stratus_release(caster->context, caster->hidden);
+    stratus_release(caster->context, caster->layers);
     caster->ranges = NULL;
     caster->hidden = NULL;
+    caster->layers = NULL;
     stratus_ray_fetched_drop(caster);
     stratus_first_hit_release(caster);
     for (int c = 0; c < 4; ++c) {

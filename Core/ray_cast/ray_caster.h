@@ -5,6 +5,7 @@
 
 #include "stratus/tree.h"
 #include "stratus/ray_cast.h"
+#include "ray_cast_host.h"
 #include "ray_modes_render.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
@@ -68,6 +69,10 @@ struct stratus_ray_caster {
   stratus_ray_made_table made;            /* the table that is drawn by */
   stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
   stratus_shown values;               /* the fetched values that matter; of NULL: not known yet */
+  float* layers;                      /* of several volumes, by midpoint: what each entry of a table shows over a segment; NULL: none */
+  uint64_t layers_of;                 /* that table's number */
+  double layers_step;                 /* the segment's length */
+  bool in_several;                    /* this picture is one of several volumes: rules that go from cell to cell are out */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_occupancy* occupancy;
@@ -119,9 +124,15 @@ stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structur
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
   char* why, size_t capacity, stratus_ray_cast_report* report);
 
-/* ray_caster_render.c: one picture, of one component or of all that mix along a ray. The arguments have to be checked before. */
-stratus_status stratus_ray_check_input(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, const stratus_image* image);
+/* ray_caster_render.c. stratus_ray_check_input() checks what a picture is drawn of, but camera and image. stratus_ray_fill_report() tells
+ * what was counted and chosen. */
+stratus_status stratus_ray_check_input(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+void stratus_ray_fill_report(
+  const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report);
+/* Returns how many pixels differ in their bits. */
+uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, const float* depth);
+/* One picture, of one component or of all that mix along a ray, of input that was checked. */
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 

@@ -137,7 +137,8 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
     return STRATUS_INVALID_ARGUMENT;
   }
   options = options ? options : &defaults;
-  TRY(stratus_ray_check_input(caster, volume, transfer, options, image));
+  TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
+  TRY(stratus_image_check(caster->context, image));
   TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
   if (report) {
     *report = mine;

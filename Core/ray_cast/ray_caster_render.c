@@ -82,6 +82,16 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   return check_crop(context, options);
 }
 
+stratus_status stratus_ray_check_input(
+  stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
+  TRY(stratus_volume_check(context, volume));
+  TRY(stratus_transfer_check(context, transfer));
+  TRY(stratus_ray_shading_check_volume(context, volume, transfer, options));
+  TRY(check_options(context, options));
+  return stratus_ray_shading_check_materials(context, volume, options);
+}
+
 /* ---- drawing */
 
 /* Draws the frame. before: tiles that need no drawing. */
@@ -107,6 +117,17 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   return stratus_ray_cast_rest(caster->context, &frame, type, variant, before, counts);
 }
 
+uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, const float* depth)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  uint64_t differing = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    differing += memcmp(image->rgba + 4 * i, rgba + 4 * i, 4 * sizeof(float)) != 0 ||
+      (image->depth && memcmp(image->depth + i, depth + i, sizeof(float)) != 0);
+  }
+  return differing;
+}
+
 /* Draws the frame again without a structure and counts the pixels whose bits differ. */
 static stratus_status audit(
   stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, uint64_t* differing)
@@ -130,11 +151,7 @@ static stratus_status audit(
     march.depth = depth;
   }
   TRY_CLEANUP(draw(caster, &plain, &march, false, &(const stratus_ray_drawn){ .count = 0 }, &counts, &upload_ms));
-  *differing = 0;
-  for (size_t i = 0; i < pixels; ++i) {
-    *differing += memcmp(image->rgba + 4 * i, march.rgba + 4 * i, 4 * sizeof(float)) != 0 ||
-      (image->depth && memcmp(image->depth + i, march.depth + i, sizeof(float)) != 0);
-  }
+  *differing = stratus_ray_differing(image, march.rgba, march.depth);
 cleanup:
   stratus_release(caster->context, rgba);
   stratus_release(caster->context, depth);
@@ -149,7 +166,7 @@ static void report_window(const int window[4], int reported[4])
   }
 }
 
-static void fill_report(
+void stratus_ray_fill_report(
   const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report)
 {
   report->rays = counts->rays;
@@ -235,27 +252,17 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_tried(caster, report->cast_ms);
   }
   caster->samples_since_data += counts.samples;
-  fill_report(caster, &counts, used, report);
+  stratus_ray_fill_report(caster, &counts, used, report);
   snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
     caster->choice.sample_distance, *caster->where ? "; " : "", caster->where, *caster->tried ? ": " : "", caster->tried);
   return STRATUS_OK;
-}
-
-stratus_status stratus_ray_check_input(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, const stratus_image* image)
-{
-  TRY(stratus_volume_check(caster->context, volume));
-  TRY(stratus_transfer_check(caster->context, transfer));
-  TRY(stratus_ray_shading_check_volume(caster->context, volume, transfer, options));
-  TRY(check_options(caster->context, options));
-  TRY(stratus_ray_shading_check_materials(caster->context, volume, options));
-  return stratus_image_check(caster->context, image);
 }
 
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
   *report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1, .window = { 0, image->width, 0, image->height } };
+  caster->in_several = false;
   return options->mode == STRATUS_MODE_FIRST_HIT ? stratus_first_hit_render(caster, volume, transfer, camera, options, image, report)
                                                  : render(caster, volume, transfer, camera, options, image, report);
 }

@@ -27,8 +27,8 @@ stratus_status stratus_ray_shading_check_materials(
     const double numbers[4] = { m->ambient, m->diffuse, m->specular, m->specular_power };
     for (int i = 0; m->shade && i < 4; ++i) {
       if (!(numbers[i] >= 0.0 && numbers[i] <= STRATUS_LIGHT_MAX)) {
-        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "material of component %d has (%g, %g, %g, %g), must be 0..%g", c, numbers[0],
-          numbers[1], numbers[2], numbers[3], STRATUS_LIGHT_MAX);
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "material of component %d has (%g, %g, %g, %g), must be 0..%g", c,
+          numbers[0], numbers[1], numbers[2], numbers[3], STRATUS_LIGHT_MAX);
       }
     }
     if (m->shade) {

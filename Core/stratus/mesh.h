@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes of tetrahedra, and their partition by planes. */
+ * Meshes of tetrahedra and lattices of hexahedra, and the partition of meshes by planes. */
 #ifndef STRATUS_PUBLIC_MESH_H
 #define STRATUS_PUBLIC_MESH_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* A view of a mesh of linear tetrahedra. */
+/* A view of a mesh of linear tetrahedra: listed ones, or those of a lattice of hexahedra (structured, curvilinear, in layers). */
 typedef struct stratus_mesh {
   const double* points;    /* point_count triples, local coordinates, finite */
   int64_t point_count;     /* 0..2^31-1; may include points that no cell uses */
@@ -23,6 +23,13 @@ typedef struct stratus_mesh {
   const uint8_t* hidden;
   double matrix[16]; /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
   uint64_t revision; /* the caller raises it when anything changes under the same pointers. Default 0. */
+  /* A lattice: its points along i, j and k, each at least 2, points[(k*nj + j)*ni + i]. Default 0, 0, 0: cells are listed in `vertices`. Of
+   * a lattice vertices is NULL, and cells, their values and flags are hexahedra, cell[(k*(nj-1) + j)*(ni-1) + i]. Each consists of six
+   * tetrahedra, one for each way along three edges from its first corner to its last: neighbours divide their common face alike, and the
+   * tetrahedra of a layer of whatever thickness > 0 over whatever ground keep their orientation. A hexahedron that is hidden, or has a
+   * value or a coordinate that is not finite, is transparent as a whole. Corners may coincide. Only casters take lattices. */
+  int32_t lattice[3];
+  const float* float_points; /* the points of a lattice whose `points` is NULL; else NULL */
 } stratus_mesh;
 
 STRATUS_API stratus_mesh stratus_mesh_default(void);

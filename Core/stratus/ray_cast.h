@@ -211,6 +211,35 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);
 
+#define STRATUS_SEVERAL_MAX 8
+
+/* One of several volumes that are drawn together. */
+typedef struct stratus_ray_cast_input {
+  stratus_ray_caster* caster; /* keeps what is built of this volume: one of its own for each input, all of one context */
+  const stratus_volume* volume;
+  const stratus_transfer* transfer;        /* one function */
+  const stratus_ray_cast_options* options; /* NULL: the defaults */
+} stratus_ray_cast_input;
+
+/* Draws 1..STRATUS_SEVERAL_MAX volumes that may overlap, each with a place, grid, type, function and options of its own, as one medium:
+ * where volumes overlap, their optical depths and their emitted light add up, whatever the order of the inputs but for rounding. One input
+ * alone gives the picture of stratus_ray_caster_render().
+ *
+ * Composite mode, volumes of one component without labels, whole volumes (no DUPLICATE ghosts), and as crop regions the inside or all:
+ * other input gives STRATUS_UNSUPPORTED, and so does sampling by cells, which follow one grid. Light, gradient opacity, masks, crop boxes
+ * and clip planes are each volume's own. jitter, jitter_seed and audit are those of inputs[0].
+ *
+ * Sampling: each volume has the rule, midpoint or pre-integrated, and the step that its own probe finds for its tolerance divided by the
+ * square root of count, for errors of several volumes add up by their squares; or those that its options set. All volumes share one
+ * lattice, whose segments are the shortest of these steps, or a half, a third or a quarter of it; each volume takes a sample every so many
+ * whole segments as fit in its own step. What is composited at once is cut into pieces where its colour changes much, as with one volume.
+ *
+ * reports: NULL, or one for each input. Each tells of its own volume what was built, chosen and expected, and of the whole picture the
+ * rays, samples, skipped segments, look-ups, differing pixels, window and cast_ms. The host draws, whatever the context's device. Each
+ * caster borrows and keeps what it does in stratus_ray_caster_render(). A failed call leaves the picture undefined. */
+STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports);
+
 /* First hits (STRATUS_MODE_FIRST_HIT): a voxel is a cube about its value, so that the solid reaches half a voxel beyond a volume of points.
  * In the report, samples are hits, lookups are nodes that trees visited, blocks and occupied_blocks are bricks of 4^3 voxels that hold an
  * effective one, and occupancy_builds counts the sets of voxels made. Sampling, sample distance, termination and block size are not used. A

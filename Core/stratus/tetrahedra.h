@@ -17,8 +17,24 @@ extern "C" {
 
 typedef enum stratus_tetra_mode {
   STRATUS_TETRA_COMPOSITE, /* light absorbed and emitted along the whole ray */
-  STRATUS_TETRA_MAXIMUM    /* the largest value on a ray, in its colour and the opacity of one unit distance */
+  STRATUS_TETRA_MAXIMUM,   /* the largest value on a ray, in its colour and the opacity of one unit distance */
+  STRATUS_TETRA_MINIMUM,   /* the smallest value, likewise */
+  /* Grey: the mean of opacity (not per length) times value, over the part of the ray whose values lie in average_range. */
+  STRATUS_TETRA_AVERAGE,
+  STRATUS_TETRA_ADDITIVE, /* grey: the integral of opacity times value along the ray, with lengths in unit_distance */
+  /* Surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind the other, at their exact
+   * places. Values of points only. */
+  STRATUS_TETRA_ISOSURFACE
 } stratus_tetra_mode;
+
+/* Average and additive take each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
+ * additive wherever a ray meets a cell, average wherever a value counts. */
+
+/* Returns "composite", "maximum", "minimum", "average", "additive" or "isosurface". */
+STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
+
+#define STRATUS_TETRA_CLIP_PLANES_MAX 6
+#define STRATUS_TETRA_CONTOURS_MAX 16
 
 /* Both methods draw the same picture: they find the same faces at the same depths, and shade pieces of cells by the same sums. They differ
  * by the rounding of floats: below .01 of 255 in the mean (root mean square), at any distance, and however much a parallel camera's right
@@ -30,8 +46,10 @@ typedef enum stratus_tetra_method {
   /* The method that should cost less, by the numbers of cells, pixels and segments and by what these cost on this machine; on a GPU:
    * march. It does not change while the camera stands still. */
   STRATUS_TETRA_METHOD_AUTO,
-  STRATUS_TETRA_METHOD_MARCH,  /* follows each ray from cell to cell */
-  STRATUS_TETRA_METHOD_PROJECT /* sorts the cells that can show, assigns them to tiles of pixels, and composites them there */
+  STRATUS_TETRA_METHOD_MARCH, /* follows each ray from cell to cell */
+  /* Sorts the cells that can show, assigns them to tiles of pixels, and composites them there. It draws composite and maximum; asked for
+   * another mode it gives STRATUS_UNSUPPORTED, while auto marches. */
+  STRATUS_TETRA_METHOD_PROJECT
 } stratus_tetra_method;
 
 STRATUS_API const char* stratus_tetra_method_name(stratus_tetra_method method);
@@ -48,6 +66,15 @@ typedef struct stratus_tetra_options {
   /* Leaves of the mesh, for the order that projection needs: leaves are sorted in parallel. Borrowed until the caster draws with others or
    * is released. Default NULL: one leaf. */
   const stratus_leaves* leaves;
+  /* Rays are cut exactly where they pass a plane: cells are cut, not left out. */
+  int clip_plane_count;                                 /* 0..6 */
+  double clip_planes[STRATUS_TETRA_CLIP_PLANES_MAX][4]; /* world: points with a x + b y + c z + d >= 0 show */
+  int crop;                                             /* 1: only what lies within crop_bounds shows. Default 0. */
+  double crop_bounds[6];                                /* xmin xmax ymin ymax zmin zmax, local coordinates; infinities allowed */
+  /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
+  double average_range[2];
+  int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */
+  double contours[STRATUS_TETRA_CONTOURS_MAX]; /* finite, in any order */
 } stratus_tetra_options;
 
 STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
@@ -62,7 +89,7 @@ typedef struct stratus_tetra_report {
   uint64_t segments;
   /* Paths through cells that ended inside the mesh because no exit face was found: 0 unless coordinates underflow. */
   uint64_t stuck;
-  int64_t cells, shown_cells; /* cells of the mesh; cells neither hidden nor blanked */
+  int64_t cells, shown_cells; /* cells of the mesh, of a lattice six for each hexahedron; cells neither hidden nor blanked */
   /* Cells left out that are not hidden: their values are not finite floats, or they name a point more than once. */
   int64_t blanked;
   int64_t repeated;     /* those of them that name a point more than once, and so have no volume */
@@ -100,10 +127,12 @@ STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
 /* Draws a picture. Both methods use the context's device, or the host if there is none or the mesh is too large for it; projection finds
  * the cells of each tile on the host. The mesh must have values. The caster reads it again when its pointers, counts, type, stride or
- * revision differ from the last call's, else only its matrix. Opacity is per world length. In image, samples receives the number of
- * segments in the pixel, and depth the world distance to the first segment that contributes (maximum: to the largest value). options and
- * report may be NULL. A failed call leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells,
- * INT32_MAX/4 points or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
+ * revision differ from the last call's, else only its matrix. A lattice marches by its points' numbers, and keeps some 21 bytes for each
+ * point and 56 for each face at the border; where it is to be projected, or its cells turn both ways (a layer that lies partly below the
+ * one beneath), its tetrahedra are listed first. Opacity is per world length. In image, samples receives the number of segments in the
+ * pixel, and depth the world distance to the first segment that contributes (maximum: to the largest value). options and report may be
+ * NULL. A failed call leaves the picture undefined, and the caster ready for the next call. More than INT32_MAX/8 cells, INT32_MAX/4 points
+ * or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
 STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
   stratus_tetra_report* report);

@@ -2,6 +2,7 @@
  * The renderer of tetrahedra: checks its input, rebuilds what changed (mesh: cells and border faces; transfer function: table), draws and
  * reports. */
 #include "tetra_caster.h"
+#include "tetra_lattice.h"
 
 #include "device.h"
 #include "picture.h"
@@ -16,7 +17,7 @@
 
 stratus_tetra_options stratus_tetra_options_default(void)
 {
-  return (stratus_tetra_options){ .tolerance = 0.001 };
+  return (stratus_tetra_options){ .tolerance = 0.001, .average_range = { -(double)INFINITY, (double)INFINITY } };
 }
 
 stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)
@@ -60,6 +61,8 @@ void stratus_tetra_caster_release(stratus_tetra_caster* caster)
 {
   if (caster) {
     drop_mesh(caster);
+    stratus_tetra_list_destroy(caster->list);
+    caster->list = NULL;
     stratus_tetra_buffers_release(caster->context, &caster->buffers);
   }
 }
@@ -74,9 +77,9 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_TETRA_MAXIMUM) {
+  if ((unsigned)options->mode > STRATUS_TETRA_ISOSURFACE) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_MAXIMUM);
+      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_ISOSURFACE);
   }
   if ((unsigned)options->method > STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
@@ -96,8 +99,9 @@ static stratus_status check_options(stratus_context* context, const stratus_tetr
 static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
 {
   return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
-    a->values == b->values && a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values &&
-    a->hidden == b->hidden && a->revision == b->revision;
+    a->float_points == b->float_points && memcmp(a->lattice, b->lattice, sizeof a->lattice) == 0 && a->values == b->values &&
+    a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values && a->hidden == b->hidden &&
+    a->revision == b->revision;
 }
 
 /* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
@@ -112,7 +116,11 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
     return STRATUS_OK;
   }
   stratus_tetra_device_drop_values(caster->device);
-  TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
+  if (stratus_mesh_is_lattice(mesh)) {
+    TRY(stratus_tetra_lattice_take_values(known, mesh, taken));
+  } else {
+    TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
+  }
   if (*taken) {
     if (caster->projector) {
       stratus_tetra_projector_take(caster->projector, mesh, known);
@@ -126,10 +134,12 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
   return STRATUS_OK;
 }
 
-static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, double* ms)
+/* *mixed: the mesh is a lattice whose cells turn both ways, and is to be listed; then nothing has changed. */
+static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, bool* mixed, double* ms)
 {
   stratus_tetra_mesh* made = NULL;
   bool taken = false;
+  *mixed = false;
   if (caster->mesh && same_mesh(&caster->view, mesh)) {
     return STRATUS_OK;
   }
@@ -137,30 +147,91 @@ static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_me
   if (caster->mesh) {
     TRY(update_values(caster, mesh, &taken));
     if (taken) {
-      *ms = stratus_now_ms() - start;
+      *ms += stratus_now_ms() - start;
       return STRATUS_OK;
     }
   }
-  TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
+  if (stratus_mesh_is_lattice(mesh)) {
+    TRY(stratus_tetra_lattice_create(caster->context, mesh, &made, mixed));
+    if (*mixed) {
+      caster->mixed = made->geometry;
+      stratus_tetra_mesh_destroy(made);
+      *ms += stratus_now_ms() - start;
+      return STRATUS_OK;
+    }
+  } else {
+    TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
+  }
   drop_mesh(caster);
   caster->mesh = made;
   caster->view = *mesh;
   ++caster->mesh_builds;
   ++caster->value_builds;
-  *ms = stratus_now_ms() - start;
+  *ms += stratus_now_ms() - start;
   return STRATUS_OK;
 }
 
-/* Updates the table. Composite: running sums per world unit. Maximum: colour and alpha over one unit distance. */
-static stratus_status update_table(stratus_tetra_caster* caster, const stratus_transfer* transfer, stratus_tetra_mode mode, double* ms)
+/* Takes the list of a lattice's cells. *drawn: the list's mesh. */
+static stratus_status update_list(stratus_tetra_caster* caster, const stratus_mesh* lattice, const stratus_mesh** drawn, double* ms)
 {
+  const double start = stratus_now_ms();
+  stratus_tetra_list* list = caster->list;
+  bool mixed = false;
+  if (!list || !same_mesh(&list->source, lattice)) {
+    TRY(stratus_tetra_list_create(caster->context, lattice, &list));
+    *ms += stratus_now_ms() - start;
+  }
+  memcpy(list->mesh.matrix, lattice->matrix, sizeof lattice->matrix);
+  const stratus_status status = update_mesh(caster, &list->mesh, &mixed, ms);
+  if (list != caster->list) {
+    stratus_tetra_list* outdated = status == STRATUS_OK ? caster->list : list;
+    caster->list = status == STRATUS_OK ? list : caster->list;
+    stratus_tetra_list_destroy(outdated);
+  }
+  *drawn = &list->mesh;
+  return status;
+}
+
+/* Takes a mesh, or the list of a lattice that cannot be drawn as it is. *drawn: what the caster has taken. */
+static stratus_status update(
+  stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options, const stratus_mesh** drawn, double* ms)
+{
+  bool listed = false;
+  *drawn = mesh;
+  if (stratus_mesh_is_lattice(mesh)) {
+    const bool known = caster->list && same_mesh(&caster->list->source, mesh);
+    listed = options->method == STRATUS_TETRA_METHOD_PROJECT ||
+      (caster->mixed != 0 && (known || caster->mixed == stratus_tetra_hash(caster->context, mesh)));
+  }
+  if (!listed) {
+    TRY(update_mesh(caster, mesh, &listed, ms));
+  }
+  if (listed) {
+    return update_list(caster, mesh, drawn, ms);
+  }
+  stratus_tetra_list_destroy(caster->list);
+  caster->list = NULL;
+  caster->mixed = stratus_mesh_is_lattice(mesh) ? 0 : caster->mixed;
+  return STRATUS_OK;
+}
+
+/* Updates the table. Composite: running sums per world unit. Other modes: colour and alpha over one unit distance, and sums where values
+ * are added. */
+static stratus_status update_table(
+  stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, double* ms)
+{
+  const stratus_tetra_mode mode = options->mode;
+  static const double all[2] = { -(double)INFINITY, (double)INFINITY };
+  const bool adds = mode == STRATUS_TETRA_AVERAGE || mode == STRATUS_TETRA_ADDITIVE;
+  const double* range = mode == STRATUS_TETRA_AVERAGE ? options->average_range : all;
   const double start = stratus_now_ms();
   const stratus_tetra_mesh* mesh = caster->mesh;
   const bool any = mesh->low <= mesh->high;
   stratus_table* table = NULL;
   int32_t* sums = NULL;
   stratus_transfer* copy = NULL;
-  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode) {
+  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode &&
+    memcmp(caster->average_range, range, sizeof caster->average_range) == 0) {
     return STRATUS_OK;
   }
   TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
@@ -170,10 +241,11 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
     .hi = any ? mesh->high : 0.0f,
     .uniform = true };
   stratus_status status = stratus_table_create_fine(caster->context, transfer, &values,
-    mode == STRATUS_TETRA_MAXIMUM ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED,
-    mode == STRATUS_TETRA_MAXIMUM ? transfer->unit_distance : 1.0, ENTRIES, &table);
+    mode == STRATUS_TETRA_COMPOSITE ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
+    mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, ENTRIES, &table);
   if (status == STRATUS_OK) {
-    status = stratus_tetra_sums(caster->context, table, &sums);
+    status =
+      adds ? stratus_tetra_value_sums(caster->context, table, mesh, range, &sums) : stratus_tetra_sums(caster->context, table, &sums);
   }
   if (status != STRATUS_OK) {
     stratus_table_destroy(table);
@@ -184,6 +256,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
   caster->table = table;
   caster->march_sums = sums;
   caster->mode = mode;
+  memcpy(caster->average_range, range, sizeof caster->average_range);
   caster->transfer = copy;
   ++caster->table_builds;
   *ms = stratus_now_ms() - start;
@@ -195,7 +268,7 @@ static stratus_status update_table(stratus_tetra_caster* caster, const stratus_t
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
   return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count };
+    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -257,7 +330,8 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
-  if (caster->table->shown == 0 || caster->mesh->face_count == 0) {
+  const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
+  if ((caster->table->shown == 0 && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);
@@ -269,6 +343,8 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   frame.table = caster->table;
   frame.march_sums = caster->march_sums;
   stratus_tetra_frame_shade(&frame, options);
+  stratus_tetra_frame_contours(&frame, caster->mesh, caster->transfer, options);
+  stratus_tetra_frame_clip(&frame, mesh, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
@@ -308,17 +384,20 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   TRY(stratus_transfer_check(caster->context, transfer));
   TRY(stratus_camera_check(caster->context, camera, image));
   /* a mesh is checked only when it changes, so that a moved camera costs no pass over it */
-  if (!mesh || !caster->mesh || !same_mesh(&caster->view, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
+  const stratus_mesh* known = caster->list ? &caster->list->source : &caster->view;
+  if (!mesh || !caster->mesh || !same_mesh(known, mesh) || memcmp(caster->view.matrix, mesh->matrix, sizeof mesh->matrix) != 0) {
     TRY(stratus_mesh_check(caster->context, mesh));
   }
   const int64_t values = mesh->cell_values ? mesh->cell_count : mesh->point_count;
   if (!mesh->values && values > 0) {
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
-  TRY(update_mesh(caster, mesh, &mine.build_ms));
+  const stratus_mesh* drawn = NULL;
+  TRY(stratus_tetra_modes_check(caster->context, options, mesh));
+  TRY(update(caster, mesh, options, &drawn, &mine.build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
-  TRY(update_table(caster, transfer, options->mode, &mine.table_ms));
-  TRY(draw(caster, mesh, camera, options, image, &mine));
+  TRY(update_table(caster, transfer, options, &mine.table_ms));
+  TRY(draw(caster, drawn, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {
     *report = mine;

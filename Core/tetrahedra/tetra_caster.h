@@ -17,11 +17,15 @@ typedef enum stratus_tetra_show {
 /* A mesh as rays read it, made once for all views. Only shown cells are linked to each other. */
 struct stratus_tetra_mesh {
   stratus_context* context;
-  int32_t* cells;     /* TETRA_CELL ints per cell, in the order of stratus_tetra_places */
-  int32_t* names;     /* number of each mesh point in `cells` and `faces`: points are numbered as cells first use them */
+  int32_t lattice[3]; /* stratus_mesh.lattice */
+  /* TETRA_CELL ints per cell, in the order of stratus_tetra_places; of a lattice a bit per point: its hexahedron shows */
+  int32_t* cells;
+  size_t cell_ints, value_count; /* ints of `cells`; of values */
+  /* Number of each mesh point in `cells` and `faces`: points are numbered as cells first use them. NULL: a lattice's points keep theirs. */
+  int32_t* names;
   float* values;      /* a fetched value per mesh point; NULL: values belong to cells */
-  float* cell_values; /* a fetched value per cell, in the order of `cells`; NULL: values belong to points */
-  uint8_t* shown;     /* stratus_tetra_show per mesh cell */
+  float* cell_values; /* a fetched value per cell, in the order of `cells`, of a lattice at first corners; NULL: values belong to points */
+  uint8_t* shown;     /* stratus_tetra_show per mesh cell; NULL: a lattice */
   uint32_t* at;       /* the mesh cell at each place of `cells`; NULL: values belong to points */
   int8_t* nominal;    /* per mesh cell, during the build only: its orientation, of flat cells that of their neighbours; 0: none */
   stratus_tetra_face* faces;
@@ -35,23 +39,28 @@ struct stratus_tetra_mesh {
 };
 
 typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
+typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
 struct stratus_tetra_caster {
   stratus_context* context;
-  stratus_mesh view; /* the source of `mesh` */
+  stratus_mesh view;        /* the source of `mesh`; the list's where a lattice is listed */
+  stratus_tetra_list* list; /* NULL: none */
+  uint64_t mixed;           /* stratus_tetra_hash() of the last lattice whose cells turn both ways; 0: none */
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
   stratus_transfer* transfer;         /* a copy; NULL: none yet */
-  stratus_tetra_mode mode;            /* of the table */
+  stratus_tetra_mode mode;            /* of the table, as the next */
+  double average_range[2];
   stratus_table* table;
-  int32_t* march_sums;          /* stratus_tetra_sums() */
+  int32_t* march_sums;          /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
   uint64_t mesh_builds, value_builds, table_builds;
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
-/* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. */
+/* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash is that of what neighbours, planes and orders follow from. */
+uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh);
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
 /* Whether the mesh has the content in points and vertices, not merely the pointers, that `tetra` was made from. */
@@ -81,8 +90,21 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
  * tile. Buffers grow as needed and are kept for the next frame. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
-/* Sets how a frame's cells are drawn by its table. */
+/* Sets how a frame's cells are drawn by its table, and which part of rays is seen. */
 void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+/* tetra_modes.c: modes that gather no light. */
+stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh);
+/* Whether nothing but marching draws with these options. */
+bool stratus_tetra_modes_march(const stratus_tetra_options* options);
+/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of what counts. A
+ * value is a fraction of the mesh's range. */
+stratus_status stratus_tetra_value_sums(
+  stratus_context* context, const stratus_table* table, const stratus_tetra_mesh* mesh, const double range[2], int32_t** sums);
+/* Sets mode, contours and planes of a frame whose table is set. */
+void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+void stratus_tetra_frame_contours(
+  stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
+void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_method.c: sets the report's method, march or project, and the reason. */
 stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
   const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);

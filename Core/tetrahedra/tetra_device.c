@@ -39,10 +39,10 @@ void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device
 }
 
 /* Returns the reason why the device cannot draw this mesh, or NULL. */
-static const char* obstacle(const stratus_context* context, const stratus_tetra_device_source* source, size_t bytes_per_cell)
+static const char* obstacle(const stratus_context* context, const stratus_tetra_device_source* source, size_t cell_bytes)
 {
   const size_t largest = stratus_device_largest_allocation(context->device);
-  if ((size_t)source->cell_count > largest / bytes_per_cell) {
+  if (cell_bytes > largest) {
     return "the mesh's cells are larger than the device's largest allocation";
   }
   if ((size_t)source->point_count > largest / (4 * sizeof(float))) {
@@ -52,9 +52,9 @@ static const char* obstacle(const stratus_context* context, const stratus_tetra_
 }
 
 stratus_status stratus_tetra_device_begin(
-  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t bytes_per_cell, bool* can)
+  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t cell_bytes, bool* can)
 {
-  const char* why_not = obstacle(context, source, bytes_per_cell);
+  const char* why_not = obstacle(context, source, cell_bytes);
   *can = !why_not;
   if (why_not) {
     stratus_log(context, STRATUS_LOG_WARNING, "drawing tetrahedra on the host: %s", why_not);

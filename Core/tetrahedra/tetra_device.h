@@ -49,6 +49,7 @@ typedef struct stratus_tetra_device {
 typedef struct stratus_tetra_device_source {
   uint64_t mesh, values, table;
   int64_t cell_count, point_count;
+  size_t cell_ints, value_count; /* of the cells that rays march through, and of values, be it of cells or points */
 } stratus_tetra_device_source;
 
 /* stratus_tetra_march() on the device. Makes *device if that is NULL. *drawn false: the device cannot draw this mesh; a warning says why.
@@ -65,10 +66,10 @@ void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device
 
 /* ---- steps of both */
 
-/* Whether the device can draw a mesh; a warning says why not. Makes *device if that is NULL. bytes_per_cell: of the largest buffer of
+/* Whether the device can draw a mesh; a warning says why not. Makes *device if that is NULL. cell_bytes: of the largest buffer of
  * cells. */
 stratus_status stratus_tetra_device_begin(
-  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t bytes_per_cell, bool* can);
+  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t cell_bytes, bool* can);
 /* Sends the table, where it is another than before, and the frame: arguments, points, lines and ends of rays. points: four floats each. */
 stratus_status stratus_tetra_device_send(stratus_context* context, stratus_tetra_device* device, const stratus_tetra_device_source* source,
   const stratus_tetra_frame* frame, const float* points);

@@ -3,6 +3,7 @@
  * column of pixels, and for each tile the border faces that may cover it. */
 #include "tetra_caster.h"
 
+#include "mesh.h"
 #include "vector.h"
 #include "matrix.h"
 
@@ -161,22 +162,50 @@ static stratus_status find_scale(frame_build* build)
   return STRATUS_OK;
 }
 
+static void place_point(const frame_build* build, const double at[3], float value, float point[4])
+{
+  const double scale = build->scale, lateral = build->frame->camera.parallel ? 1.0 : scale;
+  double p[3];
+  stratus_matrix_point(build->matrix, at, p);
+  point[0] = (float)(p[0] * lateral);
+  point[1] = (float)(p[1] * lateral);
+  point[2] = (float)((p[2] - build->frame->middle) * scale);
+  point[3] = isfinite(value) ? value : 0.0f;
+}
+
+/* The points of a lattice keep their numbers. No cell that shows has a point beyond the bounds, but floats cannot hold all of those. */
+static stratus_status place_lattice(frame_build* build, stratus_tetra_buffers* buffers)
+{
+  const stratus_mesh* mesh = build->mesh;
+  const stratus_tetra_mesh* tetra = build->tetra;
+  TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));
+  float* places = buffers->places.memory;
+#pragma omp parallel for num_threads(build->context->threads)
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
+    double p[3];
+    stratus_mesh_point(mesh, i, p);
+    for (int axis = 0; axis < 3; ++axis) { /* also where p is not a number */
+      p[axis] = p[axis] > tetra->lo[axis] ? (p[axis] < tetra->hi[axis] ? p[axis] : tetra->hi[axis]) : tetra->lo[axis];
+    }
+    place_point(build, p, tetra->values ? tetra->values[i] : 0.0f, places + 4 * i);
+  }
+  build->frame->places = places;
+  return STRATUS_OK;
+}
+
 static stratus_status place_points(frame_build* build, stratus_tetra_buffers* buffers)
 {
   const stratus_mesh* mesh = build->mesh;
+  if (!build->tetra->names) {
+    return place_lattice(build, buffers);
+  }
   TRY(stratus_tetra_reserve(build->context, &buffers->points, (size_t)mesh->point_count, 4 * sizeof(float)));
   TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));
   float *points = buffers->points.memory, *places = buffers->places.memory;
   const float* values = build->tetra->values;
-  const double scale = build->scale, lateral = build->frame->camera.parallel ? 1.0 : scale, middle = build->frame->middle;
 #pragma omp parallel for num_threads(build->context->threads)
   for (int64_t i = 0; i < mesh->point_count; ++i) {
-    double p[3];
-    stratus_matrix_point(build->matrix, mesh->points + 3 * i, p);
-    points[4 * i] = (float)(p[0] * lateral);
-    points[4 * i + 1] = (float)(p[1] * lateral);
-    points[4 * i + 2] = (float)((p[2] - middle) * scale);
-    points[4 * i + 3] = values && isfinite(values[i]) ? values[i] : 0.0f;
+    place_point(build, mesh->points + 3 * i, values ? values[i] : 0.0f, points + 4 * i);
     memcpy(places + 4 * (size_t)build->tetra->names[i], points + 4 * i, 4 * sizeof *points);
   }
   build->frame->points = points;
@@ -415,6 +444,7 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   frame->arguments.picture.height = image->height;
   frame->arguments.columns = frame->columns;
   frame->arguments.cell_values = tetra->values == NULL;
+  frame->arguments.lattice = tetra->names == NULL;
   frame->arguments.steps_most = (int)(tetra->cell_count + 1);
   TRY(find_matrix(&build));
   TRY(find_scale(&build));

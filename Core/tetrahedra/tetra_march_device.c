@@ -27,13 +27,12 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
 {
   stratus_tetra_device* d = m->device;
   const stratus_tetra_frame* frame = m->frame;
-  const size_t cells = (size_t)source->cell_count;
   if (d->march_mesh != source->mesh) {
-    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELLS, frame->cells, cells * TETRA_CELL * sizeof(int32_t)));
+    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELLS, frame->cells, source->cell_ints * sizeof(int32_t)));
     d->march_mesh = source->mesh;
   }
   if (d->march_values != source->values) {
-    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, cells * sizeof(float)));
+    TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, source->value_count * sizeof(float)));
     d->march_values = source->values;
   }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
@@ -117,7 +116,7 @@ stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetr
 {
   bool can;
   *drawn = false;
-  TRY(stratus_tetra_device_begin(context, device, source, TETRA_CELL * sizeof(int32_t), &can));
+  TRY(stratus_tetra_device_begin(context, device, source, source->cell_ints * sizeof(int32_t), &can));
   if (!can) {
     return STRATUS_OK;
   }

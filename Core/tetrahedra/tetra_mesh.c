@@ -244,11 +244,14 @@ static stratus_status fetch_values(
   return STRATUS_OK;
 }
 
-/* The hash of what neighbours, planes and orders follow from: points and vertices. */
-static uint64_t hash_geometry(const stratus_context* context, const stratus_mesh* mesh)
+/* Of points and vertices. */
+uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh)
 {
-  const size_t sizes[2] = { (size_t)mesh->point_count * 3 * sizeof *mesh->points, (size_t)mesh->cell_count * 4 * sizeof *mesh->vertices };
-  const uint8_t* arrays[2] = { (const uint8_t*)mesh->points, (const uint8_t*)mesh->vertices };
+  const size_t point = mesh->points ? sizeof *mesh->points : sizeof *mesh->float_points;
+  const size_t sizes[2] = { (size_t)mesh->point_count * 3 * point,
+    stratus_mesh_is_lattice(mesh) ? sizeof mesh->lattice : (size_t)mesh->cell_count * 4 * sizeof *mesh->vertices };
+  const uint8_t* arrays[2] = { mesh->points ? (const uint8_t*)mesh->points : (const uint8_t*)mesh->float_points,
+    stratus_mesh_is_lattice(mesh) ? (const uint8_t*)mesh->lattice : (const uint8_t*)mesh->vertices };
   uint64_t sum = 0;
   for (int a = 0; a < 2; ++a) {
     const int64_t parts = (int64_t)((sizes[a] + HASHED_AT_ONCE - 1) / HASHED_AT_ONCE);
@@ -275,6 +278,8 @@ static stratus_status build(
   TRY(orient_flat_cells(tetra, mesh, adjacency));
   TRY(stratus_allocate(tetra->context, (size_t)mesh->cell_count, TETRA_CELL * sizeof(int32_t), &memory));
   tetra->cells = memory;
+  tetra->cell_ints = (size_t)mesh->cell_count * TETRA_CELL;
+  tetra->value_count = (size_t)(mesh->cell_values ? mesh->cell_count : mesh->point_count);
   pack_cells(tetra, mesh, adjacency, places);
   tetra->face_count = list_faces(tetra, mesh, adjacency, places, NULL);
   if (tetra->face_count > INT32_MAX / TETRA_FACE) {
@@ -286,17 +291,17 @@ static stratus_status build(
   (void)list_faces(tetra, mesh, adjacency, places, tetra->faces);
   stratus_release(tetra->context, tetra->nominal);
   tetra->nominal = NULL;
-  const size_t values = (size_t)(mesh->cell_values ? mesh->cell_count : mesh->point_count);
-  tetra->bytes = (size_t)mesh->cell_count * TETRA_CELL * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
-    (size_t)mesh->point_count * sizeof(int32_t) + values * sizeof(float) +
+  tetra->bytes = tetra->cell_ints * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
+    (size_t)mesh->point_count * sizeof(int32_t) + tetra->value_count * sizeof(float) +
     (size_t)mesh->cell_count * (mesh->cell_values ? 1 + sizeof *places->at : 1);
   return STRATUS_OK;
 }
 
 bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
-  return tetra->cell_count == mesh->cell_count && tetra->point_count == mesh->point_count &&
-    (tetra->values == NULL) == (mesh->cell_values != 0) && tetra->geometry == hash_geometry(tetra->context, mesh);
+  return tetra->cell_count == (stratus_mesh_is_lattice(mesh) ? 6 : 1) * mesh->cell_count && tetra->point_count == mesh->point_count &&
+    memcmp(tetra->lattice, mesh->lattice, sizeof tetra->lattice) == 0 && (tetra->values == NULL) == (mesh->cell_values != 0) &&
+    tetra->geometry == stratus_tetra_hash(tetra->context, mesh);
 }
 
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)
@@ -335,7 +340,7 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   tetra->context = context;
   tetra->cell_count = mesh->cell_count;
   tetra->point_count = mesh->point_count;
-  tetra->geometry = hash_geometry(context, mesh);
+  tetra->geometry = stratus_tetra_hash(context, mesh);
   TRY_CLEANUP(stratus_adjacency_create(context, mesh, &adjacency));
   tetra->flat = adjacency->flat;
   tetra->inverted = adjacency->inverted;

@@ -26,6 +26,14 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     return STRATUS_OK;
   }
   report->method = STRATUS_TETRA_METHOD_MARCH;
+  if (stratus_tetra_modes_march(options)) {
+    snprintf(report->why, sizeof report->why, "march: mode %s cannot be projected", stratus_tetra_mode_name(options->mode));
+    return STRATUS_OK;
+  }
+  if (!caster->mesh->names) {
+    snprintf(report->why, sizeof report->why, "march: the cells of a lattice are not listed, and so need no memory");
+    return STRATUS_OK;
+  }
   if (caster->context->device && !stratus_device_is_cpu(caster->context->device)) {
     snprintf(report->why, sizeof report->why, "march: what projection costs on a GPU is not measured");
     return STRATUS_OK;

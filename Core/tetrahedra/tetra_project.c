@@ -262,7 +262,7 @@ stratus_status stratus_tetra_project(stratus_tetra_projector* projector, const s
     .end = (float)fmin((frame->camera.far_k - frame->middle + lean) / frame->per_z, 1e30),
     .columns = (frame->image.width + PROJECT_TILE - 1) / PROJECT_TILE,
     .rows = (frame->image.height + PROJECT_TILE - 1) / PROJECT_TILE };
-  if (!frame->arguments.maximum) { /* the maximum does not depend on the order */
+  if (frame->arguments.mode != TETRA_EXTREMES) { /* the maximum does not depend on the order */
     TRY(sort_cells(projector, mesh, &frame->camera, leaves, &cells, report));
   }
   const double start = stratus_now_ms();

@@ -116,7 +116,7 @@ stratus_status stratus_tetra_project_device(stratus_context* context, stratus_te
 {
   bool can;
   *drawn = false;
-  TRY(stratus_tetra_device_begin(context, device, source, 4 * sizeof(int32_t), &can));
+  TRY(stratus_tetra_device_begin(context, device, source, (size_t)source->cell_count * 4 * sizeof(int32_t), &can));
   if (!can) {
     return STRATUS_OK;
   }

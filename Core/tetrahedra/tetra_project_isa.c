@@ -80,7 +80,7 @@ int64_t STRATUS_ISA_NAME(stratus_tetra_outlines)(const stratus_tetra_projection*
       least = most = v_load(value);
     }
     on = on & v_lt(v_set(projection->begin), far) & v_lt(near, v_set(projection->end));
-    if (!frame->arguments.maximum) {
+    if (frame->arguments.mode != TETRA_EXTREMES) {
       on = m_andnot(on, transparent(projection, on, least, most));
     }
     const vmask crossing = on & v_lt(nearest, v_set(NEAREST_OUTLINE));

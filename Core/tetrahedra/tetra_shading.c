@@ -37,6 +37,7 @@ void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_o
   arguments->picture.want_depth = image->depth != NULL;
   arguments->picture.want_samples = image->samples != NULL;
   arguments->picture.want_bytes = image->rgba8 != NULL;
-  arguments->maximum = options->mode == STRATUS_TETRA_MAXIMUM;
-  arguments->termination = arguments->maximum ? 0.0f : (float)termination_of(options);
+  stratus_tetra_frame_mode(frame, options);
+  const bool gathers = arguments->mode == TETRA_LIGHT || arguments->mode == TETRA_SURFACES;
+  arguments->termination = gathers ? (float)termination_of(options) : 0.0f;
 }

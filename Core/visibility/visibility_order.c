@@ -130,7 +130,7 @@ stratus_status stratus_visibility_order_create(
   const double begin = stratus_now_ms();
   const stratus_stage stage = stratus_stage_begin(context);
   void* memory = NULL;
-  TRY(stratus_mesh_check(context, mesh));
+  TRY(stratus_mesh_check_listed(context, mesh));
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_visibility_order), &memory));
   stratus_visibility_order* order = memory;
   order->context = context;

@@ -11,6 +11,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -44,8 +45,9 @@ uint64_t HashGrid(vtkUnstructuredGrid* grid)
   vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr,
     cells ? cells->GetConnectivityArray() : nullptr, cells ? cells->GetOffsetsArray() : nullptr, grid->GetCellTypesArray(),
     grid->GetFaces(), grid->GetFaceLocations(), grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
-    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
-    grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray), grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
+    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()), grid->GetCellData()->GetHigherOrderDegrees(),
+    grid->GetPointData()->GetRationalWeights(), grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray),
+    grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };
   uint64_t hash = 1;
   for (vtkAbstractArray* array : arrays) {
     hash = HashArray(array, hash);
@@ -54,15 +56,36 @@ uint64_t HashGrid(vtkUnstructuredGrid* grid)
 }
 } // namespace
 
-// Divides the grid into tetrahedra, if its content has changed.
-void vtkStratusMeshView::SetGeometry(vtkUnstructuredGrid* grid)
+bool vtkStratusMeshView::SetGeometry(vtkDataSet* grid, std::string& error)
 {
-  const vtkMTimeType time = std::max(grid->GetMTime(), grid->GetMeshMTime());
-  if (this->Grid == grid && this->Time == time) {
-    return;
+  auto* cells = vtkUnstructuredGrid::SafeDownCast(grid);
+  auto* lattice = vtkStructuredGrid::SafeDownCast(grid);
+  vtkMTimeType time = grid->GetMTime();
+  time = cells ? std::max(time, cells->GetMeshMTime()) : time;
+  time = lattice && lattice->GetPoints() ? std::max(time, lattice->GetPoints()->GetMTime()) : time;
+  if (this->Grid != grid || this->Time != time) {
+    this->Grid = grid;
+    this->Time = time;
+    this->IsLattice = lattice != nullptr;
+    if (lattice) { // the core asks whether its content has changed
+      this->ContentTime = 0;
+      this->Divided = nullptr;
+      this->HasLeaves = false;
+      this->Refusal.clear();
+      this->Accepted = this->Lattice.Set(lattice, this->Refusal);
+      std::copy_n(this->Lattice.GetBounds(), 6, this->Bounds);
+    } else {
+      this->Divide(cells, time);
+      grid->GetBounds(this->Bounds);
+    }
   }
-  this->Grid = grid;
-  this->Time = time;
+  error = this->Refusal;
+  return this->Accepted;
+}
+
+// Divides the grid into tetrahedra, if its content has changed.
+void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
+{
   const uint64_t content = HashGrid(grid);
   if (this->ContentTime > 0 && this->Content == content) {
     return;
@@ -79,11 +102,9 @@ void vtkStratusMeshView::SetGeometry(vtkUnstructuredGrid* grid)
   this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);
 }
 
-bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+bool vtkStratusMeshView::Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
 {
-  this->SetGeometry(grid);
-  if (!this->Accepted) {
-    error = this->Refusal;
+  if (!this->SetGeometry(grid, error)) {
     return false;
   }
   const vtkIdType expected = cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
@@ -92,9 +113,9 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
       (cells ? " cells" : " points");
     return false;
   }
-  const bool whole = this->Tetrahedra.CellByCell;
+  const bool whole = this->IsLattice || this->Tetrahedra.CellByCell;
   vtkDataArray* values_of = whole ? array : this->Spread(array, cells);
-  this->Mesh = this->Tetrahedra.GetMesh();
+  this->Mesh = this->IsLattice ? this->Lattice.GetMesh() : this->Tetrahedra.GetMesh();
   const int64_t count = cells ? this->Mesh.cell_count : this->Mesh.point_count;
   if (this->Carrier->GetNumberOfPoints() != count) {
     this->Carrier->SetDimensions(static_cast<int>(count), 1, 1);
@@ -103,17 +124,17 @@ bool vtkStratusMeshView::Set(vtkUnstructuredGrid* grid, vtkDataArray* array, boo
     return false;
   }
   const stratus_volume& values = this->Values.GetVolume();
-  const std::vector<uint8_t>& hidden = whole ? this->Hidden : this->DividedHidden;
+  const std::vector<uint8_t>& hidden = this->IsLattice ? this->Lattice.GetHidden() : whole ? this->Hidden : this->DividedHidden;
   this->Mesh.values = values.values;
   this->Mesh.type = values.type;
   this->Mesh.value_stride = values.value_stride;
   this->Mesh.cell_values = cells ? 1 : 0;
   this->Mesh.hidden = hidden.empty() ? nullptr : hidden.data();
-  this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(this->ContentTime) * UINT64_C(0x9E3779B97F4A7C15));
+  const vtkMTimeType geometry = this->IsLattice ? this->Time : this->ContentTime;
+  this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(geometry) * UINT64_C(0x9E3779B97F4A7C15));
   if (matrix) {
     std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Mesh.matrix);
   }
-  grid->GetBounds(this->Bounds);
   return true;
 }
 

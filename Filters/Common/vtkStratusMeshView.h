@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A view of a grid in the core's terms, its cells divided into tetrahedra. Private to the module.
+// A view of a grid in the core's terms: the cells of an unstructured one divided into tetrahedra, a structured one as a lattice. Private to
+// the module.
 #ifndef vtkStratusMeshView_h
 #define vtkStratusMeshView_h
 
 #include "stratus.h"
 
 #include "vtkStratusInput.h"
+#include "vtkStratusLattice.h"
 #include "vtkStratusLeaves.h"
 #include "vtkStratusTetrahedra.h"
 
@@ -13,6 +15,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
+#include "vtkDataSet.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <cstdint>
@@ -24,18 +27,22 @@ class VTK_STRATUS_PRIVATE vtkStratusMeshView
 public:
   // Returns false, with the reason in `error`, where the core cannot take the grid or the array. `matrix` is the prop's, or nullptr for the
   // identity. Copies are made only where the input's content has changed.
-  bool Set(vtkUnstructuredGrid* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
+  // The grid is unstructured or structured.
+  bool Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
+  // Reads a grid's points and cells alone; bounds are known after that. Returns false where the core cannot take them.
+  bool SetGeometry(vtkDataSet* grid, std::string& error);
+  const double* GetBounds() const { return this->Bounds; }
   const stratus_mesh& GetMesh() const { return this->Mesh; }
   // The grid's partition, or nullptr where it carries none. DropLeaves() forgets a partition that the core has refused because the points
   // were moved.
   const stratus_leaves* GetLeaves() const { return this->HasLeaves ? &this->Leaves.Leaves : nullptr; }
   void DropLeaves() { this->HasLeaves = false; }
-  vtkIdType GetLeftOut() const { return this->Tetrahedra.LeftOut; }
+  vtkIdType GetLeftOut() const { return this->IsLattice ? 0 : this->Tetrahedra.LeftOut; }
   // A box around the grid, for code that needs only its place.
   stratus_volume GetBox() const;
 
 private:
-  void SetGeometry(vtkUnstructuredGrid* grid);
+  void Divide(vtkUnstructuredGrid* grid, vtkMTimeType time);
   bool SetHidden(vtkUnstructuredGrid* grid, std::string& error);
   vtkDataArray* Spread(vtkDataArray* array, bool cells);
   void HideNotFinite();
@@ -43,7 +50,7 @@ private:
 
   stratus_mesh Mesh;
   double Bounds[6] = { 0, 1, 0, 1, 0, 1 };
-  vtkSmartPointer<vtkUnstructuredGrid> Grid; // kept alive, so that no other grid can get the same address
+  vtkSmartPointer<vtkDataSet> Grid; // kept alive, so that no other grid can get the same address
   vtkMTimeType Time = 0;
   // Of points, cells, hidden flags and partition: the cells are divided anew only where it changes, not with every step of a simulation.
   uint64_t Content = 0;
@@ -51,6 +58,8 @@ private:
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;
+  vtkStratusLattice Lattice;
+  bool IsLattice = false;
   vtkStratusLeaves Leaves;
   bool HasLeaves = false;
   std::vector<uint8_t> Hidden; // one per tetrahedron, by ghost arrays and blanking

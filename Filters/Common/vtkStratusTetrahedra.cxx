@@ -65,7 +65,7 @@ std::string TellCell(vtkIdType cell, int type)
 
 // Properties of a VTK cell type, looked up once.
 struct vtkStratusTetrahedra::Kind {
-  enum { Unknown, Flat, Linear, Quadratic, Polyhedron, ConvexPointSet } Way = Unknown;
+  enum { Unknown, Flat, Linear, Quadratic, Curved, Polyhedron, ConvexPointSet } Way = Unknown;
   vtkIdType Points = 0;
   struct Side {
     int Type;
@@ -90,6 +90,7 @@ vtkStratusTetrahedra::Kind::Kind(int type)
     return;
   }
   if (type > VTK_TRIQUADRATIC_PYRAMID) { // arbitrary order or parametric
+    this->Way = IsCurved(type) ? Curved : Unknown;
     return;
   }
   this->Way = cell->IsLinear() ? Linear : Quadratic;
@@ -163,7 +164,7 @@ void vtkStratusTetrahedra::AddLinear(const std::vector<Face>& faces, vtkIdType c
 vtkIdType vtkStratusTetrahedra::AddMiddle(const Kind& kind, const vtkIdType* ids)
 {
   double x[3] = { 0.0, 0.0, 0.0 };
-  this->Middles.push_back({ this->MiddleNodes.size(), &kind.Weights });
+  this->Middles.push_back({ this->MiddleNodes.size(), &kind.Weights, static_cast<vtkIdType>(this->Points.size() / 3) });
   for (vtkIdType i = 0; i < kind.Points; ++i) {
     this->MiddleNodes.push_back(ids[i]);
     for (int a = 0; a < 3; ++a) {
@@ -231,7 +232,7 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
     return true;
   }
   if (kind.Way == Kind::Unknown) {
-    error = TellCell(cell, type) + ", only linear and quadratic cells can be divided into tetrahedra";
+    error = TellCell(cell, type) + ", only linear, quadratic, Lagrange and Bezier cells can be divided into tetrahedra";
     return false;
   }
   vtkIdType count = 0;
@@ -244,6 +245,11 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
   if (type == VTK_TETRA) { // kept as it is, even if degenerate
     this->Vertices.insert(this->Vertices.end(), ids, ids + 4);
     this->Cells.push_back(cell);
+  } else if (kind.Way == Kind::Curved) {
+    if (!this->AddCurved(grid, cell, count, ids, error)) {
+      error = TellCell(cell, type) + " " + error;
+      return false;
+    }
   } else if (kind.Way == Kind::Quadratic) {
     this->AddQuadratic(kind, ids, cell);
   } else if (kind.Way == Kind::Polyhedron) {
@@ -322,13 +328,16 @@ void vtkStratusTetrahedra::CopyPointValues(vtkAbstractArray* from, vtkAbstractAr
   if (flags && (!to->GetName() || std::string(to->GetName()) != vtkDataSetAttributes::GhostArrayName())) {
     flags = nullptr;
   }
-  for (size_t m = 0; m < this->Middles.size(); ++m) {
-    const std::vector<double>& weights = *this->Middles[m].Weights;
+  for (const Middle& middle : this->Middles) {
+    const std::vector<double>& weights = *middle.Weights;
     nodes->SetNumberOfIds(static_cast<vtkIdType>(weights.size()));
     for (size_t i = 0; i < weights.size(); ++i) {
-      nodes->SetId(static_cast<vtkIdType>(i), this->MiddleNodes[this->Middles[m].Node + i]);
+      nodes->SetId(static_cast<vtkIdType>(i), this->MiddleNodes[middle.Node + i]);
     }
-    const vtkIdType at = this->GridPoints + static_cast<vtkIdType>(m);
+    const vtkIdType at = middle.At;
+    if (flags && at < this->GridPoints) {
+      continue; // a node of a Bezier cell keeps its own
+    }
     if (flags) { // a ghost flag is set where all nodes have it
       unsigned char all = 255;
       for (vtkIdType node : *nodes) {

@@ -8,6 +8,7 @@
 #include "vtkStratusInput.h"
 #include "vtkType.h"
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,17 @@ class vtkAbstractArray;
 class vtkUnstructuredGrid;
 
 struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra {
-  std::vector<double> Points;    // all points of the grid, then the centres of quadratic cells that have no node there
+  // All points of the grid, those of nodes that only steer Bezier cells in their places, then the centres of quadratic cells that have no
+  // node there.
+  std::vector<double> Points;
   std::vector<int32_t> Vertices; // four per tetrahedron
   std::vector<vtkIdType> Cells;  // the grid's cell of each tetrahedron, ascending
   vtkIdType GridPoints = 0;
   vtkIdType LeftOut = 0;  // cells without a volume: vertices, lines, polygons, empty cells
   bool CellByCell = true; // each cell of the grid is one tetrahedron with the same number
 
-  // Divides linear and quadratic cells and polyhedra. Two neighbours divide their common face alike. Returns false, with the reason in
-  // `error`, for other cells and for numbers beyond 31 bits.
+  // Divides linear, quadratic, Lagrange and Bezier cells and polyhedra. Two neighbours divide their common face alike. Returns false, with
+  // the reason in `error`, for other cells and for numbers beyond 31 bits.
   bool Set(vtkUnstructuredGrid* grid, std::string& error);
   stratus_mesh GetMesh() const;
   // The message for a grid none of whose cells has a volume, so that there is nothing to draw.
@@ -39,6 +42,7 @@ private:
   struct Middle {
     size_t Node;                        // index of the cell's first node in MiddleNodes
     const std::vector<double>* Weights; // one for each of the cell's nodes
+    vtkIdType At;                       // the point whose values follow
   };
 
   static const Kind& GetKind(int type);
@@ -50,7 +54,17 @@ private:
   void AddPiece(vtkIdType a, vtkIdType b, vtkIdType c, vtkIdType d, vtkIdType cell);
   vtkIdType AddMiddle(const Kind& kind, const vtkIdType* ids);
 
+  // vtkStratusTetrahedraCurved.cxx: Lagrange and Bezier cells.
+  static bool IsCurved(int type);
+  bool AddCurved(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count, const vtkIdType* ids, std::string& error);
+  void PlaceBezier(vtkUnstructuredGrid* grid, vtkIdType cell, const int order[4]);
+  template <typename Node> void AddCurvedTetrahedra(int left, Node&& node, vtkIdType cell);
+  void AddBox(const vtkIdType p[8], vtkIdType cell);
+  void AddPrism(const vtkIdType p[6], vtkIdType cell);
+
   std::vector<Middle> Middles;
+  std::deque<std::vector<double>> OwnWeights; // of Bezier cells' nodes; they stay where they are
+  std::vector<bool> Placed;                   // points of the grid that a Bezier cell has placed; empty: none
   std::vector<vtkIdType> MiddleNodes;
   std::vector<Face> Faces; // of the current cell, kept to reuse its memory
 };

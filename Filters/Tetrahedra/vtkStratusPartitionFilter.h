@@ -3,9 +3,10 @@
  * @class   vtkStratusPartitionFilter
  * @brief   cuts an unstructured grid into the leaves of a K-D tree
  *
- * Input: a vtkUnstructuredGrid. Its linear and quadratic cells and polyhedra are divided into tetrahedra that meet face to face. Vertices,
- * lines and polygons are dropped; cells of higher order are refused. Planes then cut the tetrahedra, so that each piece lies in one leaf
- * (Li et al. 2012). Neighbouring pieces share their points, across leaves, too. Together the pieces of a cell fill the cell.
+ * Input: a vtkUnstructuredGrid. Its linear, quadratic, Lagrange and Bezier cells and polyhedra are divided into tetrahedra that meet face
+ * to face; of Bezier cells the nodes that only steer them move to the points that belong to them. Vertices, lines and polygons are dropped.
+ * Planes then cut the tetrahedra, so that each piece lies in one leaf (Li et al. 2012). Neighbouring pieces share their points, across
+ * leaves, too. Together the pieces of a cell fill the cell.
  *
  * Output: tetrahedra, leaf by leaf. The input's points keep their numbers. Behind them come the centres of quadratic cells that have no
  * node there (all but tetrahedra and triquadratic hexahedra and pyramids) and the points on cut edges. Point data are interpolated and cell

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusDisplay.h"
 
+#include "vtkHardwareSelector.h"
 #include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
 #include "vtkOpenGLRenderWindow.h"
@@ -432,13 +433,59 @@ bool vtkStratusDisplay::Begin(
   return true;
 }
 
-bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels, std::string& error)
+// Bytes are precise enough on a black background, because no blend rounds after them, and in a window with multisampling, whose frame
+// buffer rounds to bytes before it blends.
+vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others, float finalWindow,
+  float finalLevel, const std::vector<unsigned char>& bytes)
 {
+  Pixels pixels;
+  pixels.Scale = 1.0f / finalWindow;
+  pixels.Bias = 0.5f - finalLevel * pixels.Scale;
+  const double* background = renderer->GetBackground();
+  const bool onBlack = !others.Geometry && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() &&
+    background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  const bool blends = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0 && !renderer->GetPass();
+  if ((onBlack || blends) && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
+    pixels.Bytes = bytes.data();
+  }
+  pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;
+  return pixels;
+}
+
+// Hardware picking reads the window.
+void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPicture& picture, Pixels& pixels)
+{
+  float color[3];
+  renderer->GetSelector()->BeginRenderProp();
+  renderer->GetSelector()->GetPropColorValue(color);
+  this->Selected.resize(4 * static_cast<size_t>(picture.Size[0]) * picture.Size[1]);
+  for (size_t at = 0; at < this->Selected.size(); at += 4) {
+    const float seen = pixels.Rgba[at + 3] > 0.0f ? 1.0f : 0.0f;
+    const float shown[4] = { seen * color[0], seen * color[1], seen * color[2], seen };
+    std::copy_n(shown, 4, &this->Selected[at]);
+  }
+  pixels.Rgba = this->Selected.data();
+  pixels.Scale = 1.0f;
+  pixels.Bias = 0.0f;
+  pixels.WritesDepth = true;
+}
+
+bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& wanted, std::string& error)
+{
+  Pixels pixels = wanted;
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  if (selector && pixels.Rgba) {
+    this->ChooseSelected(renderer, picture, pixels);
+  }
   this->WindowDepth.clear();
   if (pixels.WritesDepth || this->Stage == vtkStratusPeels::FIRST) { // peels are told apart by depth
     picture.ToWindowDepth(*pixels.Depth, this->WindowDepth);
   }
   const bool drawn = this->DrawPixels(renderer, picture, pixels);
+  if (selector && wanted.Rgba) {
+    selector->EndRenderProp();
+  }
   if (!drawn) {
     error = Unshown;
   }

@@ -38,6 +38,11 @@ public:
     bool Alone = false;                        // nothing was drawn before, so that the bytes may replace the frame buffer's
   };
 
+  // Chooses how a picture is displayed with the final colour's window and level. `bytes`: of the picture, to be filled in if Pixels.Bytes
+  // is set. The caller fills in the rest.
+  static Pixels ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others, float finalWindow, float finalLevel,
+    const std::vector<unsigned char>& bytes);
+
   vtkStratusDisplay();
   ~vtkStratusDisplay();
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
@@ -47,7 +52,8 @@ public:
   // frame, and the later ones draw the first one's picture between other peels. Then `error` is lastError, with which the frame's first
   // draw ended.
   bool Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error);
-  // Ends a draw for which Begin() returned true. Returns false, with the reason in `error`, where the window can't show it.
+  // Ends a draw for which Begin() returned true. While the renderer picks props it draws the prop's selection colour, and its depth, where
+  // the picture shows anything. Returns false, with the reason in `error`, where the window can't show it.
   bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels, std::string& error);
   void ReleaseGraphicsResources(vtkWindow* window);
 
@@ -91,6 +97,9 @@ private:
   bool Blend(
     vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part);
 
+  void ChooseSelected(vtkRenderer* renderer, const vtkStratusPicture& picture, Pixels& pixels);
+
+  std::vector<float> Selected;    // colours for picking
   std::vector<float> WindowDepth; // of this draw; empty: it shows no depth
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;

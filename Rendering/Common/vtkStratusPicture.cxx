@@ -157,29 +157,41 @@ bool KeepsToBounds(vtkProp* prop)
 }
 } // namespace
 
-void vtkStratusPicture::SetRectangle(const stratus_volume& volume, const double* crop, double margin)
+void vtkStratusPicture::SetRectangle(const std::vector<Box>& boxes, bool solid)
 {
-  double box[6], corners[8][4];
-  int part[4];
-  LocalBox(volume, crop, margin, box);
-  for (int corner = 0; corner < 8; ++corner) {
-    CornerToWorld(volume, box, corner, corners[corner]);
+  int all[4] = { this->Viewport[2], 0, this->Viewport[3], 0 };
+  for (const Box& of : boxes) {
+    double box[6], corners[8][4];
+    int part[4];
+    LocalBox(*of.Volume, of.Crop, solid && !of.Volume->cell_centered ? 0.5 : 0.0, box);
+    for (int corner = 0; corner < 8; ++corner) {
+      CornerToWorld(*of.Volume, box, corner, corners[corner]);
+    }
+    ProjectCorners(this->WorldToClip, corners, this->Viewport + 2, 1, part); // one pixel more, for rounding
+    for (int a = 0; a < 4; a += 2) {
+      all[a] = std::min(all[a], part[a]);
+      all[a + 1] = std::max(all[a + 1], part[a + 1]);
+    }
   }
-  ProjectCorners(this->WorldToClip, corners, this->Viewport + 2, 1, part); // one pixel more, for rounding
   for (int a = 0; a < 2; ++a) {
-    this->Rectangle[a] = part[2 * a];
-    this->Rectangle[2 + a] = std::max(0, part[2 * a + 1] - part[2 * a]);
+    this->Rectangle[a] = all[2 * a];
+    this->Rectangle[2 + a] = std::max(0, all[2 * a + 1] - all[2 * a]);
   }
 }
 
 bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid)
+{
+  return this->Set(renderer, { { &volume, crop } }, coarseness, solid);
+}
+
+bool vtkStratusPicture::Set(vtkRenderer* renderer, const std::vector<Box>& boxes, double coarseness, bool solid)
 {
   renderer->GetTiledSizeAndOrigin(&this->Viewport[2], &this->Viewport[3], &this->Viewport[0], &this->Viewport[1]);
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4* view = camera->GetModelViewTransformMatrix();
   vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
   vtkMatrix4x4::Multiply4x4(&projection->Element[0][0], &view->Element[0][0], this->WorldToClip);
-  this->SetRectangle(volume, crop, solid && !volume.cell_centered ? 0.5 : 0.0);
+  this->SetRectangle(boxes, solid);
   double center[2], half[2];
   for (int a = 0; a < 2; ++a) {
     const double pixels = this->Viewport[2 + a];

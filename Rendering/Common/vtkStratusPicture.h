@@ -29,6 +29,13 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // degenerate.
   bool Set(vtkRenderer* renderer, const stratus_volume& volume, const double* crop, double coarseness, bool solid = false);
 
+  // The same for several volumes; each box is one of them.
+  struct Box {
+    const stratus_volume* Volume;
+    const double* Crop;
+  };
+  bool Set(vtkRenderer* renderer, const std::vector<Box>& boxes, double coarseness, bool solid = false);
+
   // What else the renderer draws. Geometry: something may have written depth before. Any: another prop is visible.
   struct Others {
     bool Geometry = false;
@@ -47,7 +54,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;
 
 private:
-  void SetRectangle(const stratus_volume& volume, const double* crop, double margin);
+  void SetRectangle(const std::vector<Box>& boxes, bool solid);
   void FindPart(vtkProp* prop, int part[4]) const;
 
   double WorldToClip[16];

@@ -4,12 +4,15 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderer.h"
+#include "vtkUnstructuredGridBase.h"
 #include "vtkVolume.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -22,7 +25,37 @@ vtkStratusTetrahedraMapper::~vtkStratusTetrahedraMapper() = default;
 int vtkStratusTetrahedraMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   return 1;
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkUnstructuredGridBase* grid)
+{
+  this->SetInputDataInternal(0, grid);
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkDataSet* grid)
+{
+  this->SetInputDataInternal(0, grid);
+}
+
+void vtkStratusTetrahedraMapper::SetInputData(vtkDataObjectTree* blocks)
+{
+  this->SetInputDataInternal(0, blocks);
+}
+
+double* vtkStratusTetrahedraMapper::GetBounds()
+{
+  if (this->GetNumberOfInputConnections(0) > 0) {
+    this->GetInputAlgorithm()->Update();
+  }
+  const double* bounds = this->Internal->FindBounds();
+  if (!bounds) {
+    return this->Superclass::GetBounds();
+  }
+  std::copy_n(bounds, 6, this->Bounds);
+  return this->Bounds;
 }
 
 void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
@@ -188,6 +221,13 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   const stratus_tetra_report& report = this->Internal->Report;
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
+  os << indent << "AverageIPScalarRange: " << this->AverageIPScalarRange[0] << " " << this->AverageIPScalarRange[1] << "\n";
+  os << indent << "Cropping: " << (this->Cropping ? "On" : "Off") << "\n";
+  os << indent << "CroppingRegionPlanes:";
+  for (const double plane : this->CroppingRegionPlanes) {
+    os << " " << plane;
+  }
+  os << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "Method: " << this->GetMethodAsString() << "\n";

@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusTetrahedraMapper
- * @brief   draws the volume of a vtkUnstructuredGrid, divided into tetrahedra, with exact thickness and order
+ * @brief   draws the volume of an unstructured or structured grid, divided into tetrahedra, with exact thickness and order
  *
- * Replaces vtkProjectedTetrahedraMapper and vtkUnstructuredGridVolumeRayCastMapper. It draws a vtkUnstructuredGrid with the vtkVolume's
- * vtkVolumeProperty and composites the picture with the scene's opaque geometry.
+ * Replaces vtkProjectedTetrahedraMapper and vtkUnstructuredGridVolumeRayCastMapper. It draws a vtkUnstructuredGrid or a vtkStructuredGrid
+ * with the vtkVolume's vtkVolumeProperty and composites the picture with the scene's opaque geometry.
  *
  * Supported are:
  * - linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
  *   cells. Cells are divided into linear tetrahedra, in which the field is linear; neighbours divide their common face alike.
+ *   Lagrange and Bezier hexahedra, wedges and tetrahedra, rational ones, too, are divided at their nodes, of Bezier cells at the points
+ *   that belong to these: the picture errs by what linear interpolation between nodes does, which falls with the square of their distance.
  *   Vertices, lines and polygons are ignored and counted; a grid that has nothing else is an error.
+ * - structured (curvilinear) grids: hexahedra in layers, around poles, left-handed. Each is divided into six tetrahedra along the ways from
+ *   its first corner to its last, which keep their orientation in layers over any ground; where layers cross, the cells that overlap all
+ *   count. March needs some 21 bytes a hexahedron besides the grid, project some 490, as do grids in which layers cross;
+ * - composite data sets of such grids, of rectilinear ones and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
+ *   vtkPartitionedDataSetCollection), as one volume: points of the same coordinates and values become one, so that blocks meet in whole
+ *   faces. Blocks without the array or without a volume are left out with a warning. A block alone is drawn as it is;
  * - point and cell scalars of one component and any numeric type but bits;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
- * - the blend modes composite and maximum intensity (the largest value on a ray, at the opacity of one unit distance);
+ * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
+ *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
+ *   tetrahedron). All but composite and maximum are marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
+ * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (cells of higher order, shading, gradient opacity, more components, two-dimensional transfer functions, label maps, clipping
- * planes) is refused by an error, and nothing is drawn.
+ * All else (shading, gradient opacity, more components, two-dimensional transfer functions, label maps, slices) is refused by an error, and
+ * nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
@@ -32,6 +43,7 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkDataObjectTree;
 class vtkImageData;
 class vtkTable;
 
@@ -59,6 +71,37 @@ public:
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
+  //@}
+
+  //@{
+  /**
+   * Set the blend mode, which SetBlendMode() takes as a number, too. They have vtkVolumeMapper's numbers.
+   */
+  enum MoreBlendModes { MINIMUM_INTENSITY_BLEND = 2, AVERAGE_INTENSITY_BLEND, ADDITIVE_BLEND, ISOSURFACE_BLEND };
+  void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
+  void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
+  void SetBlendModeToAdditive() { this->SetBlendMode(ADDITIVE_BLEND); }
+  void SetBlendModeToIsoSurface() { this->SetBlendMode(ISOSURFACE_BLEND); }
+  //@}
+
+  //@{
+  /**
+   * Set/Get the values that count in average intensity, first and last, ends included. Default: all (the largest floats of either sign).
+   */
+  vtkSetVector2Macro(AverageIPScalarRange, double);
+  vtkGetVectorMacro(AverageIPScalarRange, double, 2);
+  //@}
+
+  //@{
+  /**
+   * Set/Get whether only what lies within CroppingRegionPlanes is drawn, a box of the input's coordinates: xmin, xmax, ymin, ymax, zmin,
+   * zmax. A box whose ends do not rise is refused. Default off, and 0 to 1.
+   */
+  vtkSetMacro(Cropping, bool);
+  vtkGetMacro(Cropping, bool);
+  vtkBooleanMacro(Cropping, bool);
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
   //@}
 
   //@{
@@ -169,6 +212,24 @@ public:
    */
   vtkImageData* GetLastImage();
 
+  //@{
+  /**
+   * Set the input: a vtkUnstructuredGrid, a vtkStructuredGrid, or blocks.
+   */
+  void SetInputData(vtkUnstructuredGridBase* grid) override;
+  void SetInputData(vtkDataSet* grid) override;
+  virtual void SetInputData(vtkDataObjectTree* blocks);
+  //@}
+
+  //@{
+  /**
+   * Get the bounds of the input: of a structured grid, those of its cells that are not hidden by a ghost or blanking array; of blocks,
+   * those of the blocks that are drawn.
+   */
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+  //@}
+
   void Render(vtkRenderer* ren, vtkVolume* vol) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
@@ -181,6 +242,9 @@ protected:
   double Termination = 0.0;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
+  double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
+  bool Cropping = false;
+  double CroppingRegionPlanes[6] = { 0, 1, 0, 1, 0, 1 };
 
 private:
   vtkStratusTetrahedraMapper(const vtkStratusTetrahedraMapper&) = delete;

@@ -2,14 +2,21 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
+#include "vtkContourValues.h"
 #include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
+#include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
+
+#include <algorithm>
 
 vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
@@ -37,11 +44,9 @@ bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
 
 bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
 {
-  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
-  if (planes && planes->GetNumberOfItems() > 0) {
-    error = std::to_string(planes->GetNumberOfItems()) + " clipping planes are not supported, none may be set";
-  } else if (this->Mapper->BlendMode != COMPOSITE_BLEND && this->Mapper->BlendMode != MAXIMUM_INTENSITY_BLEND) {
-    error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) and maximum intensity (1) are";
+  if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
+    error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
+      " is not supported, only composite (0), maximum (1), minimum (2), average (3), additive (4) and isosurface (5) are";
   } else if (property->GetShade()) {
     error = "shading is not supported, only ShadeOff is";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
@@ -61,29 +66,122 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   return error.empty();
 }
 
-bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
+bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options& options, std::string& error) const
 {
-  vtkStratusTetrahedraMapper* mapper = this->Mapper;
-  if (mapper->GetNumberOfInputConnections(0) > 0) {
-    mapper->GetInputAlgorithm()->Update();
-  }
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(mapper->GetDataObjectInput());
-  if (!grid) {
-    error = "there is no input, a vtkUnstructuredGrid is needed";
+  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
+  const int count = planes ? planes->GetNumberOfItems() : 0;
+  if (count > STRATUS_TETRA_CLIP_PLANES_MAX) {
+    error = std::to_string(count) + " clipping planes are not supported, at most " + std::to_string(STRATUS_TETRA_CLIP_PLANES_MAX) + " are";
     return false;
   }
-  empty = grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0;
+  options.clip_plane_count = count;
+  for (int p = 0; p < count; ++p) {
+    vtkPlane* plane = planes->GetItem(p);
+    if (plane->GetTransform()) {
+      error = "clipping planes with a transform are not supported, only those of origin and normal";
+      return false;
+    }
+    double normal[3], origin[3];
+    plane->GetNormal(normal);
+    plane->GetOrigin(origin);
+    std::copy(normal, normal + 3, options.clip_planes[p]);
+    options.clip_planes[p][3] = -vtkMath::Dot(normal, origin);
+  }
+  options.crop = this->Mapper->Cropping ? 1 : 0;
+  std::copy_n(this->Mapper->CroppingRegionPlanes, 6, options.crop_bounds);
+  return true;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+{
+  options.mode = static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to isosurface alike
+  std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+  vtkContourValues* contours = options.mode == STRATUS_TETRA_ISOSURFACE ? property->GetIsoSurfaceValues() : nullptr;
+  const int count = contours ? contours->GetNumberOfContours() : 0;
+  if (count > STRATUS_TETRA_CONTOURS_MAX) {
+    error = std::to_string(count) + " isosurface values are not supported, at most " + std::to_string(STRATUS_TETRA_CONTOURS_MAX) + " are";
+    return false;
+  }
+  options.contour_count = count;
+  for (int n = 0; n < count; ++n) {
+    options.contours[n] = contours->GetValue(n);
+  }
+  return true;
+}
+
+// Finds the grid of an input that is up to date. No grid: the input is a composite data set without cells.
+bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string& error)
+{
+  vtkStratusTetrahedraMapper* mapper = this->Mapper;
+  const auto find = [mapper](vtkDataSet* grid, int& cells) {
+    return vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
+  };
+  vtkDataObject* input = mapper->GetDataObjectInput();
+  drawn = { nullptr, nullptr, false };
+  if (vtkUnstructuredGrid::SafeDownCast(input) || vtkStructuredGrid::SafeDownCast(input)) {
+    drawn.Grid = vtkDataSet::SafeDownCast(input);
+    if (drawn.Grid->GetNumberOfCells() == 0 || drawn.Grid->GetNumberOfPoints() == 0) {
+      drawn.Grid = nullptr;
+      return true;
+    }
+    int cells = 0;
+    drawn.Scalars = find(drawn.Grid, cells);
+    drawn.Cells = cells == 1;
+    if (!drawn.Scalars || cells > 1) {
+      error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
+    }
+    return error.empty();
+  }
+  if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
+    const bool taken = this->Blocks.Set(whole, find, error);
+    drawn = { this->Blocks.GetGrid(), this->Blocks.GetScalars(), this->Blocks.OfCells() };
+    return taken;
+  }
+  error = (input ? std::string("the input is a ") + input->GetClassName() : std::string("there is no input")) +
+    ", a vtkUnstructuredGrid, a vtkStructuredGrid or a composite data set of such is needed";
+  return false;
+}
+
+const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
+{
+  std::string error;
+  vtkDataObject* input = this->Mapper->GetDataObjectInput();
+  if (auto* grid = vtkStructuredGrid::SafeDownCast(input)) {
+    return this->Mesh.SetGeometry(grid, error) ? this->Mesh.GetBounds() : nullptr;
+  }
+  if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
+    Drawn drawn;
+    vtkMath::UninitializeBounds(this->Box);
+    if (this->FindDrawn(drawn, error) && drawn.Grid) {
+      drawn.Grid->GetBounds(this->Box);
+    } else {
+      whole->GetBounds(this->Box);
+    }
+    return this->Box;
+  }
+  return nullptr;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
+{
+  Drawn drawn;
+  if (this->Mapper->GetNumberOfInputConnections(0) > 0) {
+    this->Mapper->GetInputAlgorithm()->Update();
+  }
+  if (!this->FindDrawn(drawn, error)) {
+    return false;
+  }
+  empty = !drawn.Grid;
   if (empty) {
     return true;
   }
-  int cells = 0;
-  vtkDataArray* array =
-    vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
-  if (!array || cells > 1) {
-    error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
-    return false;
+  const bool blocks = vtkDataObjectTree::SafeDownCast(this->Mapper->GetDataObjectInput()) != nullptr;
+  const std::string left = blocks ? this->Blocks.TellLeftOut() : std::string();
+  if (!left.empty() && left != this->LastLeftOut) { // told once, not with every picture
+    vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
-  return this->Mesh.Set(grid, array, cells == 1, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
+  this->LastLeftOut = left;
+  return this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
@@ -100,7 +198,8 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
 
 // ---------------------------------------------------------------- a picture
 
-bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error)
+bool vtkStratusTetrahedraMapper::Internals::Cast(
+  vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error)
 {
   const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
   this->Rgba.resize(4 * pixels);
@@ -115,8 +214,10 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(vtkRenderer* renderer, const fl
   options.termination = this->Mapper->Termination;
   options.tolerance = this->Mapper->ImageErrorTolerance;
   options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
-  options.mode = this->Mapper->BlendMode == MAXIMUM_INTENSITY_BLEND ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
   options.leaves = this->Mesh.GetLeaves();
+  if (!this->SetMode(property, options, error) || !this->SetClipPlanes(options, error)) {
+    return false;
+  }
   this->Renderer = renderer;
   const auto draw = [&] {
     return stratus_tetra_caster_render(
@@ -162,7 +263,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   }
   const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp*) { return false; });
   const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
-  if (!this->Cast(renderer, opaqueDepth, error)) {
+  if (!this->Cast(renderer, prop->GetProperty(), opaqueDepth, error)) {
     return false;
   }
   this->HasPicture = true;

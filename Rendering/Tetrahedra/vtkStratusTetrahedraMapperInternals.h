@@ -3,6 +3,7 @@
 #ifndef vtkStratusTetrahedraMapperInternals_h
 #define vtkStratusTetrahedraMapperInternals_h
 
+#include "vtkStratusBlocks.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusMeshView.h"
@@ -17,6 +18,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataSet;
 class vtkVolumeProperty;
 
 class VTK_STRATUS_PRIVATE vtkStratusTetrahedraMapper::Internals
@@ -28,6 +30,8 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
+  // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
+  const double* FindBounds();
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const { return this->Transfer.GetBuilds(); }
   vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
@@ -43,14 +47,26 @@ public:
 private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  // What of the input is drawn, and its scalars.
+  struct Drawn {
+    vtkDataSet* Grid;
+    vtkDataArray* Scalars;
+    bool Cells;
+  };
+  bool FindDrawn(Drawn& drawn, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
-  bool Cast(vtkRenderer* renderer, const float* opaqueDepth, std::string& error);
+  bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
+  bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
+  bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
   vtkStratusTransferView Transfer;
   vtkStratusPicture Picture;
   bool HasPicture = false;
+  vtkStratusBlocks Blocks;
+  std::string LastLeftOut; // told already
+  double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth;
   vtkSmartPointer<vtkImageData> LastImage;
 };

@@ -44,7 +44,9 @@
  * The mapper keeps what it builds: a new picture of the same data rebuilds nothing, a new transfer function rebuilds only tables and the
  * structure.
  *
- * @sa vtkStratusHybridTreeFilter vtkStratusDistanceMapFilter vtkSmartVolumeMapper
+ * Several volumes that overlap are mixed along the rays by vtkStratusMultiVolume.
+ *
+ * @sa vtkStratusMultiVolume vtkStratusHybridTreeFilter vtkStratusDistanceMapFilter vtkSmartVolumeMapper
  */
 #ifndef vtkStratusVolumeMapper_h
 #define vtkStratusVolumeMapper_h
@@ -597,6 +599,7 @@ private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;
   void operator=(const vtkStratusVolumeMapper&) = delete;
 
+  friend class vtkStratusMultiVolume; // draws what the mappers of its volumes describe
   class Internals;
   std::unique_ptr<Internals> Internal;
 };

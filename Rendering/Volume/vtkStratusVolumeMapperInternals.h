@@ -18,8 +18,6 @@
 #include <string>
 #include <vector>
 
-class vtkHardwareSelector;
-
 class VTK_STRATUS_PRIVATE vtkStratusVolumeMapper::Internals
 {
 public:
@@ -31,6 +29,8 @@ public:
 
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
+  // Checks everything that is drawn but the camera, and sets Image, Functions and the options by it. Needs no context.
+  bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
@@ -87,14 +87,12 @@ private:
   void LearnTime(const Coarseness& coarseness);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
   vtkStratusPicture::Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
-  vtkStratusDisplay::Pixels ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others) const;
-  void ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
-  std::vector<float> Rgba, Depth, Selected;
+  std::vector<float> Rgba, Depth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given

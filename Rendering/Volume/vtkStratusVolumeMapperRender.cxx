@@ -2,10 +2,9 @@
 // Draws one picture of vtkStratusVolumeMapper: chooses its coarseness, reads depths, casts rays and displays the result.
 #include "vtkStratusVolumeMapperInternals.h"
 
-#include "vtkHardwareSelector.h"
+#include "vtkStratusMultiVolume.h"
+
 #include "vtkImageData.h"
-#include "vtkOpenGLFramebufferObject.h"
-#include "vtkOpenGLRenderWindow.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -83,47 +82,13 @@ vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRende
 {
   return this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
+    if (vtkStratusMultiVolume::SafeDownCast(other)) {
+      return true;
+    }
     // Other volumes of this class end no rays, except those that write depth.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
     return mapper && mapper->RenderMode == COMPOSITE_MODE;
   });
-}
-
-// Chooses how the picture is displayed. Bytes are precise enough on a black background, because no blend rounds after them, and in a window
-// with multisampling, whose frame buffer rounds to bytes before it blends. Render() fills in the rest.
-vtkStratusDisplay::Pixels vtkStratusVolumeMapper::Internals::ChoosePixels(
-  vtkRenderer* renderer, const vtkStratusPicture::Others& others) const
-{
-  vtkStratusDisplay::Pixels pixels;
-  pixels.Scale = 1.0f / this->Mapper->FinalColorWindow;
-  pixels.Bias = 0.5f - this->Mapper->FinalColorLevel * pixels.Scale;
-  const double* background = renderer->GetBackground();
-  const bool onBlack = !others.Geometry && !renderer->GetGradientBackground() && !renderer->GetTexturedBackground() &&
-    background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
-  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  const bool blends = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0 && !renderer->GetPass();
-  if ((onBlack || blends) && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
-    pixels.Bytes = this->Bytes.data();
-  }
-  pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;
-  return pixels;
-}
-
-// Prepares a picture for hardware picking, which reads the window: the prop's selection colour where the volume shows anything.
-void vtkStratusVolumeMapper::Internals::ChooseSelected(vtkHardwareSelector* selector, vtkStratusDisplay::Pixels& pixels)
-{
-  float color[3];
-  selector->BeginRenderProp();
-  selector->GetPropColorValue(color);
-  this->Selected.resize(this->Rgba.size());
-  for (size_t at = 0; at < this->Rgba.size(); at += 4) {
-    const float seen = this->Rgba[at + 3] > 0.0f ? 1.0f : 0.0f;
-    const float shown[4] = { seen * color[0], seen * color[1], seen * color[2], seen };
-    std::copy_n(shown, 4, &this->Selected[at]);
-  }
-  pixels.Rgba = this->Selected.data();
-  pixels.Scale = 1.0f;
-  pixels.Bias = 0.0f;
 }
 
 bool vtkStratusVolumeMapper::Internals::Cast(
@@ -152,6 +117,14 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   return status == STRATUS_OK;
 }
 
+bool vtkStratusVolumeMapper::Internals::Describe(
+  vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error)
+{
+  vtkVolumeProperty* property = prop->GetProperty();
+  return this->CheckMapper(error) && this->CheckScene(prop, error) && this->CheckProperty(property, error) &&
+    this->PrepareInput(prop, error) && this->SetOptions(property, options, error) && this->SetShading(renderer, property, options, error);
+}
+
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
   if (!this->Display.Begin(renderer, prop, this->Mapper, this->LastError, error)) {
@@ -160,10 +133,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->HasPicture = false; // a refused picture leaves no image
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
-  vtkVolumeProperty* property = prop->GetProperty();
-  if (!this->CheckMapper(error) || !this->CheckScene(prop, error) || !this->CheckProperty(property, error) ||
-    !this->PrepareInput(prop, error) || !this->SetOptions(property, options, error) ||
-    !this->SetShading(renderer, property, options, error) || !this->PrepareContext(error)) {
+  if (!this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
     return false;
   }
   // Rendering checks the volume, too, but the picture's rectangle already relies on it.
@@ -195,7 +165,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
-  vtkStratusDisplay::Pixels pixels = this->ChoosePixels(renderer, others);
+  vtkStratusDisplay::Pixels pixels =
+    vtkStratusDisplay::ChoosePixels(renderer, others, this->Mapper->FinalColorWindow, this->Mapper->FinalColorLevel, this->Bytes);
   if (!this->Cast(renderer, options, opaqueDepth, pixels.Bytes != nullptr, error)) {
     return false;
   }
@@ -207,16 +178,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   const double cast = Now();
   pixels.Rgba = this->Rgba.data();
   std::copy_n(this->Report.window, 4, pixels.Window);
-  vtkHardwareSelector* selector = renderer->GetSelector();
-  if (selector) {
-    this->ChooseSelected(selector, pixels);
-  }
   pixels.Depth = &this->Depth;
-  pixels.WritesDepth = this->IsFirstHit() || selector;
+  pixels.WritesDepth = this->IsFirstHit();
   const bool drawn = this->Display.Draw(renderer, this->Picture, pixels, error);
-  if (selector) {
-    selector->EndRenderProp();
-  }
   if (drawn) {
     this->DrawMilliseconds = Now() - cast + read - start;
   }

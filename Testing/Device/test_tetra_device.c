@@ -67,6 +67,18 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     }
     c->camera.near_k = 0.3;
   }
+  if (seed % 4 == 1) { /* cut by planes and a box */
+    const double plane[4] = { 0.3, -0.5, 0.8, -0.2 * edge }, bounds[6] = { 0.3, 0.9 * edge, -INFINITY, 0.8 * edge, 0.2, INFINITY };
+    memcpy(c->options.clip_planes[0], plane, sizeof plane);
+    memcpy(c->options.crop_bounds, bounds, sizeof bounds);
+    c->options.clip_plane_count = c->options.crop = 1;
+  }
+  if (seed % 3 == 2 && c->options.mode == STRATUS_TETRA_COMPOSITE && tetra_method == STRATUS_TETRA_METHOD_MARCH) {
+    c->options.mode = (stratus_tetra_mode)(STRATUS_TETRA_MINIMUM + seed / 3 % (c->mesh.cell_values ? 3 : 4));
+    c->options.contour_count = 2;
+    c->options.contours[0] = 0.6;
+    c->options.contours[1] = 0.4;
+  }
   if (seed % 7 == 3) { /* deep segments, in many pieces */
     c->transfer.unit_distance = 0.02;
   }
@@ -87,6 +99,10 @@ static void device_and_host_draw_the_same(void** state)
     make_case(host, &c, seed, opaque);
     tetra_draw(host, &c, &theirs);
     assert_true(theirs.report.segments > 0);
+    tetra_draw(device, &c, &ours);
+    assert_same();
+    tetra_as_lattice(&c, edge);
+    tetra_draw(host, &c, &theirs);
     tetra_draw(device, &c, &ours);
     assert_same();
     tetra_destroy(&c);

@@ -291,6 +291,16 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &blank, NULL));
   IS_SILENT(stratus_ray_caster_render(c, v, t, &scene->camera, &options, &image, NULL)); /* labels without a mask */
   ACCEPTS(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &image, NULL));
+  const stratus_ray_cast_input several[2] = { { .caster = c, .volume = v, .transfer = t }, { .volume = v, .transfer = t } };
+  const stratus_ray_cast_input no_volume = { .caster = c, .transfer = t }, no_transfer = { .caster = c, .volume = v };
+  IS_SILENT(stratus_ray_caster_render_several(NULL, 1, &scene->camera, &image, NULL));
+  IS_SILENT(stratus_ray_caster_render_several(several + 1, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_several(several, 2, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_several(&no_volume, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_several(&no_transfer, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_several(several, 1, NULL, &image, NULL));
+  REFUSES(stratus_ray_caster_render_several(several, 1, &scene->camera, NULL, NULL));
+  ACCEPTS(stratus_ray_caster_render_several(several, 1, &scene->camera, &image, NULL));
   IS_SILENT(stratus_ray_caster_offer_tree(NULL, rgba, sizeof rgba));
   ACCEPTS(stratus_ray_caster_offer_tree(c, NULL, 8));
   stratus_ray_caster_destroy(c);

@@ -236,7 +236,8 @@ void EmptyAndRefused()
     CHECK(filter->GetOutput()->GetNumberOfCells() == 0, "type %d: cells in the output", type);
   };
   refuses(VTK_TRIANGLE, 3, ids, nullptr);
-  refuses(VTK_LAGRANGE_TETRAHEDRON, 4, ids, "(71)");
+  refuses(VTK_LAGRANGE_PYRAMID, 4, ids, "(74)");
+  refuses(VTK_LAGRANGE_TETRAHEDRON, 5, ids, "of 5 points, no cell of an order");
   refuses(VTK_HEXAHEDRON, 4, ids, "of 4 points, it must have 8");
   refuses(VTK_TETRA, 3, ids, "of 3 points, it must have 4");
   refuses(VTK_PYRAMID, 5, wild, "names point 4, outside 0..3");

@@ -158,9 +158,11 @@ void TestRefusals()
   scene.Volume->GetProperty()->ShadeOn();
   refuses("shading");
   scene.Volume->GetProperty()->ShadeOff();
-  vtkNew<vtkPlane> plane;
-  scene.Tetrahedra->AddClippingPlane(plane);
-  refuses("clipping planes");
+  for (int p = 0; p < 7; ++p) {
+    vtkNew<vtkPlane> plane;
+    scene.Tetrahedra->AddClippingPlane(plane);
+  }
+  refuses("7 clipping planes");
   scene.Tetrahedra->RemoveAllClippingPlanes();
   vtkNew<vtkFloatArray> flags;
   vtkNew<vtkUnsignedCharArray> few;
@@ -174,9 +176,9 @@ void TestRefusals()
     refuses(ghosts == flags ? "float, it must have one unsigned char for each" : "'vtkGhostType' has 3 tuples");
     scene.Grid->GetPointData()->RemoveArray("vtkGhostType");
   }
-  scene.Grid->InsertNextCell(VTK_LAGRANGE_TETRAHEDRON, 4, scene.Grid->GetCell(0)->GetPointIds()->GetPointer(0));
+  scene.Grid->InsertNextCell(VTK_LAGRANGE_PYRAMID, 4, scene.Grid->GetCell(0)->GetPointIds()->GetPointer(0));
   scene.Grid->Modified();
-  refuses("(71)");
+  refuses("(74)");
   vtkNew<vtkUnstructuredGrid> empty;
   empty->Initialize(); // it has no array of cells then
   scene.Tetrahedra->SetInputData(empty);

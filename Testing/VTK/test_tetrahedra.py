@@ -145,7 +145,7 @@ mapper.SetBlendModeToMaximumIntensity()
 largest = picture()[height // 2]
 value = ((column(3.5) + 0.5 - width / 2) * 6 / height + 2) / n
 check(abs(largest[column(3.5)] - 0.5 * value * numpy.array([value, 0, 1 - value, 1])).max() < 1e-4, "the maximum, at the opacity of one unit")
-mapper.SetBlendMode(2)
+mapper.SetBlendMode(6)
 check(picture() is None and len(errors) == 1, "another blend mode is refused by one error")
 mapper.SetBlendModeToComposite()
 check((picture() == whole).all() and len(errors) == 1, "composite again")

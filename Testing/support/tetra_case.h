@@ -131,6 +131,14 @@ static inline void tetra_copy(tetra_case* c, int copies, double apart)
   c->mesh.cell_count = copies * cells;
 }
 
+/* Turns a mesh of tetra_create() into a lattice of its n^3 boxes, whole ones, which draws the same cells. Its reference has no list. */
+static inline void tetra_as_lattice(tetra_case* c, int n)
+{
+  c->mesh.lattice[0] = c->mesh.lattice[1] = c->mesh.lattice[2] = n + 1;
+  c->mesh.vertices = NULL;
+  c->mesh.cell_count = n * n * n;
+}
+
 static inline void tetra_destroy(tetra_case* c)
 {
   free(c->points);
@@ -337,6 +345,116 @@ static inline bool tetra_passes(const double ball[4], const double origin[3], co
   return far - forward * forward / square > 1.01 * ball[3] + 1e-9 * far;
 }
 
+/* Cuts from..to of a ray at the plane with n (origin + t along) + d >= 0. */
+static inline void tetra_cut(const double n[3], double d, const double origin[3], const double along[3], double* from, double* to)
+{
+  const double start = n[0] * origin[0] + n[1] * origin[1] + n[2] * origin[2] + d;
+  const double rise = n[0] * along[0] + n[1] * along[1] + n[2] * along[2];
+  *from = rise > 0.0 ? fmax(*from, -start / rise) : *from;
+  *to = rise < 0.0 ? fmin(*to, -start / rise) : *to;
+  *to = rise == 0.0 && start < 0.0 ? -INFINITY : *to;
+}
+
+/* Cuts a ray at clip planes and at the crop's box, whose sides are parallel to two axes of the mesh in the world. */
+static inline void tetra_cut_ray(const tetra_case* c, const double origin[3], const double along[3], double* from, double* to)
+{
+  const double* m = c->mesh.matrix;
+  const double axis[3][3] = { { m[0], m[4], m[8] }, { m[1], m[5], m[9] }, { m[2], m[6], m[10] } };
+  for (int p = 0; p < c->options.clip_plane_count; ++p) {
+    tetra_cut(c->options.clip_planes[p], c->options.clip_planes[p][3], origin, along, from, to);
+  }
+  for (int side = 0; c->options.crop && side < 6; ++side) {
+    const double *u = axis[(side / 2 + 1) % 3], *v = axis[(side / 2 + 2) % 3], *w = axis[side / 2], bound = c->options.crop_bounds[side];
+    double normal[3], across = 0.0, offset = 0.0, n[3];
+    for (int a = 0; a < 3; ++a) {
+      normal[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+      across += normal[a] * w[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      n[a] = (side & 1 ? -1.0 : 1.0) * normal[a] / across;
+      offset += n[a] * m[4 * a + 3];
+    }
+    tetra_cut(n, -offset - (side & 1 ? -1.0 : 1.0) * bound, origin, along, from, to);
+  }
+}
+
+/* The least and greatest value of cells that show. */
+static inline void tetra_range(const tetra_case* c, double range[2])
+{
+  range[0] = INFINITY;
+  range[1] = -INFINITY;
+  for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
+    double lo = INFINITY, hi = -INFINITY, sum = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      const double value = (double)c->values[c->mesh.cell_values ? cell : c->mesh.vertices[4 * cell + i]];
+      lo = fmin(lo, value);
+      hi = fmax(hi, value);
+      sum += value;
+    }
+    if (isfinite(sum) && !(c->mesh.hidden && c->mesh.hidden[cell])) {
+      range[0] = fmin(range[0], lo);
+      range[1] = fmax(range[1], hi);
+    }
+  }
+}
+
+/* The mean or the sum of opacity times value along the stretches of a ray. */
+static inline void tetra_sum(
+  const tetra_case* c, const tetra_stretch* met, size_t count, double length, const double range[2], double rgba[4])
+{
+  enum { STEPS = 200 };
+  const bool mean = c->options.mode == STRATUS_TETRA_AVERAGE;
+  double sum = 0.0, counted = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    const tetra_stretch* s = met + i;
+    double begin = 0.0, end = 1.0;
+    if (mean) { /* where values lie in the range */
+      const double rise = s->last - s->first, low = c->options.average_range[0], high = c->options.average_range[1];
+      const double a = (low - s->first) / rise, b = (high - s->first) / rise;
+      const bool level = rise == 0.0, counts = s->first >= low && s->first <= high;
+      begin = level ? 0.0 : fmax(begin, fmin(a, b));
+      end = level ? (double)counts : fmin(end, fmax(a, b));
+    }
+    for (int step = 0; step < STEPS && begin < end; ++step) {
+      const double t = begin + (step + 0.5) / STEPS * (end - begin), x = s->first + t * (s->last - s->first);
+      const double part = (end - begin) * (s->to - s->from) * length / STEPS;
+      const double a = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
+      sum += range[1] > range[0] ? a * (x - range[0]) / (range[1] - range[0]) * part : 0.0;
+      counted += part;
+    }
+  }
+  if (counted > 0.0) {
+    rgba[0] = rgba[1] = rgba[2] = fmin(sum / (mean ? counted : c->transfer.unit_distance), 1.0);
+    rgba[3] = 1.0;
+  }
+}
+
+/* The surfaces that a stretch of a ray passes. */
+static inline void tetra_contours(const tetra_case* c, const tetra_stretch* s, double length, double rgba[4], double* depth)
+{
+  double done = -1.0;
+  for (;;) { /* the next along the stretch */
+    double next = 2.0, value = 0.0;
+    for (int n = 0; n < c->options.contour_count; ++n) {
+      const double contour = c->options.contours[n], at = (contour - s->first) / (s->last - s->first);
+      if ((s->first < contour) != (s->last < contour) && at > done && at < next) {
+        next = at;
+        value = contour;
+      }
+    }
+    if (next > 1.0) {
+      return;
+    }
+    const double a = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, value);
+    for (size_t k = 0; k < 3; ++k) {
+      rgba[k] += (1.0 - rgba[3]) * a * linear_between(c->transfer.color, c->transfer.color_count, 4, k + 1, value);
+    }
+    rgba[3] += (1.0 - rgba[3]) * a;
+    *depth = a > 0.0 && isinf(*depth) ? (s->from + next * (s->to - s->from)) * length : *depth;
+    done = next;
+  }
+}
+
 /* Draws the reference. rgba: 4*TETRA_PIXELS; depth: TETRA_PIXELS or NULL. */
 static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
 {
@@ -344,11 +462,13 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
   double* balls = malloc(((size_t)c->mesh.cell_count + 1) * 4 * sizeof *balls);
   assert_non_null(met);
   assert_non_null(balls);
+  double range[2];
   tetra_balls(c, balls);
+  tetra_range(c, range);
   for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
     const double u = (2.0 * (pixel % TETRA_WIDTH) + 1.0) / TETRA_WIDTH - 1.0, v = (2.0 * (pixel / TETRA_WIDTH) + 1.0) / TETRA_HEIGHT - 1.0;
     const stratus_camera* k = &c->camera;
-    double origin[3], along[3], to = k->far_k, first = INFINITY, *out = rgba + 4 * pixel;
+    double origin[3], along[3], from = k->near_k, to = k->far_k, first = INFINITY, *out = rgba + 4 * pixel;
     size_t count = 0;
     for (int a = 0; a < 3; ++a) {
       const double side = u * k->right[a] + v * k->up[a];
@@ -359,22 +479,31 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
       const double d = (double)c->opaque_depth[pixel];
       to = k->parallel ? k->near_k + d * (k->far_k - k->near_k) : k->near_k * k->far_k / (k->far_k - d * (k->far_k - k->near_k));
     }
+    tetra_cut_ray(c, origin, along, &from, &to);
     for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
       if (!tetra_passes(balls + 4 * cell, origin, along)) {
-        count += (size_t)tetra_meet(c, cell, origin, along, k->near_k, to, met + count);
+        count += (size_t)tetra_meet(c, cell, origin, along, from, to, met + count);
       }
     }
     qsort(met, count, sizeof *met, tetra_nearer);
     memset(out, 0, 4 * sizeof *out);
     const double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+    const double sign = c->options.mode == STRATUS_TETRA_MINIMUM ? -1.0 : 1.0;
     double largest = -INFINITY;
     for (size_t i = 0; i < count; ++i) {
-      largest = fmax(largest, fmax(met[i].first, met[i].last));
+      largest = fmax(largest, fmax(sign * met[i].first, sign * met[i].last));
+      if (c->options.mode == STRATUS_TETRA_ISOSURFACE) {
+        tetra_contours(c, met + i, length, out, &first);
+      }
       if (c->options.mode == STRATUS_TETRA_COMPOSITE) {
         tetra_integrate(c, met + i, length, out, &first);
       }
     }
-    if (c->options.mode == STRATUS_TETRA_MAXIMUM && count > 0) {
+    if (c->options.mode == STRATUS_TETRA_AVERAGE || c->options.mode == STRATUS_TETRA_ADDITIVE) {
+      tetra_sum(c, met, count, length, range, out);
+    }
+    if ((c->options.mode == STRATUS_TETRA_MAXIMUM || c->options.mode == STRATUS_TETRA_MINIMUM) && count > 0) {
+      largest *= sign;
       out[3] = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, largest);
       for (size_t i = 0; i < 3; ++i) {
         out[i] = out[3] * linear_between(c->transfer.color, c->transfer.color_count, 4, i + 1, largest);

@@ -239,26 +239,9 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 INLINE void RAY_NAME(ray_load)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
-  const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
-  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fz[STRATUS_WIDTH], fw[STRATUS_WIDTH];
   stratus_rays rays;
-  v_store(fx, v_from_int(px));
-  v_store(fy, v_from_int(py));
-  if (a->camera.has_opaque_depth) {
-    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      const int lx = x + (lane & (PACKET_X - 1)), ly = y + (lane >> PACKET_X_LOG2);
-      fz[lane] = lx < a->picture.width && ly < a->picture.height ? opaque_depth[(size_t)ly * (size_t)a->picture.width + (size_t)lx] : 1.0f;
-    }
-  }
-  if (RAY_RARE(RAY_JITTER, a->lattice.jitter)) {
-    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-      fw[lane] = ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->lattice.seed);
-    }
-  }
-  for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
-    ray_setup_part(a, fx + part, fy + part, fz + part, fw + part, part, &rays);
-  }
-  packet_begin(a, &rays, vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height)), k);
+  const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
+  packet_begin(a, &rays, inside, k);
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif

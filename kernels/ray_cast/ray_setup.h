@@ -12,6 +12,7 @@ typedef struct stratus_rays {
   float p[3][STRATUS_WIDTH], d[3][STRATUS_WIDTH], inverse[3][STRATUS_WIDTH];
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
   float first[STRATUS_WIDTH];                                 /* the lattice index of segment 0, for depth */
+  float whole[2][STRATUS_WIDTH];                              /* the sum is that index, exactly, and without jitter */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* the part that this piece owns, in samples */
   float crossing[3][2][STRATUS_WIDTH];                        /* where the ray crosses the planes between crop regions, in samples */
 } stratus_rays;
@@ -130,6 +131,8 @@ INLINE void ray_setup_part(
   r_store(rays->begin + part, r_sub(begin, first));
   r_store(rays->end + part, r_sub(end, first));
   r_store(rays->first + part, RAY_RARE(RAY_JITTER, a->lattice.jitter) ? r_sub(first, shift) : first);
+  r_store(rays->whole[0] + part, first);
+  r_store(rays->whole[1] + part, r_sub(first, r_load(rays->whole[0] + part)));
   for (int side = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && side < 6; ++side) {
     const int axis = side / 2;
     const real crossing = r_mul(r_sub(r_of(a->crop.plane[axis][side % 2]), origin[axis]), inverse[axis]);

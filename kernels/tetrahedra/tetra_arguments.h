@@ -20,6 +20,13 @@
  * rows of pixels that it may cover (first | last << 16); 1 if those are not known. */
 #define TETRA_CELL 8
 #define TETRA_FACE 8
+/* What a ray makes of its cells. */
+#define TETRA_LIGHT 0    /* light behind light */
+#define TETRA_EXTREMES 1 /* the largest or smallest value */
+#define TETRA_ADD 2      /* the mean or the sum of values */
+#define TETRA_SURFACES 3 /* surfaces of contour values, light behind light */
+#define TETRA_PLANES 12  /* of clip planes and the sides of a box */
+#define TETRA_CONTOURS 16
 
 typedef struct stratus_tetra_arguments {
   stratus_picture_arguments picture;
@@ -35,9 +42,16 @@ typedef struct stratus_tetra_arguments {
   float per_z, per_frame; /* world lengths along `forward` of a unit of z, and of the middle's c */
   int columns;            /* of tiles */
   int cell_values;
-  int maximum;
-  int steps_most; /* the most cells that a ray can pass from one border face to the next */
-  int has_ends;   /* 1: rays end at opaque geometry, each pixel at a depth of its own */
+  int lattice; /* 1: cells are those of a lattice, whose neighbours follow from the names of their points */
+  int mode;
+  float sign; /* extremes: 1, or -1 for the smallest value */
+  float grey; /* sums: what the sum is multiplied by; 0: it is divided by the length over which values count */
+  int contour_count;
+  float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
+  int plane_count;
+  float plane[TETRA_PLANES][6]; /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
+  int steps_most;               /* the most cells that a ray can pass from one border face to the next */
+  int has_ends;                 /* 1: rays end at opaque geometry, each pixel at a depth of its own */
 } stratus_tetra_arguments;
 
 #endif

@@ -9,12 +9,13 @@
 #ifndef STRATUS_TETRA_MARCH_H
 #define STRATUS_TETRA_MARCH_H
 
-#include "tetra_shade.h"
+#include "tetra_modes.h"
 
 /* The mesh and the sums, which all rays read. */
 typedef struct stratus_tetra_scene {
-  GLOBAL const int* cells; /* eight ints a cell: for each of its points, lowest name first, the next cell behind the opposite face, and that
-                              cell's fourth point */
+  /* eight ints a cell: for each of its points, lowest name first, the next cell behind the opposite face, and that cell's fourth point. Of
+   * a lattice: a bit for each point, whether the hexahedron whose first corner it is shows. */
+  GLOBAL const int* cells;
   GLOBAL const float* points; /* x, y, z and value of each */
   GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
   GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
@@ -95,6 +96,28 @@ INLINE void tetra_turn(stratus_tetra_ray* r, const vmask mask[3], const vfloat d
   }
 }
 
+/* The next cell of a lattice, next[0], and its fourth point, next[1]. The points of a tetrahedron, in rising order, go from a hexahedron's
+ * first corner to its last along three edges. In the tetrahedron behind a face two of these edges have changed places, or the first has
+ * become the last, or the last the first: its fourth point is the sum of those before and after the dropped one, in a ring, less that. Its
+ * lowest point names its hexahedron. */
+INLINE void tetra_lattice_next(const stratus_tetra_scene* scene, const stratus_tetra_ray* r, vint dropped, vmask live, vint next[2])
+{
+  const vint low = vi_min(r->name[0], r->name[1]), high = vi_max(r->name[0], r->name[1]);
+  const vint other_low = vi_min(r->name[2], r->fourth), other_high = vi_max(r->name[2], r->fourth);
+  const vint middle = vi_max(low, other_low), other_middle = vi_min(high, other_high);
+  const vint first = vi_min(low, other_low), last = vi_max(high, other_high);
+  const vint second = vi_min(middle, other_middle), third = vi_max(middle, other_middle);
+  const vmask is_first = vi_lt(dropped, second), is_last = vi_lt(third, dropped);
+  const vint opposite = vi_select(is_first, third, vi_select(vi_lt(dropped, third), last, vi_select(is_last, second, first)));
+  const vint fourth = (first + second + third + last) - (dropped + dropped + opposite);
+  const vint cell = vi_select(is_first, second, vi_select(is_last, fourth, first));
+  const vmask inside = live & vi_ge(cell, vi_set(0));
+  const vint at = cell >> vi_set(5), bits = v_gather_ints(scene->cells, at, inside) >> (cell - (at << vi_set(5)));
+  const vmask shown = m_andnot(inside, vi_zero(bits - ((bits >> vi_set(1)) << vi_set(1))));
+  next[0] = vi_select(shown, cell << vi_set(3), vi_set(-1));
+  next[1] = fourth;
+}
+
 /* Moves the rays through one cell to its next face. */
 INLINE stratus_tetra_passage tetra_pass(
   CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r, vmask live)
@@ -122,12 +145,17 @@ INLINE stratus_tetra_passage tetra_pass(
   stratus_tetra_passage passage;
   passage.seen = drop[0] | drop[1] | drop[2];
   const vint dropped = vi_select(drop[0], r->name[0], vi_select(drop[1], r->name[1], r->name[2]));
-  const vint two = vi_set(2), none = vi_set(0);
-  vint at = r->cell + vi_select(vi_lt(r->fourth, dropped), two, none), next[2];
-  for (int i = 0; i < 3; ++i) {
-    at = at + vi_select(vi_lt(r->name[i], dropped), two, none);
+  vint next[2];
+  if (a->lattice) {
+    tetra_lattice_next(scene, r, dropped, live, next);
+  } else {
+    const vint two = vi_set(2), none = vi_set(0);
+    vint at = r->cell + vi_select(vi_lt(r->fourth, dropped), two, none);
+    for (int i = 0; i < 3; ++i) {
+      at = at + vi_select(vi_lt(r->name[i], dropped), two, none);
+    }
+    gather_pair(scene->cells, at, live, next);
   }
-  gather_pair(scene->cells, at, live, next);
   passage.from = r->at;
   passage.first = r->value;
   if (a->cell_values) {
@@ -142,12 +170,14 @@ INLINE stratus_tetra_passage tetra_pass(
   r->value = passage.last;
   r->fourth = next[1];
   r->cell = vi_select(passage.seen, next[0], vi_select(live, vi_set(-2), r->cell));
-  prefetch_ints(scene->cells, r->cell);
+  if (!a->lattice) {
+    prefetch_ints(scene->cells, r->cell);
+  }
   return passage;
 }
 
-/* Keeps the largest value so far, and where it is. */
-INLINE void tetra_maximum(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
+/* Keeps the largest value so far, and where it is. Minima are maxima of the negative values. */
+INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
 {
   const vfloat larger = v_max(first, last);
   const vmask more = mask & v_lt(light->most, larger);
@@ -169,8 +199,11 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     last = v_select(cut, v_fma(slope, end - passage->from, start), last);
   }
   const vfloat near = v_fma(begin, r->length, r->offset);
-  if (a->maximum) {
-    tetra_maximum(light, mask, first, last, near, v_fma(end, r->length, r->offset));
+  if (a->mode == TETRA_EXTREMES) {
+    const vfloat sign = v_set(a->sign);
+    tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
+  } else if (a->mode == TETRA_SURFACES) {
+    tetra_surfaces(a, light, mask, first, last, near, (end - begin) * r->length);
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);
@@ -182,7 +215,11 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       from = tetra_place_select(cut, &cut_from, &from);
       to = tetra_place_select(cut, &cut_to, &to);
     }
-    tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
+    if (a->mode == TETRA_ADD) {
+      tetra_add(a, scene->sums, light, mask, &from, &to, (end - begin) * r->length, near);
+    } else {
+      tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
+    }
   }
   return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));
 }
@@ -199,7 +236,7 @@ INLINE void tetra_enter(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
   tetra_cross(r->edge, r->z, r->s, &at, &value);
   r->at = v_select(mask, at, r->at);
   r->value = v_select(mask, value, r->value);
-  if (!a->maximum) {
+  if (a->mode == TETRA_LIGHT || a->mode == TETRA_ADD) {
     const stratus_tetra_place place = tetra_place(a, scene->sums, value, mask);
     r->place = tetra_place_select(mask, &place, &r->place);
   }

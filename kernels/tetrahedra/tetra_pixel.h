@@ -29,6 +29,22 @@ INLINE vfloat v_root(vfloat a)
   return a * r;
 }
 
+/* Cuts what rays see at planes. us, uw, vs, vw: as of tetra_sight(). */
+INLINE void tetra_clip(CONSTANT stratus_tetra_arguments* a, vfloat us, vfloat uw, vfloat vs, vfloat vw, stratus_tetra_sight* sight)
+{
+  const vfloat zero = v_set(0.0f), u = a->shear > 0.0f ? us : uw, v = a->shear > 0.0f ? vs : vw;
+  for (int p = 0; p < a->plane_count; ++p) {
+    CONSTANT float* c = a->plane[p];
+    const vfloat start = v_fma(u, v_set(c[1]), v_fma(v, v_set(c[2]), v_set(c[0])));
+    const vfloat slope = v_fma(u, v_set(c[4]), v_fma(v, v_set(c[5]), v_set(c[3])));
+    const vmask rises = v_lt(zero, slope), falls = v_lt(slope, zero), level = m_andnot(m_andnot(v_le(slope, slope), rises), falls);
+    const vfloat at = v_select(falls, start, zero - start) * v_reciprocal(v_max(v_abs(slope), v_set(1e-30f)));
+    sight->begin = v_select(rises, v_max(sight->begin, at), sight->begin);
+    sight->end = v_select(falls, v_min(sight->end, at), sight->end);
+    sight->end = v_select(level & v_lt(start, zero), v_set(-LARGEST_FLOAT), sight->end);
+  }
+}
+
 /* What the rays of pixels x, y see. us, uw, vs, vw: their parts by column and by row. ends: read only if the arguments say has_ends. */
 INLINE stratus_tetra_sight tetra_sight(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const float* ends, vfloat us, vfloat uw, vfloat vs, vfloat vw, vint x, vint y, vmask mask)
@@ -47,6 +63,7 @@ INLINE stratus_tetra_sight tetra_sight(
   } else {
     sight.end = lean + v_set(a->end);
   }
+  tetra_clip(a, us, uw, vs, vw, &sight);
   return sight;
 }
 

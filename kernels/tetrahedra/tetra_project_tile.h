@@ -96,7 +96,7 @@ INLINE int place_of(int x, int y)
 INLINE tile_pixel empty_pixel(CONSTANT stratus_tetra_arguments* a)
 {
   tile_pixel pixel;
-  pixel.light = FOUR_FLOATS(0.0f, a->maximum ? -LARGEST_FLOAT : 0.0f, 0.0f, 1.0f);
+  pixel.light = FOUR_FLOATS(0.0f, a->mode == TETRA_EXTREMES ? -LARGEST_FLOAT : 0.0f, 0.0f, 1.0f);
   pixel.back = -LARGEST_FLOAT;
   pixel.depth = LARGEST_FLOAT;
   pixel.samples = pixel.wrong = 0;
@@ -144,7 +144,7 @@ INLINE void begin_tile(project_tile* t, const stratus_project_view* view, CONSTA
   t->width = a->picture.width - t->own_x < PROJECT_SIDE ? a->picture.width - t->own_x : PROJECT_SIDE;
   t->height = a->picture.height - t->own_y < PROJECT_SIDE ? a->picture.height - t->own_y : PROJECT_SIDE;
   t->alive = t->width > 0 && t->height > 0 ? t->width * t->height : 0;
-  t->rays_differ = a->has_ends || a->lean[0] < 0.0f || a->lean[0] > 0.0f || a->lean[1] < 0.0f || a->lean[1] > 0.0f;
+  t->rays_differ = a->has_ends || a->lean[0] < 0.0f || a->lean[0] > 0.0f || a->lean[1] < 0.0f || a->lean[1] > 0.0f || a->plane_count > 0;
   t->count = 0;
   t->wrong = 0;
   t->again = 0;
@@ -171,7 +171,7 @@ INLINE void begin_tile(project_tile* t, const stratus_project_view* view, CONSTA
 /* Goes on with a pixel that some pieces have been composited to. */
 INLINE void resume_pixel(project_tile* t, const tile_pixel* pixel)
 {
-  const int opaque = !t->arguments->maximum && ONE_OF(pixel->light, 3) < t->arguments->termination;
+  const int opaque = t->arguments->mode != TETRA_EXTREMES && ONE_OF(pixel->light, 3) < t->arguments->termination;
   t->pixels[0] = *pixel;
   t->open[0] = opaque && t->alive ? pixel->back : t->open[0];
 }
@@ -253,10 +253,10 @@ INLINE void shade_pieces(project_tile* t, int i, layers* out)
     last = v_select(cut, v_fma(slope, end - at, start), last);
   }
   vi_store(out->visible, vi_select(mask, vi_set(1), vi_set(0)));
-  if (a->picture.want_depth || a->maximum) {
+  if (a->picture.want_depth || a->mode == TETRA_EXTREMES) {
     near = v_fma(begin, length, gather_own(t->offset, pixel, mask));
   }
-  if (a->maximum) {
+  if (a->mode == TETRA_EXTREMES) {
     const vfloat beyond = v_fma(end, length, gather_own(t->offset, pixel, mask));
     put_light(out, v_select(v_lt(first, last), beyond, near), v_max(first, last), zero, zero);
     return;
@@ -328,7 +328,7 @@ static void flush(project_tile* t)
     const int count = t->count - i < STRATUS_WIDTH ? t->count - i : STRATUS_WIDTH;
     layers layer;
     shade_pieces(t, i, &layer);
-    if (t->arguments->maximum) {
+    if (t->arguments->mode == TETRA_EXTREMES) {
       take_largest(t, i, count, &layer);
     } else {
       composite_pieces(t, i, count, &layer);
@@ -353,7 +353,7 @@ static void store_tile(project_tile* t, stratus_project_found* found)
         rgba[c] = light[c] < 1.0f ? light[c] : 1.0f; /* rounding may lift sums above 1 */
       }
       rgba[3] = 1.0f - light[3];
-      if (a->maximum) {
+      if (a->mode == TETRA_EXTREMES) {
         int entry[STRATUS_WIDTH];
         vi_store(entry, table_entry(&a->table, t->view->colors, v_set(light[1])));
         depth = p->samples > 0 ? light[0] : LARGEST_FLOAT;

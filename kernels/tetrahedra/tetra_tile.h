@@ -108,8 +108,18 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   v_store(most, k->light.most);
   vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));
   vi_store(segments, k->segments);
-  if (t->arguments->maximum) {
-    vi_store(entry, table_entry(&t->arguments->table, t->view->colors, k->light.most));
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  if (a->mode == TETRA_EXTREMES) {
+    vi_store(entry, table_entry(&a->table, t->view->colors, v_set(a->sign) * k->light.most));
+  }
+  if (a->mode == TETRA_ADD) { /* grey and opaque wherever something was added */
+    const vmask counts = v_lt(v_set(0.0f), k->light.green);
+    const vfloat scale = a->grey > 0.0f ? v_set(a->grey) : v_reciprocal(v_max(k->light.green, v_set(1e-30f)));
+    const vfloat grey = v_select(counts, v_min(k->light.red * scale, one), v_set(0.0f));
+    v_store(channel[0], grey);
+    v_store(channel[1], grey);
+    v_store(channel[2], grey);
+    v_store(channel[3], v_select(counts, one, v_set(0.0f)));
   }
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     float rgba[4];
@@ -118,7 +128,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
     }
     for (int c = 0; c < 4; ++c) {
       rgba[c] = channel[c][lane];
-      if (t->arguments->maximum) {
+      if (a->mode == TETRA_EXTREMES) {
         rgba[c] = most[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
       }
     }

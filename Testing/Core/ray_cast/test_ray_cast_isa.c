@@ -3,7 +3,7 @@
  * samples may differ: a packet looks the structure up once enough of its rays need it. */
 #include "stratus.h"
 
-#include "picture_case.h"
+#include "several_case.h"
 
 #include "volume.h"
 #include "ray_cast_host.h"
@@ -42,6 +42,31 @@ static void every_instruction_set_gives_the_same_bits(void** state)
   stratus_context_destroy(context);
 }
 
+static void every_instruction_set_mixes_several_volumes_alike(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  const int best_isa = stratus_isa_best();
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    several_case m;
+    several_create(context, &m, 2 + (int)(seed % 4), 500 + seed);
+    m.of[1].options.sample_distance = 0.9;
+    m.of[0].options.jitter = seed % 3 == 0;
+    m.of[1].options.shade = seed % 2 == 0;
+    context->isa = best_isa;
+    several_draw(context, &m, &best);
+    assert_true(case_lit(&best) > 100);
+    for (int isa = 0; isa < best_isa; ++isa) {
+      context->isa = isa;
+      several_draw(context, &m, &other);
+      assert_memory_equal(best.rgba, other.rgba, sizeof best.rgba);
+      assert_memory_equal(best.depth, other.depth, sizeof best.depth);
+    }
+    several_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 int test_ray_cast_isa(void)
 {
   if (stratus_isa_best() == 0) {
@@ -49,6 +74,7 @@ int test_ray_cast_isa(void)
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_instruction_set_gives_the_same_bits),
+    cmocka_unit_test(every_instruction_set_mixes_several_volumes_alike),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,14 +28,26 @@ static void assert_same(void)
 static void at_any_number_of_threads_and_instruction_set(void** state)
 {
   (void)state;
-  for (uint32_t seed = 0; seed < 8; ++seed) {
+  for (uint32_t seed = 0; seed < 11; ++seed) {
     tetra_case c;
     tetra_create(&c, 4, 0.2, 0.25, seed);
     stratus_context* context = open_context(1);
-    tetra_camera(context, &c, 4, (int)seed, seed & 1);
+    tetra_camera(context, &c, 4, (int)seed % 8, seed & 1);
     c.options.mode = seed == 5 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
     c.options.termination = seed & 2 ? 0.9 : 1.0;
-    c.mesh.cell_values = seed == 6;
+    c.mesh.cell_values = seed == 6 || seed == 10;
+    if (tetra_method == STRATUS_TETRA_METHOD_MARCH && seed > 6) {
+      c.options.mode = (stratus_tetra_mode)(seed == 10 ? STRATUS_TETRA_AVERAGE : STRATUS_TETRA_MINIMUM + seed - 7);
+      c.options.mode = seed == 9 ? STRATUS_TETRA_ISOSURFACE : c.options.mode;
+      c.options.contour_count = 1;
+      c.options.contours[0] = 0.5;
+      c.options.clip_plane_count = 1;
+      c.options.clip_planes[0][0] = -1.0;
+      c.options.clip_planes[0][3] = 2.3;
+    }
+    if (seed >= 8) {
+      tetra_as_lattice(&c, 4);
+    }
     tetra_draw(context, &c, &one);
     assert_true(one.report.rays > TETRA_PIXELS / 8);
     for (int isa = context->isa - 1; isa >= 0; --isa) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is drawn around a volume on wish: a box with axes, a colour bar, a caption. It needs no display, as the pictures themselves. The
+// box's far edges are behind the whole volume and its near ones before it, so that two layers are right in depth.
+#pragma once
+
+#include "options.h"
+#include "transfer.h"
+
+#include <string>
+#include <vector>
+
+namespace cli {
+
+struct scene_frame {
+  stratus_camera camera;
+  double bounds[6];              // of the data in the world
+  double scale[3] = { 1, 1, 1 }; // world = scale * the data's coordinates
+  std::string length_units;      // of coordinates, "" where unknown
+  std::string title;             // of the values, with their unit
+};
+
+class annotation
+{
+public:
+  explicit annotation(const options& o);
+  bool any() const { return this->Axes || this->Bar || !this->Caption.empty(); }
+  // Puts what was asked for around the picture, premultiplied floats of width x height, bottom row first. `time` replaces {time} in the
+  // caption.
+  void draw(std::vector<float>& rgba, int width, int height, const scene_frame& frame, const transfer& look, const std::string& time) const;
+
+private:
+  class layer;
+  void draw_box(layer& under, layer& over, const scene_frame& frame) const;
+  void draw_axis(layer& over, const scene_frame& frame, int axis, const bool facing[6]) const;
+  void draw_bar(layer& over, const scene_frame& frame, const transfer& look) const;
+
+  bool Axes, Bar;
+  std::string Caption;
+  double Ink; // grey of lines and text, 0..1
+};
+} // namespace cli

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stratus render`: opens a file, chooses how its data are drawn, and draws one step or all. The next step is read while one is drawn.
+#include "render.h"
+
+#include "drawing.h"
+#include "frame.h"
+#include "input.h"
+#include "series.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <future>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace {
+
+using cli::row;
+
+// Reads a step into memory of its own, so that the reader is free for the next one in another thread.
+cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
+{
+  const vtkSmartPointer<vtkDataObject> shared = in.read(step);
+  const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
+  own->DeepCopy(shared);
+  return cli::route(own, o.source, o.array);
+}
+
+// Puts what was asked for around the picture that was drawn.
+void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
+{
+  cli::scene_frame place = drawing.place();
+  if (in) {
+    place.length_units = in->length_units();
+    place.title += in->value_units().empty() || in->value_units() == "1" ? "" : " (" + in->value_units() + ")";
+  }
+  frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
+}
+
+std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
+{
+  return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
+}
+
+// `in` is null for a scene.
+void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
+{
+  const std::string time = in ? in->describe(step) : "";
+  cli::context core(o.device, o.threads);
+  cli::frame frame(o);
+  const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
+  drawing->take(data);
+  drawing->look();
+  cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
+  const stratus_image image = frame.view();
+  drawing->draw(image);
+  annotate(frame, o, *drawing, in, step);
+  std::printf("%s\n", o.source.c_str());
+  if (!time.empty()) {
+    row("time", time);
+  }
+  drawing->tell();
+  if (image.samples) {
+    row("a pixel", frame.describe_samples());
+  }
+  if (o.report) {
+    core.print_build_report();
+  }
+  frame.write(out);
+  row("picture", o.output);
+  drawing->judge();
+}
+
+std::string frame_name(const std::string& pattern, size_t number)
+{
+  char name[4096];
+  std::snprintf(name, sizeof name, pattern.c_str(), static_cast<int>(number)); // parse() has checked that it has one %d
+  return name;
+}
+
+// Takes the one of the first, middle and last step whose values range widest, and looks at it: a field often starts as one value.
+void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& o)
+{
+  const size_t candidates[] = { 0, in.steps() / 2, in.steps() - 1 };
+  size_t best = 0;
+  double widest = -1.0;
+  for (size_t i = 0; i < 3; ++i) {
+    if (i > 0 && candidates[i] == candidates[i - 1]) {
+      continue;
+    }
+    drawing.take(read_apart(in, candidates[i], o));
+    const std::pair<double, double> range = drawing.range();
+    if (range.second - range.first > widest) {
+      widest = range.second - range.first;
+      best = candidates[i];
+    }
+  }
+  drawing.take(read_apart(in, best, o));
+  drawing.look();
+  row("functions", "and camera by " + in.describe(best));
+}
+
+// A bar with the time left on a terminal, else a line for each frame.
+class film_progress
+{
+public:
+  explicit film_progress(size_t all) : All(all), Terminal(isatty(STDERR_FILENO) != 0) {}
+  ~film_progress()
+  {
+    if (this->Terminal) {
+      std::fprintf(stderr, "\r\033[K");
+    }
+  }
+  film_progress(const film_progress&) = delete;
+  film_progress& operator=(const film_progress&) = delete;
+
+  void done(size_t count, const std::string& file, const std::string& time)
+  {
+    const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+    const long left = std::lround(passed / static_cast<double>(count) * static_cast<double>(this->All - count));
+    if (this->Terminal) {
+      const int filled = static_cast<int>(40 * count / this->All);
+      std::fprintf(stderr, "\r\033[K[%s%s] frame %zu of %zu, %ld:%02ld:%02ld left", std::string(static_cast<size_t>(filled), '#').c_str(),
+        std::string(static_cast<size_t>(40 - filled), '.').c_str(), count, this->All, left / 3600, left / 60 % 60, left % 60);
+    } else {
+      row("frame", file + (time.empty() ? "" : ", " + time) + cli::format(", %ld s left", left));
+      std::fflush(stdout);
+    }
+  }
+
+private:
+  size_t All;
+  bool Terminal;
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+};
+
+void render_film(const cli::options& o, cli::series& in)
+{
+  cli::context core(o.device, o.threads);
+  core.quiet();
+  cli::frame frame(o);
+  {
+    cli::output_file first(frame_name(o.frames, 0));
+  } // a path that cannot be written is reported at once
+  std::printf("%s\n", o.source.c_str());
+  cli::routed data = read_apart(in, 0, o);
+  const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
+  look_at_widest(*drawing, in, o);
+  const stratus_image image = frame.view();
+  {
+    film_progress progress(in.steps());
+    for (size_t step = 0; step < in.steps(); ++step) {
+      std::future<cli::routed> next;
+      if (step + 1 < in.steps()) {
+        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o); });
+      }
+      drawing->take(data);
+      drawing->draw(image);
+      annotate(frame, o, *drawing, &in, step);
+      cli::output_file out(frame_name(o.frames, step));
+      frame.write(out);
+      drawing->judge();
+      progress.done(step + 1, frame_name(o.frames, step), in.describe(step));
+      if (next.valid()) {
+        data = next.get();
+      }
+    }
+  }
+  drawing->tell();
+  row("frames", cli::grouped(in.steps()) + ", " + o.frames);
+  struct rusage used;
+  if (getrusage(RUSAGE_SELF, &used) == 0) {
+    row("memory", cli::format("%.1f MiB resident at most", static_cast<double>(used.ru_maxrss) / 1024.0));
+  }
+}
+} // namespace
+
+void cli::render(const options& o)
+{
+  if (is_scene(o.source)) {
+    if (!o.time.empty() || !o.frames.empty()) {
+      throw usage("'" + o.source + "' is a scene, which has no time: leave out " + (o.time.empty() ? "--frames" : "--time"));
+    }
+    render_one(o, routed(), nullptr, 0);
+    return;
+  }
+  series in(o.source, o.array);
+  if (!o.frames.empty()) {
+    render_film(o, in);
+    return;
+  }
+  const size_t step = in.find(o.time);
+  render_one(o, route(in.read(step), o.source, o.array), &in, step);
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "route.h"
+
+#include "support.h"
+
+#include "vtkStratusArrays.h"
+#include "vtkStratusBlocks.h"
+
+#include <vtkCellData.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+
+namespace {
+
+// Coordinates of an axis must increase or decrease all along.
+void check_axis(vtkDataArray* values, char axis, const std::string& path)
+{
+  const vtkIdType n = values ? values->GetNumberOfTuples() : 0;
+  const auto at = [values](vtkIdType i) { return values->GetComponent(i, 0); };
+  for (vtkIdType i = 0; i < n; ++i) {
+    if (!std::isfinite(at(i)) || (i > 1 && !((at(i) - at(i - 1)) * (at(1) - at(0)) > 0.0)) || (i == 1 && at(1) == at(0))) {
+      throw cli::failure("'" + path + "': the coordinates along " + axis +
+        cli::format(" must increase or decrease all along: number %lld is %.9g", static_cast<long long>(i), at(i)) +
+        (i > 0 ? cli::format(", after %.9g", at(i - 1)) : std::string()));
+    }
+  }
+}
+
+void check_axes(vtkRectilinearGrid* grid, const std::string& path)
+{
+  check_axis(grid->GetXCoordinates(), 'x', path);
+  check_axis(grid->GetYCoordinates(), 'y', path);
+  check_axis(grid->GetZCoordinates(), 'z', path);
+}
+
+// Points at the crossings of the axes. They take 24 bytes each.
+vtkSmartPointer<vtkStructuredGrid> structured(vtkRectilinearGrid* axes)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(axes->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < axes->GetNumberOfPoints(); ++i) {
+    points->SetPoint(i, axes->GetPoint(i));
+  }
+  const auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetExtent(axes->GetExtent());
+  grid->SetPoints(points);
+  grid->GetPointData()->ShallowCopy(axes->GetPointData());
+  grid->GetCellData()->ShallowCopy(axes->GetCellData());
+  return grid;
+}
+
+std::string points_of(const int* dimensions, const char* what)
+{
+  return what + cli::format(" of %d x %d x %d points", dimensions[0], dimensions[1], dimensions[2]);
+}
+
+vtkDataArray* first_single(vtkDataSetAttributes* data)
+{
+  vtkDataArray* active = data->GetScalars();
+  for (int i = 0; !active && i < data->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && array->GetNumberOfComponents() == 1 && std::strcmp(array->GetName() ? array->GetName() : "", "vtkGhostType") != 0) {
+      active = array;
+    }
+  }
+  return active;
+}
+
+// Lists the arrays, with the ranges of those of one component.
+std::string names_of(vtkDataSet* data_set)
+{
+  std::string names;
+  for (vtkDataSetAttributes* data :
+    { static_cast<vtkDataSetAttributes*>(data_set->GetPointData()), static_cast<vtkDataSetAttributes*>(data_set->GetCellData()) }) {
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+      names += std::string(names.empty() ? "" : ", ") + (data->GetArrayName(i) ? data->GetArrayName(i) : "(unnamed)");
+      vtkDataArray* array = data->GetArray(i);
+      if (array && array->GetNumberOfComponents() == 1 && array->GetNumberOfTuples() > 0) {
+        double range[2];
+        array->GetFiniteRange(range);
+        names += range[0] <= range[1] ? cli::format(" (%g .. %g)", range[0], range[1]) : " (nothing finite)";
+      }
+    }
+  }
+  return names.empty() ? "none" : names;
+}
+// Joins the parts that have the array. `result` gets the grid and tells of the parts.
+void join(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
+{
+  vtkStratusBlocks blocks;
+  std::string error;
+  vtkDataSet* first = nullptr;
+  std::map<std::string, int> kinds;
+  const auto find = [&](vtkDataSet* part, int& cells) {
+    first = first ? first : part;
+    ++kinds[part->GetClassName()];
+    vtkDataArray* values = nullptr;
+    for (cells = 0; cells < 2 && !values; cells += values ? 0 : 1) {
+      vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(part->GetCellData()) : part->GetPointData();
+      values = array.empty() ? first_single(data) : data->GetArray(array.c_str());
+    }
+    return values;
+  };
+  if (!blocks.Set(whole, find, error)) {
+    throw cli::failure("'" + path + "': " + error + (first ? "; the first part's arrays are: " + names_of(first) : std::string()));
+  }
+  if (!blocks.GetGrid()) {
+    throw cli::failure("'" + path + "' holds no part with a volume");
+  }
+  int parts = 0;
+  for (const auto& kind : kinds) {
+    parts += kind.second;
+    result.kind += cli::format(" %d ", kind.second) + kind.first;
+  }
+  result.kind = std::to_string(parts) + (parts == 1 ? " part:" : " parts:") + result.kind +
+    (blocks.TellLeftOut().empty() ? "" : "; left out: " + blocks.TellLeftOut());
+  result.arrays = names_of(first);
+  result.grid = blocks.GetGrid();
+}
+} // namespace
+
+namespace cli {
+
+routed route(vtkDataObject* data, const std::string& path, const std::string& array)
+{
+  routed result;
+  if (vtkImageData* image = vtkImageData::SafeDownCast(data)) {
+    if (image->GetNumberOfPoints() < 1) {
+      throw failure("'" + path + "' holds an empty image");
+    }
+    result.kind = points_of(image->GetDimensions(), "image");
+    result.image = image;
+  } else if (vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data)) {
+    std::string error;
+    if (!vtkStratusCheckGrid(grid, error)) {
+      throw failure("'" + path + "': " + error);
+    }
+    result.kind = "unstructured grid";
+    result.grid = grid;
+  } else if (vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(data)) {
+    result.kind = points_of(axes->GetDimensions(), "rectilinear grid");
+    check_axes(axes, path);
+    result.grid = structured(axes);
+  } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(data)) {
+    int dimensions[3];
+    curved->GetDimensions(dimensions);
+    result.kind = points_of(dimensions, "curvilinear grid");
+    result.grid = curved;
+  } else if (vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data)) {
+    join(whole, path, array, result);
+  } else {
+    throw failure("'" + path + "' holds " + (data ? data->GetClassName() : "nothing") + ", which has no volume to draw");
+  }
+  return result;
+}
+
+vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells)
+{
+  vtkDataArray* array = nullptr;
+  for (bool cells : { false, true }) {
+    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(data_set->GetCellData()) : data_set->GetPointData();
+    array = name.empty() ? first_single(data) : data->GetArray(name.c_str());
+    if (array) {
+      on_cells = cells;
+      break;
+    }
+  }
+  if (!array) {
+    throw failure((name.empty() ? std::string("no array to draw") : "no array '" + name + "'") + "; the arrays are: " + names_of(data_set));
+  }
+  const std::string label = array->GetName() ? array->GetName() : "(unnamed)";
+  if (array->GetNumberOfComponents() != 1) {
+    throw failure("array '" + label + "' has " + std::to_string(array->GetNumberOfComponents()) + " components; one is drawn");
+  }
+  const vtkIdType expected = on_cells ? data_set->GetNumberOfCells() : data_set->GetNumberOfPoints();
+  if (array->GetNumberOfTuples() != expected) {
+    throw failure("array '" + label + "' has " + std::to_string(array->GetNumberOfTuples()) + " values for " + std::to_string(expected) +
+      (on_cells ? " cells" : " points"));
+  }
+  return array;
+}
+} // namespace cli

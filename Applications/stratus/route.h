@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a file holds, as what the core takes: a regular grid of values, or a mesh.
+#pragma once
+
+#include <vtkDataSet.h>
+#include <vtkImageData.h>
+#include <vtkSmartPointer.h>
+
+#include <string>
+
+class vtkDataArray;
+
+namespace cli {
+
+struct routed {
+  vtkSmartPointer<vtkImageData> image; // for the ray caster,
+  vtkSmartPointer<vtkDataSet> grid;    // or an unstructured or structured one, for the caster of tetrahedra
+  std::string kind;                    // of the file's data, for people
+  std::string arrays;                  // of composite data: what their first part has, since `grid` has the drawn one alone
+};
+
+// The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind. A rectilinear
+// grid becomes a structured one at the same points, composite data one grid, in which parts that meet share their points. `array` is the
+// name of the array that will be drawn, "" for the first.
+routed route(vtkDataObject* data, const std::string& path, const std::string& array);
+
+// Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component. Points come
+// before cells.
+vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells);
+} // namespace cli

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "series.h"
+
+#include "reading.h"
+#include "support.h"
+
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <sstream>
+#include <sys/stat.h>
+#include <utility>
+
+namespace {
+
+// Collects all messages of VTK. Readers also report through objects of their own (parsers, decompressors), whose messages pass here, too.
+class listener : public vtkOutputWindow
+{
+public:
+  static listener* New();
+  vtkTypeMacro(listener, vtkOutputWindow);
+  void DisplayText(const char* text) override { this->Heard += text ? text : ""; }
+  std::string Heard;
+
+protected:
+  listener() = default;
+};
+vtkStandardNewMacro(listener);
+
+// Collects messages while it lives, also from std::cerr, where VTK's MetaIO alone reports that a file was cut short.
+class listening
+{
+public:
+  listening() : Before(vtkOutputWindow::GetInstance()), Stream(std::cerr.rdbuf(this->Text.rdbuf()))
+  {
+    vtkOutputWindow::SetInstance(this->Now);
+  }
+  ~listening()
+  {
+    vtkOutputWindow::SetInstance(this->Before);
+    std::cerr.rdbuf(this->Stream);
+  }
+  listening(const listening&) = delete;
+  listening& operator=(const listening&) = delete;
+  std::string heard() const { return this->Now->Heard + this->Text.str(); }
+
+private:
+  vtkSmartPointer<vtkOutputWindow> Before;
+  vtkNew<listener> Now;
+  std::ostringstream Text;
+  std::streambuf* Stream;
+};
+
+// Extracts the message. VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before it.
+std::string first_message(const std::string& heard)
+{
+  size_t at = heard.find("): ");
+  std::string text = heard.substr(at == std::string::npos ? 0 : at + 3);
+  text = text.substr(0, text.find("\n\n"));
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') {
+    text.pop_back();
+  }
+  return text;
+}
+
+void check_file(const std::string& path)
+{
+  struct stat status;
+  FILE* file = std::fopen(path.c_str(), "rb");
+  const int reason = errno;
+  if (!file) {
+    throw cli::failure("cannot read '" + path + "': " + std::strerror(reason));
+  }
+  const bool folder = fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode);
+  std::fclose(file);
+  if (folder) {
+    throw cli::failure("cannot read '" + path + "': it is a folder");
+  }
+}
+
+// Watches a reader's work, and turns every complaint into a failure.
+class guard
+{
+public:
+  explicit guard(const std::string& path) : Path(path), Watched(path, "VTK") {}
+
+  template <class Work> void run(vtkAlgorithm* reader, const Work& work)
+  {
+    this->Watched.follow(reader);
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      throw cli::failure("cannot read '" + this->Path + "': " + reader->GetClassName() + " wants more memory than there is");
+    } catch (const std::exception& error) {
+      throw cli::failure("cannot read '" + this->Path + "': " + reader->GetClassName() + " failed: " + error.what());
+    }
+    const std::string heard = this->Listener.heard();
+    if (!heard.empty()) {
+      throw cli::failure("cannot read '" + this->Path + "': " + first_message(heard));
+    }
+  }
+
+private:
+  std::string Path;
+  cli::reading Watched;
+  listening Listener;
+};
+} // namespace
+
+namespace cli {
+
+double seconds_of(const std::string& units)
+{
+  const std::string word = units.substr(0, units.find(' '));
+  constexpr struct {
+    const char* name;
+    double seconds;
+  } names[] = { { "s", 1 }, { "sec", 1 }, { "secs", 1 }, { "second", 1 }, { "seconds", 1 }, { "ms", 1e-3 }, { "millisecond", 1e-3 },
+    { "milliseconds", 1e-3 }, { "min", 60 }, { "mins", 60 }, { "minute", 60 }, { "minutes", 60 }, { "h", 3600 }, { "hr", 3600 },
+    { "hrs", 3600 }, { "hour", 3600 }, { "hours", 3600 }, { "d", 86400 }, { "day", 86400 }, { "days", 86400 }, { "week", 604800 },
+    { "weeks", 604800 } };
+  for (const auto& known : names) {
+    if (word == known.name) {
+      return known.seconds;
+    }
+  }
+  return 0.0;
+}
+
+void series::open()
+{
+  const std::string& path = this->Path;
+  guard watch(path);
+  check_file(path);
+  if (is_collection(path)) {
+    this->Parts = read_collection(path);
+    for (const collection_step& step : this->Parts) {
+      this->Times.push_back(step.time);
+    }
+    return;
+  }
+  const file_format found = choose_format(path);
+  if (!found.reader) {
+    throw failure("'" + path + "' is no image file that VTK reads (.vti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
+      "and no grid (.nc .vtr .vts .vtu .vtm .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
+  }
+  this->Units = found.time_units;
+  this->Reader = found.reader;
+  watch.run(this->Reader, [this] {
+    this->Reader->UpdateInformation();
+    if (!this->Variable.empty() && has_variable(this->Reader, this->Variable)) {
+      choose_variable(this->Reader, this->Variable);
+      this->Reader->UpdateInformation();
+    }
+    this->Units += time_units_of(this->Reader);
+    vtkInformation* information = this->Reader->GetOutputInformation(0);
+    if (information && information->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) {
+      const double* times = information->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+      this->Times.assign(times, times + information->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
+    }
+  });
+}
+
+series::series(const std::string& path, const std::string& variable) : Path(path), Variable(variable)
+{
+  this->open();
+  if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {
+    std::string names;
+    const std::string wanted = std::exchange(this->Variable, "");
+    for (const variable_entry& one : this->variables(0)) {
+      names += (names.empty() ? "" : ", ") + one.name + " (" +
+        (one.low <= one.high ? format("%g .. %g", one.low, one.high) : "nothing finite") + (one.units.empty() ? "" : " " + one.units) + ")";
+    }
+    throw failure("no variable '" + wanted + "' in '" + path + "'; the variables are: " + names);
+  }
+  for (size_t i = 1; i < this->Times.size(); ++i) {
+    if (!(this->Times[i] > this->Times[i - 1])) {
+      throw failure("cannot read '" + path +
+        "': " + format("its time does not increase: step %zu is at %.9g, after %.9g", i, this->Times[i], this->Times[i - 1]));
+    }
+  }
+}
+
+std::vector<variable_entry> series::variables(size_t step)
+{
+  std::vector<variable_entry> list;
+  if (this->Reader) {
+    guard watch(this->Path);
+    watch.run(this->Reader, [&] { list = list_variables(this->Reader, this->Times.empty() ? 0.0 : this->Times[step]); });
+    choose_variable(this->Reader, this->Variable);
+  }
+  return list;
+}
+
+std::string series::grid() const
+{
+  return this->Reader ? description_of(this->Reader) : "";
+}
+
+vtkSmartPointer<vtkDataObject> series::read(size_t step)
+{
+  if (!this->Reader) {
+    return this->read_parts(this->Parts[step]);
+  }
+  guard watch(this->Path);
+  watch.run(this->Reader, [this, step] {
+    if (this->Times.empty()) {
+      this->Reader->Update();
+    } else {
+      this->Reader->UpdateTimeStep(this->Times[step]);
+    }
+  });
+  return this->Reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkDataObject> series::read_parts(const collection_step& step)
+{
+  if (step.files.size() == 1) {
+    return series(step.files[0]).read(0);
+  }
+  vtkNew<vtkMultiBlockDataSet> parts;
+  for (const std::string& file : step.files) {
+    parts->SetBlock(parts->GetNumberOfBlocks(), series(file).read(0));
+  }
+  return parts;
+}
+
+std::string series::time_of(size_t step) const
+{
+  return this->Times.empty() ? "" : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+}
+
+std::string series::length_units() const
+{
+  return this->Reader ? length_units_of(this->Reader) : "";
+}
+
+std::string series::value_units() const
+{
+  return this->Reader ? value_units_of(this->Reader) : "";
+}
+
+std::string series::describe(size_t step) const
+{
+  return this->Times.empty() ? "" : format("step %zu of %zu, at ", step, this->Times.size()) + this->time_of(step);
+}
+
+size_t series::find(const std::string& time) const
+{
+  if (time.empty() || time == "first") {
+    return 0;
+  }
+  if (time == "last") {
+    return this->steps() - 1;
+  }
+  if (time.compare(0, 5, "step:") == 0) {
+    return static_cast<size_t>(whole_number(time.substr(5), "--time", 0, static_cast<int>(this->steps()) - 1));
+  }
+  const bool after_first = time[0] == '+';
+  const std::string text = time.substr(after_first ? 1 : 0);
+  size_t digits = text.size();
+  while (digits > 0 && !std::isdigit(static_cast<unsigned char>(text[digits - 1])) && text[digits - 1] != '.') {
+    --digits;
+  }
+  const size_t word = text.find_first_not_of(' ', digits);
+  double wanted = number(text.substr(0, digits), "--time");
+  if (word != std::string::npos) {
+    const double given = seconds_of(text.substr(word)), own = seconds_of(this->Units);
+    if (given == 0.0) {
+      throw usage("--time: '" + text.substr(word) + "' is no unit of time: ms, s, min, h, d, weeks");
+    }
+    if (own == 0.0) {
+      throw usage("--time: '" + this->Path + "' does not tell the unit of its time (it has '" + this->Units + "'): give " + time +
+        " as a number or as step:N");
+    }
+    wanted *= given / own;
+  }
+  if (this->Times.empty()) {
+    throw usage("--time: '" + this->Path + "' has no time");
+  }
+  wanted += after_first ? this->Times[0] : 0.0;
+  const auto nearest = std::min_element(
+    this->Times.begin(), this->Times.end(), [wanted](double a, double b) { return std::fabs(a - wanted) < std::fabs(b - wanted); });
+  return static_cast<size_t>(nearest - this->Times.begin());
+}
+} // namespace cli

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A file as a series of steps in time; a file without time has one step. A reader that complains, hangs or crashes ends with a sentence.
+#pragma once
+
+#include "formats.h"
+
+#include <vtkDataObject.h>
+
+#include <string>
+#include <vector>
+
+namespace cli {
+
+class series
+{
+public:
+  // Opens a file and looks up its steps. Throws failure where it cannot be read, and where its time does not increase.
+  // `variable` is the one to read of a file that is read by variables (netCDF), "" the first; readers of whole files ignore it.
+  explicit series(const std::string& path, const std::string& variable = "");
+
+  size_t steps() const { return this->Times.empty() ? 1 : this->Times.size(); }
+  const std::vector<double>& times() const { return this->Times; } // ascending; empty: the file has no time
+  const std::string& units() const { return this->Units; }         // as the file has them ("hours since 2001-01-01"), "" if it has none
+  // Reads a step. Any complaint of VTK is a failure, so that a damaged file is never drawn in part. The result may share arrays with the
+  // reader: take a deep copy where the next step is read while this one is used.
+  vtkSmartPointer<vtkDataObject> read(size_t step);
+  // "1.5 hours since ...", "" for a file without time.
+  std::string time_of(size_t step) const;
+  // The unit of coordinates, and of the variable: "" where the file or the format does not tell.
+  std::string length_units() const;
+  std::string value_units() const;
+  // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
+  std::string describe(size_t step) const;
+  // The file's variables at a step, none of a file that is not read by variables.
+  std::vector<variable_entry> variables(size_t step);
+  // How coordinates became a grid, "" where that is VTK's own affair.
+  std::string grid() const;
+  // Finds the step that --time asks for: "first", "last", "step:N", a time in the file's units, a length of time with its unit ("3h",
+  // "90min", "2 d") from where the file counts from, or with a plus before it from the first step. The nearest step is taken.
+  size_t find(const std::string& time) const;
+
+private:
+  vtkSmartPointer<vtkDataObject> read_parts(const collection_step& step);
+
+  void open();
+
+  std::string Path, Variable;
+  vtkSmartPointer<vtkAlgorithm> Reader; // null for a collection
+  std::vector<collection_step> Parts;   // of a collection
+  std::vector<double> Times;
+  std::string Units;
+};
+
+// Returns the seconds of a unit of time ("h", "hours since 2001-01-01"), or 0 for a word that is none.
+double seconds_of(const std::string& units);
+} // namespace cli

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws images and scenes by the ray caster.
+#include "camera.h"
+#include "drawing.h"
+#include "input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace {
+
+using cli::row;
+
+class volume_drawing : public cli::drawing
+{
+public:
+  volume_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core)
+  {
+    if (o.tetra_method != STRATUS_TETRA_METHOD_AUTO) {
+      throw cli::usage("'" + o.source + "' is no unstructured grid: --method is for grids and trees");
+    }
+  }
+  ~volume_drawing() override { stratus_ray_caster_destroy(this->Caster); }
+  volume_drawing(const volume_drawing&) = delete;
+  volume_drawing& operator=(const volume_drawing&) = delete;
+
+  void take(const cli::routed& data) override;
+  void look() override;
+  std::pair<double, double> range() const override;
+  cli::scene_frame place() const override;
+  const cli::transfer& functions() const override { return this->Transfer; }
+  void draw(const stratus_image& image) override;
+  void tell() const override;
+  void judge() const override;
+
+private:
+  void choose_parts(stratus_ray_cast_options& cast);
+  void tell_report() const;
+
+  const cli::options& Options;
+  cli::context& Core;
+  std::unique_ptr<cli::input> Input, Mask;
+  cli::transfer Transfer;
+  stratus_camera Camera = {};
+  stratus_ray_caster* Caster = nullptr;
+  stratus_ray_cast_report Report = {};
+  int Up = 2;
+  uint64_t Steps = 0; // the volume's revision, because a step's values may lie where the last one's were
+};
+
+void volume_drawing::take(const cli::routed& data)
+{
+  const cli::options& o = this->Options;
+  this->Input.reset(data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array));
+  this->Input->volume.revision = ++this->Steps;
+  this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
+  this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
+}
+
+void volume_drawing::look()
+{
+  const cli::options& o = this->Options;
+  const cli::input& in = *this->Input;
+  this->Transfer = cli::make_transfer(in.volume, in.scene, o);
+  const stratus_transfer view = this->Transfer.view();
+  this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
+  this->Camera = cli::place_camera(this->Core, o, in.volume, view, this->Up);
+}
+
+std::pair<double, double> volume_drawing::range() const
+{
+  const cli::histogram h = cli::histogram_of(this->Input->volume);
+  return { h.low, h.high };
+}
+
+cli::scene_frame volume_drawing::place() const
+{
+  cli::scene_frame frame;
+  frame.camera = this->Camera;
+  this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
+  frame.scale[this->Up] = this->Options.exaggeration;
+  frame.title = this->Input->array_name;
+  return frame;
+}
+
+// Sets the crop and the mask, which is read once.
+void volume_drawing::choose_parts(stratus_ray_cast_options& cast)
+{
+  const cli::options& o = this->Options;
+  const stratus_volume& volume = this->Input->volume;
+  cast.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
+  cast.crop_regions = static_cast<uint32_t>(o.crop_regions);
+  if (o.mask.empty()) {
+    return;
+  }
+  if (!this->Mask) {
+    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "");
+  }
+  const stratus_volume& bytes = this->Mask->volume;
+  if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
+    throw cli::failure(
+      "mask '" + o.mask + "' has " + cli::describe(bytes) + ", one uint8 for each value of " + cli::describe(volume) + " is needed");
+  }
+  cast.mask = static_cast<const uint8_t*>(bytes.values);
+}
+
+void volume_drawing::draw(const stratus_image& image)
+{
+  const cli::options& o = this->Options;
+  stratus_ray_cast_options cast = stratus_ray_cast_options_default();
+  cast.mode = o.mode;
+  cast.normals = o.normals;
+  std::copy(o.average.begin(), o.average.end(), cast.average_range);
+  cast.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  this->choose_parts(cast);
+  cast.jitter = o.jitter < 0 ? 0 : 1;
+  cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
+  cast.structure = o.structure;
+  cast.sampling = o.sampling;
+  cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  cast.sample_distance = o.sample_distance;
+  cast.cell_error = o.cell_error;
+  cast.tolerance = o.tolerance;
+  cast.shade = o.shade;
+  cast.audit = o.audit;
+  if (!this->Caster) {
+    this->Core.check(stratus_ray_caster_create(this->Core, &this->Caster), "ray caster");
+  }
+  const stratus_transfer view = this->Transfer.view();
+  this->Core.check(
+    stratus_ray_caster_render(this->Caster, &this->Input->volume, &view, &this->Camera, &cast, &image, &this->Report), "render");
+}
+
+void volume_drawing::tell() const
+{
+  row("volume", cli::describe(this->Input->volume) + ", array '" + this->Input->array_name + "'");
+  row("camera", cli::describe(this->Camera));
+  this->tell_report();
+}
+
+void volume_drawing::tell_report() const
+{
+  const cli::options& o = this->Options;
+  const stratus_ray_cast_report& r = this->Report;
+  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.probe_ms + r.upload_ms;
+  const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
+  row("opacity", this->Transfer.origin);
+  row("device", stratus_context_device(this->Core));
+  row(
+    "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
+  row("mode", stratus_mode_name(o.mode));
+  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE) {
+    row("sampling",
+      stratus_sampling_name(r.sampling) +
+        (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : cli::format(", every %.4g", r.sample_distance)));
+  }
+  row("why", r.why);
+  if (!std::isnan(r.expected_error)) {
+    row("error",
+      cli::format("%.2g expected, tolerance %g%s", r.expected_error, o.tolerance,
+        r.tolerance_met ? "" : ", which the finest setting is expected to miss"));
+    row("probe", cli::format("%.2f ms, ", r.probe_ms) + cli::grouped(r.probe_samples) + " samples");
+  }
+  row("build",
+    cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, probe %.2f, upload %.2f", build, r.range_ms, r.table_ms,
+      r.occupancy_ms, r.structure_ms, r.probe_ms, r.upload_ms));
+  row(
+    "frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
+  row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
+  if (o.mode == STRATUS_MODE_FIRST_HIT) {
+    row("hits", cli::grouped(r.samples) + ", " + cli::grouped(r.lookups) + " nodes and steps visited");
+  } else {
+    row("samples",
+      cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
+        (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
+  }
+  if (o.audit) {
+    row("audit", cli::grouped(r.differing_pixels) + " pixels differ from the march without skipping");
+  }
+}
+
+void volume_drawing::judge() const
+{
+  if (this->Options.audit && this->Report.differing_pixels > 0) {
+    throw cli::failure("audit: skipping changed " + cli::grouped(this->Report.differing_pixels) + " pixels");
+  }
+}
+} // namespace
+
+std::unique_ptr<cli::drawing> cli::make_volume_drawing(const options& o, context& core)
+{
+  return std::make_unique<volume_drawing>(o, core);
+}

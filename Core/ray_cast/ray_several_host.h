@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the host's rays through several volumes read and write. */
+#ifndef STRATUS_RAY_SEVERAL_HOST_H
+#define STRATUS_RAY_SEVERAL_HOST_H
+
+#include "stratus/ray_cast.h"
+
+#include "ray_cast_host.h"
+
+/* A volume as the rays read it. */
+typedef struct stratus_several_part {
+  stratus_ray_cast_frame frame; /* what rays write is not read */
+  const float* layers;          /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
+  int type;                     /* of its fetch, as of stratus_ray_fetch_type() */
+  int stride;                   /* segments of the lattice to one of its samples */
+  int lit;                      /* 1: it has light or gradient opacity */
+  int preintegrated;            /* 0: the midpoint rule */
+} stratus_several_part;
+
+typedef struct stratus_several_frame {
+  stratus_ray_cast_frame picture; /* what rays write; the arguments are those of the first volume */
+  int count;
+  stratus_several_part volumes[STRATUS_SEVERAL_MAX];
+} stratus_several_frame;
+
+/* One definition for each instruction set: a stratus_ray_cast_tile that takes the picture of a stratus_several_frame. */
+stratus_ray_cast_tile stratus_several_tile_isa0, stratus_several_tile_isa1, stratus_several_tile_isa2;
+
+#endif

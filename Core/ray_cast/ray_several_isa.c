@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Composite rays through several volumes, compiled for one instruction set, STRATUS_ISA. */
+#include "ray_cast_packets.h"
+#include "ray_several_host.h"
+
+#define STRATUS_TYPE -1
+#define RAY_NAME(x) JOIN(x, any)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 0
+#define RAY_NAME(x) JOIN(x, int8)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 1
+#define RAY_NAME(x) JOIN(x, uint8)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 2
+#define RAY_NAME(x) JOIN(x, int16)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 3
+#define RAY_NAME(x) JOIN(x, uint16)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 8
+#define RAY_NAME(x) JOIN(x, float32)
+#include "ray_several_type.h"
+#define STRATUS_TYPE 9
+#define RAY_NAME(x) JOIN(x, float64)
+#include "ray_several_type.h"
+
+#include "ray_several.h"
+
+_Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
+
+/* Of stratus_type + 1. */
+static several_value* const values_of[11] = { several_value_any, several_value_int8, several_value_uint8, several_value_int16,
+  several_value_uint16, several_value_any, several_value_any, several_value_any, several_value_any, several_value_float32,
+  several_value_float64 };
+static several_gradient* const gradients_of[11] = { several_gradient_any, several_gradient_int8, several_gradient_uint8,
+  several_gradient_int16, several_gradient_uint16, several_gradient_any, several_gradient_any, several_gradient_any, several_gradient_any,
+  several_gradient_float32, several_gradient_float64 };
+
+/* The frame is the first member of a stratus_several_frame. */
+void STRATUS_ISA_NAME(stratus_several_tile)(
+  const stratus_ray_cast_frame* picture, int x0, int y0, int x1, int y1, stratus_ray_counts* counts)
+{
+  const stratus_several_frame* frame = (const stratus_several_frame*)(const void*)picture;
+  tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
+  several_source from[SEVERAL_MOST];
+  for (int n = 0; n < frame->count; ++n) {
+    const stratus_ray_cast_frame* of = &frame->volumes[n].frame;
+    from[n] = (several_source){ .a = of->arguments,
+      .values = of->values,
+      .hidden = of->hidden,
+      .map = of->map,
+      .table = frame->volumes[n].layers ? (const void*)frame->volumes[n].layers : of->table,
+      .besides = of->table,
+      .value = values_of[frame->volumes[n].type + 1],
+      .gradient = gradients_of[frame->volumes[n].type + 1],
+      .stride = frame->volumes[n].stride,
+      .lit = frame->volumes[n].lit,
+      .preintegrated = frame->volumes[n].preintegrated };
+  }
+  for (int y = y0; y < y1; y += PACKET_Y) {
+    for (int x = x0; x < x1; x += PACKET_X) {
+      several_volume volumes[SEVERAL_MOST];
+      stratus_packet k;
+      several_load(from, frame->count, picture->opaque_depth, x, y, volumes, &k);
+      several_march(from, volumes, frame->count, &k);
+      store_packet(picture, &k, x, y, &mine);
+    }
+  }
+  add_counts(&mine, counts);
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Lattices of hexahedra: marched without lists of their cells, or as a list of tetrahedra. */
+#ifndef STRATUS_TETRA_LATTICE_H
+#define STRATUS_TETRA_LATTICE_H
+
+#include "mesh.h"
+#include "tetra_caster.h"
+
+/* tetra_lattice.c */
+extern const int stratus_lattice_ways[6][3];
+/* The distances between the numbers of points that are neighbours along i, j and k. */
+void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3]);
+/* Whether a hexahedron shows by its flag and coordinates, whatever its values. first: its first corner; corner: distances of all from it.
+ */
+bool stratus_lattice_shows(const stratus_mesh* mesh, const int64_t corner[8], int64_t first, int64_t cell);
+/* Makes the form that rays read, as stratus_tetra_mesh_create() does. *mixed: tetrahedra turn both ways, as rays through lattices cannot
+ * pass them; the result has no faces, and the lattice is to be drawn from a list. */
+stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out, bool* mixed);
+/* stratus_tetra_mesh_take_values() of a lattice. */
+stratus_status stratus_tetra_lattice_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken);
+
+/* tetra_lattice_list.c: a lattice as a mesh whose cells are listed. It borrows what it can of the lattice. */
+struct stratus_tetra_list {
+  stratus_context* context;
+  stratus_mesh mesh, source;
+  void *points, *vertices, *values, *hidden;
+};
+
+stratus_status stratus_tetra_list_create(stratus_context* context, const stratus_mesh* lattice, stratus_tetra_list** out);
+void stratus_tetra_list_destroy(stratus_tetra_list* list); /* takes NULL */
+
+#endif

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Modes that gather no light along the whole ray, and the planes that cut rays: checks of their options, their tables and arguments. */
+#include "tetra_caster.h"
+
+#include "matrix.h"
+#include "mesh.h"
+#include "vector.h"
+
+#include <string.h>
+
+#define SUM_MOST INT32_MAX
+
+_Static_assert(STRATUS_TETRA_CONTOURS_MAX == TETRA_CONTOURS, "as many as the arguments hold");
+_Static_assert(STRATUS_TETRA_CLIP_PLANES_MAX + 6 == TETRA_PLANES, "as many as the arguments hold");
+
+const char* stratus_tetra_mode_name(stratus_tetra_mode mode)
+{
+  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface" };
+  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
+}
+
+static stratus_status check_planes(stratus_context* context, const stratus_tetra_options* options)
+{
+  if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_TETRA_CLIP_PLANES_MAX) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "clip_plane_count %d outside 0..%d", options->clip_plane_count, STRATUS_TETRA_CLIP_PLANES_MAX);
+  }
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    for (int i = 0; i < 4; ++i) {
+      if (!isfinite(options->clip_planes[p][i])) {
+        return stratus_fail(
+          context, STRATUS_INVALID_ARGUMENT, "clip_planes[%d][%d] is %g, must be finite", p, i, options->clip_planes[p][i]);
+      }
+    }
+  }
+  for (int axis = 0; options->crop && axis < 3; ++axis) {
+    const double* bounds = options->crop_bounds + 2 * axis;
+    if (!(bounds[0] <= bounds[1])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop_bounds %g .. %g along axis %d, must rise", bounds[0], bounds[1], axis);
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_contours(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh)
+{
+  if (options->contour_count < 1 || options->contour_count > STRATUS_TETRA_CONTOURS_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d contour values, an isosurface needs 1..%d", options->contour_count,
+      STRATUS_TETRA_CONTOURS_MAX);
+  }
+  for (int n = 0; n < options->contour_count; ++n) {
+    if (!isfinite(options->contours[n])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "contour %d has value %g, must be finite", n, options->contours[n]);
+    }
+  }
+  return mesh->cell_values ? stratus_fail(context, STRATUS_UNSUPPORTED,
+                               "isosurfaces of values of cells are not supported: constant in each cell, they cross no value")
+                           : STRATUS_OK;
+}
+
+bool stratus_tetra_modes_march(const stratus_tetra_options* options)
+{
+  return options->mode != STRATUS_TETRA_COMPOSITE && options->mode != STRATUS_TETRA_MAXIMUM;
+}
+
+stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh)
+{
+  const double* range = options->average_range;
+  TRY(check_planes(context, options));
+  if (options->mode == STRATUS_TETRA_AVERAGE && !(range[0] <= range[1])) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "average_range %g .. %g, must rise", range[0], range[1]);
+  }
+  if (options->method == STRATUS_TETRA_METHOD_PROJECT && stratus_tetra_modes_march(options)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s cannot be projected, only marched: take the method march or auto",
+      stratus_tetra_mode_name(options->mode));
+  }
+  return options->mode == STRATUS_TETRA_ISOSURFACE ? check_contours(context, options, mesh) : STRATUS_OK;
+}
+
+/* ---- tables */
+
+stratus_status stratus_tetra_value_sums(
+  stratus_context* context, const stratus_table* table, const stratus_tetra_mesh* mesh, const double range[2], int32_t** sums)
+{
+  const size_t size = (size_t)table->size;
+  const double width = (double)mesh->high - (double)mesh->low, one = SUM_MOST / ((double)size + 1.0);
+  int64_t below[4] = { 0, 0, 0, 0 };
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
+  *sums = memory;
+  for (size_t entry = 0; entry < size; ++entry) {
+    const double value = table->scale > 0.0f ? ((double)entry + 0.5 - (double)table->offset) / (double)table->scale : (double)mesh->low;
+    const double half = table->scale > 0.0f ? 0.5 / (double)table->scale : 0.0, alpha = (double)table->rgba[4 * entry + 3];
+    const double real = value + mesh->bias, part = width > 0.0 ? fmin(fmax((value - (double)mesh->low) / width, 0.0), 1.0) : 0.0;
+    const bool counts = real + half >= range[0] && real - half <= range[1];
+    const double own[4] = { counts ? alpha * part : 0.0, counts ? alpha : 0.0, 0.0, counts ? 1.0 : 0.0 };
+    for (size_t c = 0; c < 4; ++c) {
+      const int64_t here = (int64_t)(own[c] * one);
+      (*sums)[4 * entry + c] = (int32_t)(below[c] + (here + 1) / 2);
+      (*sums)[4 * (size + entry) + c] = (int32_t)here;
+      below[c] += here;
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* ---- arguments */
+
+void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options)
+{
+  stratus_tetra_arguments* a = &frame->arguments;
+  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES };
+  a->mode = modes[options->mode];
+  a->sign = options->mode == STRATUS_TETRA_MINIMUM ? -1.0f : 1.0f;
+}
+
+void stratus_tetra_frame_contours(
+  stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options)
+{
+  stratus_tetra_arguments* a = &frame->arguments;
+  a->grey =
+    options->mode == STRATUS_TETRA_ADDITIVE ? (float)(((double)frame->table->size + 1.0) / SUM_MOST / transfer->unit_distance) : 0.0f;
+  a->contour_count = 0;
+  for (int n = 0; options->mode == STRATUS_TETRA_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
+    const float value = (float)(options->contours[n] - mesh->bias);
+    double rgba[4];
+    int at = a->contour_count;
+    while (at > 0 && a->contour[at - 1][0] >= value) {
+      --at;
+    }
+    if (at < a->contour_count && !(value < a->contour[at][0])) {
+      continue;
+    }
+    memmove(a->contour + at + 1, a->contour + at, (size_t)(a->contour_count - at) * sizeof *a->contour);
+    stratus_transfer_at(transfer, options->contours[n], rgba);
+    a->contour[at][0] = value;
+    for (int c = 0; c < 4; ++c) {
+      a->contour[at][1 + c] = (float)(c < 3 ? rgba[c] * rgba[3] : rgba[3]);
+    }
+    ++a->contour_count;
+  }
+}
+
+/* Adds the plane of points p with n p + d >= 0. Its numbers are scaled so that the largest is 1. */
+static void add_plane(stratus_tetra_frame* frame, const double n[3], double d)
+{
+  const stratus_camera* c = &frame->camera;
+  const double eye = stratus_vector_dot(n, c->eye) + d, f = stratus_vector_dot(n, c->forward), r = stratus_vector_dot(n, c->right),
+               u = stratus_vector_dot(n, c->up);
+  const double perspective[6] = { eye + frame->middle * f, frame->middle * r, frame->middle * u, frame->per_z * f, frame->per_z * r,
+    frame->per_z * u };
+  const double parallel[6] = { eye + frame->middle * f, r - frame->lean[0] * f, u - frame->lean[1] * f, frame->per_z * f, 0.0, 0.0 };
+  const double* plane = c->parallel ? parallel : perspective;
+  double largest = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    largest = fmax(largest, fabs(plane[i]));
+  }
+  for (int i = 0; i < 6; ++i) {
+    frame->arguments.plane[frame->arguments.plane_count][i] = largest > 0.0 ? (float)(plane[i] / largest) : 0.0f;
+  }
+  ++frame->arguments.plane_count;
+}
+
+void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  double inverse[16];
+  frame->arguments.plane_count = 0;
+  for (int p = 0; p < options->clip_plane_count; ++p) {
+    add_plane(frame, options->clip_planes[p], options->clip_planes[p][3]);
+  }
+  if (!options->crop || !stratus_matrix_invert_affine(mesh->matrix, inverse)) {
+    return; /* stratus_mesh_check() refuses such a matrix */
+  }
+  for (int side = 0; side < 6; ++side) {
+    const double *row = inverse + 4 * (side / 2), sign = side % 2 == 0 ? 1.0 : -1.0, bound = options->crop_bounds[side];
+    const double normal[3] = { sign * row[0], sign * row[1], sign * row[2] };
+    if (isfinite(bound)) {
+      add_plane(frame, normal, sign * (row[3] - bound));
+    }
+  }
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The blocks of a composite data set as one grid, joined where their borders meet. Private to the modules, never installed.
+#ifndef vtkStratusBlocks_h
+#define vtkStratusBlocks_h
+
+#include "vtkStratusPrivate.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkCompositeDataSet;
+class vtkUnsignedCharArray;
+
+class VTK_STRATUS_PRIVATE vtkStratusBlocks
+{
+public:
+  // Finds a block's scalars, nullptr where it has none; *cells is 1 where they belong to cells.
+  using Find = std::function<vtkDataArray*(vtkDataSet* block, int& cells)>;
+
+  // Takes the blocks at any depth that have cells and scalars, points or cells as the first such block has. One block is taken as it is.
+  // Several become one unstructured grid: points that have the same coordinates, and of point scalars the same values, become one, so that
+  // blocks meet in whole faces. Blocks are unstructured, structured or rectilinear grids, or images. Nothing is done where no block has
+  // changed. Returns false, with the reason in `error`, where a block cannot be read.
+  bool Set(vtkCompositeDataSet* whole, const Find& find, std::string& error);
+  vtkDataSet* GetGrid() const { return this->Grid; } // nullptr: no block has cells
+  vtkDataArray* GetScalars() const { return this->Scalars; }
+  bool OfCells() const { return this->Cells; }
+  // Which blocks are left out and why, "" where none is.
+  const std::string& TellLeftOut() const { return this->LeftOut; }
+
+private:
+  struct Block {
+    vtkDataSet* Set;
+    vtkDataArray* Scalars;
+    vtkMTimeType Time;
+    bool operator==(const Block& b) const { return this->Set == b.Set && this->Scalars == b.Scalars && this->Time == b.Time; }
+  };
+  class Points;
+
+  std::vector<Block> List(vtkCompositeDataSet* whole, const Find& find);
+  bool Check(const Block& block, std::string& error) const;
+  bool Join(std::string& error);
+  bool Append(const Block& block, vtkUnsignedCharArray* hidden, std::string& error) const;
+  void AppendCells(vtkUnstructuredGrid* from, const std::vector<vtkIdType>& names, vtkUnstructuredGrid* to) const;
+  void AppendBoxes(const int points[3], const std::vector<vtkIdType>& names, vtkUnstructuredGrid* to) const;
+
+  std::vector<Block> Known;
+  std::vector<vtkSmartPointer<vtkDataSet>> Kept; // so that no other block gets the address of a known one
+  vtkSmartPointer<vtkDataSet> Grid;
+  vtkSmartPointer<vtkDataArray> Scalars;
+  bool Cells = false;
+  std::string LeftOut, Refusal;
+};
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusCFReader.h"
+
+#include "vtkStratusCFGrid.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
+
+#include <algorithm>
+#include <climits>
+#include <set>
+
+vtkStandardNewMacro(vtkStratusCFReader);
+
+namespace {
+// Names of the variables that others refer to as coordinates, bounds or terms of a height.
+std::set<std::string> FindReferred(const vtkStratusNetCDFFile& file)
+{
+  std::set<std::string> names;
+  for (const vtkStratusNetCDFFile::Variable& one : file.GetVariables()) {
+    for (const char* attribute : { "coordinates", "bounds", "formula_terms" }) {
+      for (const std::string& word : vtkStratusWords(file.Text(one, attribute))) {
+        names.insert(word);
+      }
+    }
+  }
+  return names;
+}
+} // namespace
+
+std::string vtkStratusCFReader::Inspect(const vtkStratusNetCDFFile& file)
+{
+  const std::set<std::string> referred = FindReferred(file);
+  for (const vtkStratusNetCDFFile::Variable& one : file.GetVariables()) {
+    if (vtkStratusCFGrid::IsVolume(file, one) && referred.count(one.Name) == 0) {
+      this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
+    }
+  }
+  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName(file)));
+  for (int a = 0; a < 3; ++a) {
+    if (grid.GetLength(a) > static_cast<size_t>(INT_MAX)) {
+      file.Fail("a dimension of " + std::to_string(grid.GetLength(a)) + " values is longer than VTK's grids, 2147483647");
+    }
+    this->WholeExtent[2 * a + 1] = static_cast<int>(grid.GetLength(a)) - 1;
+  }
+  if (grid.GetTime()) {
+    this->Times = file.ReadTimes(*grid.GetTime());
+    this->TimeUnits = file.Text(*grid.GetTime(), "units");
+    if (this->Times.empty()) {
+      file.Fail("time '" + grid.GetTime()->Name + "' has no steps");
+    }
+  }
+  this->Description = grid.Describe();
+  this->LengthUnits = grid.IsInMetres() ? "m" : "";
+  return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
+}
+
+void vtkStratusCFReader::Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+{
+  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName(file)));
+  const int n[3] = { static_cast<int>(grid.GetLength(0)), static_cast<int>(grid.GetLength(1)), static_cast<int>(grid.GetLength(2)) };
+  if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
+    image->SetDimensions(n[0], n[1], n[2]);
+    double spacing[3];
+    for (int a = 0; a < 3; ++a) {
+      spacing[a] = (grid.GetAxis(a).back() - grid.GetAxis(a).front()) / (n[a] - 1);
+    }
+    image->SetSpacing(spacing);
+    image->SetOrigin(grid.GetAxis(0).front(), grid.GetAxis(1).front(), grid.GetAxis(2).front());
+  } else if (vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(output)) {
+    axes->SetDimensions(n[0], n[1], n[2]);
+    for (int a = 0; a < 3; ++a) {
+      vtkSmartPointer<vtkDoubleArray> at = vtkSmartPointer<vtkDoubleArray>::New();
+      at->SetNumberOfValues(n[a]);
+      std::copy(grid.GetAxis(a).begin(), grid.GetAxis(a).end(), at->GetPointer(0));
+      (a == 0 ? axes->SetXCoordinates(at) : a == 1 ? axes->SetYCoordinates(at) : axes->SetZCoordinates(at));
+    }
+  } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(output)) {
+    curved->SetDimensions(n[0], n[1], n[2]);
+    vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
+    points->SetData(grid.ReadPoints(step));
+    curved->SetPoints(points);
+  }
+  const vtkSmartPointer<vtkDataArray> values = grid.ReadValues(step);
+  output->GetPointData()->AddArray(values);
+  output->GetPointData()->SetActiveScalars(values->GetName());
+}
+
+void vtkStratusCFReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

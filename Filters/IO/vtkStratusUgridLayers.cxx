@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusUgridLayers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace {
+bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
+{
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+} // namespace
+
+vtkStratusUgridLayers::vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh) : Mesh(mesh), File(mesh.GetFile())
+{
+  this->FindHeights();
+  if (this->Kind == Flat && !this->FindLevels(true)) {
+    this->FindLevels(false);
+  }
+  this->FindSurfaces();
+  if ((this->Kind == Flat || this->Kind == Sigma) && (!this->Surface || !this->Bed)) {
+    this->File.Fail(std::string("there is no ") + (this->Surface ? "bottom" : "free surface") +
+      " to stand layers on: neither formula_terms nor standard_name nor the names of Delft3D FM, SCHISM or FVCOM tell it");
+  }
+  this->FindOrder();
+  for (const Variable* one : { this->Source, this->Surface, this->Bed, this->Wet }) {
+    const Variable* time = one ? this->Mesh.FindTime(*one) : nullptr;
+    this->Time = time ? time : this->Time;
+  }
+}
+
+// Layers are counted from the top where a node's first height is above its last.
+void vtkStratusUgridLayers::FindOrder()
+{
+  if (!this->Source) {
+    return;
+  }
+  const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, 0);
+  const size_t last = this->OfBorders ? this->Count : this->Count - 1;
+  for (size_t node = 0; node < (values.Across > 0 ? this->Mesh.GetNodes() : 1); ++node) {
+    const double difference = values.At(node, 0) - values.At(node, last);
+    if (std::isfinite(difference) && difference != 0.0) {
+      this->TopFirst = (difference > 0.0) != this->IsDown();
+      return;
+    }
+  }
+}
+
+bool vtkStratusUgridLayers::IsDown() const
+{
+  return this->Kind == Levels && this->File.Text(*this->Source, "positive") == "down";
+}
+
+// The heights of the layers' borders, node by node.
+void vtkStratusUgridLayers::FindHeights()
+{
+  for (const Variable& one : this->File.GetVariables()) {
+    const std::string name = this->File.Text(one, "standard_name");
+    const int layers = this->Mesh.FindLayers(one);
+    const bool named = IsOneOf(one.Name, { "zCoordinates", "zcor", "z_coordinates" }) || IsOneOf(name, { "altitude", "height" });
+    if (named && this->Mesh.IsOnNodes(one) && layers >= 0) {
+      this->Kind = Heights;
+      this->Source = &one;
+      this->TakeCount(one, layers, true);
+      return;
+    }
+  }
+}
+
+void vtkStratusUgridLayers::TakeCount(const Variable& variable, int dimension, bool borders)
+{
+  const size_t length = this->File.LengthOf(dimension);
+  if (length < (borders ? 2u : 1u)) {
+    this->File.Fail("'" + variable.Name + "' has " + std::to_string(length) + (borders ? " borders of layers" : " layers") + ", at least " +
+      (borders ? "2" : "1") + " are needed");
+  }
+  this->Count = borders ? length - 1 : length;
+  (borders ? this->BorderDimension : this->LayerDimension) = dimension;
+  this->OfBorders = borders;
+}
+
+// Sigma or fixed levels, at borders if the file has them there, else at centres. The other dimension belongs to the same layers.
+bool vtkStratusUgridLayers::FindLevels(bool sigma)
+{
+  const Variable* found[2] = { nullptr, nullptr }; // the shorter, the longer
+  const auto length = [this](const Variable& one) { return this->File.LengthOf(one.Dimensions[0]); };
+  for (const Variable& one : this->File.GetVariables()) {
+    const std::string name = this->File.Text(one, "standard_name");
+    const bool named = sigma
+      ? name == "ocean_sigma_coordinate" || IsOneOf(one.Name, { "siglev", "siglay" }) || EndsWith(one.Name, "_sigma")
+      : IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.Name, "_layer_z") || EndsWith(one.Name, "_interface_z");
+    const bool shaped = (one.Dimensions.size() == 1 || (sigma && one.Dimensions.size() == 2 && this->Mesh.IsOnNodes(one))) &&
+      !this->File.TimeOf(one.Dimensions[0]) && !(one.Dimensions.size() == 1 && (this->Mesh.IsOnNodes(one) || this->Mesh.IsOnFaces(one)));
+    if (!named || !shaped) {
+      continue;
+    }
+    if (!found[0] || length(one) < length(*found[0])) {
+      found[1] = found[1] ? found[1] : found[0];
+      found[0] = &one;
+    } else {
+      found[1] = &one;
+    }
+  }
+  if (!found[0]) {
+    return false;
+  }
+  this->Kind = sigma ? Sigma : Levels;
+  if (found[1] && length(*found[1]) == length(*found[0]) + 1) {
+    this->TakeCount(*found[0], found[0]->Dimensions[0], false);
+    this->TakeCount(*found[1], found[1]->Dimensions[0], true);
+    this->Source = found[1];
+    return true;
+  }
+  this->Source = found[0];
+  const vtkStratusUgridValues values = this->Mesh.Read(*found[0], 0);
+  const size_t count = length(*found[0]);
+  const bool ends = sigma && count > 1 && std::fabs(values.At(0, 0) - values.At(0, count - 1)) > 1.0 - 1e-6; // from -1 to 0
+  this->TakeCount(*found[0], found[0]->Dimensions[0], ends);
+  return true;
+}
+
+// Looks for a term of the heights' formula.
+bool vtkStratusUgridLayers::FindTerm(const char* term, const Variable*& found) const
+{
+  for (const Variable& one : this->File.GetVariables()) {
+    const std::vector<std::string> words = vtkStratusWords(this->File.Text(one, "formula_terms"));
+    for (size_t i = 0; i + 1 < words.size() && !found; i += 2) {
+      found = words[i] == std::string(term) + ":" ? this->File.Find(words[i + 1]) : nullptr;
+    }
+  }
+  return found != nullptr;
+}
+
+void vtkStratusUgridLayers::FindSurfaces()
+{
+  const auto flat = [this](const Variable& one) {
+    return this->Mesh.FindLayers(one) == -1 && (this->Mesh.IsOnNodes(one) || this->Mesh.IsOnFaces(one));
+  };
+  this->FindTerm("eta", this->Surface);
+  bool found = this->FindTerm("bedlevel", this->Bed);
+  found = found || this->FindTerm("depth", this->Bed);
+  for (const Variable& one : this->File.GetVariables()) {
+    const std::string name = this->File.Text(one, "standard_name");
+    if (!flat(one)) {
+      continue;
+    }
+    if (!this->Surface &&
+      (name.compare(0, 18, "sea_surface_height") == 0 || name.compare(0, 20, "water_surface_height") == 0 ||
+        IsOneOf(one.Name, { "zeta", "elevation", "elev" }) || EndsWith(one.Name, "_s1"))) {
+      this->Surface = &one;
+    }
+    if (!this->Bed &&
+      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.Name, { "h", "depth" }) || EndsWith(one.Name, "_flowelem_bl") ||
+        EndsWith(one.Name, "_node_z"))) {
+      this->Bed = &one;
+    }
+    if (IsOneOf(one.Name, { "wet_cells", "wetdry_elem" }) || EndsWith(one.Name, "_wet_cells")) {
+      this->Wet = &one;
+      this->WetIsOne = one.Name != "wetdry_elem";
+    }
+  }
+  if (this->Bed) {
+    const std::string name = this->File.Text(*this->Bed, "standard_name");
+    const bool up = name == "altitude" || this->File.Text(*this->Bed, "positive") == "up" || EndsWith(this->Bed->Name, "_bl") ||
+      EndsWith(this->Bed->Name, "_node_z");
+    this->BedMeans = name == "sea_floor_depth_below_sea_surface" ? WaterDepth : up ? Altitude : Depth;
+  }
+}
+
+bool vtkStratusUgridLayers::IsOnLayers(const Variable& variable) const
+{
+  const int layers = this->Mesh.FindLayers(variable);
+  return layers >= 0 && this->Kind != Flat && layers != this->BorderDimension && this->File.LengthOf(layers) == this->Count;
+}
+
+bool vtkStratusUgridLayers::IsOnBorders(const Variable& variable) const
+{
+  const int layers = this->Mesh.FindLayers(variable);
+  return layers >= 0 && this->Kind != Flat && layers != this->LayerDimension && this->File.LengthOf(layers) == this->Count + 1;
+}
+
+bool vtkStratusUgridLayers::Uses(const Variable& variable) const
+{
+  return &variable == this->Source || &variable == this->Wet;
+}
+
+std::string vtkStratusUgridLayers::Describe() const
+{
+  std::string text = std::to_string(this->Count) + (this->Count == 1 ? " layer" : " layers");
+  if (this->Source) {
+    text += std::string(" by ") +
+      (this->Kind == Heights    ? "heights"
+          : this->Kind == Sigma ? "sigma"
+                                : "levels") +
+      " '" + this->Source->Name + "'";
+  }
+  text += this->Surface ? ", free surface '" + this->Surface->Name + "'" : "";
+  return text + (this->Bed ? ", bottom '" + this->Bed->Name + "'" : "");
+}
+
+// The bottom's heights at nodes.
+std::vector<double> vtkStratusUgridLayers::Bottom(size_t step, const std::vector<double>& surface) const
+{
+  std::vector<double> bottom = this->Mesh.ReadAtNodes(*this->Bed, step);
+  for (size_t node = 0; node < bottom.size(); ++node) {
+    bottom[node] = this->BedMeans == Altitude ? bottom[node] : (this->BedMeans == WaterDepth ? surface[node] : 0.0) - bottom[node];
+  }
+  return bottom;
+}
+
+// The levels of the borders at a node, from the bottom up. Between centres they lie in the middle; the outermost ones are those of sigma,
+// or as far from the outermost centre as the next border.
+std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues& levels, size_t node) const
+{
+  const size_t given = this->OfBorders ? this->Count + 1 : this->Count;
+  std::vector<double> at(given), borders(this->Count + 1);
+  for (size_t i = 0; i < given; ++i) {
+    at[i] = levels.At(node, i);
+    if (!std::isfinite(at[i])) {
+      this->File.Fail("'" + this->Source->Name + "' has no value (a fill value, or not finite) at layer " + std::to_string(i));
+    }
+  }
+  const bool down = this->IsDown();
+  std::transform(at.begin(), at.end(), at.begin(), [down](double one) { return down ? -one : one; });
+  if (given > 1 && at.front() > at.back()) {
+    std::reverse(at.begin(), at.end());
+  }
+  for (size_t i = 1; i < given; ++i) {
+    if (at[i] < at[i - 1]) {
+      this->File.Fail("layers are upside down: '" + this->Source->Name + "' must increase or decrease all along, it has " +
+        vtkStratusNumberText(at[i]) + " after " + vtkStratusNumberText(at[i - 1]));
+    }
+  }
+  if (this->OfBorders) {
+    return at;
+  }
+  for (size_t i = 1; i < this->Count; ++i) {
+    borders[i] = 0.5 * (at[i - 1] + at[i]);
+  }
+  const bool sigma = this->Kind == Sigma;
+  borders.front() = sigma ? -1.0 : this->Count > 1 ? 2.0 * at.front() - borders[1] : at.front() - 0.5;
+  borders.back() = sigma ? 0.0 : this->Count > 1 ? 2.0 * at.back() - borders[this->Count - 1] : at.back() + 0.5;
+  return borders;
+}
+
+// Heights that are missing below the lowest layer of a node are those of the lowest border that has one.
+void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) const
+{
+  const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, step);
+  const size_t nodes = this->Mesh.GetNodes(), borders = this->Count + 1;
+  const bool top_first = this->TopFirst;
+  for (size_t node = 0; node < nodes; ++node) {
+    double last = NAN;
+    for (size_t b = borders; b-- > 0;) {
+      double height = values.At(node, top_first ? borders - 1 - b : b);
+      height = std::isfinite(height) ? height : last;
+      if (std::isfinite(last) && height > last) {
+        this->File.Fail("layers are upside down: '" + this->Source->Name + "' has " + vtkStratusNumberText(height) + " under " +
+          vtkStratusNumberText(last) + " at node " + std::to_string(node));
+      }
+      z[b * nodes + node] = last = height;
+    }
+  }
+}
+
+void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const
+{
+  const size_t nodes = this->Mesh.GetNodes();
+  const std::vector<double> surface = this->Surface ? this->Mesh.ReadAtNodes(*this->Surface, step) : std::vector<double>(nodes, INFINITY);
+  const std::vector<double> bottom = this->Bed ? this->Bottom(step, surface) : std::vector<double>(nodes, -INFINITY);
+  const vtkStratusUgridValues levels = this->Source ? this->Mesh.Read(*this->Source, step) : vtkStratusUgridValues();
+  std::vector<double> borders = { -1.0, 0.0 };
+  for (size_t node = 0; node < nodes; ++node) {
+    if (this->Source && (node == 0 || levels.Across > 0)) {
+      borders = this->BordersOf(levels, node);
+    }
+    const bool missing = std::isnan(surface[node]) || std::isnan(bottom[node]) || surface[node] <= bottom[node];
+    const double low = std::isnan(bottom[node]) ? std::isfinite(surface[node]) ? surface[node] : 0.0 : bottom[node];
+    none[node] = missing ? 1 : 0;
+    for (size_t b = 0; b <= this->Count; ++b) {
+      const double height =
+        this->Kind == Levels ? std::min(std::max(borders[b], low), surface[node]) : surface[node] + borders[b] * (surface[node] - low);
+      z[b * nodes + node] = missing ? low : height;
+    }
+    if (this->Kind == Levels && !missing) { // the outermost layers end at the bottom and at the free surface
+      z[node] = std::isfinite(low) ? low : z[node];
+      z[this->Count * nodes + node] = std::isfinite(surface[node]) ? surface[node] : borders[this->Count];
+    }
+  }
+}
+
+void vtkStratusUgridLayers::FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const
+{
+  vtkStratusUgridValues wet, surface;
+  const bool own = this->Surface && this->Mesh.IsOnFaces(*this->Surface);
+  if (this->Wet && this->Mesh.IsOnFaces(*this->Wet)) {
+    wet = this->Mesh.Read(*this->Wet, step);
+  }
+  if (own) {
+    surface = this->Mesh.Read(*this->Surface, step);
+  }
+  for (size_t face = 0; face < this->Mesh.GetFaces(); ++face) {
+    int corners = 0;
+    const int* nodes = this->Mesh.GetFace(face, corners);
+    const bool all_wet = std::none_of(nodes, nodes + corners, [&none](int node) { return none[static_cast<size_t>(node)] != 0; });
+    dry[face] = !all_wet || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) || (own && !std::isfinite(surface.At(face, 0)));
+  }
+}
+
+void vtkStratusUgridLayers::Read(size_t step, std::vector<double>& z, std::vector<char>& dry) const
+{
+  const size_t nodes = this->Mesh.GetNodes();
+  z.assign(nodes * (this->Count + 1), 0.0);
+  dry.assign(this->Mesh.GetFaces(), 0);
+  std::vector<char> none(nodes, 0);
+  if (this->Kind == Heights) {
+    this->ReadHeights(step, z);
+    for (size_t node = 0; node < nodes; ++node) {
+      none[node] = std::isfinite(z[node]) ? 0 : 1;
+      for (size_t b = 0; none[node] && b <= this->Count; ++b) {
+        z[b * nodes + node] = 0.0;
+      }
+    }
+  } else {
+    this->ReadLevels(step, z, none);
+  }
+  this->FindDry(step, none, dry);
+}

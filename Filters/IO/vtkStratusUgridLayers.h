@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The heights of a layered mesh: which variables they follow from, and the borders of layers at each node. Private to the module.
+#ifndef vtkStratusUgridLayers_h
+#define vtkStratusUgridLayers_h
+
+#include "vtkStratusUgridMesh.h"
+
+#include <string>
+#include <vector>
+
+class vtkStratusUgridLayers
+{
+public:
+  using Variable = vtkStratusNetCDFFile::Variable;
+
+  explicit vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh); // throws vtkStratusNetCDFError
+
+  size_t GetCount() const { return this->Count; }
+  // Which of the borders or layers of a variable is this one, since files count from the top or from the bottom.
+  size_t FromBottom(size_t number, size_t of) const { return this->TopFirst ? of - 1 - number : number; }
+  // Returns whether a variable has values for each layer, or for each border; neither: it has no layers, or others.
+  bool IsOnLayers(const Variable& variable) const;
+  bool IsOnBorders(const Variable& variable) const;
+  const Variable* GetTime() const { return this->Time; }
+  std::string Describe() const;
+  bool Uses(const Variable& variable) const; // as a height
+
+  // Finds the borders' heights, z[border * nodes + node], ascending, and the faces that are dry at this step.
+  void Read(size_t step, std::vector<double>& z, std::vector<char>& dry) const;
+
+private:
+  enum KindType { Flat, Heights, Sigma, Levels };
+
+  void FindHeights();
+  void FindOrder();
+  bool IsDown() const;
+  bool FindTerm(const char* term, const Variable*& found) const;
+  void FindSurfaces();
+  bool FindLevels(bool sigma);
+  void TakeCount(const Variable& variable, int dimension, bool borders);
+  std::vector<double> Bottom(size_t step, const std::vector<double>& surface) const;
+  std::vector<double> BordersOf(const vtkStratusUgridValues& levels, size_t node) const;
+  void ReadHeights(size_t step, std::vector<double>& z) const;
+  void ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const;
+  void FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const;
+
+  const vtkStratusUgridMesh& Mesh;
+  const vtkStratusNetCDFFile& File;
+  KindType Kind = Flat;
+  size_t Count = 1;
+  int LayerDimension = -1, BorderDimension = -1;
+  bool TopFirst = false;
+  bool OfBorders = false;           // Levels are at borders
+  const Variable* Source = nullptr; // heights, sigma or levels
+  const Variable* Surface = nullptr;
+  const Variable* Bed = nullptr;
+  enum BedType { Altitude, Depth, WaterDepth } BedMeans = Depth;
+  const Variable* Wet = nullptr;
+  bool WetIsOne = true;
+  const Variable* Time = nullptr;
+};
+
+#endif

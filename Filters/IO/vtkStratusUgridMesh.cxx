@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusUgridMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <netcdf.h>
+
+namespace {
+constexpr double EarthRadius = 6371000.0; // metres
+constexpr size_t MostCorners = 64;        // of a face; a shorter dimension of a connectivity is that of corners
+} // namespace
+
+const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtkStratusNetCDFFile& file)
+{
+  const Variable* found = nullptr;
+  for (const Variable& one : file.GetVariables()) {
+    double dimension = 2.0;
+    if (file.Text(one, "cf_role") == "mesh_topology" && (!file.Number(one, "topology_dimension", dimension) || dimension == 2.0)) {
+      return &one;
+    }
+    found = one.Name == "nv" && one.Dimensions.size() == 2 ? &one : found;
+  }
+  return found;
+}
+
+vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFFile& file) : File(file)
+{
+  const Variable* topology = FindTopology(file);
+  if (!topology) {
+    file.Fail("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, and no 'nv' of FVCOM");
+  }
+  const bool fvcom = topology->Dimensions.size() == 2 && topology->Name == "nv" && file.Text(*topology, "cf_role") != "mesh_topology";
+  const auto named = [&](const std::string& name, const char* what) -> const Variable& {
+    const Variable* one = file.Find(name);
+    if (!one) {
+      file.Fail("the mesh '" + topology->Name + "' has no " + what + (name.empty() ? "" : ": there is no variable '" + name + "'"));
+    }
+    return *one;
+  };
+  if (fvcom) {
+    const Variable* x = file.Find("x");
+    const std::vector<double> own = x && x->Dimensions.size() == 1 ? file.ReadComplete(*x, "coordinate") : std::vector<double>();
+    const bool plane = std::any_of(own.begin(), own.end(), [](double one) { return one != 0.0; }); // FVCOM writes zeros on a sphere
+    this->ReadNodes(named(plane ? "x" : "lon", "coordinates"), named(plane ? "y" : "lat", "coordinates"));
+    this->ReadFaces(*topology, 1);
+    return;
+  }
+  const std::vector<std::string> coordinates = vtkStratusWords(file.Text(*topology, "node_coordinates"));
+  const Variable& first = named(coordinates.size() > 1 ? coordinates[0] : "", "node_coordinates of two variables");
+  const Variable& second = named(coordinates[1], "node_coordinates of two variables");
+  const std::string name = file.Text(first, "standard_name");
+  const bool turned = name == "latitude" || name == "projection_y_coordinate";
+  this->ReadNodes(turned ? second : first, turned ? first : second);
+  this->ReadFaces(named(file.Text(*topology, "face_node_connectivity"), "face_node_connectivity"), 0);
+}
+
+void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
+{
+  if (x.Dimensions.size() != 1 || y.Dimensions != x.Dimensions) {
+    this->File.Fail("the nodes' coordinates '" + x.Name + "' and '" + y.Name + "' must have one and the same dimension");
+  }
+  this->NodeDimension = x.Dimensions[0];
+  this->XName = x.Name;
+  this->YName = y.Name;
+  this->X = this->File.ReadComplete(x, "coordinate of nodes");
+  this->Y = this->File.ReadComplete(y, "coordinate of nodes");
+  if (this->X.empty()) {
+    this->File.Fail("the mesh has no nodes");
+  }
+  const std::string units = this->File.Text(x, "units");
+  this->Metres = units == "m" || units == "meters" || units == "metres" || units.compare(0, 6, "degree") == 0;
+  if (units.compare(0, 6, "degree") == 0) {
+    const auto ends = std::minmax_element(this->Y.begin(), this->Y.end());
+    const double degree = std::acos(-1.0) / 180.0, middle = 0.5 * (*ends.first + *ends.second);
+    const double across = EarthRadius * degree * std::cos(middle * degree);
+    std::transform(this->X.begin(), this->X.end(), this->X.begin(), [across](double one) { return one * across; });
+    std::transform(this->Y.begin(), this->Y.end(), this->Y.begin(), [degree](double one) { return one * EarthRadius * degree; });
+    this->Description = "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
+  }
+  this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";
+}
+
+// Fills at the end of a face are left out. `first` is the number of the first node where the file does not tell it.
+void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
+{
+  if (connectivity.Dimensions.size() != 2) {
+    this->File.Fail("the faces' nodes '" + connectivity.Name + "' have " + std::to_string(connectivity.Dimensions.size()) +
+      " dimensions, they must have 2");
+  }
+  const size_t lengths[2] = { this->File.LengthOf(connectivity.Dimensions[0]), this->File.LengthOf(connectivity.Dimensions[1]) };
+  const bool turned = first == 1 ? lengths[0] <= 4 : lengths[1] > MostCorners && lengths[0] <= MostCorners;
+  const size_t faces = lengths[turned ? 1 : 0], corners = lengths[turned ? 0 : 1];
+  this->FaceDimension = connectivity.Dimensions[turned ? 1 : 0];
+  double start = first;
+  this->File.Number(connectivity, "start_index", start);
+  if (faces == 0 || corners < 3 || corners > MostCorners) {
+    this->File.Fail("the mesh has " + std::to_string(faces) + " faces of up to " + std::to_string(corners) + " nodes, 3 to " +
+      std::to_string(MostCorners) + " are needed");
+  }
+  const vtkSmartPointer<vtkDataArray> numbers = this->File.Read(connectivity);
+  std::vector<int> face;
+  for (size_t f = 0; f < faces; ++f) {
+    face.clear();
+    for (size_t c = 0; c < corners; ++c) {
+      const double number = numbers->GetComponent(static_cast<vtkIdType>(turned ? c * faces + f : f * corners + c), 0);
+      if (std::isnan(number)) {
+        continue;
+      }
+      const double node = number - start;
+      if (!(node >= 0.0 && node < static_cast<double>(this->GetNodes())) || node != std::floor(node)) {
+        this->File.Fail("face " + std::to_string(f) + " names node " + vtkStratusNumberText(number) + ", the nodes are " +
+          vtkStratusNumberText(start) + " to " + vtkStratusNumberText(start + static_cast<double>(this->GetNodes()) - 1));
+      }
+      face.push_back(static_cast<int>(node));
+    }
+    if (face.size() < 3) {
+      this->File.Fail("face " + std::to_string(f) + " has " + std::to_string(face.size()) + " nodes, at least 3 are needed");
+    }
+    this->AddFace(face);
+  }
+}
+
+void vtkStratusUgridMesh::AddFace(const std::vector<int>& corners)
+{
+  double area = 0.0;
+  const double x0 = this->X[static_cast<size_t>(corners[0])], y0 = this->Y[static_cast<size_t>(corners[0])];
+  for (size_t i = 1; i + 1 < corners.size(); ++i) {
+    const auto a = static_cast<size_t>(corners[i]), b = static_cast<size_t>(corners[i + 1]);
+    area += (this->X[a] - x0) * (this->Y[b] - y0) - (this->X[b] - x0) * (this->Y[a] - y0);
+  }
+  this->Corners.insert(this->Corners.end(), corners.begin(), corners.end());
+  if (area < 0.0) {
+    std::reverse(this->Corners.end() - static_cast<std::ptrdiff_t>(corners.size()), this->Corners.end());
+  }
+  this->Offsets.push_back(this->Corners.size());
+}
+
+bool vtkStratusUgridMesh::Has(const Variable& variable, int dimension) const
+{
+  return std::find(variable.Dimensions.begin(), variable.Dimensions.end(), dimension) != variable.Dimensions.end();
+}
+
+int vtkStratusUgridMesh::FindLayers(const Variable& variable) const
+{
+  int found = -1;
+  for (int dimension : variable.Dimensions) {
+    if (dimension != this->NodeDimension && dimension != this->FaceDimension && !this->File.TimeOf(dimension) &&
+      this->File.LengthOf(dimension) != 1) {
+      found = found == -1 ? dimension : -2;
+    }
+  }
+  return found;
+}
+
+const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTime(const Variable& variable) const
+{
+  for (int dimension : variable.Dimensions) {
+    if (const Variable* time = this->File.TimeOf(dimension)) {
+      return time;
+    }
+  }
+  return nullptr;
+}
+
+vtkStratusUgridValues vtkStratusUgridMesh::Read(const Variable& variable, size_t step) const
+{
+  const int layers = this->FindLayers(variable);
+  std::vector<size_t> start, count;
+  for (int dimension : variable.Dimensions) {
+    const bool time = this->File.TimeOf(dimension) != nullptr;
+    const bool whole = dimension == this->NodeDimension || dimension == this->FaceDimension || dimension == layers;
+    start.push_back(time ? std::min(step, this->File.LengthOf(dimension) - 1) : 0);
+    count.push_back(whole ? this->File.LengthOf(dimension) : 1);
+  }
+  vtkStratusUgridValues result;
+  size_t stride = 1;
+  for (size_t i = count.size(); i-- > 0;) {
+    const int dimension = variable.Dimensions[i];
+    if (dimension == this->NodeDimension || dimension == this->FaceDimension) {
+      result.Across = stride;
+    } else if (dimension == layers) {
+      result.Along = stride;
+    }
+    stride *= count[i];
+  }
+  result.Values = this->File.Read(variable, start, count);
+  return result;
+}
+
+std::vector<double> vtkStratusUgridMesh::ReadAtNodes(const Variable& variable, size_t step) const
+{
+  const vtkStratusUgridValues values = this->Read(variable, step);
+  std::vector<double> result(this->GetNodes(), 0.0);
+  if (!this->IsOnFaces(variable)) {
+    for (size_t node = 0; node < result.size(); ++node) {
+      result[node] = values.At(node, 0);
+    }
+    return result;
+  }
+  std::vector<int> around(this->GetNodes(), 0);
+  for (size_t face = 0; face < this->GetFaces(); ++face) {
+    const double value = values.At(face, 0);
+    for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1] && std::isfinite(value); ++c) {
+      const auto node = static_cast<size_t>(this->Corners[c]);
+      result[node] += value;
+      ++around[node];
+    }
+  }
+  for (size_t node = 0; node < result.size(); ++node) {
+    result[node] = around[node] > 0 ? result[node] / around[node] : NAN;
+  }
+  return result;
+}

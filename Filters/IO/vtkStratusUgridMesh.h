@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A two-dimensional mesh of nodes and faces from a netCDF file, and its variables. Private to the module.
+#ifndef vtkStratusUgridMesh_h
+#define vtkStratusUgridMesh_h
+
+#include "vtkStratusNetCDFFile.h"
+
+#include <string>
+#include <vector>
+
+// Values of a step over nodes or faces, and over layers or their borders.
+struct vtkStratusUgridValues {
+  vtkSmartPointer<vtkDataArray> Values;
+  size_t Across = 0, Along = 0; // steps from a node or face to the next, and from a layer to the next; 0: there is one
+  double At(size_t place, size_t layer) const
+  {
+    return this->Values->GetComponent(static_cast<vtkIdType>(place * this->Across + layer * this->Along), 0);
+  }
+};
+
+class vtkStratusUgridMesh
+{
+public:
+  using Variable = vtkStratusNetCDFFile::Variable;
+
+  static const Variable* FindTopology(const vtkStratusNetCDFFile& file); // or FVCOM's nv; nullptr
+  explicit vtkStratusUgridMesh(const vtkStratusNetCDFFile& file);        // throws vtkStratusNetCDFError
+
+  size_t GetNodes() const { return this->X.size(); }
+  size_t GetFaces() const { return this->Offsets.size() - 1; }
+  const std::vector<double>& GetX() const { return this->X; }
+  const std::vector<double>& GetY() const { return this->Y; }
+  // The nodes of a face, counterclockwise from above.
+  const int* GetFace(size_t face, int& corners) const
+  {
+    corners = static_cast<int>(this->Offsets[face + 1] - this->Offsets[face]);
+    return &this->Corners[this->Offsets[face]];
+  }
+  bool IsInMetres() const { return this->Metres; }
+  const std::string& Describe() const { return this->Description; }
+
+  bool IsCoordinate(const Variable& variable) const { return variable.Name == this->XName || variable.Name == this->YName; }
+  bool IsOnNodes(const Variable& variable) const { return this->Has(variable, this->NodeDimension); }
+  bool IsOnFaces(const Variable& variable) const { return this->Has(variable, this->FaceDimension); }
+  // The one dimension besides time, nodes and faces, and those of length 1: -1 if there is none, -2 where there are several.
+  int FindLayers(const Variable& variable) const;
+  const Variable* FindTime(const Variable& variable) const;
+  vtkStratusUgridValues Read(const Variable& variable, size_t step) const;
+  // Reads values without layers, at nodes: values at faces are averaged over those around the node that have one.
+  std::vector<double> ReadAtNodes(const Variable& variable, size_t step) const;
+  const vtkStratusNetCDFFile& GetFile() const { return this->File; }
+
+private:
+  bool Has(const Variable& variable, int dimension) const;
+  void ReadNodes(const Variable& x, const Variable& y);
+  void ReadFaces(const Variable& connectivity, int first);
+  void AddFace(const std::vector<int>& corners);
+
+  const vtkStratusNetCDFFile& File;
+  int NodeDimension = -1, FaceDimension = -1;
+  std::string XName, YName;
+  std::vector<double> X, Y;
+  std::vector<size_t> Offsets = { 0 };
+  std::vector<int> Corners;
+  std::string Description;
+  bool Metres = false;
+};
+
+#endif

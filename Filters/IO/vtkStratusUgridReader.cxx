@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusUgridReader.h"
+
+#include "vtkStratusUgridLayers.h"
+#include "vtkStratusUgridMesh.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDoubleArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <netcdf.h>
+
+vtkStandardNewMacro(vtkStratusUgridReader);
+
+namespace {
+using Variable = vtkStratusNetCDFFile::Variable;
+
+bool IsValues(const vtkStratusUgridMesh& mesh, const vtkStratusUgridLayers& layers, const Variable& one)
+{
+  const bool placed = mesh.IsOnNodes(one) != mesh.IsOnFaces(one); // what has both dimensions is a table of neighbours
+  const bool layered = mesh.FindLayers(one) == -1 || layers.IsOnLayers(one) || layers.IsOnBorders(one);
+  return placed && layered && !mesh.IsCoordinate(one) && !layers.Uses(one) && one.Type != NC_CHAR && one.Type < NC_STRING;
+}
+
+// The points of all borders of layers, in doubles, because coordinates of maps have seven digits before the point.
+vtkSmartPointer<vtkPoints> MakePoints(const vtkStratusUgridMesh& mesh, const std::vector<double>& z)
+{
+  vtkSmartPointer<vtkDoubleArray> places = vtkSmartPointer<vtkDoubleArray>::New();
+  places->SetNumberOfComponents(3);
+  places->SetNumberOfTuples(static_cast<vtkIdType>(z.size()));
+  double* to = places->GetPointer(0);
+  for (size_t i = 0; i < z.size(); ++i) {
+    *to++ = mesh.GetX()[i % mesh.GetNodes()];
+    *to++ = mesh.GetY()[i % mesh.GetNodes()];
+    *to++ = z[i];
+  }
+  vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
+  points->SetData(places);
+  return points;
+}
+
+// Adds the prism of a face between two borders.
+void AddPrism(vtkUnstructuredGrid* grid, const int* corners, int count, vtkIdType below, vtkIdType above, std::vector<vtkIdType>& ids)
+{
+  constexpr int types[] = { VTK_WEDGE, VTK_HEXAHEDRON, VTK_PENTAGONAL_PRISM, VTK_HEXAGONAL_PRISM };
+  ids.clear();
+  if (count <= 6) {
+    for (vtkIdType border : { below, above }) {
+      std::transform(corners, corners + count, std::back_inserter(ids), [border](int node) { return border + node; });
+      if (count == 3) { // VTK counts a wedge's first triangle as seen from outside, other prisms' first faces as seen from within
+        std::reverse(ids.end() - count, ids.end());
+      }
+    }
+    grid->InsertNextCell(types[count - 3], 2 * count, ids.data());
+    return;
+  }
+  ids.push_back(count); // faces of a polyhedron: the bottom seen from below, the top, the sides
+  std::transform(corners, corners + count, std::back_inserter(ids), [below](int node) { return below + node; });
+  std::reverse(ids.end() - count, ids.end());
+  ids.push_back(count);
+  std::transform(corners, corners + count, std::back_inserter(ids), [above](int node) { return above + node; });
+  for (int i = 0; i < count; ++i) {
+    const int a = corners[i], b = corners[(i + 1) % count];
+    ids.insert(ids.end(), { 4, below + a, below + b, above + b, above + a });
+  }
+  grid->InsertNextCell(VTK_POLYHEDRON, count + 2, ids.data());
+}
+
+void AddCells(const vtkStratusUgridMesh& mesh, const std::vector<double>& z, const std::vector<char>& dry, vtkUnstructuredGrid* grid)
+{
+  const size_t nodes = mesh.GetNodes(), layers = z.size() / nodes - 1;
+  vtkSmartPointer<vtkUnsignedCharArray> ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(static_cast<vtkIdType>(layers * mesh.GetFaces()));
+  ghosts->FillValue(0);
+  std::vector<vtkIdType> ids;
+  grid->Allocate(static_cast<vtkIdType>(layers * mesh.GetFaces()));
+  bool any = false;
+  for (size_t layer = 0; layer < layers; ++layer) {
+    for (size_t face = 0; face < mesh.GetFaces(); ++face) {
+      int count = 0;
+      const int* corners = mesh.GetFace(face, count);
+      const double* below = &z[layer * nodes];
+      AddPrism(grid, corners, count, static_cast<vtkIdType>(layer * nodes), static_cast<vtkIdType>((layer + 1) * nodes), ids);
+      const bool thin =
+        std::all_of(corners, corners + count, [below, nodes](int n) { return below[nodes + static_cast<size_t>(n)] <= below[n]; });
+      if (thin || dry[face]) {
+        ghosts->SetValue(static_cast<vtkIdType>(layer * mesh.GetFaces() + face), vtkDataSetAttributes::HIDDENCELL);
+        any = true;
+      }
+    }
+  }
+  if (any) {
+    grid->GetCellData()->AddArray(ghosts);
+  }
+}
+
+// A value at a border of layers on a node, from those in the middle of the layers below and above it, by distance.
+double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers& layers, const std::vector<double>& z, size_t nodes,
+  size_t node, size_t border)
+{
+  const size_t count = layers.GetCount();
+  const auto value = [&](size_t layer) { return values.At(node, layers.FromBottom(layer, count)); };
+  if (border == 0 || border == count) {
+    return value(border == 0 ? 0 : count - 1);
+  }
+  const auto height = [&](size_t one) { return z[one * nodes + node]; };
+  const double under = height(border) - height(border - 1), over = height(border + 1) - height(border);
+  const double weight = under + over > 0.0 ? over / (under + over) : 0.5; // of the layer below: it is nearer where the one above is thicker
+  return weight * value(border - 1) + (1.0 - weight) * value(border);
+}
+} // namespace
+
+bool vtkStratusUgridReader::CanReadFile(const char* name)
+{
+  try {
+    const vtkStratusNetCDFFile file(name ? name : "");
+    return vtkStratusUgridMesh::FindTopology(file) != nullptr;
+  } catch (const vtkStratusNetCDFError&) {
+    return false;
+  }
+}
+
+std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
+{
+  const vtkStratusUgridMesh mesh(file);
+  const vtkStratusUgridLayers layers(mesh);
+  for (bool layered : { true, false }) {
+    for (const Variable& one : file.GetVariables()) {
+      if (IsValues(mesh, layers, one) && layered == (mesh.FindLayers(one) >= 0)) {
+        this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
+      }
+    }
+  }
+  const Variable& chosen = *file.Find(this->ChosenName(file));
+  const Variable* time = mesh.FindTime(chosen) ? mesh.FindTime(chosen) : layers.GetTime();
+  if (time) {
+    this->Times = file.ReadTimes(*time);
+    this->TimeUnits = file.Text(*time, "units");
+    if (this->Times.empty()) {
+      file.Fail("time '" + time->Name + "' has no steps");
+    }
+  }
+  this->LengthUnits = mesh.IsInMetres() ? "m" : "";
+  this->Description = mesh.Describe() + "; " + layers.Describe();
+  return "vtkUnstructuredGrid";
+}
+
+void vtkStratusUgridReader::Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+{
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(output);
+  const vtkStratusUgridMesh mesh(file);
+  const vtkStratusUgridLayers layers(mesh);
+  std::vector<double> z;
+  std::vector<char> dry;
+  layers.Read(step, z, dry);
+  grid->SetPoints(MakePoints(mesh, z));
+  AddCells(mesh, z, dry, grid);
+  const Variable& chosen = *file.Find(this->ChosenName(file));
+  const vtkStratusUgridValues values = mesh.Read(chosen, step);
+  const size_t count = layers.GetCount();
+  const bool on_nodes = mesh.IsOnNodes(chosen), borders = layers.IsOnBorders(chosen), layered = layers.IsOnLayers(chosen);
+  const size_t places = on_nodes ? mesh.GetNodes() : mesh.GetFaces(), storeys = on_nodes ? count + 1 : count;
+  vtkSmartPointer<vtkDataArray> array;
+  array.TakeReference(values.Values->NewInstance());
+  array->SetName(chosen.Name.c_str());
+  array->SetNumberOfTuples(static_cast<vtkIdType>(places * storeys));
+  for (size_t s = 0; s < storeys; ++s) {
+    for (size_t p = 0; p < places; ++p) {
+      double value = 0.0;
+      if (on_nodes && layered) {
+        value = Between(values, layers, z, places, p, s);
+      } else if (on_nodes || layered) {
+        value = values.At(p, layered ? layers.FromBottom(s, count) : borders ? layers.FromBottom(s, count + 1) : 0);
+      } else {
+        value = borders ? 0.5 * (values.At(p, layers.FromBottom(s, count + 1)) + values.At(p, layers.FromBottom(s + 1, count + 1)))
+                        : values.At(p, 0);
+      }
+      array->SetComponent(static_cast<vtkIdType>(s * places + p), 0, value);
+    }
+  }
+  vtkDataSetAttributes* data = on_nodes ? static_cast<vtkDataSetAttributes*>(grid->GetPointData()) : grid->GetCellData();
+  data->AddArray(array);
+  data->SetActiveScalars(chosen.Name.c_str());
+}
+
+void vtkStratusUgridReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusUgridReader
+ * @brief   reads water models' meshes in layers from netCDF: UGRID, with the conventions of Delft3D FM, SCHISM and FVCOM
+ *
+ * The output is a vtkUnstructuredGrid of wedges and hexahedra (prisms of five and six sides, and polyhedra of more) that stand on the faces
+ * of a two-dimensional mesh, layer on layer from the bottom up. Points are nodes: number layer * nodes + node, the layers' borders from 0
+ * to the number of layers. Cells are number layer * faces + face.
+ *
+ * The mesh is a variable of cf_role mesh_topology and dimension 2 with node_coordinates and face_node_connectivity (start_index, _FillValue
+ * at the end of smaller faces), or FVCOM's nv, x and y (or lon and lat).
+ *
+ * Heights follow, in this order, from
+ * - heights of the layers' borders at nodes (SCHISM's zCoordinates or zcor, any variable of standard_name altitude or height on nodes);
+ * - sigma at the layers' borders or centres (standard_name ocean_sigma_coordinate, FVCOM's siglev and siglay), with the free surface and
+ *   the bottom that formula_terms name;
+ * - fixed levels at borders or centres, cut off at the bottom and the free surface;
+ * - one layer between the bottom and the free surface.
+ * Free surface and bottom are otherwise found by standard_name and the names that the three models use; what is on faces is averaged at
+ * nodes. Degrees become metres, as in vtkStratusCFReader.
+ *
+ * A variable on faces becomes cell data, one on nodes point data, both of its own name. Values at centres of layers on nodes are
+ * interpolated to the layers' borders; values at borders on faces are averaged over the layer; one without layers is repeated in each.
+ * Dry cells (a free surface at or below the bottom or without a value, FVCOM's wet_cells, SCHISM's wetdry_elem), cells without thickness
+ * and those at nodes without a bottom are blanked by vtkGhostType.
+ *
+ * Errors are a file without a mesh, nodes' numbers out of range, coordinates without a value, no layers, layers that are upside down, and a
+ * time that does not increase.
+ *
+ * @sa vtkStratusCFReader vtkStratusTetrahedraMapper
+ */
+#ifndef vtkStratusUgridReader_h
+#define vtkStratusUgridReader_h
+
+#include "vtkStratusNetCDFReader.h"
+
+class STRATUSFILTERSIO_EXPORT vtkStratusUgridReader : public vtkStratusNetCDFReader
+{
+public:
+  static vtkStratusUgridReader* New();
+  vtkTypeMacro(vtkStratusUgridReader, vtkStratusNetCDFReader);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Returns whether the file has a mesh that this reader takes, whatever else is wrong with it.
+   */
+  static bool CanReadFile(const char* name);
+
+protected:
+  vtkStratusUgridReader() = default;
+  ~vtkStratusUgridReader() override = default;
+
+  std::string Inspect(const vtkStratusNetCDFFile& file) override;
+  void Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
+
+private:
+  vtkStratusUgridReader(const vtkStratusUgridReader&) = delete;
+  void operator=(const vtkStratusUgridReader&) = delete;
+};
+
+#endif

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusMultiVolume
+ * @brief   draws up to eight volumes that may overlap as one medium, right in depth
+ *
+ * Where volumes that overlap are props of their own, one is drawn over the other. This prop draws them in one pass: along each ray the
+ * optical depths of all volumes add up, and their colours are mixed by them. Grids, spacings, directions, types and matrices may differ.
+ *
+ * Its interface is vtkMultiVolume's: SetVolume() takes a vtkVolume and a port. VTK's own vtkMultiVolume works with
+ * vtkGPUVolumeRayCastMapper only, which has all inputs; here each vtkVolume has a vtkStratusVolumeMapper of its own, which keeps its input,
+ * array, cropping, clipping planes, mask, sampling and ImageErrorTolerance, beside its vtkVolumeProperty and matrix. Those volumes are not
+ * added to the renderer; this prop is. A volume that is not visible (SetVisibility) is left out.
+ *
+ * Supported are blend mode composite, one component, point and cell data, light, gradient opacity, binary masks, crop boxes (the inside
+ * region, or all) and up to six clipping planes a volume; opaque geometry, translucent surfaces peeled with volumes, hardware picking of
+ * the prop. All else, sampling by cells and label maps included, is refused by an error, and nothing is drawn. One volume alone is drawn
+ * as its mapper draws it. The host draws.
+ *
+ * FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances, InteractiveUpdateRate,
+ * UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the mapper at the lowest port. The sampling's step is the
+ * smallest that any volume asks for; volumes that need less take every so many of these steps.
+ *
+ * @sa vtkStratusVolumeMapper vtkMultiVolume
+ */
+#ifndef vtkStratusMultiVolume_h
+#define vtkStratusMultiVolume_h
+
+#include "StratusRenderingVolumeModule.h" // For export macro
+#include "vtkVolume.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkImageData;
+
+class STRATUSRENDERINGVOLUME_EXPORT vtkStratusMultiVolume : public vtkVolume
+{
+public:
+  static vtkStratusMultiVolume* New();
+  vtkTypeMacro(vtkStratusMultiVolume, vtkVolume);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  //@{
+  /**
+   * Set/Get the volume at a port, 0..7; nullptr removes it. Other ports, and a volume that is at another port or is this prop, are an
+   * error, and nothing changes.
+   */
+  void SetVolume(vtkVolume* volume, int port = 0);
+  vtkVolume* GetVolume(int port = 0);
+  void RemoveVolume(int port) { this->SetVolume(nullptr, port); }
+  //@}
+
+  /**
+   * Get the number of ports that have a volume.
+   */
+  int GetNumberOfVolumes();
+
+  //@{
+  /**
+   * As in vtkMultiVolume: each volume has its own property. The getter returns that of the lowest port (nullptr without volumes), and the
+   * setter does nothing.
+   */
+  void SetProperty(vtkVolumeProperty* property) override;
+  vtkVolumeProperty* GetProperty() override;
+  //@}
+
+  /**
+   * Get the bounds of all volumes in world coordinates; uninitialized bounds (1, -1, ...) without a volume that is visible.
+   */
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+
+  //@{
+  /**
+   * The latest time at which this prop, one of its volumes, or what these draw was modified.
+   */
+  vtkMTimeType GetMTime() override;
+  vtkMTimeType GetRedrawMTime() override;
+  //@}
+
+  /**
+   * Takes the volumes of another vtkStratusMultiVolume, too.
+   */
+  void ShallowCopy(vtkProp* prop) override;
+
+  /**
+   * Get the reason why the last picture was refused, empty if it was not. An error event reports it, too, but only once for equal reasons
+   * in a row.
+   */
+  const char* GetLastError();
+
+  /**
+   * Get the last picture, as vtkStratusVolumeMapper::GetLastImage() does.
+   */
+  vtkImageData* GetLastImage();
+
+  //@{
+  /**
+   * Get of the last picture: values interpolated, segments skipped, pixels that the audit found different, milliseconds of casting and,
+   * for the volume at a port, the reason of its choice of structure and sampling ("" where there is none), and its world length between
+   * samples (0).
+   */
+  vtkTypeUInt64 GetSamplesTaken();
+  vtkTypeUInt64 GetSamplesSkipped();
+  vtkTypeUInt64 GetDifferingPixels();
+  double GetCastTime();
+  const char* GetReason(int port);
+  double GetUsedSampleDistance(int port);
+  //@}
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkStratusMultiVolume();
+  ~vtkStratusMultiVolume() override;
+
+private:
+  vtkStratusMultiVolume(const vtkStratusMultiVolume&) = delete;
+  void operator=(const vtkStratusMultiVolume&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

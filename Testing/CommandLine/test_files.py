@@ -1,0 +1,461 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
+[PATHS OF MAKE-CUMULUS AND MAKE-RIVER, where libnetcdf was there to build with]"""
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import (
+    vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid)
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
+    vtkXMLUnstructuredGridWriter)
+import numpy
+
+STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
+MAKERS = [os.path.realpath(path) for path in sys.argv[3:]]
+SIDE = (5, 4, 6)
+LOOK = ("--size", "48x40", "--device", "host", "--opacity", "0:0,30:.6", "--color", "viridis", "--unit-distance", "1")
+failures = 0
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def run(*words):
+    return subprocess.run([STRATUS, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+
+
+def expect(status, pattern, *words):
+    """Runs the command; returns what it said."""
+    done = run(*words)
+    if done.returncode != status or not re.search(pattern, done.stdout, re.MULTILINE):
+        fail(f"{' '.join(words)} returned {done.returncode}, not {status} and '{pattern}':\n{done.stdout}")
+    if status and len(done.stdout.splitlines()) > status:  # a usage error has a second line
+        fail(f"{' '.join(words)} printed more than an error:\n{done.stdout}")
+    return done.stdout
+
+
+def picture(name, *words):
+    expect(0, "picture", "render", name, "-o", "out.png", *LOOK, *words)
+    with open("out.png", "rb") as file:
+        return file.read()
+
+
+def write(writer, data, name):
+    writer = writer()
+    writer.SetInputData(data)
+    writer.SetFileName(name)
+    writer.SetDataModeToAscii()
+    if not writer.Write():
+        fail(f"{name} was not written")
+    return name
+
+
+def values(step=0):
+    x, y, z = numpy.meshgrid(*(numpy.arange(n) for n in SIDE), indexing="ij")
+    return (x + 2 * y + 4 * z + step).astype(numpy.float32).ravel(order="F")
+
+
+def fill(data, step=0):
+    array = numpy_to_vtk(values(step), deep=True)
+    array.SetName("qc")
+    data.GetPointData().AddArray(array)
+    if data.GetNumberOfCells():
+        array = numpy_to_vtk(numpy.arange(data.GetNumberOfCells(), dtype=numpy.float64), deep=True)
+        array.SetName("part")
+        data.GetCellData().AddArray(array)
+    return data
+
+
+def axes(*lists):
+    grid = vtkRectilinearGrid()
+    grid.SetDimensions(*(len(one) for one in lists))
+    for one, put in zip(lists, (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates)):
+        put(numpy_to_vtk(numpy.array(one, dtype=numpy.float64), deep=True))
+    return grid
+
+
+def curved(*lists):
+    grid, points = vtkStructuredGrid(), vtkPoints()
+    grid.SetDimensions(*(len(one) for one in lists))
+    for z in lists[2]:
+        for y in lists[1]:
+            for x in lists[0]:
+                points.InsertNextPoint(x, y, z)
+    grid.SetPoints(points)
+    return grid
+
+
+def image(step=0):
+    data = vtkImageData()
+    data.SetDimensions(*SIDE)
+    return fill(data, step)
+
+
+def unstructured(data):
+    append = vtkAppendFilter()
+    append.AddInputData(data)
+    append.Update()
+    return append.GetOutput()
+
+
+def test_kinds():
+    stretched = (range(5), range(4), [0, 1, 2, 4, 7, 11])
+    write(vtkXMLRectilinearGridWriter, fill(axes(*stretched)), "stretched.vtr")
+    write(vtkXMLStructuredGridWriter, fill(curved(*stretched)), "stretched.vts")
+    write(vtkXMLUnstructuredGridWriter, unstructured(fill(curved(*stretched))), "stretched.vtu")
+    expect(0, "kind +rectilinear grid of 5 x 4 x 6 points", "info", "stretched.vtr")
+    expect(0, "kind +curvilinear grid of 5 x 4 x 6 points", "info", "stretched.vts")
+    expect(0, "kind +unstructured grid", "info", "stretched.vtu")
+    expect(0, "kind +image of 5 x 4 x 6 points", "info", write(vtkXMLImageDataWriter, image(), "image.vti"))
+    same = picture("stretched.vtu")
+    if picture("stretched.vts") != same:
+        fail("a curvilinear grid is another picture than its cells")
+    if picture("stretched.vtu", "--variable", "part") == same:
+        fail("--variable changes nothing")
+    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\), part \(0 \.\. 59\)$",
+           "render", "stretched.vts", "-o", "no.png", "--variable", "x")
+    # two halves that meet
+    halves = vtkMultiBlockDataSet()
+    for number, part in enumerate(([0, 1, 2], [2, 4, 7, 11])):
+        grid, first = curved(range(5), range(4), part), (0, 2)[number]
+        array = numpy_to_vtk(values()[20 * first:20 * (first + len(part))], deep=True)
+        array.SetName("qc")
+        grid.GetPointData().AddArray(array)
+        halves.SetBlock(number, grid)
+    write(vtkXMLMultiBlockDataWriter, halves, "halves.vtm")
+    expect(0, "kind +2 parts: 2 vtkStructuredGrid", "info", "halves.vtm")
+    if "360 tetrahedra, 120 points" not in expect(0, "mesh", "render", "halves.vtm", "-o", "out.png", *LOOK):
+        fail("parts that meet do not share their points")
+    if picture("halves.vtm") != same:
+        fail("two halves are another picture than the whole")
+
+
+def test_modes_of_grids():
+    seen = {picture("stretched.vts")}
+    for words in (("maximum",), ("minimum",), ("average",), ("additive",), ("isosurface", "--contours", "12,20"),
+                  ("average", "--average-range", "5,9")):
+        expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
+        seen.add(open("out.png", "rb").read())
+    seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
+    if len(seen) != 8:
+        fail(f"of 8 pictures in other modes and cropped, {len(seen)} differ")
+    expect(2, "--mode first-hit is for images", "render", "stretched.vts", "-o", "no.png", "--mode", "first-hit")
+    for words in (("--shade",), ("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
+        expect(2, "are for images", "render", "stretched.vts", "-o", "no.png", *words)
+
+
+def test_bad_grids():
+    for name, bad, told in (("back", [0, 1, 2, 1.5, 3, 4], r"along z .* number 3 is 1\.5, after 2$"),
+                            ("twice", [0, 0, 2, 3, 4, 5], r"along z .* number 1 is 0, after 0$"),
+                            ("nan", [0, 1, math.nan, 3, 4, 5], r"along z .* number 2 is (-)?nan")):
+        write(vtkXMLRectilinearGridWriter, fill(axes(range(5), range(4), bad)), name + ".vtr")
+        if name != "nan":  # VTK's parser refuses the word itself
+            expect(1, told, "render", name + ".vtr", "-o", "no.png")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), range(6))), "whole.vts")
+    for name in ("stretched.vtr", "whole.vts", "halves.vtm"):
+        with open(name, "rb") as file:
+            text = file.read()
+        with open("short" + name[-4:], "wb") as file:
+            file.write(text[:len(text) * 2 // 3])
+        expect(1, "^stratus: cannot read", "render", "short" + name[-4:], "-o", "no.png")
+    if os.path.exists("no.png"):
+        fail("a picture was left by a command that failed")
+
+
+def collection(name, entries):
+    with open(name, "w") as file:
+        file.write('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>\n')
+        for time, part, path in entries:
+            file.write(f'<DataSet timestep="{time}" group="" part="{part}" file="{path}"/>\n')
+        file.write("</Collection></VTKFile>\n")
+
+
+def test_collections():
+    for step in range(4):
+        write(vtkXMLImageDataWriter, image(10 * step), f"step{step}.vti")
+    collection("steps.pvd", [(1.5 * i, 0, f"step{i}.vti") for i in range(4)])
+    expect(0, r"time +4 steps: 0 1\.5 3 4\.5", "info", "steps.pvd")
+    expect(0, r"time +step 1 of 4, at 1\.5", "render", "steps.pvd", "-o", "one.png", *LOOK, "--time", "1.4")
+    for words in (("last",), ("step:3",), ("99",), ("+4.4",)):
+        expect(0, r"time +step 3 of 4, at 4\.5", "render", "steps.pvd", "-o", "three.png", *LOOK, "--time", *words)
+    if picture("step3.vti") != open("three.png", "rb").read() or picture("step3.vti") == open("one.png", "rb").read():
+        fail("a step of a collection is not its file's picture")
+    expect(2, "within 0..3", "render", "steps.pvd", "-o", "no.png", "--time", "step:4")
+    expect(2, "does not tell the unit", "render", "steps.pvd", "-o", "no.png", "--time", "3h")
+    expect(2, "'fortnight' is no unit", "render", "steps.pvd", "-o", "no.png", "--time", "3 fortnight")
+    expect(2, "has no time", "render", "step0.vti", "-o", "no.png", "--time", "3")
+    collection("back.pvd", [(0, 0, "step0.vti"), (2, 0, "step1.vti"), (1, 0, "step2.vti")])
+    expect(1, r"backwards: 1 \(entry 2\) comes after 2$", "render", "back.pvd", "-o", "no.png")
+    collection("lost.pvd", [(0, 0, "step9.vti")])
+    expect(1, "step9.vti.*No such file", "render", "lost.pvd", "-o", "no.png")
+    collection("none.pvd", [])
+    expect(1, "names no file", "render", "none.pvd", "-o", "no.png")
+    with open("cut.pvd", "w") as file:
+        file.write(open("steps.pvd").read()[:150])
+    expect(1, "cannot read 'cut.pvd'", "render", "cut.pvd", "-o", "no.png")
+    for i, part in enumerate(([0, 1, 2], [2, 3, 4, 5])):
+        grid = curved(range(5), range(4), part)
+        array = numpy_to_vtk(values()[20 * (0, 2)[i]:20 * ((0, 2)[i] + len(part))], deep=True)
+        array.SetName("qc")
+        grid.GetPointData().AddArray(array)
+        write(vtkXMLStructuredGridWriter, grid, f"part{i}.vts")
+    collection("parts.pvd", [(7, 0, "part0.vts"), (7, 1, "part1.vts")])
+    expect(0, "kind +2 parts", "info", "parts.pvd")
+
+
+def test_films():
+    words = ("--time", "all", "--frames", "film-%03d.png", *LOOK)
+    said = expect(0, "frames +4, film-%03d.png", "render", "steps.pvd", *words)
+    if said.count("s left") != 4 or not re.search(r"frame +film-002.png, step 2 of 4, at 3, ", said):
+        fail("a film on a pipe does not tell of each frame:\n" + said)
+    for step in range(4):
+        if picture(f"step{step}.vti", "--time", "first") != open(f"film-00{step}.png", "rb").read():
+            fail(f"frame {step} is not that step's picture")
+    # a mesh that stays and values that change: neighbours are found once
+    for step in range(5):
+        write(vtkXMLUnstructuredGridWriter, unstructured(fill(curved(range(5), range(4), range(6)), 5 * step)), f"mesh{step}.vtu")
+    collection("mesh.pvd", [(i, 0, f"mesh{i}.vtu") for i in range(5)])
+    expect(0, "built +1 times the mesh, [56] times its values", "render", "mesh.pvd", "--frames", "mesh-%d.png", *LOOK)
+    if len({open(f"mesh-{i}.png", "rb").read() for i in range(5)}) != 5:
+        fail("frames of other values are the same")
+    expect(2, "where to", "render", "steps.pvd", "--time", "all")
+    expect(2, "leave out -o", "render", "steps.pvd", "--frames", "a-%d.png", "-o", "b.png")
+    expect(2, "leave out --time 3", "render", "steps.pvd", "--frames", "a-%d.png", "--time", "3")
+    for name in ("film.png", "a-%s.png", "a-%d-%d.png", "a-%.3d.png", "a-%1000d.png", "a-%%.png", "a-%"):
+        expect(2, "needs one number", "render", "steps.pvd", "--frames", name)
+    # a step that is broken ends the film, and leaves the frames before it
+    collection("broken.pvd", [(0, 0, "step0.vti"), (1, 0, "step1.vti"), (2, 0, "short.vts"), (3, 0, "step2.vti")])
+    done = run("render", "broken.pvd", "--frames", "broken-%d.png", *LOOK)
+    if done.returncode != 1 or "short.vts" not in done.stdout or os.path.exists("broken-2.png"):
+        fail("a film with a broken step: " + done.stdout)
+
+
+def resident(steps):
+    collection("long.pvd", [(i, 0, f"big{i % 2}.vti") for i in range(steps)])
+    said = expect(0, "resident", "render", "long.pvd", "--frames", "long-%d.png", "--size", "16x16", "--device", "host",
+                  "--opacity", "0:0,30:.6", "--threads", "2")
+    return float(re.search(r"memory +([0-9.]+) MiB", said).group(1))
+
+
+def test_memory():
+    for step in range(2):
+        data = vtkImageData()
+        data.SetDimensions(40, 40, 40)
+        array = numpy_to_vtk((numpy.arange(40 ** 3, dtype=numpy.float32) % 31) + step, deep=True)
+        array.SetName("qc")
+        data.GetPointData().AddArray(array)
+        writer = vtkXMLImageDataWriter()
+        writer.SetInputData(data)
+        writer.SetFileName(f"big{step}.vti")
+        writer.SetCompressorTypeToNone()
+        writer.Write()
+    few, many = resident(20), resident(1000)
+    print(f"resident at most: {few} MiB in 20 steps, {many} MiB in 1,000")
+    if many > few + 8:  # a step has 0.25 MiB of values: a leak of one array a step would be 250 MiB
+        fail(f"memory grows: {few} MiB in 20 steps, {many} MiB in 1,000")
+
+
+def pixels(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    data = reader.GetOutput()
+    return vtk_to_numpy(data.GetPointData().GetScalars()).reshape(data.GetDimensions()[1], data.GetDimensions()[0], -1).astype(int)
+
+
+def drawn(name, *words):
+    picture(name, *words)
+    return pixels("out.png")
+
+
+def test_exaggeration():
+    tall = image()
+    tall.SetSpacing(1, 1, 3)
+    write(vtkXMLImageDataWriter, tall, "tall.vti")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), [0, 3, 6, 9, 12, 15])), "tall.vts")
+    write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), range(6))), "low.vts")
+    for low, high in (("image.vti", "tall.vti"), ("low.vts", "tall.vts")):
+        one, other = drawn(low, "--exaggerate", "3"), drawn(high)
+        if abs(one - other).max() > 1:  # by other roundings of the same positions
+            fail(f"{low} three times as high differs from {high} by {abs(one - other).max()}")
+        if abs(one - drawn(low)).max() < 20:
+            fail(f"--exaggerate changes nothing of {low}")
+    expect(2, "not above 0", "render", "image.vti", "-o", "no.png", "--exaggerate", "0")
+
+
+def test_annotations():
+    clear = ("--opacity", "0:0", "--background", "black")
+    if drawn("image.vti", *clear).max() != 0:
+        fail("nothing is to be seen")
+    for words in (("--axes",), ("--color-bar",), ("--caption", "at {time}")):
+        if not 200 < drawn("image.vti", *clear, "--size", "300x200", *words).max():
+            fail(f"{words[0]} draws nothing")
+    # The far edges of the box are behind the volume, the near ones before it: through an opaque box the latter alone are seen.
+    solid = ("--opacity", "0:1", "--color", "0:1:0:0", "--background", "black", "--size", "300x200", "--parallel", "--axes")
+    box = drawn("image.vti", *clear, "--size", "300x200", "--parallel", "--axes")
+    both = drawn("image.vti", *solid)
+    hidden = (both == [255, 0, 0]).all(axis=2) & (box.max(axis=2) > 100)
+    seen = (both[:, :, 1] > 100) & (box.max(axis=2) > 100)
+    if hidden.sum() < 50 or seen.sum() < 300:
+        fail(f"an opaque box hides {hidden.sum()} pixels of its far edges, and shows {seen.sum()} of the near ones")
+    for size in ("1x1", "30x20", "40x400"):
+        drawn("image.vti", "--size", size, "--axes", "--color-bar", "--caption", "x", "--log", "--zoom", "3")
+    expect(2, "leave out --axes", "render", "image.vti", "-o", "no.png", "--axes", "--show", "samples")
+    expect(2, "OpenEXR", "render", "image.vti", "-o", "no.exr", "--caption", "x")
+    if (drawn("image.vti", *clear, "--caption", "x") == drawn("image.vti", *clear, "--caption", "y")).all():
+        fail("captions of other letters are the same")
+
+
+def test_colors_and_logarithm():
+    told = run("--help").stdout.replace("\n", " ")
+    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", told).group(1).split(", ")
+    if not {"viridis", "cividis", "temperature", "salinity", "algae", "sediment", "oxygen", "depth"} <= set(names):
+        fail(f"colour maps are {names}")
+    if len({picture("image.vti", "--color", name) for name in names}) != len(names):
+        fail("two colour maps are the same")
+    with_log = expect(0, "over the logarithm: opacity 0 at 1e-06, ", "render", write_range("wide.vti", 1e-9, 1e-2), "-o", "log.png",
+                      "--log", "--size", "64x64")
+    if "histogram" in with_log and (pixels("log.png") == drawn("wide.vti", "--size", "64x64")).all():
+        fail("--log changes nothing")
+    expect(1, "no value above 0", "render", write_range("minus.vti", -5, -1), "-o", "no.png", "--log")
+
+
+def write_range(name, low, high):
+    data = vtkImageData()
+    data.SetDimensions(*SIDE)
+    array = numpy_to_vtk(numpy.linspace(low, high, 120), deep=True)
+    array.SetName("qc")
+    data.GetPointData().AddArray(array)
+    return write(vtkXMLImageDataWriter, data, name)
+
+
+def test_netcdf():
+    if not MAKERS:
+        open("some.nc", "w").close()
+        expect(1, "built without libnetcdf", "render", "some.nc", "-o", "no.png")
+        return
+    subprocess.run([MAKERS[0], "cumulus.nc", "24"], check=True)
+    said = expect(0, "rectilinear grid of 24 x 24 x 64 points", "info", "cumulus.nc", "--time", "2h")
+    for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2 hours",
+                    r"variable +'qc' in g kg-1, cloud liquid water mixing ratio, 0 \.\. [0-9.]+$", r"z by 'z' \(m\)"):
+        if not re.search(pattern, said, re.MULTILINE):
+            fail(f"info of cumulus.nc does not say '{pattern}':\n{said}")
+    for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8"):
+        expect(0, r"time +step 8 of 13, at 2 hours since", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
+    expect(1, r"no variable 'qi' in 'cumulus.nc'; the variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
+           "--variable", "qi")
+    with open("cumulus.nc", "rb") as file:
+        text = file.read()
+    with open("cut.nc", "wb") as file:
+        file.write(text[:-1000])
+    expect(1, "the file is cut short: it has ", "render", "cut.nc", "-o", "no.png")
+    subprocess.run([MAKERS[1], "river.nc", "1"], check=True)
+    said = expect(0, "10 layers by sigma", "info", "river.nc", "--variable", "dye", "--time", "5h")
+    for pattern in (r"vtkHexahedron \(12\)", r"vtkWedge \(13\)", r"0 without volume, 0 of negative orientation", r"variable +'salinity' in psu",
+                    r"drawn +'dye' on points"):
+        if not re.search(pattern, said):
+            fail(f"info of river.nc does not say '{pattern}':\n{said}")
+    expect(0, "frames +31, river-%02d.png", "render", "river.nc", "--variable", "dye", "--frames", "river-%02d.png", "--size", "48x32",
+           "--exaggerate", "60", "--opacity", "0:0,1:.5", "--unit-distance", "300", "--device", "host")
+    if len({open(f"river-{i:02d}.png", "rb").read() for i in range(31)}) < 25:
+        fail("the film of a tide stands still")
+    expect(0, "array 'salinity' on cells", "render", "river.nc", "--variable", "salinity", "-o", "salt.png", "--size", "32x32")
+
+
+def openfoam(cells=(2, 2, 2)):
+    """A block of hexahedra as polyMesh, two times."""
+    nx, ny, nz = cells
+    point = lambda i, j, k: i + (nx + 1) * (j + (ny + 1) * k)
+    cell = lambda i, j, k: i + nx * (j + ny * k)
+    inner, border = [], []
+    for k in range(nz):
+        for j in range(ny):
+            for i in range(nx):
+                corners = {
+                    (1, 0, 0): (point(i + 1, j, k), point(i + 1, j + 1, k), point(i + 1, j + 1, k + 1), point(i + 1, j, k + 1)),
+                    (0, 1, 0): (point(i, j + 1, k), point(i, j + 1, k + 1), point(i + 1, j + 1, k + 1), point(i + 1, j + 1, k)),
+                    (0, 0, 1): (point(i, j, k + 1), point(i + 1, j, k + 1), point(i + 1, j + 1, k + 1), point(i, j + 1, k + 1)),
+                    (-1, 0, 0): (point(i, j, k), point(i, j, k + 1), point(i, j + 1, k + 1), point(i, j + 1, k)),
+                    (0, -1, 0): (point(i, j, k), point(i + 1, j, k), point(i + 1, j, k + 1), point(i, j, k + 1)),
+                    (0, 0, -1): (point(i, j, k), point(i, j + 1, k), point(i + 1, j + 1, k), point(i + 1, j, k))}
+                for (di, dj, dk), face in corners.items():
+                    a, b, c = i + di, j + dj, k + dk
+                    if 0 <= a < nx and 0 <= b < ny and 0 <= c < nz:
+                        if min(di, dj, dk) >= 0:
+                            inner.append((face, cell(i, j, k), cell(a, b, c)))
+                    else:
+                        border.append((face, cell(i, j, k)))
+    head = 'FoamFile {{ version 2.0; format ascii; class {}; location "{}"; object {}; }}\n'
+
+    def put(folder, name, kind, text):
+        os.makedirs(os.path.join("foam", folder), exist_ok=True)
+        with open(os.path.join("foam", folder, name), "w") as file:
+            file.write(head.format(kind, folder, name) + text)
+
+    def lines(rows):
+        rows = list(rows)
+        return f"{len(rows)}\n(\n" + "\n".join(rows) + "\n)\n"
+
+    mesh = "constant/polyMesh"
+    put(mesh, "points", "vectorField", lines(
+        f"({i} {j} {k})" for k in range(nz + 1) for j in range(ny + 1) for i in range(nx + 1)))
+    put(mesh, "faces", "faceList", lines("4(" + " ".join(map(str, one[0])) + ")" for one in inner + border))
+    put(mesh, "owner", "labelList", lines(str(one[1]) for one in inner + border))
+    put(mesh, "neighbour", "labelList", lines(str(one[2]) for one in inner))
+    put(mesh, "boundary", "polyBoundaryMesh", f"1 ( walls {{ type wall; nFaces {len(border)}; startFace {len(inner)}; }} )\n")
+    put("system", "controlDict", "dictionary", "startTime 0; endTime 3600; deltaT 3600; writeControl timeStep; writeInterval 1;\n")
+    for time in (0, 3600):
+        put(str(time), "qc", "volScalarField", "dimensions [0 0 0 0 0 0 0];\ninternalField nonuniform List<scalar>\n" + lines(
+            str(i + time / 600) for i in range(nx * ny * nz)) + ";\nboundaryField { walls { type zeroGradient; } }\n")
+    open("foam/case.foam", "w").close()
+
+
+def test_openfoam():
+    openfoam()
+    for name in ("foam/case.foam", "foam/system/controlDict"):
+        expect(0, "time +[12] steps?: (0 )?3600 s", "info", name)
+        expect(0, "array 'qc' on", "render", name, "-o", "foam.png", "--size", "40x40", "--time", "1h", "--variable", "qc")
+    expect(0, "48 tetrahedra", "render", "foam/case.foam", "-o", "foam.png", "--size", "40x40", "--time", "60 min", "--variable", "qc")
+    os.remove("foam/constant/polyMesh/faces")
+    expect(1, "^stratus: ", "render", "foam/case.foam", "-o", "no.png")
+
+
+def test_ensight():
+    with open("box.case", "w") as file:
+        file.write("FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: box.geo\nVARIABLE\nscalar per node: 1 qc box.qc**\n"
+                   "TIME\ntime set: 1\nnumber of steps: 2\nfilename start number: 0\nfilename increment: 1\ntime values: 0 2.5\n")
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    with open("box.geo", "w") as file:
+        file.write("a box\nof one cell\nnode id assign\nelement id assign\npart\n%10d\nbox\ncoordinates\n%10d\n" % (1, 8))
+        for axis in range(3):
+            file.write("".join("%12.5e\n" % corner[axis] for corner in corners))
+        file.write("hexa8\n%10d\n" % 1 + "".join("%10d" % (i + 1) for i in range(8)) + "\n")
+    for step in range(2):
+        with open(f"box.qc0{step}", "w") as file:
+            file.write("qc\npart\n%10d\ncoordinates\n" % 1 + "".join("%12.5e\n" % (i + 10 * step) for i in range(8)))
+    expect(0, r"time +2 steps: 0 2\.5", "info", "box.case")
+    expect(0, r"array +'qc', float, 1 component, 10 \.\. 17", "info", "box.case", "--time", "2.5")
+    expect(0, "6 tetrahedra, 8 points", "render", "box.case", "-o", "ensight.png", "--size", "40x40")
+    os.remove("box.geo")
+    expect(1, "^stratus: ", "render", "box.case", "-o", "no.png")
+
+
+if __name__ == "__main__":
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    os.makedirs(FOLDER)
+    os.chdir(FOLDER)
+    for test in [value for name, value in list(globals().items()) if name.startswith("test_")]:
+        test()
+    sys.exit(1 if failures else 0)

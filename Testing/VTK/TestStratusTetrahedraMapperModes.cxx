@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkStratusTetrahedraMapper: every blend mode, clipping planes and crop boxes give the image mapper's picture of the same linear field;
+// what only marching draws is refused by projection.
+#include "tetrahedra_scene.h"
+
+#include "vtkContourValues.h"
+#include "vtkPlane.h"
+
+namespace {
+// Sets the same on both mappers.
+template <typename Function> void Both(GridScene& scene, Function&& function)
+{
+  function(scene.Tetrahedra.Get());
+  function(scene.Mapper.Get());
+}
+
+void Modes()
+{
+  const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface" };
+  for (int mode = 1; mode <= vtkStratusTetrahedraMapper::ISOSURFACE_BLEND; ++mode) {
+    for (int view = 0; view < 3; ++view) {
+      GridScene scene;
+      vtkVolumeProperty* look = scene.Volume->GetProperty();
+      Both(scene, [&](auto* mapper) {
+        mapper->SetBlendMode(mode);
+        mapper->SetAverageIPScalarRange(0.2, view == 2 ? 0.6 : 1e9);
+      });
+      look->SetScalarOpacityUnitDistance(4.0);
+      look->GetIsoSurfaceValues()->SetValue(0, 0.31);
+      look->GetIsoSurfaceValues()->SetValue(1, 0.52);
+      scene.Look(35 + 130 * view, 20 - 30 * view);
+      scene.Mapper->SetSampleDistance(0.005);
+      const double psnr = scene.Psnr();
+      CHECK(psnr > 50.0, "%s, view %d: %.1f dB", names[mode], view, psnr);
+      CHECK(scene.GridErrors->Count == 0, "%s: %s", names[mode], scene.GridErrors->Text.c_str());
+    }
+  }
+}
+
+void PlanesAndBoxes()
+{
+  for (const int method : { vtkStratusTetrahedraMapper::MARCH_METHOD, vtkStratusTetrahedraMapper::PROJECT_METHOD }) {
+    for (int view = 0; view < 3; ++view) {
+      GridScene scene;
+      scene.Tetrahedra->SetMethod(method);
+      scene.Look(35 + 130 * view, 20 - 30 * view);
+      scene.Volume->SetOrientation(10, 20, 30); // boxes turn with the volume, planes do not
+      const double whole = scene.GridLight();
+      vtkNew<vtkPlane> plane;
+      plane->SetOrigin(scene.Volume->GetCenter());
+      plane->SetNormal(0.5, -0.7, 0.3 * view);
+      Both(scene, [&](auto* mapper) {
+        mapper->SetCropping(true);
+        mapper->SetCroppingRegionPlanes(0.7, 5.2, 1.3, 6.5, -1.0, 4.6);
+      });
+      double psnr = scene.Psnr();
+      CHECK(psnr > 55.0, "a box, method %d, view %d: %.1f dB", method, view, psnr);
+      const double cropped = scene.GridLight();
+      Both(scene, [&](auto* mapper) { mapper->AddClippingPlane(plane); });
+      psnr = scene.Psnr();
+      CHECK(psnr > 55.0, "a plane and a box, method %d, view %d: %.1f dB", method, view, psnr);
+      const double cut = scene.GridLight();
+      CHECK(0.0 < cut && cut < cropped && cropped < whole, "light %g, cropped %g, cut %g", whole, cropped, cut);
+      CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+    }
+  }
+}
+
+void WhatIsRefused()
+{
+  GridScene scene;
+  const auto refuses = [&](const char* word) {
+    const int before = scene.GridErrors->Count;
+    CHECK(scene.GridPicture().empty() && scene.GridErrors->Count == before + 1 && scene.GridErrors->Has(word), "not \"%s\": %s", word,
+      scene.GridErrors->Text.c_str());
+  };
+  scene.Tetrahedra->SetBlendModeToMinimumIntensity();
+  scene.Tetrahedra->SetMethodToProject();
+  refuses("mode minimum cannot be projected");
+  scene.Tetrahedra->SetMethodToAuto();
+  CHECK(scene.GridLight() > 0.0, "auto marches");
+  CHECK(std::string(scene.Tetrahedra->GetMethodReason()) == "march: mode minimum cannot be projected", "%s",
+    scene.Tetrahedra->GetMethodReason());
+  scene.Tetrahedra->SetBlendModeToIsoSurface();
+  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(0);
+  refuses("0 contour values");
+  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(17);
+  refuses("17 isosurface values");
+  scene.Tetrahedra->SetBlendMode(6);
+  refuses("blend mode 6");
+  scene.Tetrahedra->SetBlendModeToAverageIntensity();
+  scene.Tetrahedra->SetAverageIPScalarRange(2, 1);
+  refuses("average_range 2 .. 1");
+  scene.Tetrahedra->SetBlendModeToComposite();
+  scene.Tetrahedra->CroppingOn();
+  scene.Tetrahedra->SetCroppingRegionPlanes(0, 1, 3, 2, 0, 1);
+  refuses("crop_bounds 3 .. 2 along axis 1");
+  scene.Tetrahedra->CroppingOff();
+  CHECK(scene.GridLight() > 0.0, "nothing is drawn after errors");
+}
+} // namespace
+
+int main()
+{
+  Modes();
+  PlanesAndBoxes();
+  WhatIsRefused();
+  return Failures ? 1 : 0;
+}

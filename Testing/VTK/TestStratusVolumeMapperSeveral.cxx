@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkStratusMultiVolume: volumes of different grids and places that overlap, against the double reference with several fields; its
+// interface, geometry inside, picking, translucent surfaces, and what it refuses.
+#include "mapper_testing.h"
+
+#include "Testing/support/reference_several.h"
+#include "vtkStratusMultiVolume.h"
+
+#include "vtkActor.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkHardwareSelector.h"
+#include "vtkInformation.h"
+#include "vtkPlaneSource.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkSphereSource.h"
+
+namespace {
+// Scene's own volume at port 0 and a second one, turned and of other spacing, at port 5.
+struct Pair : Scene {
+  explicit Pair(int width = 160, int height = 120) : Scene(width, height)
+  {
+    this->OtherImage->SetDimensions(20, 41, 24);
+    this->OtherImage->SetSpacing(1.4, 0.6, 1.0);
+    this->OtherImage->SetOrigin(3, -2, 5);
+    FillField(this->OtherImage, false, "smoke", 80.0);
+    this->OtherOpacity->AddPoint(4.0, 0.0);
+    this->OtherOpacity->AddPoint(80.0, 0.6);
+    this->OtherColor->AddRGBPoint(0.0, 0.1, 0.9, 0.2);
+    this->OtherColor->AddRGBPoint(80.0, 0.9, 0.9, 1.0);
+    vtkVolumeProperty* property = this->Other->GetProperty();
+    property->SetScalarOpacity(this->OtherOpacity);
+    property->SetColor(this->OtherColor);
+    property->SetInterpolationTypeToLinear();
+    property->SetScalarOpacityUnitDistance(2.5);
+    this->OtherMapper->SetInputData(this->OtherImage);
+    this->Other->SetMapper(this->OtherMapper);
+    this->Other->SetOrigin(14, 10, 16);
+    this->Other->RotateZ(35);
+    this->Other->RotateX(20);
+    this->Renderer->RemoveViewProp(this->Volume);
+    this->Multi->SetVolume(this->Volume);
+    this->Multi->SetVolume(this->Other, 5);
+    this->Multi->AddObserver(vtkCommand::ErrorEvent, this->Errors);
+    this->Renderer->AddViewProp(this->Multi);
+    this->Look(35, 20);
+  }
+
+  std::vector<float> Mixed()
+  {
+    this->Render();
+    vtkImageData* image = this->Multi->GetLastImage();
+    std::vector<float> picture;
+    if (image) {
+      const float* rgba = vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA"))->GetPointer(0);
+      picture.assign(rgba, rgba + 4 * this->Pixels());
+    }
+    return picture;
+  }
+
+  // Returns the PSNR of a picture against the reference with both fields.
+  double Psnr(const std::vector<float>& picture, const float* opaqueDepth = nullptr)
+  {
+    const double opacity[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 4.0, 0.0, 80.0, 0.6 } };
+    const double color[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 },
+      { 0.0, 0.1, 0.9, 0.2, 80.0, 0.9, 0.9, 1.0 } };
+    const stratus_camera camera = ReferenceCamera(this->Renderer);
+    stratus_volume volumes[2];
+    stratus_transfer transfers[2];
+    reference_scene scenes[2];
+    for (int n = 0; n < 2; ++n) {
+      vtkImageData* image = n ? this->OtherImage : this->Image;
+      volumes[n] = ReferenceVolume(image, vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars()), false,
+        n ? this->Other->GetMatrix() : this->Volume->GetMatrix());
+      transfers[n] = stratus_transfer_default();
+      transfers[n].opacity = opacity[n];
+      transfers[n].opacity_count = n ? 2 : 3;
+      transfers[n].color = color[n];
+      transfers[n].color_count = n ? 2 : 3;
+      transfers[n].unit_distance = n ? 2.5 : 1.5;
+      scenes[n] = reference_scene();
+      scenes[n].volume = &volumes[n];
+      scenes[n].transfer = &transfers[n];
+      scenes[n].camera = &camera;
+      scenes[n].opaque_depth = opaqueDepth;
+    }
+    std::vector<float> rgba(4 * this->Pixels());
+    const int* size = this->Renderer->GetSize();
+    if (picture.empty() || reference_render_several(scenes, 2, size[0], size[1], 1.0 / 16, rgba.data(), nullptr) != 0) {
+      return -1.0;
+    }
+    return reference_psnr(picture.data(), rgba.data(), this->Pixels());
+  }
+
+  vtkNew<vtkImageData> OtherImage;
+  vtkNew<vtkPiecewiseFunction> OtherOpacity;
+  vtkNew<vtkColorTransferFunction> OtherColor;
+  vtkNew<vtkStratusVolumeMapper> OtherMapper;
+  vtkNew<vtkVolume> Other;
+  vtkNew<vtkStratusMultiVolume> Multi;
+};
+
+void Mixed()
+{
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    Pair scene;
+    const double ground[3] = { 51 / 255.0, 102 / 255.0, 204 / 255.0 }; // bytes, so that only the picture is rounded
+    scene.Renderer->SetBackground(ground[0], ground[1], ground[2]);
+    scene.Renderer->GetActiveCamera()->SetParallelProjection(parallel);
+    scene.Renderer->ResetCamera();
+    const double db = scene.Psnr(scene.Mixed());
+    CHECK(db >= 60.0, "%.1f dB at the default tolerance", db);
+    double worst = 0.0;
+    const std::vector<float> picture = scene.Mixed();
+    const std::vector<unsigned char> bytes = scene.Bytes();
+    for (size_t p = 0; p < scene.Pixels(); ++p) {
+      for (size_t c = 0; c < 3; ++c) {
+        worst = std::max(worst, std::fabs(255.0 * (picture[4 * p + c] + (1.0 - picture[4 * p + 3]) * ground[c]) - bytes[4 * p + c]));
+      }
+    }
+    CHECK(worst <= 0.51, "the window is off by %g of 255", worst);
+    scene.Mapper->AuditOn();
+    scene.Mapper->SetStructureToDistance();
+    CHECK(scene.Mixed() == picture && scene.Multi->GetDifferingPixels() == 0, "%llu pixels differ",
+      static_cast<unsigned long long>(scene.Multi->GetDifferingPixels()));
+    CHECK(scene.Multi->GetSamplesTaken() > 1000 && scene.Multi->GetCastTime() > 0.0 && scene.Multi->GetUsedSampleDistance(5) > 0.0 &&
+        std::string(scene.Multi->GetReason(5)).find("sample distance") != std::string::npos,
+      "reports: %s", scene.Multi->GetReason(5));
+    CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  }
+}
+
+// The order of ports changes no more than rounding does, and the mixed picture is neither volume over the other.
+void Ports()
+{
+  Pair scene;
+  const std::vector<float> picture = scene.Mixed();
+  scene.Multi->RemoveVolume(0);
+  scene.Multi->SetVolume(scene.Volume, 7);
+  const std::vector<float> swapped = scene.Mixed();
+  double worst = 0.0;
+  for (size_t at = 0; at < picture.size(); ++at) {
+    worst = std::max<double>(worst, std::fabs(picture[at] - swapped[at]));
+  }
+  CHECK(!picture.empty() && worst < 1e-5, "another order of ports changes %g", worst);
+  scene.Other->VisibilityOff();
+  const std::vector<float> one = scene.Mixed();
+  scene.Other->VisibilityOn();
+  scene.Volume->VisibilityOff();
+  const std::vector<float> other = scene.Mixed();
+  double over = 0.0;
+  for (size_t at = 0; at < picture.size(); ++at) {
+    over = std::max<double>(over, std::fabs(one[at] + (1.0f - one[at / 4 * 4 + 3]) * other[at] - picture[at]));
+  }
+  CHECK(over > 0.1, "the volumes lie over one another: %g", over);
+  // one alone is what its mapper draws
+  scene.Volume->VisibilityOn();
+  scene.Multi->RemoveVolume(5);
+  const std::vector<float> alone = scene.Mixed();
+  scene.Renderer->RemoveViewProp(scene.Multi);
+  scene.Renderer->AddViewProp(scene.Volume);
+  CHECK(alone == scene.Picture(), "one volume alone is another picture");
+}
+
+void Interface()
+{
+  Pair scene;
+  double bounds[6], one[6], other[6];
+  scene.Multi->GetBounds(bounds);
+  scene.Volume->GetBounds(one);
+  scene.Other->GetBounds(other);
+  for (int side = 0; side < 6; ++side) {
+    CHECK(bounds[side] == (side % 2 ? std::max(one[side], other[side]) : std::min(one[side], other[side])), "bounds %d", side);
+  }
+  CHECK(scene.Multi->GetNumberOfVolumes() == 2 && scene.Multi->GetVolume(5) == scene.Other && !scene.Multi->GetVolume(1) &&
+      !scene.Multi->GetVolume(-1) && scene.Multi->GetProperty() == scene.Volume->GetProperty(),
+    "volumes by port");
+  const vtkMTimeType time = scene.Multi->GetMTime(), redraw = scene.Multi->GetRedrawMTime();
+  scene.Other->SetPosition(1, 0, 0);
+  CHECK(scene.Multi->GetMTime() > time, "moving a volume modifies the prop");
+  scene.OtherOpacity->AddPoint(90.0, 0.5);
+  CHECK(scene.Multi->GetRedrawMTime() > redraw, "a function that changed asks for a redraw");
+  scene.Multi->SetVolume(scene.Volume, 8);
+  CHECK(scene.Errors->Count == 1 && scene.Errors->Has("port 8 must be 0..7"), "%s", scene.Errors->Text.c_str());
+  scene.Multi->SetVolume(scene.Volume, 2);
+  CHECK(scene.Errors->Count == 2 && scene.Errors->Has("is at port 0 already"), "%s", scene.Errors->Text.c_str());
+  scene.Multi->SetVolume(scene.Multi, 2);
+  CHECK(scene.Errors->Count == 3 && scene.Errors->Has("itself"), "%s", scene.Errors->Text.c_str());
+  vtkNew<vtkStratusMultiVolume> copy;
+  copy->ShallowCopy(scene.Multi);
+  CHECK(copy->GetVolume(5) == scene.Other, "a shallow copy has the volumes");
+  scene.Multi->RemoveVolume(0);
+  scene.Multi->RemoveVolume(5);
+  scene.Render();
+  CHECK(scene.Multi->GetBounds()[0] > scene.Multi->GetBounds()[1] && !scene.Multi->GetProperty() && scene.Errors->Count == 3,
+    "without volumes nothing is drawn, and that is no error");
+}
+
+void Geometry()
+{
+  Pair scene;
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(6);
+  ball->SetCenter(14, 14, 13);
+  ball->SetThetaResolution(24);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(ball->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  scene.Renderer->AddActor(actor);
+  scene.Renderer->ResetCamera();
+  const std::vector<float> picture = scene.Mixed();
+  const int* size = scene.Renderer->GetSize();
+  std::vector<float> z(scene.Pixels());
+  scene.Window->GetZbufferData(0, 0, size[0] - 1, size[1] - 1, z.data());
+  const double db = scene.Psnr(picture, z.data());
+  CHECK(db >= 60.0, "%.1f dB with a ball inside", db);
+}
+
+void Picking()
+{
+  Pair scene;
+  scene.Renderer->SetBackground(0.3, 0.6, 0.9);
+  const std::vector<float> before = scene.Mixed();
+  int shown = 0;
+  for (size_t p = 0; p < scene.Pixels(); ++p) {
+    shown += before[4 * p + 3] > 0.0f;
+  }
+  vtkNew<vtkHardwareSelector> selector;
+  selector->SetRenderer(scene.Renderer);
+  const int* size = scene.Renderer->GetSize();
+  selector->SetArea(0, 0, static_cast<unsigned int>(size[0] - 1), static_cast<unsigned int>(size[1] - 1));
+  selector->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  const auto selection = vtkSmartPointer<vtkSelection>::Take(selector->Select());
+  const bool one = selection && selection->GetNumberOfNodes() == 1;
+  CHECK(one && selection->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PROP()) == scene.Multi, "the prop is not picked");
+  CHECK(!one || selection->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PIXEL_COUNT()) == shown, "%d pixels show", shown);
+  CHECK(shown > 1000 && scene.Mixed() == before, "the picture after picking is another");
+}
+
+// A translucent sheet before the volumes and one behind them, with volumes peeled.
+void Peeling()
+{
+  for (double z : { 60.0, -60.0 }) {
+    Pair scene;
+    vtkNew<vtkPlaneSource> plane;
+    plane->SetOrigin(-100, -100, z);
+    plane->SetPoint1(100, -100, z);
+    plane->SetPoint2(-100, 100, z);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(plane->GetOutputPort());
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->LightingOff();
+    actor->GetProperty()->SetColor(1, 0, 0);
+    actor->GetProperty()->SetOpacity(0.5);
+    vtkCamera* camera = scene.Renderer->GetActiveCamera();
+    camera->SetFocalPoint(14, 14, 13);
+    camera->SetPosition(14, 14, 120);
+    camera->SetViewUp(0, 1, 0);
+    camera->SetClippingRange(20, 250);
+    const std::vector<float> volumes = scene.Mixed();
+    scene.Renderer->AddActor(actor);
+    scene.Renderer->SetUseDepthPeeling(true);
+    scene.Renderer->SetUseDepthPeelingForVolumes(true);
+    scene.Render();
+    const std::vector<unsigned char> bytes = scene.Bytes();
+    double worst = 0.0;
+    for (size_t p = 0; !volumes.empty() && p < scene.Pixels(); ++p) {
+      for (size_t c = 0; c < 3; ++c) {
+        const double sheet = c == 0 ? 0.5 : 0.0, of = volumes[4 * p + c], left = 1.0 - volumes[4 * p + 3];
+        const double meant = z > 0.0 ? sheet + 0.5 * of : of + left * sheet;
+        worst = std::max(worst, std::fabs(255.0 * meant - bytes[4 * p + c]));
+      }
+    }
+    CHECK(!volumes.empty() && worst < 3.0, "a sheet at %g: the window is off by %g of 255", z, worst);
+  }
+}
+
+void Refusals()
+{
+  const auto refuses = [](const char* words, const std::function<void(Pair&)>& change) {
+    Pair scene;
+    change(scene);
+    scene.Render();
+    CHECK(scene.Errors->Count == 1 && scene.Errors->Has(words) && scene.Errors->Has("nothing is drawn"), "%d errors: %s",
+      scene.Errors->Count, scene.Errors->Text.c_str());
+    scene.Render();
+    CHECK(
+      scene.Errors->Count == 1 && !scene.Multi->GetLastImage() && std::string(scene.Multi->GetLastError()).find(words) != std::string::npos,
+      "told once: %s", scene.Multi->GetLastError());
+  };
+  refuses("the volume at port 5: there is no mapper", [](Pair& scene) { scene.Other->SetMapper(nullptr); });
+  refuses("the volume at port 5: a mapper of class vtkFixedPoint", [](Pair& scene) {
+    vtkNew<vtkFixedPointVolumeRayCastMapper> mapper;
+    mapper->SetInputData(scene.OtherImage);
+    scene.Other->SetMapper(mapper);
+  });
+  refuses("mode maximum", [](Pair& scene) { scene.OtherMapper->SetBlendModeToMaximumIntensity(); });
+  refuses("first hits", [](Pair& scene) { scene.OtherMapper->SetRenderModeToFirstHit(); });
+  refuses("by cells", [](Pair& scene) { scene.OtherMapper->SetSamplingToCells(); });
+  refuses("crop regions", [](Pair& scene) {
+    scene.OtherMapper->CroppingOn();
+    scene.OtherMapper->SetCroppingRegionPlanes(1, 2, 1, 2, 1, 2);
+    scene.OtherMapper->SetCroppingRegionFlagsToFence();
+  });
+  refuses("there is no scalar array", [](Pair& scene) { scene.OtherImage->GetPointData()->Initialize(); });
+}
+
+// While many pictures a second are asked for, rays are fewer; the next still picture is exact again.
+void Interactive()
+{
+  Pair scene(400, 300);
+  const std::vector<float> exact = scene.Mixed();
+  scene.Window->SetDesiredUpdateRate(1e6);
+  const std::vector<float> coarse = scene.Mixed();
+  CHECK(!exact.empty() && exact != coarse, "a moving picture is as exact as a still one");
+  scene.Window->SetDesiredUpdateRate(0.0001);
+  CHECK(scene.Mixed() == exact, "a still picture after a moving one is another");
+}
+} // namespace
+
+int main()
+{
+  Mixed();
+  Ports();
+  Interface();
+  Geometry();
+  Picking();
+  Peeling();
+  Refusals();
+  Interactive();
+  std::printf("%d failures\n", Failures);
+  return Failures != 0;
+}

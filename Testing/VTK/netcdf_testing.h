@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What tests of netCDF readers share: a file written by libnetcdf itself, and readers whose errors are kept.
+#pragma once
+
+#include "vtkCommand.h"
+#include "vtkDataSet.h"
+#include "vtkSmartPointer.h"
+#include "vtkStratusNetCDFReader.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <netcdf.h>
+#include <string>
+#include <vector>
+
+static int failures = 0;
+
+static void check(bool right, const std::string& what)
+{
+  if (!right) {
+    std::printf("FAILED: %s\n", what.c_str());
+    ++failures;
+  }
+}
+
+static bool near(double a, double b, double tolerance = 1e-9)
+{
+  return std::fabs(a - b) <= tolerance * std::fmax(1.0, std::fabs(b));
+}
+
+struct netcdf_variable {
+  std::string name;
+  nc_type type;
+  std::vector<std::string> dimensions;
+  std::vector<double> values;
+  std::map<std::string, std::string> texts;
+  std::map<std::string, double> numbers; // of the variable's type, but scale_factor and add_offset, which are doubles
+};
+
+struct netcdf_content {
+  std::vector<std::pair<std::string, size_t>> dimensions;
+  std::vector<netcdf_variable> variables;
+
+  netcdf_variable& of(const std::string& name)
+  {
+    for (netcdf_variable& one : this->variables) {
+      if (one.name == name) {
+        return one;
+      }
+    }
+    std::abort();
+  }
+};
+
+static void must(int status)
+{
+  if (status != NC_NOERR) {
+    std::printf("the test's own file: %s\n", nc_strerror(status));
+    std::exit(1);
+  }
+}
+
+static std::string write_netcdf(const std::string& path, const netcdf_content& content, int format = NC_NETCDF4)
+{
+  int file = -1;
+  must(nc_create(path.c_str(), format | NC_CLOBBER, &file));
+  std::map<std::string, int> numbers;
+  for (const auto& dimension : content.dimensions) {
+    const bool record = dimension.first == "time" && format != NC_NETCDF4;
+    must(nc_def_dim(file, dimension.first.c_str(), record ? NC_UNLIMITED : dimension.second, &numbers[dimension.first]));
+  }
+  std::vector<int> ids;
+  for (const netcdf_variable& one : content.variables) {
+    std::vector<int> of;
+    for (const std::string& name : one.dimensions) {
+      of.push_back(numbers.at(name));
+    }
+    int id = -1;
+    must(nc_def_var(file, one.name.c_str(), one.type, static_cast<int>(of.size()), of.data(), &id));
+    ids.push_back(id);
+    for (const auto& text : one.texts) {
+      must(nc_put_att_text(file, id, text.first.c_str(), text.second.size(), text.second.c_str()));
+    }
+    for (const auto& number : one.numbers) {
+      const bool packing = number.first == "scale_factor" || number.first == "add_offset";
+      must(nc_put_att_double(file, id, number.first.c_str(), packing ? NC_DOUBLE : one.type, 1, &number.second));
+    }
+  }
+  must(nc_enddef(file));
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (!content.variables[i].values.empty()) {
+      std::vector<size_t> start, count;
+      for (const std::string& name : content.variables[i].dimensions) {
+        start.push_back(0);
+        for (const auto& dimension : content.dimensions) {
+          if (dimension.first == name) {
+            count.push_back(dimension.second);
+          }
+        }
+      }
+      const size_t none = 0;
+      must(nc_put_vara_double(
+        file, ids[i], start.empty() ? &none : start.data(), count.empty() ? &none : count.data(), content.variables[i].values.data()));
+    }
+  }
+  must(nc_close(file));
+  return path;
+}
+
+// Keeps what a reader complains of.
+class complaints : public vtkCommand
+{
+public:
+  static complaints* New() { return new complaints; }
+  void Execute(vtkObject*, unsigned long, void* text) override { this->heard += static_cast<const char*>(text); }
+  std::string heard;
+};
+
+template <class Reader> struct netcdf_reader {
+  vtkSmartPointer<Reader> reader = vtkSmartPointer<Reader>::New();
+  vtkSmartPointer<complaints> errors = vtkSmartPointer<complaints>::New();
+
+  netcdf_reader(const std::string& path, const char* variable)
+  {
+    this->reader->AddObserver(vtkCommand::ErrorEvent, this->errors);
+    this->reader->SetFileName(path.c_str());
+    this->reader->SetVariableName(variable);
+  }
+
+  // Reads a time.
+  vtkDataSet* read(double time = 0.0)
+  {
+    this->errors->heard.clear();
+    this->reader->UpdateInformation();
+    this->reader->UpdateTimeStep(time);
+    return this->reader->GetOutput();
+  }
+};
+
+template <class Reader> void refuse(const std::string& path, const char* variable, const std::string& told)
+{
+  netcdf_reader<Reader> reader(path, variable);
+  vtkDataSet* output = reader.read();
+  check(reader.errors->heard.find(told) != std::string::npos,
+    path + " must be refused with '" + told + "', not '" + reader.errors->heard + "'");
+  check(!output || output->GetNumberOfPoints() == 0, path + ": something was put out beside an error");
+}
+
+// Copies the first part of a file.
+static std::string cut(const std::string& path, const std::string& to, double part)
+{
+  std::ifstream in(path, std::ios::binary);
+  const std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  std::ofstream(to, std::ios::binary) << all.substr(0, static_cast<size_t>(static_cast<double>(all.size()) * part));
+  return to;
+}

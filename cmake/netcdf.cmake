@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds libnetcdf and sets stratus_netcdf: whether to build vtkStratusCFReader and vtkStratusUgridReader, and `stratus render FILE.nc`.
+set(STRATUS_BUILD_NETCDF AUTO CACHE STRING "Build the readers of netCDF files, which need libnetcdf: ON, OFF, or AUTO (where it is found)")
+set_property(CACHE STRATUS_BUILD_NETCDF PROPERTY STRINGS AUTO ON OFF)
+set(stratus_netcdf OFF)
+if (STRATUS_BUILD_NETCDF)
+  find_path(NETCDF_INCLUDE_DIR netcdf.h)
+  find_library(NETCDF_LIBRARY netcdf)
+  mark_as_advanced(NETCDF_INCLUDE_DIR NETCDF_LIBRARY)
+  if (NETCDF_INCLUDE_DIR AND NETCDF_LIBRARY)
+    set(stratus_netcdf ON)
+  elseif (STRATUS_BUILD_NETCDF STREQUAL "AUTO")
+    message(STATUS "No libnetcdf: building without the readers of netCDF files (Debian: libnetcdf-dev)")
+  else ()
+    message(FATAL_ERROR "STRATUS_BUILD_NETCDF is ${STRATUS_BUILD_NETCDF}, but libnetcdf was not found (Debian: libnetcdf-dev)")
+  endif ()
+endif ()

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a ray makes of a stretch along which the field is linear where it gathers no light: sums of values, and surfaces. */
+#ifndef STRATUS_TETRA_MODES_H
+#define STRATUS_TETRA_MODES_H
+
+#include "tetra_shade.h"
+
+/* Adds the mean of a stretch times its length: red of opacity times value, green of what counts. The sums of a place are of opacity times
+ * value, of opacity, and of what counts. */
+INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
+{
+  const vint rise = to->entry - from->entry, one = vi_set(1);
+  const vmask level = mask & vi_zero(rise);
+  vint span[4], own[4];
+  for (int c = 0; c < 4; ++c) {
+    span[c] = to->sum[c] - from->sum[c];
+  }
+  if (m_any(level)) {
+    gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
+    for (int c = 0; c < 4; ++c) {
+      span[c] = vi_select(level, own[c], span[c]);
+    }
+  }
+  const vfloat per_entry = length * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise)))), zero = v_set(0.0f);
+  light->red = v_select(mask, v_fma(per_entry, v_abs(v_from_int(span[0])), light->red), light->red);
+  light->green = v_select(mask, v_fma(per_entry, v_abs(v_from_int(span[3])), light->green), light->green);
+  if (a->picture.want_depth) {
+    const vmask hit = mask & v_lt(zero, v_abs(v_from_int(span[1]))) & v_le(v_set(LARGEST_FLOAT), light->depth);
+    light->depth = v_select(hit, near, light->depth);
+  }
+}
+
+/* Composites the surfaces that a stretch passes, in their order along it. A surface lies where the field passes its value upwards or
+ * downwards, so that one on the border of two cells counts once. */
+INLINE void tetra_surfaces(
+  CONSTANT stratus_tetra_arguments* a, stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
+{
+  const vfloat zero = v_set(0.0f);
+  const vmask rises = v_lt(first, last);
+  for (int n = 0; n < a->contour_count; ++n) {
+    CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
+    const vfloat value = v_select(rises, v_set(up[0]), v_set(down[0]));
+    const vmask below = v_lt(first, value), ends_below = v_lt(last, value);
+    const vmask met = mask & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
+    if (!m_any(met)) {
+      continue;
+    }
+    const vfloat opacity = v_select(met, v_select(rises, v_set(up[4]), v_set(down[4])), zero),
+                 scale = v_select(met, light->transparency, zero);
+    light->red = v_fma(scale, v_select(rises, v_set(up[1]), v_set(down[1])), light->red);
+    light->green = v_fma(scale, v_select(rises, v_set(up[2]), v_set(down[2])), light->green);
+    light->blue = v_fma(scale, v_select(rises, v_set(up[3]), v_set(down[3])), light->blue);
+    light->transparency = v_fma(zero - light->transparency, opacity, light->transparency);
+    if (a->picture.want_depth) {
+      const vfloat rise = v_select(met, last - first, v_set(1.0f));
+      const vfloat part = (value - first) * v_reciprocal(rise);
+      const vmask hit = met & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
+      light->depth = v_select(hit, v_fma(part, length, near), light->depth);
+    }
+  }
+}
+
+#endif
