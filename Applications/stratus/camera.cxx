@@ -24,6 +24,11 @@ void shown_bounds(const cli::context& core, const stratus_volume& volume, const 
     stratus_occupancy_blocks(occupancy, nullptr, &size);
     for (int a = 0; a < 3; ++a) {
       part.dimensions[a] = std::min(hi[a] * size + 1, volume.dimensions[a]) - lo[a] * size;
+      if (volume.coordinates[a]) {
+        part.coordinates[a] = volume.coordinates[a] + lo[a] * size;
+        part.dimensions[a] = std::max<int64_t>(part.dimensions[a], volume.cell_centered ? 1 : 2);
+        continue;
+      }
       for (int r = 0; r < 3; ++r) {
         part.origin[r] += volume.direction[3 * r + a] * volume.spacing[a] * static_cast<double>(lo[a] * size);
       }

@@ -9,9 +9,11 @@
 #include <vtkDataArray.h>
 #include <vtkMatrix3x3.h>
 #include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sys/stat.h>
 
 namespace {
@@ -34,6 +36,31 @@ std::string scene_names()
   }
   return names;
 }
+
+void set_type(vtkDataArray* array, stratus_volume& volume)
+{
+  if (!cli::stratus_type_of(array, volume.type)) {
+    throw cli::failure(std::string("array '") + (array->GetName() ? array->GetName() : "") + "' holds " + array->GetDataTypeAsString() +
+      " values; numbers of 8 to 64 bits are drawn");
+  }
+}
+
+// Sets values and ghosts, those of points unless the values are of cells.
+void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_volume& volume)
+{
+  const auto ghosts = [](vtkDataSetAttributes* data, vtkIdType count, const char* things) -> const uint8_t* {
+    vtkUnsignedCharArray* flags = nullptr;
+    std::string error;
+    if (!vtkStratusFindGhosts(data, count, things, flags, error)) {
+      throw cli::failure(error);
+    }
+    return flags ? flags->GetPointer(0) : nullptr;
+  };
+  const uint8_t* point_ghosts = ghosts(image->GetPointData(), image->GetNumberOfPoints(), "points of the image");
+  volume.cell_ghosts = ghosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image");
+  volume.point_ghosts = on_cells ? nullptr : point_ghosts;
+  volume.values = array->GetVoidPointer(0);
+}
 } // namespace
 
 namespace cli {
@@ -50,7 +77,8 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path)
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");
   }
-  return route(image, path, "").image;
+  route(image, path, "");
+  return image;
 }
 
 bool stratus_type_of(vtkDataArray* array, stratus_type& type)
@@ -87,9 +115,10 @@ const char* name_of(stratus_type type)
 
 std::string describe(const stratus_volume& v)
 {
-  return format("%lld x %lld x %lld %s on %s, spacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
+  const bool stretched = v.coordinates[0] || v.coordinates[1] || v.coordinates[2];
+  return format("%lld x %lld x %lld %s on %s, %sspacing %g x %g x %g", static_cast<long long>(v.dimensions[0]),
     static_cast<long long>(v.dimensions[1]), static_cast<long long>(v.dimensions[2]), name_of(v.type), v.cell_centered ? "cells" : "points",
-    v.spacing[0], v.spacing[1], v.spacing[2]);
+    stretched ? "mean " : "", v.spacing[0], v.spacing[1], v.spacing[2]);
 }
 
 stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)
@@ -97,10 +126,7 @@ stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)
   stratus_volume volume = stratus_volume_default();
   int extent[6];
   image->GetExtent(extent);
-  if (!stratus_type_of(array, volume.type)) {
-    throw failure(std::string("array '") + (array->GetName() ? array->GetName() : "") + "' holds " + array->GetDataTypeAsString() +
-      " values; numbers of 8 to 64 bits are drawn");
-  }
+  set_type(array, volume);
   bool sheet = false;
   double first[3];
   for (int a = 0; a < 3; ++a) {
@@ -121,19 +147,32 @@ stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells)
       volume.origin[r] += direction[3 * r + c] * first[c];
     }
   }
-  const auto ghosts = [](vtkDataSetAttributes* data, vtkIdType count, const char* things) -> const uint8_t* {
-    vtkUnsignedCharArray* flags = nullptr;
-    std::string error;
-    if (!vtkStratusFindGhosts(data, count, things, flags, error)) {
-      throw failure(error);
+  set_values(image, array, on_cells || sheet, volume);
+  volume.cell_ghosts = sheet ? nullptr : volume.cell_ghosts;
+  return volume;
+}
+
+stratus_volume view_of(vtkRectilinearGrid* grid, vtkDataArray* array, bool on_cells, std::vector<double> coordinates[3])
+{
+  stratus_volume volume = stratus_volume_default();
+  vtkDataArray* const axes[] = { grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates() };
+  set_type(array, volume);
+  for (int a = 0; a < 3; ++a) {
+    const int points = grid->GetDimensions()[a];
+    if (points < 2 || !axes[a] || axes[a]->GetNumberOfTuples() != points) {
+      throw failure(format("a rectilinear grid of %d points along %c and %lld coordinates; it needs as many, and at least 2", points,
+        "xyz"[a], axes[a] ? static_cast<long long>(axes[a]->GetNumberOfTuples()) : 0LL));
     }
-    return flags ? flags->GetPointer(0) : nullptr;
-  };
-  const uint8_t* point_ghosts = ghosts(image->GetPointData(), image->GetNumberOfPoints(), "points of the image");
-  const uint8_t* cell_ghosts = ghosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image");
-  volume.point_ghosts = on_cells || sheet ? nullptr : point_ghosts;
-  volume.cell_ghosts = sheet ? nullptr : cell_ghosts;
-  volume.values = array->GetVoidPointer(0);
+    coordinates[a].resize(static_cast<size_t>(points));
+    for (int i = 0; i < points; ++i) {
+      coordinates[a][static_cast<size_t>(i)] = axes[a]->GetComponent(i, 0);
+    }
+    volume.coordinates[a] = coordinates[a].data();
+    volume.dimensions[a] = points - (on_cells ? 1 : 0);
+    volume.spacing[a] = std::fabs(coordinates[a].back() - coordinates[a].front()) / (points - 1);
+  }
+  volume.cell_centered = on_cells;
+  set_values(grid, array, on_cells, volume);
   return volume;
 }
 
@@ -163,17 +202,18 @@ input::input(context& core, const std::string& source, const std::string& array)
   this->array_name = source;
 }
 
-input::input(context& core, const std::string& source, vtkImageData* from, const std::string& array) : Core(core)
+input::input(context& core, const std::string& source, vtkDataSet* from, const std::string& array) : Core(core)
 {
   this->set(from, source, array);
 }
 
-void input::set(vtkImageData* from, const std::string& source, const std::string& array)
+void input::set(vtkDataSet* from, const std::string& source, const std::string& array)
 {
   this->image = from;
   bool on_cells = false;
   vtkDataArray* values = choose_array(this->image, array, on_cells);
-  this->volume = view_of(this->image, values, on_cells);
+  vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(from);
+  this->volume = grid ? view_of(grid, values, on_cells, this->Coordinates) : view_of(vtkImageData::SafeDownCast(from), values, on_cells);
   this->array_name = values->GetName() ? values->GetName() : "(unnamed)";
   this->Core.check(stratus_volume_check(this->Core, &this->volume), "'" + source + "'");
 }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads an image file, or makes a scene of record, as the core's view of a volume.
+// Reads an image file or a rectilinear grid, or makes a scene of record, as the core's view of a volume.
 #pragma once
 
 #include "route.h"
 #include "support.h"
+
+#include <vector>
+
+class vtkRectilinearGrid;
 
 namespace cli {
 
@@ -15,6 +19,8 @@ vtkSmartPointer<vtkImageData> read_image(const std::string& path);
 // Borrows the array's values. A sheet (an image with one point along an axis) gets the thickness of a cell, because it would be invisible
 // otherwise.
 stratus_volume view_of(vtkImageData* image, vtkDataArray* array, bool on_cells);
+// The same of a rectilinear grid, whose coordinates are kept in `coordinates`. The view's spacing is the mean one.
+stratus_volume view_of(vtkRectilinearGrid* grid, vtkDataArray* array, bool on_cells, std::vector<double> coordinates[3]);
 
 // Finds the core's type. Returns false where there is none (bits, strings).
 bool stratus_type_of(vtkDataArray* array, stratus_type& type);
@@ -29,21 +35,22 @@ class input
 {
 public:
   input(context& core, const std::string& source, const std::string& array);
-  // Takes an image that was read from the file `source`.
-  input(context& core, const std::string& source, vtkImageData* image, const std::string& array);
+  // Takes an image or a rectilinear grid that was read from the file `source`.
+  input(context& core, const std::string& source, vtkDataSet* image, const std::string& array);
   ~input();
   input(const input&) = delete;
   input& operator=(const input&) = delete;
 
   stratus_volume volume;
   std::string array_name;
-  vtkSmartPointer<vtkImageData> image; // null for a scene
-  stratus_scene* scene = nullptr;      // null for a file
+  vtkSmartPointer<vtkDataSet> image; // an image or a rectilinear grid; null for a scene
+  stratus_scene* scene = nullptr;    // null for a file
   int up_axis = 2;
 
 private:
-  void set(vtkImageData* from, const std::string& source, const std::string& array);
+  void set(vtkDataSet* from, const std::string& source, const std::string& array);
 
   context& Core;
+  std::vector<double> Coordinates[3]; // of a rectilinear grid
 };
 } // namespace cli

@@ -28,7 +28,7 @@ namespace {
 
 using cli::row;
 
-void list_arrays(vtkImageData* image)
+void list_arrays(vtkDataSet* image)
 {
   for (bool cells : { false, true }) {
     vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();

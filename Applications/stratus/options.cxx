@@ -32,9 +32,9 @@ std::string help()
   stratus --help
 
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels; to be drawn, told of or sorted also a
-grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf, TetGen's .node .ele), rectilinear (.vtr .pvtr),
-curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam, system/controlDict) or EnSight
+or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels; to be drawn or told of also a
+rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf, TetGen's .node
+.ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam, system/controlDict) or EnSight
 (.case).
 
 What is drawn

@@ -9,9 +9,7 @@
 #include <vtkCellData.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
 #include <vtkUnstructuredGrid.h>
@@ -41,23 +39,6 @@ void check_axes(vtkRectilinearGrid* grid, const std::string& path)
   check_axis(grid->GetXCoordinates(), 'x', path);
   check_axis(grid->GetYCoordinates(), 'y', path);
   check_axis(grid->GetZCoordinates(), 'z', path);
-}
-
-// Points at the crossings of the axes. They take 24 bytes each.
-vtkSmartPointer<vtkStructuredGrid> structured(vtkRectilinearGrid* axes)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(axes->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < axes->GetNumberOfPoints(); ++i) {
-    points->SetPoint(i, axes->GetPoint(i));
-  }
-  const auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
-  grid->SetExtent(axes->GetExtent());
-  grid->SetPoints(points);
-  grid->GetPointData()->ShallowCopy(axes->GetPointData());
-  grid->GetCellData()->ShallowCopy(axes->GetCellData());
-  return grid;
 }
 
 std::string points_of(const int* dimensions, const char* what)
@@ -151,7 +132,7 @@ routed route(vtkDataObject* data, const std::string& path, const std::string& ar
   } else if (vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(data)) {
     result.kind = points_of(axes->GetDimensions(), "rectilinear grid");
     check_axes(axes, path);
-    result.grid = structured(axes);
+    result.image = axes;
   } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(data)) {
     int dimensions[3];
     curved->GetDimensions(dimensions);

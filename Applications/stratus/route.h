@@ -13,15 +13,15 @@ class vtkDataArray;
 namespace cli {
 
 struct routed {
-  vtkSmartPointer<vtkImageData> image; // for the ray caster,
-  vtkSmartPointer<vtkDataSet> grid;    // or an unstructured or structured one, for the caster of tetrahedra
-  std::string kind;                    // of the file's data, for people
-  std::string arrays;                  // of composite data: what their first part has, since `grid` has the drawn one alone
+  vtkSmartPointer<vtkDataSet> image; // an image or a rectilinear grid, for the ray caster,
+  vtkSmartPointer<vtkDataSet> grid;  // or an unstructured or structured one, for the caster of tetrahedra
+  std::string kind;                  // of the file's data, for people
+  std::string arrays;                // of composite data: what their first part has, since `grid` has the drawn one alone
 };
 
-// The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind. A rectilinear
-// grid becomes a structured one at the same points, composite data one grid, in which parts that meet share their points. `array` is the
-// name of the array that will be drawn, "" for the first.
+// The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind.
+// Composite data become one grid, in which parts that meet share their points. `array` is the name of the array that will be drawn, "" for
+// the first.
 routed route(vtkDataObject* data, const std::string& path, const std::string& array);
 
 // Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component. Points come

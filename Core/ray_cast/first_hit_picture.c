@@ -294,6 +294,10 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   first_hit_frame frame = { .options = options, .image = image, .camera = camera };
   double index_to_world[16], world_to_index[16];
   TRY(stratus_camera_check(context, camera, image));
+  if (stratus_volume_is_stretched(volume)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "first hits of a volume with coordinates (a rectilinear grid): they know boxes of equal spacing only; isosurface draws it");
+  }
   if (options->shading.on) {
     TRY(stratus_shading_check(context, &options->shading));
   }

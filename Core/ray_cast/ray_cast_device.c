@@ -20,17 +20,33 @@
 /* All members are 4-byte scalars, so no padding separates them. The kernel gets the size by a define and asserts it, too. */
 _Static_assert(sizeof(stratus_ray_cast_arguments) ==
     sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
-      sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_map) + sizeof(stratus_ray_rough) +
-      sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) + sizeof(stratus_ray_media),
+      sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_grid_arguments) + sizeof(stratus_ray_map) +
+      sizeof(stratus_ray_rough) + sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) +
+      sizeof(stratus_ray_media),
   "arguments must have no padding");
 
-typedef enum buffer_name { VALUES, HIDDEN, MAP, ROUGH, TABLE, ARGUMENTS, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS, BUFFERS } buffer_name;
+typedef enum buffer_name {
+  VALUES,
+  HIDDEN,
+  MAP,
+  ROUGH,
+  GRID,
+  TABLE,
+  ARGUMENTS,
+  OPAQUE,
+  RGBA,
+  RGBA8,
+  DEPTH,
+  SAMPLES,
+  COUNTS,
+  BUFFERS
+} buffer_name;
 
 struct stratus_ray_device {
   stratus_device_slot slots[BUFFERS];
   stratus_ray_pages pages;
   bool in_pages; /* the values are in pages, and there is no buffer VALUES */
-  uint64_t data_serial, table_serial, map_serial, rough_serial;
+  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial;
 };
 
 void stratus_ray_device_destroy(stratus_ray_caster* caster)
@@ -110,6 +126,11 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, ROUGH, frame->rough, frame->rough ? caster->rough->bytes_size : 0));
     d->rough_serial = rough_serial;
   }
+  const uint64_t grid_serial = frame->grid ? caster->grid.serial : 0;
+  if (!d->slots[GRID].memory || d->grid_serial != grid_serial) {
+    TRY(replace(caster, GRID, frame->grid, frame->grid ? caster->grid.bytes : 0));
+    d->grid_serial = grid_serial;
+  }
   return STRATUS_OK;
 }
 
@@ -140,7 +161,7 @@ static int rarities(const stratus_ray_cast_arguments* a)
     (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
     (a->map.tree ? RAY_TREE : 0) | (a->media.components > 1 ? RAY_COMPONENTS : 0) | (a->media.label_count > 0 ? RAY_LABELS : 0) |
     (a->values.page_components ? RAY_PAGES : 0) | (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) |
-    (a->table.jumps ? RAY_JUMPS : 0);
+    (a->table.jumps ? RAY_JUMPS : 0) | (a->grid.on ? RAY_GRID : 0);
 }
 
 static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, int type,
@@ -170,7 +191,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
-  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, GRID, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   stratus_context* context = caster->context;
   stratus_ray_device* d = caster->device;
   stratus_device_slot* slots = caster->device->slots;

@@ -33,6 +33,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     caster->hidden = NULL;
     caster->layers = NULL;
     stratus_ray_fetched_drop(caster);
+    stratus_ray_grid_release(caster->context, &caster->grid);
     stratus_first_hit_release(caster);
     for (int c = 0; c < 4; ++c) {
       stratus_ray_caster_destroy(caster->parts[c]);

@@ -6,6 +6,7 @@
 #include "stratus/tree.h"
 #include "stratus/ray_cast.h"
 #include "ray_cast_host.h"
+#include "ray_grid.h"
 #include "ray_modes_render.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
@@ -44,7 +45,8 @@ typedef struct stratus_ray_trial {
 struct stratus_ray_caster {
   stratus_context* context;
 
-  stratus_volume volume;       /* as last rendered */
+  stratus_volume volume;       /* as last rendered; its coordinates are those of `grid` */
+  stratus_ray_grid grid;       /* of volumes with coordinates */
   int64_t owned[2][3];         /* the cells lo..hi - 1 that this piece owns */
   bool owns_all;               /* these are all cells */
   stratus_volume traversed;    /* what rays read: the volume itself, or its fetched values */

@@ -140,7 +140,7 @@ static stratus_status audit(
   double upload_ms = 0.0;
   stratus_status status;
 
-  stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
+  stratus_ray_frame_structures(&caster->grid, NULL, 0.0, NULL, NULL, &plain);
   plain.picture.want_samples = plain.picture.want_bytes = 0;
   march.samples = NULL;
   march.rgba8 = NULL;
@@ -224,7 +224,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_frame_structures(
-      caster->made.table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
+      &caster->grid, caster->made.table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found && with_map && tries) {
       stratus_ray_choice_frame chosen = { .image = image, .tolerance = stratus_ray_tolerance(options), .arguments = &arguments };
       TRY(stratus_ray_try(caster, &chosen, why, sizeof why));

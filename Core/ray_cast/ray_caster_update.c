@@ -92,7 +92,13 @@ static stratus_status update_ranges(
     *ms = stratus_now_ms() - start;
     caster->scan_ms = same ? caster->scan_ms : *ms;
   }
+  bool regridded = false;
+  TRY(stratus_ray_grid_update(caster->context, volume, &caster->grid, &regridded));
+  if (regridded) {
+    caster->inputs.tolerance = caster->measured_for.tolerance = -1.0;
+  }
   caster->volume = *volume;
+  memcpy(caster->volume.coordinates, caster->grid.coordinates, sizeof caster->grid.coordinates);
   const float* before = caster->fetched;
   const double start = stratus_now_ms();
   TRY(stratus_ray_fetched_update(caster, rays));

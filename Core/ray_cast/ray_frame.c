@@ -92,17 +92,28 @@ double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster)
   return has_inverse ? voxels_a_sample(world_to_index, caster->choice.sample_distance) : VOXELS_A_SAMPLE_MOST;
 }
 
-/* Sets the bounds, cropped, in index coordinates. voxels: the length of a sample. Returns false if they are empty. */
-static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options* options, double voxels, stratus_ray_cast_arguments* a)
+/* Gives where crop bounds number lo and hi of an axis are in index coordinates, the lower first. */
+static void crop_at(const stratus_volume* volume, const stratus_ray_cast_options* options, int axis, double at[2])
 {
+  const double spacing = stratus_volume_spacing(volume, axis), begin = volume->origin[axis] + stratus_volume_begin(volume, axis);
   const double half = volume->cell_centered ? 0.5 : 0.0;
+  for (int side = 0; side < 2; ++side) { /* falling coordinates turn the sides round */
+    at[spacing < 0.0 ? 1 - side : side] = (options->crop_bounds[2 * axis + side] - begin) / spacing - half;
+  }
+}
+
+/* Sets the bounds, cropped, in index coordinates. voxels: the length of a sample. Returns false if they are empty. */
+static bool set_box(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, double voxels, stratus_ray_cast_arguments* a)
+{
+  const stratus_volume* volume = &caster->traversed;
   for (int axis = 0; axis < 3; ++axis) {
     const double last = (double)(volume->dimensions[axis] - 1), margin = (last + 1.0 + voxels) * FLOAT_COARSENESS;
     double lo = volume->cell_centered ? -0.5 : margin, hi = volume->cell_centered ? last + 0.5 : last - margin;
     if (options->crop && options->crop_regions == STRATUS_CROP_INSIDE) {
-      const double* bounds = options->crop_bounds + 2 * axis;
-      lo = fmax(lo, (bounds[0] - volume->origin[axis]) / volume->spacing[axis] - half);
-      hi = fmin(hi, (bounds[1] - volume->origin[axis]) / volume->spacing[axis] - half);
+      double bounds[2];
+      crop_at(volume, options, axis, bounds);
+      lo = fmax(lo, bounds[0]);
+      hi = fmin(hi, bounds[1]);
     }
     if (!(lo < hi)) {
       return false;
@@ -110,23 +121,50 @@ static bool set_box(const stratus_volume* volume, const stratus_ray_cast_options
     a->crop.box[0][axis] = stratus_pair_of(lo);
     a->crop.box[1][axis] = stratus_pair_of(hi);
     a->values.last[axis] = (float)(last > 0.0 ? last - margin : last); /* below `last`, so that the position's cell and block exist */
+    if (caster->grid.table && last > 0.0) {
+      const double end = stratus_ray_grid_at(&caster->grid, axis, last), before = stratus_ray_grid_at(&caster->grid, axis, last - 1.0);
+      a->values.last[axis] = (float)(end - margin * (end - before));
+    }
   }
   return true;
+}
+
+/* Turns crop regions round along the axes whose coordinates fall: bit x + 3 y + 9 z. */
+static uint32_t regions_by_index(const stratus_volume* volume, uint32_t regions)
+{
+  uint32_t turned = 0;
+  for (int region = 0; region < 27; ++region) {
+    const int at[3] = { region % 3, region / 3 % 3, region / 9 };
+    int to = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      to = 3 * to + (stratus_volume_spacing(volume, axis) < 0.0 ? 2 - at[axis] : at[axis]);
+    }
+    turned |= (regions >> region & 1u) << to;
+  }
+  return turned;
 }
 
 /* Sets crop regions other than just the inside. Returns false if none is shown. */
 static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
-  const double half = volume->cell_centered ? 0.5 : 0.0;
   if (!options->crop || options->crop_regions == STRATUS_CROP_INSIDE || options->crop_regions == STRATUS_CROP_ALL) {
     return true;
   }
-  a->crop.regions = (int)options->crop_regions;
-  for (int side = 0; side < 6; ++side) {
-    const int axis = side / 2;
-    a->crop.plane[axis][side % 2] = stratus_pair_of((options->crop_bounds[side] - volume->origin[axis]) / volume->spacing[axis] - half);
+  a->crop.regions = (int)regions_by_index(volume, options->crop_regions);
+  for (int axis = 0; axis < 3; ++axis) {
+    double bounds[2];
+    crop_at(volume, options, axis, bounds);
+    a->crop.plane[axis][0] = stratus_pair_of(bounds[0]);
+    a->crop.plane[axis][1] = stratus_pair_of(bounds[1]);
   }
   return a->crop.regions != 0;
+}
+
+/* Returns where the border below a cell is in the coordinates of rays. */
+static double border_of(const stratus_ray_caster* caster, int axis, int64_t cell)
+{
+  return caster->grid.table ? stratus_ray_grid_border(&caster->grid, axis, cell)
+                            : (double)cell - (caster->traversed.cell_centered ? 0.5 : 0.0);
 }
 
 /* Sets the part that this piece of a larger volume draws. Returns false if it owns nothing. */
@@ -134,12 +172,11 @@ static bool set_piece(const stratus_ray_caster* caster, stratus_ray_cast_argumen
 {
   const stratus_volume* volume = &caster->traversed;
   const int64_t *lo = caster->owned[0], *hi = caster->owned[1];
-  const double half = volume->cell_centered ? 0.5 : 0.0;
   a->crop.has_piece = !caster->owns_all;
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t cells = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
-    a->crop.piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? (double)lo[axis] - half : -(double)UNBOUNDED);
-    a->crop.piece[1][axis] = stratus_pair_of(hi[axis] < cells ? (double)hi[axis] - half : (double)UNBOUNDED);
+    a->crop.piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? border_of(caster, axis, lo[axis]) : -(double)UNBOUNDED);
+    a->crop.piece[1][axis] = stratus_pair_of(hi[axis] < cells ? border_of(caster, axis, hi[axis]) : (double)UNBOUNDED);
     if (lo[axis] >= hi[axis]) {
       return false;
     }
@@ -245,6 +282,7 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
     (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(stratus_ray_tolerance(options)));
   set_clip_planes(options, index_to_world, a);
   set_addressing(volume, a);
+  a->grid = caster->grid.arguments;
   const double bias = stratus_volume_bias(volume);
   uint64_t bits;
   memcpy(&bits, &bias, sizeof bits);
@@ -252,12 +290,20 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->values.bias_high = (int)(uint32_t)(bits >> 32);
   a->lattice.jitter = options->jitter != 0;
   a->lattice.seed = (int)options->jitter_seed;
-  *empty = !set_box(volume, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(caster, a) ||
+  *empty = !set_box(caster, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(caster, a) ||
     !set_regions(volume, options, a);
   return STRATUS_OK;
 }
 
-static void set_map(const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+/* Returns where a block begins in the coordinates of rays. */
+static float block_at(const stratus_ray_grid* grid, const stratus_occupancy* occupancy, int axis, int64_t block)
+{
+  const int64_t index = block * occupancy->block_size;
+  return grid->table ? (float)stratus_ray_grid_at(grid, axis, (double)index) : (float)index;
+}
+
+static void set_map(
+  const stratus_ray_grid* grid, const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
   a->map.pitch = (int)map->pitch;
   a->map.rows = (int)map->blocks[1];
@@ -268,9 +314,9 @@ static void set_map(const stratus_occupancy* occupancy, const stratus_distance_m
   a->map.bounds_rows = (int)occupancy->blocks[1];
   a->map.block_log2 = stratus_distance_map_block_log2(map);
   for (int axis = 0; axis < 3; ++axis) {
-    a->map.occupied[0][axis] = occupancy->lo[axis] > 0 ? (float)(occupancy->lo[axis] * occupancy->block_size) : -UNBOUNDED;
+    a->map.occupied[0][axis] = occupancy->lo[axis] > 0 ? block_at(grid, occupancy, axis, occupancy->lo[axis]) : -UNBOUNDED;
     a->map.occupied[1][axis] =
-      occupancy->hi[axis] < occupancy->blocks[axis] ? (float)(occupancy->hi[axis] * occupancy->block_size) : UNBOUNDED;
+      occupancy->hi[axis] < occupancy->blocks[axis] ? block_at(grid, occupancy, axis, occupancy->hi[axis]) : UNBOUNDED;
   }
 }
 
@@ -286,8 +332,8 @@ static void pair_values(const stratus_pair pairs[3], double values[3])
   }
 }
 
-void stratus_ray_frame_structures(const stratus_table* table, double tolerance, const stratus_occupancy* occupancy,
-  const stratus_distance_map* map, stratus_ray_cast_arguments* a)
+void stratus_ray_frame_structures(const stratus_ray_grid* grid, const stratus_table* table, double tolerance,
+  const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
   if (table) {
     a->table = stratus_table_arguments_of(table);
@@ -302,7 +348,7 @@ void stratus_ray_frame_structures(const stratus_table* table, double tolerance, 
     hi[axis] = pair_value(a->crop.box[1][axis]);
   }
   if (map) {
-    set_map(occupancy, map, a);
+    set_map(grid, occupancy, map, a);
     for (int axis = 0; axis < 3 && !a->mode.sum; ++axis) {
       lo[axis] = fmax(lo[axis], (double)a->map.occupied[0][axis]);
       hi[axis] = fmin(hi[axis], (double)a->map.occupied[1][axis]);
@@ -325,6 +371,7 @@ stratus_ray_cast_frame stratus_ray_frame_of(
     .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
+    .grid = caster->grid.table,
     .rough = caster->choice.sampling == STRATUS_SAMPLING_LOCAL ? caster->rough->bytes : NULL,
     .table = caster->shades ? caster->shading_tables.memory : table,
     .opaque_depth = image->opaque_depth,

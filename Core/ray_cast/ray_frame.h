@@ -5,6 +5,7 @@
 
 #include "stratus/ray_cast.h"
 #include "ray_cast_arguments.h"
+#include "ray_grid.h"
 #include "volume.h"
 
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
@@ -16,8 +17,9 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   bool* empty);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */
 double stratus_ray_termination(double tolerance);
-/* Sets the arguments of table and map, each unless NULL, and the window. tolerance: decides into how many pieces a deep segment is cut. */
-void stratus_ray_frame_structures(const stratus_table* table, double tolerance, const stratus_occupancy* occupancy,
-  const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
+/* Sets the arguments of table and map, each unless NULL, and the window. grid: the caster's; may be NULL if map is. tolerance: decides into
+ * how many pieces a deep segment is cut. */
+void stratus_ray_frame_structures(const stratus_ray_grid* grid, const stratus_table* table, double tolerance,
+  const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* arguments);
 
 #endif

@@ -129,7 +129,7 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   a.values.has_hidden = caster->hides;
   stratus_ray_modes_arguments(caster, options, &a);
   stratus_ray_shading_arguments(caster, job->p->volume, camera, options, &a);
-  stratus_ray_frame_structures(caster->made.table, job->tolerance, caster->occupancy, caster->map, &a);
+  stratus_ray_frame_structures(&caster->grid, caster->made.table, job->tolerance, caster->occupancy, caster->map, &a);
   const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, &a, &image, caster->map != NULL);
   stratus_ray_cast_tile_for(caster->context->isa, job->type, job->variant)(&frame, 0, 0, STRATUS_PROBE_WIDTH, STRATUS_PROBE_HEIGHT, &mine);
   counts[1] += mine.samples;

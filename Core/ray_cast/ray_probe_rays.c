@@ -257,8 +257,17 @@ static void deal(const stratus_probe_classes* k, int dealt[CLASSES])
 
 /* ---- patches */
 
-/* Adds up the length, in blocks, that the line through p along d crosses of each class. Positions are in blocks. */
-static void measure_chords(const stratus_probe_classes* k, const double p[3], const double d[3], double chords[CLASSES])
+/* Returns where a block begins on an axis, in blocks of equal size. */
+static double block_begin(const stratus_ray_grid* grid, const stratus_probe_classes* k, int axis, int64_t block)
+{
+  const double last = grid->table ? (double)(grid->dimensions[axis] - 1) : 0.0, index = (double)(block * k->block_size);
+  return !grid->table || index > last ? (double)block : stratus_ray_grid_at(grid, axis, index) / k->block_size;
+}
+
+/* Adds up the length, in blocks, that the line through p along d crosses of each class. Positions are in blocks; on grids whose spacing
+ * changes, in blocks of the mean size. */
+static void measure_chords(const stratus_ray_grid* grid, const stratus_probe_classes* k, const int64_t home[3], const double p[3],
+  const double d[3], double chords[CLASSES])
 {
   double begin = -INFINITY, end = INFINITY, next[3], step[3];
   int64_t cell[3];
@@ -272,7 +281,15 @@ static void measure_chords(const stratus_probe_classes* k, const double p[3], co
     const double at = p[axis] + begin * d[axis];
     cell[axis] = at > 0.0 ? (int64_t)at : 0;
     cell[axis] = cell[axis] < k->blocks[axis] ? cell[axis] : k->blocks[axis] - 1;
-    next[axis] = ((double)(cell[axis] + (d[axis] > 0.0)) - p[axis]) / d[axis];
+    if (grid->table) { /* the block that the ray begins in lies between the border and the block that it goes through, or that one's */
+      for (cell[axis] = home[axis]; cell[axis] > 0 && block_begin(grid, k, axis, cell[axis]) > at;) {
+        --cell[axis];
+      }
+      while (cell[axis] < k->blocks[axis] - 1 && block_begin(grid, k, axis, cell[axis] + 1) <= at) {
+        ++cell[axis];
+      }
+    }
+    next[axis] = (block_begin(grid, k, axis, cell[axis] + (d[axis] > 0.0)) - p[axis]) / d[axis];
     step[axis] = fabs(1.0 / d[axis]);
   }
   double s = begin;
@@ -288,6 +305,9 @@ static void measure_chords(const stratus_probe_classes* k, const double p[3], co
     cell[axis] += d[axis] > 0.0 ? 1 : -1;
     if (cell[axis] < 0 || cell[axis] >= k->blocks[axis]) {
       break;
+    }
+    if (grid->table) {
+      next[axis] = (block_begin(grid, k, axis, cell[axis] + (d[axis] > 0.0)) - p[axis]) / d[axis];
     }
   }
 }
@@ -331,6 +351,9 @@ static void make_patch(const stratus_ray_caster* caster, const stratus_probe_cla
     const double last = (double)(volume->dimensions[axis] - 1);
     place[axis] = (double)at[axis] + uniform_of((uint32_t)number, 3 + (uint32_t)axis);
     index[axis] = fmin(place[axis] * size, last);
+    if (caster->grid.table) {
+      index[axis] = stratus_ray_grid_at(&caster->grid, axis, index[axis]);
+    }
     double edge = 0.0;
     for (int row = 0; row < 3; ++row) {
       edge += to_world[4 * row + axis] * to_world[4 * row + axis];
@@ -350,7 +373,7 @@ static void make_patch(const stratus_ray_caster* caster, const stratus_probe_cla
     direction[axis] = fabs(direction[axis]) > 1e-9 ? direction[axis] : 1e-9;
     scale = fmax(scale, fabs(direction[axis]));
   }
-  measure_chords(k, place, direction, chords);
+  measure_chords(&caster->grid, k, at, place, direction, chords);
   double density = 0.0;
   for (int c = 0; c < CLASSES; ++c) {
     if (k->count[c] > 0) {

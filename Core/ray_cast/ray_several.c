@@ -216,7 +216,7 @@ static stratus_status set_part(const several* s, several_input* in, stratus_ray_
     a->values.has_hidden = caster->hides;
     stratus_ray_shading_arguments(caster, in->of->volume, s->camera, &in->options, a);
     stratus_ray_frame_structures(
-      caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);
+      &caster->grid, caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);
     *part = (stratus_several_part){ .frame = stratus_ray_frame_of(caster, a, s->image, with_map),
       .layers = preintegrated ? NULL : caster->layers,
       .type = stratus_ray_fetch_type(&caster->traversed),
@@ -272,7 +272,7 @@ static stratus_status audit(const several* s, const stratus_several_frame* frame
   stratus_status status;
   for (int n = 0; n < frame->count; ++n) {
     plain[n] = *frame->volumes[n].frame.arguments;
-    stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain[n]);
+    stratus_ray_frame_structures(NULL, NULL, 0.0, NULL, NULL, &plain[n]);
     march.volumes[n].frame.arguments = &plain[n];
   }
   TRY_CLEANUP(stratus_allocate(s->context, pixels, 4 * sizeof(float), &rgba));

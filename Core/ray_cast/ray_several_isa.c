@@ -49,6 +49,7 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
     from[n] = (several_source){ .a = of->arguments,
       .values = of->values,
       .hidden = of->hidden,
+      .grid = of->grid,
       .map = of->map,
       .table = frame->volumes[n].layers ? (const void*)frame->volumes[n].layers : of->table,
       .besides = of->table,

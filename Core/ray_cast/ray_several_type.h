@@ -6,15 +6,16 @@
 #undef STRATUS_PREINTEGRATED
 #undef STRATUS_RAY_MODE
 
-static void RAY_NAME(several_value)(
-  const stratus_ray_cast_arguments* a, value_source values, const uchar* hidden, const vfloat x[3], vmask mask, vfloat* value)
+static void RAY_NAME(several_value)(const stratus_ray_cast_arguments* a, value_source values, const uchar* hidden, const int* grid,
+  const vfloat x[3], vmask mask, vfloat* value)
 {
-  *value = RAY_NAME(ray_value)(a, values, hidden, x, mask);
+  *value = RAY_NAME(ray_value)(a, values, hidden, grid, x, mask);
 }
 
-static void RAY_NAME(several_gradient)(const stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
+static void RAY_NAME(several_gradient)(
+  const stratus_ray_cast_arguments* a, value_source values, const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
 {
-  RAY_NAME(ray_gradient)(a, values, x, mask, g);
+  RAY_NAME(ray_gradient)(a, values, grid, x, mask, g);
 }
 
 #undef RAY_NAME

@@ -170,9 +170,11 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
       a->light.place[3 * row + axis] = (float)(index_to_world[4 * row + axis] / edge);
     }
   }
-  const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
+  const double spacing[3] = { fabs(stratus_volume_spacing(volume, 0)), fabs(stratus_volume_spacing(volume, 1)),
+    fabs(stratus_volume_spacing(volume, 2)) };
+  const double mean = (spacing[0] + spacing[1] + spacing[2]) / 3.0;
   for (int axis = 0; axis < 3; ++axis) {
-    a->media.gradient_length[axis] = (float)(mean / volume->spacing[axis]);
+    a->media.gradient_length[axis] = (float)(mean / spacing[axis]);
   }
   set_tables(caster, options, a);
   for (int c = 0; c < 4; ++c) {

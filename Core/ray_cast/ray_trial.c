@@ -215,7 +215,7 @@ static stratus_status compare(stratus_ray_caster* caster, stratus_ray_choice_fra
   uint64_t sums[STRATUS_TILE_COUNTS];
   atomic_llong spent[3] = { 0, 0, 0 };
   _Alignas(64) stratus_ray_cast_arguments plain = *frame->arguments;
-  stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
+  stratus_ray_frame_structures(&caster->grid, NULL, 0.0, NULL, NULL, &plain);
   const int* window = plain.camera.window;
   const double pixels = (double)(window[1] - window[0]) * (double)(window[3] - window[2]);
   *result = (trial_result){ .frame = 0.0 };
@@ -307,7 +307,7 @@ static stratus_status try_map(
   }
   t->tried[structure] = status != STRATUS_CANCELLED;
   TRY(status);
-  stratus_ray_frame_structures(caster->made.table, frame->tolerance, caster->occupancy, map, &other);
+  stratus_ray_frame_structures(&caster->grid, caster->made.table, frame->tolerance, caster->occupancy, map, &other);
   const bool skips = t->with <= t->without;
   const contender mine = { skips ? t->map : STRATUS_STRUCTURE_NONE, skips ? frame->arguments : plain, skips ? caster->map->bytes : NULL };
   const contender its = { structure, &other, map->bytes };
@@ -344,7 +344,7 @@ stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_fr
   stratus_ray_trial* t = &caster->trial;
   _Alignas(64) stratus_ray_cast_arguments plain = *frame->arguments;
   double frame_ms = 0.0;
-  stratus_ray_frame_structures(NULL, 0.0, NULL, NULL, &plain);
+  stratus_ray_frame_structures(&caster->grid, NULL, 0.0, NULL, NULL, &plain);
   if (!same_sampling(caster)) { /* samples cost what was not measured yet; until it is, the times before are the best guess */
     t->table_serial = caster->table_serial;
     t->choice = caster->choice;

@@ -41,7 +41,7 @@ typedef struct stratus_volume {
   int64_t dimensions[3]; /* number of values along x, y, z; each >= 1 */
   int64_t value_stride;  /* distance between consecutive values, in values, >= 1; default 1 */
   double origin[3];      /* local position of voxel (0,0,0); if cell_centered, of the first cell's corner */
-  double spacing[3];     /* each > 0 */
+  double spacing[3];     /* each > 0; not read along axes that have coordinates */
   double direction[9];   /* row-major rotation: local = origin + direction * (spacing * index); default identity */
   double matrix[16];     /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
   /* 1: each value belongs to a cell. The volume is dimensions*spacing wide, and linear interpolation clamps within half a cell of its
@@ -52,6 +52,11 @@ typedef struct stratus_volume {
    * images. If cell_centered, there are `dimensions` cells. */
   const uint8_t* cell_ghosts;
   uint64_t revision; /* the caller raises it when values or ghost flags change under the same pointer. Default 0. */
+  /* Grids whose spacing changes (rectilinear): for each axis NULL, the default, or positions that stand in place of spacing * index. They
+   * are those of the values, `dimensions` numbers; if cell_centered, those of the cells' borders, dimensions + 1 numbers. There are at
+   * least 2 of them, all finite, and they rise or fall strictly. Neighbours are at least 2^-19 of the whole extent apart, which is what
+   * floats tell apart along a ray. Linear interpolation is between the values' positions; those of cells are the cells' middles. */
+  const double* coordinates[3];
   /* 1..4, default 1 (0 counts as 1). Component c of value v is values[v*value_stride + c]. Ray casts in composite mode use all components;
    * in other modes they give STRATUS_UNSUPPORTED for more than 1. Everything else reads the first component. */
 

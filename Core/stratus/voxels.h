@@ -15,13 +15,13 @@ extern "C" {
 typedef struct stratus_voxels stratus_voxels;
 
 /* Makes the set of finite values that meet the criterion, without those that are hidden or that another piece owns. Cell flags count if the
- * volume is cell_centered. */
+ * volume is cell_centered. A volume with coordinates is STRATUS_UNSUPPORTED: voxels have equal spacing. */
 STRATUS_API stratus_status stratus_voxels_create(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* Makes the set for ray casts: every voxel of the 4^3 blocks of cells whose value range shows anything. The ranges are those of
  * stratus_value_range; a criterion without transfer function is rounded outward. Structure HYBRID can use a tree of this set. Voxel (i,j,k)
  * is cell (i,j,k), between the values at (i,j,k) and (i+1,j+1,k+1). Brick b (4^3 voxels) is block b. The dimensions are 4 times the ranges'
- * blocks. */
+ * blocks. Of a volume with coordinates, index coordinates stand in place of world ones. */
 STRATUS_API stratus_status stratus_voxels_create_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, stratus_voxels** voxels);
 /* Makes a set from `count` triples i, j, k, each in 0..dimensions-1; a repeated triple counts once. Index (i,j,k) is world (i+.5, j+.5,

@@ -9,6 +9,9 @@
 
 /* Number of values, evenly spread, among which stratus_volume_bias() seeks the one of least magnitude. */
 #define BIAS_VALUES_ASKED 4096
+/* Neighbouring coordinates are at least this part of the whole extent apart. A ray's position in mean index coordinates is a float: with
+ * all that is rounded on the way it errs by 2^-22 of the extent, so that a cell is found at most one off, even where it is halved. */
+#define COORDINATES_APART 0x1p-19
 
 static const double identity3[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
 static const double identity4[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
@@ -63,13 +66,34 @@ void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3])
   }
 }
 
+double stratus_volume_begin(const stratus_volume* volume, int axis)
+{
+  return volume->coordinates[axis] ? volume->coordinates[axis][0] : 0.0;
+}
+
+/* Returns the number of an axis's last coordinate. */
+static int64_t last_coordinate(const stratus_volume* volume, int axis)
+{
+  return volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
+}
+
+double stratus_volume_spacing(const stratus_volume* volume, int axis)
+{
+  const double* x = volume->coordinates[axis];
+  const int64_t last = last_coordinate(volume, axis);
+  return x ? (x[last] - x[0]) / (double)last : volume->spacing[axis];
+}
+
 void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[16])
 {
   double local[16] = { [15] = 1.0 };
   for (int r = 0; r < 3; ++r) {
     local[4 * r + 3] = volume->origin[r];
     for (int c = 0; c < 3; ++c) {
-      local[4 * r + c] = volume->direction[3 * r + c] * volume->spacing[c];
+      local[4 * r + c] = volume->direction[3 * r + c] * stratus_volume_spacing(volume, c);
+      if (volume->coordinates[c]) {
+        local[4 * r + 3] += volume->direction[3 * r + c] * stratus_volume_begin(volume, c);
+      }
       if (volume->cell_centered) {
         local[4 * r + 3] += 0.5 * local[4 * r + c];
       }
@@ -157,11 +181,49 @@ static stratus_status check_finite(stratus_context* context, const char* what, c
   return STRATUS_OK;
 }
 
+/* Checks that coordinates are finite and rise or fall strictly, by steps that floats tell apart along a ray. */
+static stratus_status check_coordinates(stratus_context* context, const stratus_volume* volume, int axis)
+{
+  const double* x = volume->coordinates[axis];
+  const int64_t last = last_coordinate(volume, axis);
+  const char name = "xyz"[axis];
+  if (last < 1) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "coordinates along %c are %lld, must be at least 2: a grid of one has no extent there", name, (long long)last + 1);
+  }
+  for (int64_t i = 0; i <= last; ++i) {
+    if (!isfinite(x[i])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coordinate %lld along %c is %g, must be finite", (long long)i, name, x[i]);
+    }
+  }
+  const double extent = x[last] - x[0], least = COORDINATES_APART * fabs(extent);
+  if (!isfinite(extent)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "coordinates along %c go from %g to %g, farther than doubles hold", name, x[0], x[last]);
+  }
+  for (int64_t i = 0; i < last; ++i) {
+    const double step = extent < 0.0 ? x[i] - x[i + 1] : x[i + 1] - x[i];
+    if (!(step > 0.0)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "coordinates %lld and %lld along %c are %.17g and %.17g, must %s strictly, as from the first, %.17g, to the last, %.17g",
+        (long long)i, (long long)i + 1, name, x[i], x[i + 1], extent < 0.0 ? "fall" : "rise", x[0], x[last]);
+    }
+    if (step < least) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "coordinates %lld and %lld along %c, %.17g and %.17g, are %g apart, must be at least %g (2^-19 of the whole extent)", (long long)i,
+        (long long)i + 1, name, x[i], x[i + 1], step, least);
+    }
+  }
+  return STRATUS_OK;
+}
+
 static stratus_status check_geometry(stratus_context* context, const stratus_volume* volume)
 {
   TRY(check_finite(context, "origin", volume->origin, 3));
   for (int a = 0; a < 3; ++a) {
-    if (!(volume->spacing[a] > 0.0) || !isfinite(volume->spacing[a])) {
+    if (volume->coordinates[a]) {
+      TRY(check_coordinates(context, volume, a));
+    } else if (!(volume->spacing[a] > 0.0) || !isfinite(volume->spacing[a])) {
       return stratus_fail(
         context, STRATUS_INVALID_ARGUMENT, "volume spacing[%d] is %g, must be positive and finite", a, volume->spacing[a]);
     }

@@ -35,7 +35,17 @@ static inline float stratus_float_below(double number)
   const float nearest = (float)number;
   return (double)nearest > number ? nextafterf(nearest, -INFINITY) : nearest;
 }
-/* Gives the 4x4 row-major affine matrix from index coordinates to world. */
+/* Whether any axis has coordinates. */
+static inline bool stratus_volume_is_stretched(const stratus_volume* volume)
+{
+  return volume->coordinates[0] || volume->coordinates[1] || volume->coordinates[2];
+}
+/* Gives where an axis begins, at its first coordinate, less the volume's origin: 0 without coordinates. */
+double stratus_volume_begin(const stratus_volume* volume, int axis);
+/* Returns the spacing of an axis. With coordinates it is the mean one, negative where they fall. */
+double stratus_volume_spacing(const stratus_volume* volume, int axis);
+/* Gives the 4x4 row-major affine matrix from index coordinates to world. Along axes with coordinates these are mean index coordinates:
+ * those of a grid with the same ends and equal spacing. */
 void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[16]);
 /* Sets *hidden to one byte for each cell (cell_centered: for each value), 1 where HIDDEN points or cells make it transparent. *hidden stays
  * NULL if there is no such cell. */

@@ -29,12 +29,14 @@ static stratus_status mark_blocks(const stratus_voxels* voxels, const stratus_va
   return STRATUS_OK;
 }
 
-/* Voxel (i,j,k) is cell (i,j,k), whose middle lies half a step beyond value (i,j,k). */
+/* Voxel (i,j,k) is cell (i,j,k), whose middle lies half a step beyond value (i,j,k). A volume with coordinates has its cells in index
+ * coordinates, for no matrix takes those to the world. */
 static void place_cells(const stratus_volume* volume, double index_to_world[16])
 {
   static const double half[3] = { 0.5, 0.5, 0.5 };
+  const stratus_volume plain = stratus_volume_default();
   double first[3];
-  stratus_volume_index_to_world(volume, index_to_world);
+  stratus_volume_index_to_world(stratus_volume_is_stretched(volume) ? &plain : volume, index_to_world);
   stratus_matrix_point(index_to_world, half, first);
   for (int a = 0; a < 3; ++a) {
     index_to_world[4 * a + 3] = first[a];

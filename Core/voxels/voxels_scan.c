@@ -259,6 +259,10 @@ stratus_status stratus_voxels_create(
   if (!out) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "voxels is NULL");
   }
+  if (stratus_volume_is_stretched(volume)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "effective voxels of a volume with coordinates (a rectilinear grid): they have equal spacing; cells serve");
+  }
   const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "effective voxels", 0.0));
   TRY(stratus_voxels_create_empty(context, volume->dimensions, &voxels));

@@ -11,9 +11,11 @@
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 bool CoreType(int type, stratus_type& result)
@@ -88,7 +90,13 @@ void AddNames(vtkDataSetAttributes* data, const char* where, std::string& text)
 }
 } // namespace
 
-std::string vtkStratusArrayNames(vtkImageData* image)
+vtkDataSet* vtkStratusAsImage(vtkDataObject* object)
+{
+  vtkDataSet* image = vtkImageData::SafeDownCast(object);
+  return image ? image : vtkRectilinearGrid::SafeDownCast(object);
+}
+
+std::string vtkStratusArrayNames(vtkDataSet* image)
 {
   std::string names;
   AddNames(image->GetPointData(), "points", names);
@@ -103,12 +111,18 @@ void vtkStratusImageView::Release()
 }
 
 bool vtkStratusImageView::Set(
-  vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents, int component)
+  vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents, int component)
 {
   this->Volume = stratus_volume_default();
   this->Volume.cell_centered = cells ? 1 : 0;
-  int points[3];
-  image->GetDimensions(points);
+  vtkImageData* regular = vtkImageData::SafeDownCast(image);
+  vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(image);
+  int points[3] = { 0, 0, 0 };
+  if (regular) {
+    regular->GetDimensions(points);
+  } else if (grid) {
+    grid->GetDimensions(points);
+  }
   for (int a = 0; a < 3; ++a) {
     // VTK counts one layer of cells along an axis of one point.
     this->Volume.dimensions[a] = cells ? std::max(points[a] - 1, 1) : points[a];
@@ -116,11 +130,52 @@ bool vtkStratusImageView::Set(
   if (!this->SetValues(image, array, cells, mostComponents, component, error) || !this->SetGhosts(image, cells, error)) {
     return false;
   }
-  this->SetGeometry(image, matrix);
+  if (matrix) {
+    std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Volume.matrix);
+  }
+  if (regular) {
+    this->SetGeometry(regular);
+  }
+  return regular || this->SetCoordinates(grid, error);
+}
+
+// Copies coordinates of any type as doubles. The core checks that they rise or fall.
+bool vtkStratusImageView::SetCoordinates(vtkRectilinearGrid* grid, std::string& error)
+{
+  vtkDataArray* const axes[] = { grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates() };
+  const int* dimensions = grid->GetDimensions();
+  for (int a = 0; a < 3; ++a) {
+    const vtkIdType count = axes[a] ? axes[a]->GetNumberOfTuples() : 0;
+    if (dimensions[a] < 2 || count != dimensions[a] || axes[a]->GetNumberOfComponents() != 1) {
+      error = std::string("the rectilinear grid has ") + std::to_string(dimensions[a]) + " points along " + "xyz"[a] + " and " +
+        std::to_string(count) + " coordinates, it needs as many, and at least 2: a flat grid has no volume";
+      return false;
+    }
+    std::vector<double>& coordinates = this->Coordinates[a];
+    coordinates.resize(static_cast<size_t>(count));
+    for (vtkIdType i = 0; i < count; ++i) {
+      coordinates[i] = axes[a]->GetComponent(i, 0);
+    }
+    this->Volume.coordinates[a] = coordinates.data();
+    this->CropOffset[a] = 0.0;
+  }
   return true;
 }
 
-bool vtkStratusImageView::SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error)
+double vtkStratusPosition(const stratus_volume& volume, int axis, double index)
+{
+  const double place = index + (volume.cell_centered ? 0.5 : 0.0);
+  const double* x = volume.coordinates[axis];
+  if (!x) {
+    return volume.spacing[axis] * place;
+  }
+  const double last = static_cast<double>(volume.dimensions[axis] - (volume.cell_centered ? 0 : 1));
+  const double cell = std::min(std::max(std::floor(place), 0.0), last - 1.0);
+  const auto i = static_cast<size_t>(cell);
+  return x[i] + std::min(std::max(place - cell, 0.0), 1.0) * (x[i + 1] - x[i]);
+}
+
+bool vtkStratusImageView::SetInput(vtkDataSet* image, vtkDataArray* array, int association, std::string& error)
 {
   if (!image || image->GetNumberOfPoints() < 1) {
     error = "the input image is empty, it needs at least one point";
@@ -134,7 +189,7 @@ bool vtkStratusImageView::SetInput(vtkImageData* image, vtkDataArray* array, int
 }
 
 bool vtkStratusImageView::SetValues(
-  vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error)
+  vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error)
 {
   stratus_volume& volume = this->Volume;
   if (!CoreType(array->GetDataType(), volume.type)) {
@@ -180,7 +235,7 @@ bool vtkStratusImageView::SetValues(
   return true;
 }
 
-void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
+void vtkStratusImageView::SetGeometry(vtkImageData* image)
 {
   stratus_volume& volume = this->Volume;
   int extent[6];
@@ -200,12 +255,9 @@ void vtkStratusImageView::SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix)
   for (int a = 0; a < 3; ++a) {
     this->CropOffset[a] = volume.origin[a] - (origin[a] + volume.spacing[a] * extent[2 * a]);
   }
-  if (matrix) {
-    std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, volume.matrix);
-  }
 }
 
-bool vtkStratusImageView::SetGhosts(vtkImageData* image, bool cells, std::string& error)
+bool vtkStratusImageView::SetGhosts(vtkDataSet* image, bool cells, std::string& error)
 {
   vtkUnsignedCharArray* pointGhosts = nullptr;
   vtkUnsignedCharArray* cellGhosts = nullptr;

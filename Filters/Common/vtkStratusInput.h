@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views of VTK's images and transfer functions in the core's terms. Private to the modules, never installed.
+// Views of VTK's images, rectilinear grids and transfer functions in the core's terms. Private to the modules, never installed.
 #ifndef vtkStratusInput_h
 #define vtkStratusInput_h
 
@@ -16,32 +16,38 @@
 
 class vtkColorTransferFunction;
 class vtkDataArray;
+class vtkDataObject;
+class vtkDataSet;
 class vtkImageData;
 class vtkMatrix4x4;
 class vtkPiecewiseFunction;
+class vtkRectilinearGrid;
 class vtkVolumeProperty;
 
-// A view of one array of an image. It copies the values where the array's memory is not one plain run, and copies again when they change.
+// A view of one array of an image or a rectilinear grid, both called image here. It copies the values where the array's memory is not one
+// plain run, and copies again when they change.
 class VTK_STRATUS_PRIVATE vtkStratusImageView
 {
 public:
   // Returns false, with the reason in `error`, where the core cannot take the array. `matrix` is the prop's, or nullptr for the identity.
   // `component`: the only one that is taken of an array of any number; -1: all, of which there may be `mostComponents`.
-  bool Set(vtkImageData* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1,
+  bool Set(vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1,
     int component = -1);
   // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
-  bool SetInput(vtkImageData* image, vtkDataArray* array, int association, std::string& error);
+  bool SetInput(vtkDataSet* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
   // The offset from VTK's cropping planes to the core's: crop_bounds = planes + offset. VTK's planes ignore the image's direction.
   const double* GetCropOffset() const { return this->CropOffset; }
   void Release();
 
 private:
-  bool SetValues(vtkImageData* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error);
-  void SetGeometry(vtkImageData* image, vtkMatrix4x4* matrix);
-  bool SetGhosts(vtkImageData* image, bool cells, std::string& error);
+  bool SetValues(vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error);
+  void SetGeometry(vtkImageData* image);
+  bool SetCoordinates(vtkRectilinearGrid* grid, std::string& error);
+  bool SetGhosts(vtkDataSet* image, bool cells, std::string& error);
 
   stratus_volume Volume;
+  std::vector<double> Coordinates[3]; // of a rectilinear grid
   double CropOffset[3] = { 0, 0, 0 };
   vtkSmartPointer<vtkDataArray> Source; // kept alive, so that no new array can get the same address
   vtkSmartPointer<vtkDataArray> Plain;
@@ -72,6 +78,11 @@ private:
 };
 
 // Lists the image's arrays, for the message that the wanted one is missing.
-VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkImageData* image);
+VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkDataSet* image);
+// Returns the position along the grid's axis of an index, which may lie between two values, less the origin. Half a cell lies beyond the
+// values of cells.
+VTK_STRATUS_PRIVATE double vtkStratusPosition(const stratus_volume& volume, int axis, double index);
+// Returns the data set where it is one that vtkStratusImageView takes, an image or a rectilinear grid, else nullptr.
+VTK_STRATUS_PRIVATE vtkDataSet* vtkStratusAsImage(vtkDataObject* object);
 
 #endif

@@ -36,11 +36,10 @@ void Extent(const stratus_node_box& box, const stratus_volume& volume, bool cell
 
 void Corner(const double extent[6], const stratus_volume& volume, int corner, double world[3])
 {
-  const double half = volume.cell_centered ? 0.5 : 0.0;
   std::copy(volume.origin, volume.origin + 3, world);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      world[a] += volume.direction[3 * a + b] * volume.spacing[b] * (extent[2 * b + ((corner >> b) & 1)] + half);
+      world[a] += volume.direction[3 * a + b] * vtkStratusPosition(volume, b, extent[2 * b + ((corner >> b) & 1)]);
     }
   }
 }

@@ -6,11 +6,13 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
@@ -34,20 +36,21 @@ public:
   }
   ~Internals() { this->Clear(); }
 
-  bool Build(vtkImageData* input, std::string& error);
-  void Fill(vtkImageData* input, vtkImageData* output);
+  bool Build(vtkDataSet* input, std::string& error);
+  void Fill(vtkDataSet* input, vtkDataSet* output);
   void Clear();
 
   vtkStratusDistanceMapFilter* Filter;
   vtkStratusContext Context;
   vtkSmartPointer<vtkVolumeProperty> Property;
-  vtkNew<vtkImageData> Last; // the last good output
-  bool HasLast = false;
-  vtkNew<vtkTable> Report; // of the last good output
+  vtkSmartPointer<vtkDataSet> Last; // the last good output
+  vtkNew<vtkTable> Report;          // of the last good output
   stratus_occupancy* Occupancy = nullptr;
 
 private:
   bool CheckShown(std::string& error);
+  void PlaceImage(vtkImageData* input, vtkImageData* output, const int64_t blocks[3], int size);
+  void PlaceGrid(vtkRectilinearGrid* output, const int64_t blocks[3], int size);
   stratus_status MakeOccupancy(stratus_context* context);
 
   vtkStratusImageView Image;
@@ -88,7 +91,7 @@ stratus_status vtkStratusDistanceMapFilter::Internals::MakeOccupancy(stratus_con
     : stratus_occupancy_create_between(context, this->Ranges, lower, upper, occupancy);
 }
 
-bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::string& error)
+bool vtkStratusDistanceMapFilter::Internals::Build(vtkDataSet* input, std::string& error)
 {
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
@@ -109,11 +112,8 @@ bool vtkStratusDistanceMapFilter::Internals::Build(vtkImageData* input, std::str
   return true;
 }
 
-void vtkStratusDistanceMapFilter::Internals::Fill(vtkImageData* input, vtkImageData* output)
+void vtkStratusDistanceMapFilter::Internals::PlaceImage(vtkImageData* input, vtkImageData* output, const int64_t blocks[3], int size)
 {
-  int64_t blocks[3];
-  int size;
-  stratus_occupancy_blocks(this->Occupancy, blocks, &size);
   const stratus_volume& volume = this->Image.GetVolume();
   double origin[3];
   double spacing[3];
@@ -124,11 +124,42 @@ void vtkStratusDistanceMapFilter::Internals::Fill(vtkImageData* input, vtkImageD
       origin[a] += volume.cell_centered ? 0.5 * volume.direction[3 * a + b] * volume.spacing[b] : 0.0;
     }
   }
-  output->Initialize();
   output->SetDimensions(static_cast<int>(blocks[0] + 1), static_cast<int>(blocks[1] + 1), static_cast<int>(blocks[2] + 1));
   output->SetOrigin(origin);
   output->SetSpacing(spacing);
   output->SetDirectionMatrix(input->GetDirectionMatrix());
+}
+
+// Blocks begin and end at the positions of values. The last ones end with the grid's last value, or with its only cell.
+void vtkStratusDistanceMapFilter::Internals::PlaceGrid(vtkRectilinearGrid* output, const int64_t blocks[3], int size)
+{
+  const stratus_volume& volume = this->Image.GetVolume();
+  vtkNew<vtkDoubleArray> axes[3];
+  for (int a = 0; a < 3; ++a) {
+    const double last = static_cast<double>(volume.dimensions[a] - 1);
+    for (int64_t block = 0; block <= blocks[a]; ++block) {
+      const double index = static_cast<double>(block * size);
+      axes[a]->InsertNextValue(vtkStratusPosition(volume, a, block < blocks[a] ? index : last > 0.0 ? std::min(index, last) : 0.5));
+    }
+  }
+  output->SetDimensions(static_cast<int>(blocks[0] + 1), static_cast<int>(blocks[1] + 1), static_cast<int>(blocks[2] + 1));
+  output->SetXCoordinates(axes[0]);
+  output->SetYCoordinates(axes[1]);
+  output->SetZCoordinates(axes[2]);
+}
+
+void vtkStratusDistanceMapFilter::Internals::Fill(vtkDataSet* input, vtkDataSet* output)
+{
+  int64_t blocks[3];
+  int size;
+  stratus_occupancy_blocks(this->Occupancy, blocks, &size);
+  output->Initialize();
+  vtkImageData* image = vtkImageData::SafeDownCast(output);
+  if (image) {
+    this->PlaceImage(vtkImageData::SafeDownCast(input), image, blocks, size);
+  } else {
+    this->PlaceGrid(vtkRectilinearGrid::SafeDownCast(output), blocks, size);
+  }
   vtkNew<vtkUnsignedCharArray> distances;
   distances->SetName("Distance");
   distances->SetNumberOfTuples(static_cast<vtkIdType>(blocks[0] * blocks[1] * blocks[2]));
@@ -208,6 +239,37 @@ const char* vtkStratusDistanceMapFilter::GetKindAsString()
   return names[this->Kind];
 }
 
+int vtkStratusDistanceMapFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  const int filled = this->Superclass::FillInputPortInformation(port, info);
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
+  return filled;
+}
+
+int vtkStratusDistanceMapFilter::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
+}
+
+// The output is of the input's class: an image, or a rectilinear grid.
+vtkTypeBool vtkStratusDistanceMapFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    vtkDataObject* output = vtkDataObject::GetData(outputs);
+    if (!vtkStratusAsImage(input)) {
+      input = nullptr; // refused later; until then the output is an image
+    }
+    if (!output || (input && output->GetDataObjectType() != input->GetDataObjectType())) {
+      auto made = vtkSmartPointer<vtkDataObject>::Take(input ? input->NewInstance() : vtkImageData::New());
+      outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+    }
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkStratusDistanceMapFilter::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkInformation* input = inputs[0]->GetInformationObject(0);
@@ -238,18 +300,18 @@ int vtkStratusDistanceMapFilter::RequestUpdateExtent(vtkInformation*, vtkInforma
 
 int vtkStratusDistanceMapFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkImageData* input = vtkImageData::GetData(inputs[0]);
-  vtkImageData* output = vtkImageData::GetData(outputs);
+  vtkDataSet* input = vtkStratusAsImage(vtkDataObject::GetData(inputs[0]));
+  vtkDataSet* output = vtkDataSet::GetData(outputs);
   std::string error;
   const bool built = this->Internal->Build(input, error);
   if (built) {
     this->Internal->Fill(input, output);
     this->OccupiedBlocks = static_cast<vtkIdType>(stratus_occupancy_count(this->Internal->Occupancy));
+    this->Internal->Last = vtkSmartPointer<vtkDataSet>::Take(output->NewInstance());
     this->Internal->Last->ShallowCopy(output);
-    this->Internal->HasLast = true;
   } else {
     vtkErrorMacro(<< error);
-    if (this->Internal->HasLast) { // the pipeline has emptied the output
+    if (this->Internal->Last && output && this->Internal->Last->IsA(output->GetClassName())) { // the pipeline has emptied the output
       output->ShallowCopy(this->Internal->Last);
     }
   }

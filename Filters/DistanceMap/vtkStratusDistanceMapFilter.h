@@ -3,10 +3,11 @@
  * @class   vtkStratusDistanceMapFilter
  * @brief   distance in blocks from each block of an image to the nearest block that shows something
  *
- * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a vtkImageData with one
- * cell per block and the cell data "Distance" (unsigned char). The distance is 0 in occupied blocks and the Chebyshev distance in blocks
- * elsewhere, at most 127, in the kind PAPER 255. The output lies over the input, but its last blocks may extend beyond it. For cell data it
- * begins at the centre of the first cell, because interpolation does.
+ * Input: a vtkImageData or vtkRectilinearGrid with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a
+ * data set of the input's class, see GetOutputDataObject(), with one cell per block and the cell data "Distance" (unsigned char). The
+ * distance is 0 in occupied blocks and the Chebyshev distance in blocks elsewhere, at most 127, in the kind PAPER 255. The output lies over
+ * the input, but its last blocks may extend beyond it; those of a rectilinear grid end with it. For cell data the output begins at the
+ * centre of the first cell, because interpolation does.
  *
  * A block is occupied if VolumeProperty's scalar opacity is above 0 somewhere between the block's smallest and largest value. Without a
  * VolumeProperty, a block is occupied if a value between the two lies in LowerThreshold..UpperThreshold, ends included. Values of 24 bits
@@ -34,6 +35,7 @@ public:
   static vtkStratusDistanceMapFilter* New();
   vtkTypeMacro(vtkStratusDistanceMapFilter, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   vtkMTimeType GetMTime() override;
 
   //@{
@@ -129,6 +131,8 @@ protected:
   vtkStratusDistanceMapFilter();
   ~vtkStratusDistanceMapFilter() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -14,6 +14,7 @@
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -40,17 +41,16 @@ public:
   }
   ~Internals() { this->Clear(); }
 
-  bool Build(vtkImageData* input, std::string& error);
-  void Fill(vtkImageData* input, vtkImageData* output, vtkPolyData* boxes);
+  bool Build(vtkDataSet* input, std::string& error);
+  void Fill(vtkDataSet* input, vtkDataSet* output, vtkPolyData* boxes);
   void Clear();
 
   vtkStratusHybridTreeFilter* Filter;
   vtkStratusContext Context;
   vtkSmartPointer<vtkVolumeProperty> Property;
-  vtkNew<vtkImageData> LastImage; // the last good outputs
+  vtkSmartPointer<vtkDataSet> LastImage; // the last good outputs; nullptr before the first
   vtkNew<vtkPolyData> LastBoxes;
   vtkNew<vtkTable> Report; // of the last good outputs
-  bool HasLast = false;
   stratus_tree* Tree = nullptr;
   std::string Reason;
 
@@ -111,7 +111,7 @@ stratus_tree_options vtkStratusHybridTreeFilter::Internals::GetOptions() const
   return options;
 }
 
-bool vtkStratusHybridTreeFilter::Internals::Build(vtkImageData* input, std::string& error)
+bool vtkStratusHybridTreeFilter::Internals::Build(vtkDataSet* input, std::string& error)
 {
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* array = input ? this->Filter->GetInputArrayToProcess(0, input, association) : nullptr;
@@ -133,7 +133,7 @@ bool vtkStratusHybridTreeFilter::Internals::Build(vtkImageData* input, std::stri
   return true;
 }
 
-void vtkStratusHybridTreeFilter::Internals::Fill(vtkImageData* input, vtkImageData* output, vtkPolyData* boxes)
+void vtkStratusHybridTreeFilter::Internals::Fill(vtkDataSet* input, vtkDataSet* output, vtkPolyData* boxes)
 {
   vtkNew<vtkUnsignedCharArray> bytes;
   bytes->SetName(vtkStratusTreeArray);
@@ -233,11 +233,33 @@ vtkPolyData* vtkStratusHybridTreeFilter::GetBoxes()
 
 int vtkStratusHybridTreeFilter::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 0) {
-    return this->Superclass::FillOutputPortInformation(port, info);
-  }
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataSet" : "vtkPolyData");
   return 1;
+}
+
+int vtkStratusHybridTreeFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  const int filled = this->Superclass::FillInputPortInformation(port, info);
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
+  return filled;
+}
+
+// The first output is of the input's class: an image, or a rectilinear grid.
+vtkTypeBool vtkStratusHybridTreeFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    vtkDataObject* output = vtkDataObject::GetData(outputs);
+    if (!vtkStratusAsImage(input)) {
+      input = nullptr; // refused later; until then the output is an image
+    }
+    if (!output || (input && output->GetDataObjectType() != input->GetDataObjectType())) {
+      auto made = vtkSmartPointer<vtkDataObject>::Take(input ? input->NewInstance() : vtkImageData::New());
+      outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+    }
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 int vtkStratusHybridTreeFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
@@ -251,17 +273,17 @@ int vtkStratusHybridTreeFilter::RequestUpdateExtent(vtkInformation*, vtkInformat
 
 int vtkStratusHybridTreeFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkImageData* input = vtkImageData::GetData(inputs[0]);
-  vtkImageData* output = vtkImageData::GetData(outputs, 0);
+  vtkDataSet* input = vtkStratusAsImage(vtkDataObject::GetData(inputs[0]));
+  vtkDataSet* output = vtkDataSet::GetData(outputs, 0);
   vtkPolyData* boxes = vtkPolyData::GetData(outputs, 1);
   Internals* internal = this->Internal.get();
   std::string error;
   const bool built = internal->Build(input, error);
   if (built) {
     internal->Fill(input, output, boxes);
+    internal->LastImage = vtkSmartPointer<vtkDataSet>::Take(output->NewInstance());
     internal->LastImage->ShallowCopy(output);
     internal->LastBoxes->ShallowCopy(boxes);
-    internal->HasLast = true;
     stratus_tree_statistics statistics;
     stratus_tree_get_statistics(internal->Tree, &statistics);
     this->NumberOfVoxels = static_cast<vtkIdType>(statistics.voxels);
@@ -276,7 +298,7 @@ int vtkStratusHybridTreeFilter::RequestData(vtkInformation*, vtkInformationVecto
     internal->Reason = statistics.why;
   } else {
     vtkErrorMacro(<< error);
-    if (internal->HasLast) { // the pipeline has emptied the outputs
+    if (internal->LastImage && output && internal->LastImage->IsA(output->GetClassName())) { // the pipeline has emptied the outputs
       output->ShallowCopy(internal->LastImage);
       boxes->ShallowCopy(internal->LastBoxes);
     }

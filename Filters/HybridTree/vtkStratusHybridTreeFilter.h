@@ -3,8 +3,8 @@
  * @class   vtkStratusHybridTreeFilter
  * @brief   builds the tree by which rays skip empty space, and stores it in the image
  *
- * Input: a vtkImageData with scalars of one component on points (or on cells, by SetInputArrayToProcess). First output: a shallow copy of
- * the image with the tree in its field data:
+ * Input: a vtkImageData or vtkRectilinearGrid with scalars of one component on points (or on cells, by SetInputArrayToProcess). First
+ * output: a shallow copy of it, see GetOutputDataObject(), with the tree in its field data:
  * - "StratusHybridTree" (unsigned char): the tree, with a version and a checksum;
  * - "StratusHybridTreeVersion" (int): the major and minor version of the Stratus that wrote it;
  * - "StratusHybridTreeHash" (string): a hash of the values and hidden parts from which it was built.
@@ -40,6 +40,7 @@ public:
   static vtkStratusHybridTreeFilter* New();
   vtkTypeMacro(vtkStratusHybridTreeFilter, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   vtkMTimeType GetMTime() override;
 
   //@{
@@ -68,7 +69,8 @@ public:
    * Set/Get the purpose of the tree. Default RAY_CASTING.
    * - RAY_CASTING: the tree holds blocks of cells that show something between their smallest and largest value, rounded outward.
    *   It serves every transfer function that shows no more.
-   * - FIRST_HITS: the tree holds single voxels. It serves transfer functions that show the same voxels.
+   * - FIRST_HITS: the tree holds single voxels. It serves transfer functions that show the same voxels. Of a vtkRectilinearGrid it is
+   *   refused: voxels have equal spacing.
    */
   vtkSetClampMacro(Purpose, int, RAY_CASTING, FIRST_HITS);
   vtkGetMacro(Purpose, int);
@@ -244,6 +246,7 @@ protected:
   vtkStratusHybridTreeFilter();
   ~vtkStratusHybridTreeFilter() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

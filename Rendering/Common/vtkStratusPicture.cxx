@@ -92,8 +92,12 @@ void LocalBox(const stratus_volume& volume, const double* crop, double margin, d
 {
   for (int a = 0; a < 3; ++a) {
     const double cells = static_cast<double>(volume.dimensions[a] - (volume.cell_centered ? 0 : 1));
-    box[2 * a] = volume.origin[a] - volume.spacing[a] * margin;
-    box[2 * a + 1] = volume.origin[a] + volume.spacing[a] * (cells + margin);
+    const double* x = volume.coordinates[a];
+    const double last = x ? x[static_cast<size_t>(cells)] : 0.0;
+    const double begin = volume.origin[a] + (x ? std::min(x[0], last) : 0.0);
+    const double spacing = x ? std::fabs(last - x[0]) / cells : volume.spacing[a];
+    box[2 * a] = begin - spacing * margin;
+    box[2 * a + 1] = begin + spacing * (cells + margin);
     if (crop) {
       box[2 * a] = std::max(box[2 * a], crop[2 * a]);
       box[2 * a + 1] = std::min(box[2 * a + 1], crop[2 * a + 1]);

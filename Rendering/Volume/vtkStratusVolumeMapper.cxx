@@ -24,6 +24,7 @@ vtkStratusVolumeMapper::~vtkStratusVolumeMapper() = default;
 int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
   return 1;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumeMapper
- * @brief   draws a vtkImageData by ray casting that skips transparent regions without changing the picture
+ * @brief   draws a vtkImageData or vtkRectilinearGrid by ray casting that skips transparent regions without changing the picture
  *
- * Replaces vtkSmartVolumeMapper. It draws a vtkImageData with the vtkVolume's vtkVolumeProperty and composites the picture with the scene's
- * opaque geometry. Setters with vtkSmartVolumeMapper's names mean the same.
+ * Replaces vtkSmartVolumeMapper. It draws a vtkImageData, or a vtkRectilinearGrid without resampling it, with the vtkVolume's
+ * vtkVolumeProperty and composites the picture with the scene's opaque geometry. Setters with vtkSmartVolumeMapper's names mean the same.
  *
  * Supported are:
  * - point and cell scalars of any numeric type but bits, with linear and nearest interpolation, ghost and blanking arrays;
@@ -32,7 +32,7 @@
  * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
  *
  * All else (blend mode slice, two-dimensional transfer functions, UseClippedVoxelIntensity, shaders of the prop's own, other data than
- * vtkImageData) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
+ * these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
  * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a cube about its point, so that the mapper's bounds extend

@@ -173,11 +173,16 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   if (mapper->GetNumberOfInputConnections(0) > 0) {
     mapper->GetInputAlgorithm()->Update();
   }
-  vtkImageData* image = vtkImageData::SafeDownCast(mapper->GetInput());
+  vtkDataSet* image = vtkStratusAsImage(mapper->GetDataObjectInput());
   if (!image) {
     vtkDataObject* input = mapper->GetDataObjectInput();
-    error = input ? std::string("an input of class ") + input->GetClassName() + " is not supported, only vtkImageData is"
-                  : std::string("there is no input, a vtkImageData is needed");
+    error = input
+      ? std::string("an input of class ") + input->GetClassName() + " is not supported, only vtkImageData and vtkRectilinearGrid are"
+      : std::string("there is no input, a vtkImageData or vtkRectilinearGrid is needed");
+    return false;
+  }
+  if (this->IsFirstHit() && !vtkImageData::SafeDownCast(image)) {
+    error = "first hits of a vtkRectilinearGrid are not supported: they know boxes of equal spacing only; blend mode isosurface (5) is";
     return false;
   }
   if (image->GetNumberOfPoints() < 1) {
@@ -198,7 +203,7 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
     this->SetTransfers(prop->GetProperty(), error);
 }
 
-vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkImageData* image, bool& cells, std::string& error) const
+vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bool& cells, std::string& error) const
 {
   vtkStratusVolumeMapper* mapper = this->Mapper;
   int where = 0;

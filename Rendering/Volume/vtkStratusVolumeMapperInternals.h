@@ -65,9 +65,9 @@ private:
   bool CheckScene(vtkVolume* prop, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
   // Finds the scalar array, and whether it is of cells.
-  vtkDataArray* FindArray(vtkImageData* image, bool& cells, std::string& error) const;
+  vtkDataArray* FindArray(vtkDataSet* image, bool& cells, std::string& error) const;
   // Vectors and what they mean, pictures as images, and calls of VTK's mappers (vtkStratusVolumeMapperVTK.cxx).
-  vtkDataArray* Magnitude(vtkImageData* image, vtkDataArray* array, bool cells);
+  vtkDataArray* Magnitude(vtkDataSet* image, vtkDataArray* array, bool cells);
   int GetVectorComponent(vtkDataArray* array) const;
   double GetGradientOpacityDistance() const;
   void WarnOfGradientOpacity(vtkVolumeProperty* property);

@@ -5,6 +5,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageCast.h"
 #include "vtkImageData.h"
@@ -24,7 +25,7 @@ int vtkStratusVolumeMapper::Internals::GetVectorComponent(vtkDataArray* array) c
   return this->Mapper->VectorMode == COMPONENT && array->GetNumberOfComponents() > 1 ? this->Mapper->VectorComponent : -1;
 }
 
-vtkDataArray* vtkStratusVolumeMapper::Internals::Magnitude(vtkImageData* image, vtkDataArray* array, bool cells)
+vtkDataArray* vtkStratusVolumeMapper::Internals::Magnitude(vtkDataSet* image, vtkDataArray* array, bool cells)
 {
   const vtkIdType wanted = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
   const vtkMTimeType time = std::max(array->GetMTime(), image->GetMTime());
@@ -34,16 +35,11 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::Magnitude(vtkImageData* image, 
   if (this->MagnitudeOf == array && this->MagnitudeTime == time) {
     return this->Magnitudes;
   }
-  // VTK's filter takes an image of point scalars; the order of values is all that counts.
+  // VTK's filter takes an image of point scalars; the order of values is all that counts, so that a line of them serves any grid.
   vtkNew<vtkImageData> values;
   vtkNew<vtkImageCast> cast;
   vtkNew<vtkImageMagnitude> magnitude;
-  int points[3];
-  image->GetDimensions(points);
-  for (int& count : points) {
-    count = cells ? std::max(count - 1, 1) : count;
-  }
-  values->SetDimensions(points);
+  values->SetDimensions(static_cast<int>(wanted), 1, 1);
   values->GetPointData()->SetScalars(array);
   cast->SetInputData(values);
   cast->SetOutputScalarTypeToDouble(); // integers would round the magnitude
@@ -156,6 +152,14 @@ namespace {
 // A sample's opacity, in 0..1, may be so far from VTK's before a warning says so: 13 of 255.
 const double MuchOfOpacity = 0.05;
 
+// The mean spacing along an axis of the grid.
+double Spacing(const stratus_volume& volume, int axis)
+{
+  const double* at = volume.coordinates[axis];
+  const int64_t last = volume.cell_centered ? volume.dimensions[axis] : volume.dimensions[axis] - 1; // coordinates are those of points
+  return at ? (at[last] - at[0]) / static_cast<double>(last) : volume.spacing[axis];
+}
+
 // Half of the mean spacing of the world, by which vtkSmartVolumeMapper samples where it chooses itself.
 double HalfMeanSpacing(const stratus_volume& volume)
 {
@@ -165,7 +169,7 @@ double HalfMeanSpacing(const stratus_volume& volume)
     for (int row = 0; row < 3; ++row) {
       double step = 0.0;
       for (int b = 0; b < 3; ++b) {
-        step += volume.matrix[4 * row + b] * volume.direction[3 * b + a] * volume.spacing[a];
+        step += volume.matrix[4 * row + b] * volume.direction[3 * b + a] * Spacing(volume, a);
       }
       square += step * step;
     }

@@ -119,6 +119,13 @@ def test_kinds():
     expect(0, "kind +curvilinear grid of 5 x 4 x 6 points", "info", "stretched.vts")
     expect(0, "kind +unstructured grid", "info", "stretched.vtu")
     expect(0, "kind +image of 5 x 4 x 6 points", "info", write(vtkXMLImageDataWriter, image(), "image.vti"))
+    expect(0, "kind .*drawn by rays", "info", "stretched.vtr")
+    expect(0, "mean spacing 1 x 1 x 2.2", "info", "stretched.vtr")
+    write(vtkXMLRectilinearGridWriter, fill(axes(range(5), range(4), range(6))), "even.vtr")
+    if picture("even.vtr") != picture("image.vti"):
+        fail("a rectilinear grid of equal spacing is another picture than the image")
+    if picture("stretched.vtr") == picture("even.vtr"):
+        fail("coordinates change nothing")
     same = picture("stretched.vtu")
     if picture("stretched.vts") != same:
         fail("a curvilinear grid is another picture than its cells")

@@ -7,7 +7,8 @@
 #include "vtkLight.h"
 #include "vtkMultiVolume.h"
 #include "vtkPlane.h"
-#include "vtkRectilinearGrid.h"
+#include "vtkPoints.h"
+#include "vtkStructuredGrid.h"
 #include "vtkShaderProperty.h"
 #include "vtkTransform.h"
 
@@ -109,24 +110,23 @@ void Props()
     "shaders of one's own", "shaders",
     [](Scene& s) { s.Volume->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Base::Impl", true, "", false); },
     [](Scene& s) { s.Volume->GetShaderProperty()->ClearAllFragmentShaderReplacements(); });
-  vtkNew<vtkRectilinearGrid> grid;
-  vtkNew<vtkFloatArray> ticks, values;
-  for (int i = 0; i < 3; ++i) {
-    ticks->InsertNextValue(static_cast<float>(i * i));
+  vtkNew<vtkStructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> values;
+  for (int i = 0; i < 27; ++i) {
+    points->InsertNextPoint(i % 3, i / 3 % 3, i / 9);
   }
   values->SetNumberOfTuples(27);
   values->Fill(1.0);
   grid->SetDimensions(3, 3, 3);
-  grid->SetXCoordinates(ticks);
-  grid->SetYCoordinates(ticks);
-  grid->SetZCoordinates(ticks);
+  grid->SetPoints(points);
   grid->GetPointData()->SetScalars(values);
   vtkNew<ErrorObserver> pipeline;
   Refused(
-    "rectilinear grid", "vtkRectilinearGrid is not supported",
+    "structured grid", "vtkStructuredGrid is not supported",
     [&](Scene& s) {
       s.Mapper->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, pipeline); // it says so, too
-      static_cast<vtkVolumeMapper*>(s.Mapper)->SetInputData(grid);
+      s.Mapper->SetInputDataObject(grid);
     },
     [](Scene& s) { s.Mapper->SetInputData(s.Image); });
 }

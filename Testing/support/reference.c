@@ -13,7 +13,7 @@
 
 typedef struct ray {
   double origin[3], direction[3];             /* world, direction of length 1 */
-  double index_origin[3], index_direction[3]; /* the same line in index coordinates, with the same parameter */
+  double index_origin[3], index_direction[3]; /* the same line in places (reference_axis.h), with the same parameter */
   double begin, end;
 } ray;
 
@@ -52,7 +52,7 @@ static ray make_ray(const reference_scene* scene, const reference_field* f, doub
     r.direction[a] /= length;
   }
   for (int a = 0; a < 3; ++a) {
-    r.index_origin[a] = f->shift;
+    r.index_origin[a] = f->shift[a];
     r.index_direction[a] = 0.0;
     for (int b = 0; b < 3; ++b) {
       r.index_origin[a] += f->to_index[a][b] * (r.origin[b] - f->corner[b]);
@@ -74,7 +74,7 @@ static double leave_block(const reference_field* f, const ray* r, const double p
 {
   int64_t b[3];
   for (int a = 0; a < 3; ++a) {
-    b[a] = reference_clamp((int64_t)floor(p[a] / REFERENCE_BLOCK), f->blocks[a]);
+    b[a] = reference_axis_find(f->volume, a, p[a]).cell / REFERENCE_BLOCK;
   }
   if (f->shown[(b[2] * f->blocks[1] + b[1]) * f->blocks[0] + b[0]]) {
     return -1.0;
@@ -82,7 +82,9 @@ static double leave_block(const reference_field* f, const ray* r, const double p
   double leave = r->end;
   for (int a = 0; a < 3; ++a) {
     const double d = r->index_direction[a];
-    const double wall = (double)((b[a] + (d > 0.0)) * REFERENCE_BLOCK);
+    const bool ahead = (d > 0.0) == (reference_axis_end(f->volume, a, 0) < reference_axis_end(f->volume, a, 1));
+    const int64_t n = f->volume->dimensions[a], value = (b[a] + ahead) * REFERENCE_BLOCK;
+    const double wall = !f->volume->coordinates[a] || value < n ? reference_axis_place(f->volume, a, value) : d > 0.0 ? f->hi[a] : f->lo[a];
     if (d != 0.0) {
       leave = fmin(leave, fmax((wall - r->index_origin[a]) / d, r->begin));
     }
@@ -110,7 +112,7 @@ static double look(const reference_scene* scene, const reference_field* parts, c
   memcpy(place.to_index, f->to_index, sizeof place.to_index);
   memcpy(place.direction, r->direction, sizeof place.direction);
   for (int a = 0; a < 3; ++a) {
-    place.index[a] = fmin(fmax(p[a], 0.0), (double)(f->volume->dimensions[a] - 1));
+    place.spot[a] = reference_axis_find(f->volume, a, p[a]);
     place.world[a] = r->origin[a] + s * r->direction[a];
   }
   for (int i = 0; i < reference_components(scene->volume); ++i) {
@@ -123,15 +125,28 @@ static double look(const reference_scene* scene, const reference_field* parts, c
   return -expm1(-tau * step);
 }
 
+/* Finds where the ray crosses the next plane of an axis with coordinates, of values or of borders, beyond s and before `next`. */
+static double next_coordinate(const reference_field* f, const ray* r, int axis, double s, double next)
+{
+  for (int64_t i = 0; r->index_direction[axis] != 0.0 && i < 2 * f->volume->dimensions[axis]; ++i) {
+    const double plane = i % 2 ? reference_axis_border(f->volume, axis, i / 2) : reference_axis_place(f->volume, axis, i / 2);
+    const double crossed = (plane - r->index_origin[axis]) / r->index_direction[axis];
+    next = crossed > s && crossed < next ? crossed : next;
+  }
+  return next;
+}
+
 /* Finds where the ray crosses the next grid plane beyond s. With half, planes between the voxels count, too: there the nearest value
  * changes. */
-static double next_plane(const ray* r, double s, bool half)
+static double next_plane(const reference_field* f, const ray* r, double s, bool half)
 {
   const double planes = half ? 2.0 : 1.0;
   double next = r->end;
   for (int a = 0; a < 3; ++a) {
     const double d = r->index_direction[a];
-    if (d != 0.0) {
+    if (f->volume->coordinates[a]) {
+      next = next_coordinate(f, r, a, s, next);
+    } else if (d != 0.0) {
       /* The plane behind s may be met again by rounding; s itself must not. */
       const double at = planes * (r->index_origin[a] + s * d);
       double wall = d > 0.0 ? floor(at) + 1.0 : ceil(at) - 1.0;
@@ -154,7 +169,7 @@ static double trace_cells(
   reference_light light = { .left = 1.0, .first = (double)INFINITY };
   reference_cell cell = { .at = { -1, -1, -1 } };
   for (double s = r->begin; s < r->end && light.left > 1e-12;) {
-    double next = next_plane(r, s, half), p[3];
+    double next = next_plane(f, r, s, half), p[3];
     for (int a = 0; a < 3; ++a) {
       p[a] = r->index_origin[a] + 0.5 * (s + next) * r->index_direction[a];
     }

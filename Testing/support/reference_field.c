@@ -150,7 +150,7 @@ int reference_field_create(const reference_scene* scene, reference_field* f)
 {
   const stratus_volume* v = scene->volume;
   double linear[3][3];
-  *f = (reference_field){ .volume = v, .shift = v->cell_centered ? -0.5 : 0.0, .edge = (double)INFINITY };
+  *f = (reference_field){ .volume = v, .edge = (double)INFINITY };
   f->linear = scene->interpolation == STRATUS_INTERPOLATION_LINEAR;
   for (int a = 0; a < 3; ++a) {
     double squares = 0.0;
@@ -159,16 +159,17 @@ int reference_field_create(const reference_scene* scene, reference_field* f)
       f->corner[a] += v->matrix[4 * a + r] * v->origin[r];
       linear[r][a] = 0.0;
       for (int m = 0; m < 3; ++m) {
-        linear[r][a] += v->matrix[4 * r + m] * v->direction[3 * m + a] * v->spacing[a];
+        linear[r][a] += v->matrix[4 * r + m] * v->direction[3 * m + a] * reference_axis_unit(v, a);
       }
       squares += linear[r][a] * linear[r][a];
     }
-    f->edge = fmin(f->edge, sqrt(squares));
-    f->lo[a] = f->shift;
-    f->hi[a] = (double)v->dimensions[a] - 1.0 - f->shift;
+    f->edge = fmin(f->edge, sqrt(squares) * reference_axis_mean(v, a) / reference_axis_unit(v, a));
+    f->shift[a] = v->cell_centered && !v->coordinates[a] ? -0.5 : 0.0;
+    f->lo[a] = fmin(reference_axis_end(v, a, 0), reference_axis_end(v, a, 1));
+    f->hi[a] = fmax(reference_axis_end(v, a, 0), reference_axis_end(v, a, 1));
     if (scene->crop) {
-      f->lo[a] = fmax(f->lo[a], (scene->crop_bounds[2 * a] - v->origin[a]) / v->spacing[a] + f->shift);
-      f->hi[a] = fmin(f->hi[a], (scene->crop_bounds[2 * a + 1] - v->origin[a]) / v->spacing[a] + f->shift);
+      f->lo[a] = fmax(f->lo[a], reference_axis_crop(v, a, scene->crop_bounds[2 * a]));
+      f->hi[a] = fmin(f->hi[a], reference_axis_crop(v, a, scene->crop_bounds[2 * a + 1]));
     }
     f->blocks[a] = (v->dimensions[a] + REFERENCE_BLOCK - 1) / REFERENCE_BLOCK;
   }
@@ -243,9 +244,9 @@ static void load_cell(const reference_field* f, const int64_t at[3], reference_c
 static bool own_cell_hidden(const reference_field* f, const double p[3])
 {
   const int64_t* n = f->volume->dimensions;
-  const int64_t i = reference_clamp((int64_t)floor(p[0] + 0.5), n[0]);
-  const int64_t j = reference_clamp((int64_t)floor(p[1] + 0.5), n[1]);
-  const int64_t k = reference_clamp((int64_t)floor(p[2] + 0.5), n[2]);
+  const int64_t i = reference_axis_find(f->volume, 0, p[0]).nearest;
+  const int64_t j = reference_axis_find(f->volume, 1, p[1]).nearest;
+  const int64_t k = reference_axis_find(f->volume, 2, p[2]).nearest;
   const unsigned flags = STRATUS_GHOST_DUPLICATE | (f->linear ? 0u : STRATUS_GHOST_HIDDEN_CELL);
   return f->volume->cell_ghosts[(k * n[1] + j) * n[0] + i] & flags;
 }
@@ -257,15 +258,14 @@ static double lerp(double a, double b, double t)
 
 double reference_field_sample(const reference_field* f, const double p[3], reference_cell* c)
 {
-  const int64_t* n = f->volume->dimensions;
   int64_t at[3];
   double t[3];
+  int nearest = 0;
   for (int a = 0; a < 3; ++a) {
-    const double top = (double)(n[a] - 1);
-    const double q = p[a] < 0.0 ? 0.0 : p[a] > top ? top : p[a];
-    at[a] = (int64_t)q;
-    at[a] = at[a] > n[a] - 2 && n[a] > 1 ? n[a] - 2 : at[a];
-    t[a] = q - (double)at[a];
+    const reference_spot spot = reference_axis_find(f->volume, a, p[a]);
+    at[a] = spot.cell;
+    t[a] = spot.fraction;
+    nearest |= (spot.nearest > spot.cell) << a;
   }
   if (at[0] != c->at[0] || at[1] != c->at[1] || at[2] != c->at[2]) {
     load_cell(f, at, c);
@@ -274,7 +274,7 @@ double reference_field_sample(const reference_field* f, const double p[3], refer
     return (double)NAN;
   }
   if (!f->linear) {
-    const double value = c->corner[(t[0] >= 0.5 ? 1 : 0) + (t[1] >= 0.5 ? 2 : 0) + (t[2] >= 0.5 ? 4 : 0)];
+    const double value = c->corner[nearest];
     return isfinite(value) ? value : (double)NAN;
   }
   const double* v = c->corner;

@@ -3,6 +3,7 @@
 #include "reference_modes.h"
 
 #include "reference.h"
+#include "reference_axis.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -16,7 +17,7 @@
 #define CUTS 8
 
 typedef struct line {
-  double origin[3], direction[3]; /* index coordinates by world distance from the eye (parallel: from its plane) */
+  double origin[3], direction[3]; /* places (reference_axis.h) by world distance from the eye (parallel: from its plane) */
   double begin, end;
 } line;
 
@@ -24,7 +25,7 @@ typedef struct scene {
   const stratus_volume* volume;
   const stratus_transfer* transfer;
   const stratus_ray_cast_options* options;
-  double to_world[3][4]; /* from index coordinates */
+  double to_world[3][4]; /* from places */
   double low, high;      /* of all finite values */
 } scene;
 
@@ -36,7 +37,7 @@ static bool cell_is_hidden(const stratus_volume* v, const int64_t at[3])
   return v->cell_ghosts && !v->cell_centered && (v->cell_ghosts[(at[2] * ny + at[1]) * nx + at[0]] & STRATUS_GHOST_HIDDEN_CELL);
 }
 
-/* Whether crop regions and mask keep position p (index coordinates). */
+/* Whether crop regions and mask keep position p (places). */
 static bool is_kept(const scene* s, const double p[3])
 {
   const stratus_volume* v = s->volume;
@@ -44,11 +45,9 @@ static bool is_kept(const scene* s, const double p[3])
   int region = 0;
   int64_t nearest[3];
   for (int a = 2; a >= 0; --a) {
-    const double half = v->cell_centered ? 0.5 : 0.0, top = (double)(v->dimensions[a] - 1);
-    const double low = (o->crop_bounds[2 * a] - v->origin[a]) / v->spacing[a] - half;
-    const double high = (o->crop_bounds[2 * a + 1] - v->origin[a]) / v->spacing[a] - half;
+    const double low = reference_axis_crop(v, a, o->crop_bounds[2 * a]), high = reference_axis_crop(v, a, o->crop_bounds[2 * a + 1]);
     region = 3 * region + (p[a] < low ? 0 : p[a] > high ? 2 : 1);
-    nearest[a] = (int64_t)floor(fmin(fmax(p[a], 0.0), top) + 0.5);
+    nearest[a] = reference_axis_find(v, a, p[a]).nearest;
   }
   return (!o->crop || (o->crop_regions >> region & 1)) &&
     (!o->mask || o->mask[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
@@ -61,14 +60,10 @@ static double field_at(const scene* s, const double p[3])
   int64_t at[3];
   double t[3], sum = 0.0;
   for (int a = 0; a < 3; ++a) {
-    const double top = (double)(v->dimensions[a] - 1), q = fmin(fmax(p[a], 0.0), top);
-    if (s->options->interpolation == STRATUS_INTERPOLATION_NEAREST) {
-      at[a] = (int64_t)floor(q + 0.5);
-      t[a] = 0.0;
-    } else {
-      at[a] = (int64_t)fmin(floor(q), fmax(top - 1.0, 0.0));
-      t[a] = q - (double)at[a];
-    }
+    const reference_spot spot = reference_axis_find(v, a, p[a]);
+    const bool is_nearest = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+    at[a] = is_nearest ? spot.nearest : spot.cell;
+    t[a] = is_nearest ? 0.0 : spot.fraction;
   }
   if (!is_kept(s, p) || cell_is_hidden(v, at)) {
     return (double)NAN;
@@ -123,12 +118,14 @@ static void set_to_world(scene* s)
     for (int c = 0; c < 4; ++c) {
       s->to_world[r][c] = c == 3 ? v->matrix[4 * r + 3] : 0.0;
       for (int m = 0; m < 3; ++m) {
-        s->to_world[r][c] += v->matrix[4 * r + m] * (c == 3 ? v->origin[m] : v->direction[3 * m + c] * v->spacing[c]);
+        s->to_world[r][c] += v->matrix[4 * r + m] * (c == 3 ? v->origin[m] : v->direction[3 * m + c] * reference_axis_unit(v, c));
       }
     }
   }
-  for (int r = 0; v->cell_centered && r < 3; ++r) {
-    s->to_world[r][3] += 0.5 * (s->to_world[r][0] + s->to_world[r][1] + s->to_world[r][2]);
+  for (int c = 0; v->cell_centered && c < 3; ++c) {
+    for (int r = 0; r < 3 && !v->coordinates[c]; ++r) {
+      s->to_world[r][3] += 0.5 * s->to_world[r][c];
+    }
   }
 }
 
@@ -170,8 +167,11 @@ static line make_line(const scene* s, const stratus_camera* camera, double u, do
   solve(s, from, l.origin);
   solve(s, along, l.direction);
   for (int a = 0; a < 3; ++a) {
-    const double half = s->volume->cell_centered ? 0.5 : -RIM * ((double)s->volume->dimensions[a] + 1.0), lo = -half,
-                 hi = (double)s->volume->dimensions[a] - 1.0 + half;
+    const stratus_volume* volume = s->volume;
+    const double unit = volume->coordinates[a] ? reference_axis_mean(volume, a) : 1.0;
+    const double rim = volume->cell_centered ? 0.0 : RIM * ((double)volume->dimensions[a] + 1.0) * unit;
+    const double lo = fmin(reference_axis_end(volume, a, 0), reference_axis_end(volume, a, 1)) + rim,
+                 hi = fmax(reference_axis_end(volume, a, 0), reference_axis_end(volume, a, 1)) - rim;
     const double t0 = (lo - l.origin[a]) / l.direction[a], t1 = (hi - l.origin[a]) / l.direction[a];
     l.begin = fmax(l.begin, fmin(t0, t1));
     l.end = fmin(l.end, fmax(t0, t1));
@@ -195,8 +195,7 @@ static int cut_line(const scene* s, const line* l, double cut[CUTS])
   cut[count++] = l->begin;
   for (int side = 0; s->options->crop && side < 6; ++side) {
     const int a = side / 2;
-    const double half = s->volume->cell_centered ? 0.5 : 0.0;
-    const double place = (s->options->crop_bounds[side] - s->volume->origin[a]) / s->volume->spacing[a] - half;
+    const double place = reference_axis_crop(s->volume, a, s->options->crop_bounds[side]);
     const double t = (place - l->origin[a]) / l->direction[a];
     int at = count;
     if (!(t > l->begin && t < l->end)) {
@@ -371,7 +370,8 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
   planes[plane_count++].t = l->end;
   for (int a = 0; a < 3; ++a) {
     for (int64_t n = -1; n <= s->volume->dimensions[a]; ++n) {
-      const double t = ((double)n - l->origin[a]) / l->direction[a];
+      const bool beyond = s->volume->coordinates[a] && (n < 0 || n == s->volume->dimensions[a]); /* there are no such coordinates */
+      const double t = beyond ? l->end : (reference_axis_place(s->volume, a, n) - l->origin[a]) / l->direction[a];
       if (t > l->begin && t < l->end && plane_count < CROSSINGS) {
         planes[plane_count++].t = t;
       }

@@ -68,7 +68,7 @@ static void meet(medium* m, const line* r)
   m->cell = (reference_cell){ .at = { -1, -1, -1 } };
   memcpy(m->gradients.at, m->cell.at, sizeof m->gradients.at);
   for (int a = 0; a < 3; ++a) {
-    m->origin[a] = f->shift;
+    m->origin[a] = f->shift[a];
     m->direction[a] = 0.0;
     for (int b = 0; b < 3; ++b) {
       m->origin[a] += f->to_index[a][b] * (r->origin[b] - f->corner[b]);
@@ -93,7 +93,7 @@ static void add_medium(medium* m, const line* r, double s, double* tau, double g
   memcpy(place.direction, r->direction, sizeof place.direction);
   for (int a = 0; a < 3; ++a) {
     p[a] = m->origin[a] + s * m->direction[a];
-    place.index[a] = fmin(fmax(p[a], 0.0), (double)(m->field.volume->dimensions[a] - 1));
+    place.spot[a] = reference_axis_find(m->field.volume, a, p[a]);
     place.world[a] = r->origin[a] + s * r->direction[a];
   }
   const double value = reference_field_sample(&m->field, p, &m->cell);

@@ -27,8 +27,7 @@ static const stratus_transfer* function_of(const reference_scene* scene, const r
   const int64_t* n = scene->volume->dimensions;
   int64_t at[3];
   for (int a = 0; a < 3; ++a) {
-    at[a] = (int64_t)floor(place->index[a] + 0.5);
-    at[a] = at[a] < n[a] ? at[a] : n[a] - 1;
+    at[a] = place->spot[a].nearest;
   }
   const int label = scene->label_count > 0 ? scene->labels[(at[2] * n[1] + at[1]) * n[0] + at[0]] : 0;
   return scene->transfer + (label <= scene->label_count ? label : 0);
@@ -63,6 +62,17 @@ static void unit(double v[3])
 
 /* ---- gradients */
 
+/* Returns the slope, at the middle one of three values, of the parabola through them: Lagrange's polynomials, differentiated. */
+static double parabola_slope(const stratus_volume* volume, const int64_t low[3], const int64_t at[3], const int64_t high[3], int axis)
+{
+  const double x[3] = { reference_axis_place(volume, axis, low[axis]), reference_axis_place(volume, axis, at[axis]),
+    reference_axis_place(volume, axis, high[axis]) };
+  const double v[3] = { reference_value(volume, low[0], low[1], low[2]), reference_value(volume, at[0], at[1], at[2]),
+    reference_value(volume, high[0], high[1], high[2]) };
+  return v[0] * (x[1] - x[2]) / ((x[0] - x[1]) * (x[0] - x[2])) + v[1] * (1.0 / (x[1] - x[0]) + 1.0 / (x[1] - x[2])) +
+    v[2] * (x[1] - x[0]) / ((x[2] - x[0]) * (x[2] - x[1]));
+}
+
 static double difference(const stratus_volume* volume, const int64_t at[3], int axis)
 {
   int64_t low[3] = { at[0], at[1], at[2] }, high[3] = { at[0], at[1], at[2] };
@@ -74,20 +84,23 @@ static double difference(const stratus_volume* volume, const int64_t at[3], int 
   if (!isfinite(reference_value(volume, high[0], high[1], high[2]))) {
     high[axis] = at[axis];
   }
-  const double apart = (double)(high[axis] - low[axis]);
+  if (volume->coordinates[axis] && low[axis] < at[axis] && at[axis] < high[axis]) {
+    return parabola_slope(volume, low, at, high, axis);
+  }
+  const double apart = reference_axis_place(volume, axis, high[axis]) - reference_axis_place(volume, axis, low[axis]);
   const double rise = reference_value(volume, high[0], high[1], high[2]) - reference_value(volume, low[0], low[1], low[2]);
-  return apart > 0.0 ? rise / apart : 0.0;
+  return apart != 0.0 ? rise / apart : 0.0;
 }
 
-/* Finds the gradient in values per voxel: interpolates the differences at the corners of the cell around p. */
-static void gradient_at(const stratus_volume* volume, const double p[3], bool linear, reference_gradients* kept, double g[3])
+/* Finds the gradient in values per unit of place: interpolates the differences at the corners of the cell around p. */
+static void gradient_at(const stratus_volume* volume, const reference_spot p[3], bool linear, reference_gradients* kept, double g[3])
 {
   const int corners = linear ? 8 : 1;
   int64_t lower[3];
   double t[3];
   for (int a = 0; a < 3; ++a) {
-    lower[a] = (int64_t)floor(linear ? p[a] : p[a] + 0.5);
-    t[a] = linear ? p[a] - (double)lower[a] : 0.0;
+    lower[a] = linear ? p[a].cell : p[a].nearest;
+    t[a] = linear ? p[a].fraction : 0.0;
   }
   if (memcmp(kept->at, lower, sizeof lower) != 0) {
     memcpy(kept->at, lower, sizeof lower);
@@ -117,12 +130,12 @@ static void gradient_at(const stratus_volume* volume, const double p[3], bool li
 static double gradient_factor(const stratus_volume* volume, const stratus_transfer* transfer, const double g[3])
 {
   double v[3];
-  const double mean = (volume->spacing[0] + volume->spacing[1] + volume->spacing[2]) / 3.0;
+  const double mean = (reference_axis_mean(volume, 0) + reference_axis_mean(volume, 1) + reference_axis_mean(volume, 2)) / 3.0;
   if (transfer->gradient_count == 0) {
     return 1.0;
   }
   for (int a = 0; a < 3; ++a) {
-    v[a] = g[a] / volume->spacing[a] * mean;
+    v[a] = g[a] / reference_axis_unit(volume, a) * mean;
   }
   const stratus_transfer function = { .opacity = transfer->gradient, .opacity_count = transfer->gradient_count, .clamp = 1 };
   return reference_opacity(&function, length_of(v));
@@ -223,7 +236,7 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
           : (stratus_material){ 0 };
   if (material.shade || thinning->gradient_count > 0) {
     const stratus_volume view = reference_component(scene->volume, shown);
-    gradient_at(&view, place->index, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
+    gradient_at(&view, place->spot, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
   }
   const double factor = gradient_factor(scene->volume, thinning, g);
   const double depth = weight * thinned(scene, transfer, factor, depth_of(opacity)) / transfer->unit_distance;

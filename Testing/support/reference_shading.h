@@ -5,10 +5,11 @@
 #define STRATUS_TESTING_REFERENCE_SHADING_H
 
 #include "reference.h"
+#include "reference_axis.h"
 
 #define REFERENCE_COMPONENTS_MAX 4
 
-/* The gradients at the corners of the cell that was asked last, in values per voxel: a ray takes many samples in each cell. */
+/* The gradients at the corners of the cell that was asked last, in values per unit of place: a ray takes many samples in each cell. */
 typedef struct reference_gradients {
   int64_t at[3]; /* lower corner; -1: of no cell yet */
   double corner[8][3];
@@ -16,10 +17,10 @@ typedef struct reference_gradients {
 
 /* The position of a sample, and the direction of its ray. */
 typedef struct reference_place {
-  double index[3];                /* index coordinates, clamped to the values' positions */
+  reference_spot spot[3];         /* among the values */
   double world[3];                /* world position */
   double direction[3];            /* of the ray, in the world, of length 1 */
-  double to_index[3][3];          /* world vectors to index vectors */
+  double to_index[3][3];          /* world vectors to those of places (reference_axis.h) */
   reference_gradients* gradients; /* one for each component, which the ray keeps */
 } reference_place;
 

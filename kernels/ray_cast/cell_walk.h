@@ -18,36 +18,61 @@ typedef struct cell_walk {
   vint cell[3];
   vfloat run; /* up to this s the structure need not be asked */
   int halves; /* 1: the planes are half a cell apart, so that cell c of the volume is 2 c and 2 c + 1; else 0 */
+  int boxes;  /* 1: cells are the boxes about values, and plane n is before value n; else 0. Read in stretched grids only. */
 } cell_walk;
 
-INLINE vfloat plane_met(const stratus_packet* k, int axis, vint plane) { return (v_from_int(plane) - k->p[axis]) * k->inverse[axis]; }
+/* Where a plane is. */
+INLINE vfloat walk_plane(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, int axis, vint plane)
+{
+  vfloat at = v_from_int(plane);
+  if (RAY_STRETCHED(a)) {
+    at = grid_plane_rare(a, k->grid, axis, (plane << vi_set(1 - w->halves)) - vi_set(w->boxes));
+  }
+  return at;
+}
+
+INLINE vfloat plane_met(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, int axis, vint plane)
+{
+  return (walk_plane(a, k, w, axis, plane) - k->p[axis]) * k->inverse[axis];
+}
+
+/* The cell at a position, but for what is rounded of it. */
+INLINE vint walk_cell(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, int axis, vfloat at)
+{
+  vint cell = v_to_int(at + v_set(1.0f)) - vi_set(1); /* never below -1 */
+  if (RAY_STRETCHED(a)) {
+    cell = (grid_last_plane(a, k->grid, axis, at) + vi_set(w->boxes)) >> vi_set(1 - w->halves);
+  }
+  return cell;
+}
 
 /* The cell that each ray enters at its point s. */
-INLINE void cell_enter(const stratus_packet* k, cell_walk* w)
+INLINE void cell_enter(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, cell_walk* w)
 {
   const vint zero = vi_set(0), one = vi_set(1);
   w->leave = w->end;
   for (int axis = 0; axis < 3; ++axis) {
     const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
     const vint step = vi_select(forward, one, vi_set(-1)), to_near = vi_select(forward, zero, one);
-    const vint cell = v_to_int(v_fma(w->s, k->d[axis], k->p[axis]) + v_set(1.0f)) - one; /* never below -1 */
+    const vint cell = walk_cell(a, k, w, axis, v_fma(w->s, k->d[axis], k->p[axis]));
     /* the product is rounded, so that the cell may be one off */
-    const vfloat before = plane_met(k, axis, cell + to_near), after = plane_met(k, axis, cell + to_near + step);
+    const vfloat before = plane_met(a, k, w, axis, cell + to_near), after = plane_met(a, k, w, axis, cell + to_near + step);
     w->cell[axis] = cell + vi_select(v_lt(w->s, before), zero - step, vi_select(v_le(after, w->s), step, zero));
-    w->enter_at[axis] = plane_met(k, axis, w->cell[axis] + to_near);
-    w->ahead[axis] = v_from_int(w->cell[axis] + to_near + step);
+    w->enter_at[axis] = plane_met(a, k, w, axis, w->cell[axis] + to_near);
+    w->ahead[axis] = walk_plane(a, k, w, axis, w->cell[axis] + to_near + step);
     w->leave_at[axis] = (w->ahead[axis] - k->p[axis]) * k->inverse[axis];
     w->leave = v_min(w->leave_at[axis], w->leave);
   }
 }
 
 /* Puts the rays at their begin. Returns 0 if none is live. */
-INLINE int cell_begin(stratus_packet* k, int halves, cell_walk* w)
+INLINE int cell_begin(stratus_packet* k, int halves, int boxes, cell_walk* w)
 {
   w->s = v_max(v_from_int(k->i), k->begin);
   w->end = v_min(v_from_int(k->last), k->end);
   w->run = v_select(v_lt(v_from_int(k->run), v_set(1.0f)), v_set(-1.0f), v_set(LARGEST_FLOAT));
   w->halves = halves;
+  w->boxes = boxes;
   k->live = k->live & v_lt(w->s, w->end);
   w->s = v_select(k->live, w->s, v_set(0.0f)); /* lanes that are not live stay at a harmless place */
   w->end = v_select(k->live, w->end, v_set(0.0f));
@@ -60,7 +85,7 @@ INLINE vfloat beyond_plane(vfloat s, vfloat leave) { return v_select(v_lt(s, lea
 
 /* Moves the rays of `mask` into the cells behind theirs. Only the planes that a ray has met are taken anew; they are met at the numbers
  * that cell_enter() computes. */
-INLINE void cell_leave(stratus_packet* k, vmask mask, cell_walk* w)
+INLINE void cell_leave(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, cell_walk* w)
 {
   w->s = v_select(mask, beyond_plane(w->s, w->leave), w->s);
   k->live = m_andnot(k->live, mask & v_le(w->end, w->s));
@@ -69,12 +94,16 @@ INLINE void cell_leave(stratus_packet* k, vmask mask, cell_walk* w)
     const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]), met = mask & v_le(w->leave_at[axis], w->s);
     w->enter_at[axis] = v_select(met, w->leave_at[axis], w->enter_at[axis]);
     w->cell[axis] = vi_select(met, w->cell[axis] + vi_select(forward, vi_set(1), vi_set(-1)), w->cell[axis]);
-    w->ahead[axis] = v_select(met, w->ahead[axis] + v_select(forward, v_set(1.0f), v_set(-1.0f)), w->ahead[axis]);
+    vfloat next = w->ahead[axis] + v_select(forward, v_set(1.0f), v_set(-1.0f));
+    if (RAY_STRETCHED(a)) {
+      next = walk_plane(a, k, w, axis, vi_select(forward, w->cell[axis] + vi_set(1), w->cell[axis]));
+    }
+    w->ahead[axis] = v_select(met, next, w->ahead[axis]);
     w->leave_at[axis] = (w->ahead[axis] - k->p[axis]) * k->inverse[axis];
     w->leave = v_min(w->leave_at[axis], w->leave);
   }
   if (m_any(mask & k->live & v_le(w->leave, w->s))) { /* several planes of an axis at once */
-    cell_enter(k, w);
+    cell_enter(a, k, w);
   }
 }
 
@@ -84,10 +113,22 @@ INLINE vint cell_inside(CONSTANT stratus_ray_cast_arguments* a, const cell_walk*
   return vi_max(vi_min(w->cell[axis] >> vi_set(w->halves), vi_set(a->values.dimensions[axis] - 2)), vi_set(0));
 }
 
-/* The fraction of the cell along an axis at point s of the ray: exactly 0 or 1 where the ray meets the plane at s. */
-INLINE vfloat cell_fraction(const stratus_packet* k, int axis, vint inside, vfloat s, vfloat met, vint plane)
+/* The fraction of the cell along an axis at point s of the ray, in 0..1. */
+INLINE vfloat cell_place(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, int axis, vint inside, vfloat s)
 {
-  const vfloat base = v_from_int(inside), at = v_fma(s, k->d[axis], k->p[axis]) - base, exact = v_from_int(plane) - base;
+  const vfloat at = v_fma(s, k->d[axis], k->p[axis]);
+  vfloat place = v_clamp(at - v_from_int(inside), 0.0f, 1.0f);
+  if (RAY_STRETCHED(a)) {
+    place = grid_fraction_rare(a, k->grid, axis, inside, at);
+  }
+  return place;
+}
+
+/* The same: exactly 0 or 1 where the ray meets the plane at s. */
+INLINE vfloat cell_fraction(
+  CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, int axis, vint inside, vfloat s, vfloat met, vint plane)
+{
+  const vfloat base = v_from_int(inside), at = cell_place(a, k, axis, inside, s), exact = v_from_int(plane) - base;
   const vmask there = v_le(met, s) & v_le(s, met);
   return v_clamp(v_select(there, exact, at), 0.0f, 1.0f);
 }
@@ -109,13 +150,14 @@ INLINE vmask cell_lanes_to_skip(vmask mask, const cell_walk* w)
 }
 
 /* Where rays leave the cubes of blocks nearer than `distance`, at their end at the latest. block_log2: of a block's size in planes. */
-INLINE vfloat cell_cube_exit(const stratus_packet* k, const cell_walk* w, const vint block[3], vint distance, int block_log2)
+INLINE vfloat cell_cube_exit(
+  CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, const vint block[3], vint distance, int block_log2)
 {
   vfloat leave = w->end;
   for (int axis = 0; axis < 3; ++axis) {
     const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
     const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-    leave = v_min(plane_met(k, axis, face << vi_set(block_log2)), leave);
+    leave = v_min(plane_met(a, k, w, axis, face << vi_set(block_log2)), leave);
   }
   return leave;
 }
@@ -136,7 +178,7 @@ INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
     k->lookups -= mask_int(need);
     const vmask occupied = need & vi_ge(byte, vi_set(128));
     const vint distance = byte & vi_set(127);
-    vfloat leave = cell_cube_exit(k, w, block, distance, a->map.block_log2 + w->halves);
+    vfloat leave = cell_cube_exit(a, k, w, block, distance, a->map.block_log2 + w->halves);
     const vmask leap = m_andnot(need, occupied) & v_lt(w->s, leave); /* in the volume's rim, where values are clamped, there is no leap */
     w->run = v_select(m_andnot(need, leap), v_max(leave, w->leave), w->run);
     leave = v_select(leap, leave, w->s); /* in other lanes a plane may be farther than an int can hold */
@@ -145,7 +187,7 @@ INLINE void cell_skip(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar
     k->live = m_andnot(k->live, leap & v_le(w->end, w->s));
     need = leap & k->live;
     if (m_any(need)) {
-      cell_enter(k, w);
+      cell_enter(a, k, w);
     }
   }
 }

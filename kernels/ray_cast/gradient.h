@@ -3,7 +3,11 @@
  *
  * It interpolates the central differences at the cell's eight corners, which is the central difference of the interpolated field. It reads
  * 32 of the 4x4x4 values about the cell. A corner that lacks a neighbour, because the volume ends or the value there is not finite, takes
- * the one-sided difference. */
+ * the one-sided difference.
+ *
+ * Where spacing changes, a corner takes the slope of the parabola through it and its two neighbours: the mean of the slopes on both sides,
+ * each weighted by the length of the other side. It is of second order on any spacing, as the central difference is on equal spacing,
+ * whereas the difference of the neighbours over their distance is of first order only. */
 #ifndef STRATUS_GRADIENT_H
 #define STRATUS_GRADIENT_H
 /* Interpolates, at t, the central differences at the neighbouring values `from` and `to`. lower, upper: lanes where `before`, or `after`,
@@ -13,6 +17,22 @@ INLINE vfloat gradient_between(vfloat before, vfloat from, vfloat to, vfloat aft
   const vfloat inner = to - from, half_one = v_set(0.5f);
   const vfloat left = v_select(m_andnot(v_finite(before), lower), (to - before) * half_one, inner);
   const vfloat right = v_select(m_andnot(v_finite(after), upper), (after - from) * half_one, inner);
+  return v_lerp(left, right, t);
+}
+
+/* The same where spacing changes. `cell`: between `from` and `to`. The gradient is by mean index coordinates. */
+INLINE vfloat gradient_stretched(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint cell, vfloat before,
+  vfloat from, vfloat to, vfloat after, vfloat t, vmask lower, vmask upper)
+{
+  const vint lengths = vi_set(a->grid.inverse_at[axis]), weights = vi_set(a->grid.weight_at[axis]), one = vi_set(1);
+  const vint last = vi_set(a->values.dimensions[axis] - 2), none = vi_set(0);
+  const vfloat inner = (to - from) * grid_floats(grid, lengths + cell);
+  const vfloat below = (from - before) * grid_floats(grid, lengths + vi_max(cell - one, none)),
+               above = (after - to) * grid_floats(grid, lengths + vi_max(vi_min(cell + one, last), none));
+  const vfloat from_parabola = v_fma(grid_floats(grid, weights + cell), below - inner, inner),
+               to_parabola = v_fma(grid_floats(grid, weights + cell + one), inner - above, above);
+  const vfloat left = v_select(m_andnot(v_finite(before), lower), from_parabola, inner),
+               right = v_select(m_andnot(v_finite(after), upper), to_parabola, inner);
   return v_lerp(left, right, t);
 }
 
@@ -33,12 +53,16 @@ INLINE void RAY_NAME(fetch_two)(
 
 /* The gradient for nearest interpolation: differences at the voxel itself. */
 INLINE void RAY_NAME(voxel_gradient)(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
 {
   vint at[3];
+  vfloat snapped[3] = { x[0], x[1], x[2] };
+  if (RAY_STRETCHED(a)) {
+    grid_snap(a, grid, snapped);
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    vfloat place = x[axis];
-    if (a->values.clamp) {
+    vfloat place = snapped[axis];
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       place = v_clamp(place, 0.0f, a->values.last[axis]);
     }
     at[axis] = v_to_int(place + v_set(0.5f));
@@ -54,19 +78,43 @@ INLINE void RAY_NAME(voxel_gradient)(
     const vmask upper = v_finite(high) & vi_lt(at[axis], vi_set(a->values.dimensions[axis] - 1));
     const vfloat difference = v_select(upper, high, here) - v_select(lower, low, here);
     g[axis] = v_select(lower & upper, difference * v_set(0.5f), v_select(lower | upper, difference, zero));
+    if (RAY_STRETCHED(a)) {
+      const vint lengths = vi_set(a->grid.inverse_at[axis]), last = vi_max(vi_set(a->values.dimensions[axis] - 2), vi_set(0));
+      const vfloat below = (here - low) * grid_floats(grid, lengths + vi_max(at[axis] - vi_set(1), vi_set(0))),
+                   above = (high - here) * grid_floats(grid, lengths + vi_min(at[axis], last));
+      const vfloat parabola = v_fma(grid_floats(grid, vi_set(a->grid.weight_at[axis]) + at[axis]), below - above, above);
+      g[axis] = v_select(lower & upper, parabola, v_select(lower, below, v_select(upper, above, zero)));
+    }
   }
 }
 
-/* g: change of the value per voxel along each axis, at index coordinates x. Lanes outside `mask` get any number. */
-INLINE void RAY_NAME(ray_gradient)(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
+/* The differences between four values along an axis, interpolated at t. */
+INLINE vfloat RAY_NAME(gradient_along)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint cell, vfloat before,
+  vfloat from, vfloat to, vfloat after, vfloat t, vmask lower, vmask upper)
+{
+  vfloat g = gradient_between(before, from, to, after, t, lower, upper);
+  if (RAY_STRETCHED(a)) {
+    g = gradient_stretched(a, grid, axis, cell, before, from, to, after, t, lower, upper);
+  }
+  return g;
+}
+
+/* g: change of the value per voxel (mean voxel) along each axis, at the position x. Lanes outside `mask` get any number. */
+INLINE void RAY_NAME(ray_gradient)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
 {
   if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
-    RAY_NAME(voxel_gradient)(a, values, x, mask, g);
+    RAY_NAME(voxel_gradient)(a, values, grid, x, mask, g);
     return;
   }
   vint at[3], before[3], after[3];
   vfloat t[3], v[8], line[3][4];
   vmask lower[3], upper[3];
+  vint cell[3];
+  vfloat fraction[3];
+  if (RAY_STRETCHED(a)) {
+    grid_find(a, grid, x, cell, fraction);
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const int end = a->values.dimensions[axis] - 1;
     vfloat place = x[axis];
@@ -75,6 +123,10 @@ INLINE void RAY_NAME(ray_gradient)(CONSTANT stratus_ray_cast_arguments* a, value
     }
     at[axis] = vi_max(vi_min(v_to_int(place), vi_set(end - 1)), vi_set(0));
     t[axis] = place - v_from_int(at[axis]);
+    if (RAY_STRETCHED(a)) {
+      at[axis] = cell[axis];
+      t[axis] = fraction[axis];
+    }
     lower[axis] = vi_lt(at[axis], vi_set(1));
     upper[axis] = vi_ge(at[axis], vi_set(end - 1));
     before[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
@@ -86,7 +138,7 @@ INLINE void RAY_NAME(ray_gradient)(CONSTANT stratus_ray_cast_arguments* a, value
     const vint y = vi_min(j, vi_set(a->values.dimensions[1] - 1)), z = vi_min(k, vi_set(a->values.dimensions[2] - 1));
     const vfloat left = RAY_NAME(fetch_nearest)(a, values, before[0], y, z, mask),
                  right = RAY_NAME(fetch_nearest)(a, values, after[0], y, z, mask);
-    line[0][row] = gradient_between(left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
+    line[0][row] = RAY_NAME(gradient_along)(a, grid, 0, at[0], left, v[2 * row], v[2 * row + 1], right, t[0], lower[0], upper[0]);
   }
   for (int side = 0; side < 2; ++side) { /* along y on the edges at both ends of z, along z on the edges at both ends of y */
     const vint j = vi_min(at[1] + vi_set(side), vi_set(a->values.dimensions[1] - 1)),
@@ -95,12 +147,14 @@ INLINE void RAY_NAME(ray_gradient)(CONSTANT stratus_ray_cast_arguments* a, value
     RAY_NAME(fetch_two)(a, values, at[0], before[1], k, mask, &low[0], &low[1]);
     RAY_NAME(fetch_two)(a, values, at[0], after[1], k, mask, &high[0], &high[1]);
     for (int i = 0; i < 2; ++i) {
-      line[1][i + 2 * side] = gradient_between(low[i], v[i + 4 * side], v[i + 2 + 4 * side], high[i], t[1], lower[1], upper[1]);
+      line[1][i + 2 * side] =
+        RAY_NAME(gradient_along)(a, grid, 1, at[1], low[i], v[i + 4 * side], v[i + 2 + 4 * side], high[i], t[1], lower[1], upper[1]);
     }
     RAY_NAME(fetch_two)(a, values, at[0], j, before[2], mask, &low[0], &low[1]);
     RAY_NAME(fetch_two)(a, values, at[0], j, after[2], mask, &high[0], &high[1]);
     for (int i = 0; i < 2; ++i) {
-      line[2][i + 2 * side] = gradient_between(low[i], v[i + 2 * side], v[i + 2 * side + 4], high[i], t[2], lower[2], upper[2]);
+      line[2][i + 2 * side] =
+        RAY_NAME(gradient_along)(a, grid, 2, at[2], low[i], v[i + 2 * side], v[i + 2 * side + 4], high[i], t[2], lower[2], upper[2]);
     }
   }
   g[0] = bilinear(line[0], t[1], t[2]);

@@ -29,28 +29,46 @@
 #include "ray_extremes.h"
 #endif
 
-/* The field at index coordinates: not finite where a corner is not, or where the cell or the value is hidden. */
-INLINE vfloat RAY_NAME(ray_value)(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const vfloat position[3], vmask mask)
+/* The field at a position: not finite where a corner is not, or where the cell or the value is hidden. */
+INLINE vfloat RAY_NAME(ray_value)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const int* grid, const vfloat position[3], vmask mask)
 {
   vfloat x[3] = { position[0], position[1], position[2] };
-  if (a->values.clamp) {
+  const int stretched = RAY_STRETCHED(a), nearest = RAY_RARE(RAY_NEAREST, a->values.nearest);
+  const int hides = RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS);
+  if (stretched) {
+    if (nearest | hides) {
+      vfloat y[3] = { x[0], x[1], x[2] };
+      grid_snap(a, grid, y);
+      for (int axis = 0; axis < 3; ++axis) {
+        x[axis] = y[axis];
+      }
+    }
+  } else if (a->values.clamp) {
     for (int axis = 0; axis < 3; ++axis) {
       x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
   vfloat value;
-  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
+  if (nearest) {
     const vfloat half_one = v_set(0.5f);
     value = RAY_NAME(fetch_nearest)(a, values, v_to_int(x[0] + half_one), v_to_int(x[1] + half_one), v_to_int(x[2] + half_one), mask);
   } else {
-    const vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
-    const vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
+    vint i = v_to_int(x[0]), j = v_to_int(x[1]), k = v_to_int(x[2]);
+    vfloat f = x[0] - v_from_int(i), g = x[1] - v_from_int(j), h = x[2] - v_from_int(k);
+    if (stretched) {
+      const vfloat y[3] = { position[0], position[1], position[2] };
+      vint cell[3];
+      vfloat fraction[3];
+      grid_find(a, grid, y, cell, fraction);
+      i = cell[0], j = cell[1], k = cell[2];
+      f = fraction[0], g = fraction[1], h = fraction[2];
+    }
     vfloat v[8];
     RAY_NAME(fetch_cell)(a, values, i, j, k, mask, v);
     value = v_lerp(v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g), v_lerp(v_lerp(v[4], v[5], f), v_lerp(v[6], v[7], f), g), h);
   }
-  if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & (HIDDEN_BY_MASK | HIDDEN_CELLS)) {
+  if (hides) {
     value = ray_hide(a, hidden, x, mask, value);
   }
   return value;
@@ -68,13 +86,7 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     const vfloat s = segment_middle(k, fi);
 #endif
     vint block[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      vfloat x = v_fma(s, k->d[axis], k->p[axis]);
-      if (a->values.clamp) {
-        x = v_clamp(x, 0.0f, a->values.last[axis]);
-      }
-      block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
-    }
+    packet_blocks(a, k, s, block);
     const vint index = block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant;
     vint byte;
     if (RAY_RARE(RAY_TREE, a->map.tree)) {
@@ -127,7 +139,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   stratus_sample sample;
-  sample.value = RAY_NAME(ray_value)(a, values, hidden, x, inside);
+  sample.value = RAY_NAME(ray_value)(a, values, hidden, k->grid, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
   sample.values = values;
@@ -236,12 +248,13 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 #endif
 
 /* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
-INLINE void RAY_NAME(ray_load)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, int x, int y, stratus_packet* k, stratus_crop* crop)
+INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid, int x,
+  int y, stratus_packet* k, stratus_crop* crop)
 {
   stratus_rays rays;
   const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
   packet_begin(a, &rays, inside, k);
+  k->grid = grid;
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif

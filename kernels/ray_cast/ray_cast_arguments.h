@@ -24,8 +24,9 @@
 #define RAY_OPAQUE 0x200     /* functions that are opaque somewhere, */
 #define RAY_CUT 0x400        /* transparent beyond their ends, */
 #define RAY_JUMPS 0x800      /* or that jump */
+#define RAY_GRID 0x2000      /* a grid whose spacing changes */
 #ifndef RAY_HAS
-#define RAY_HAS 0xfff
+#define RAY_HAS 0x2fff
 #endif
 /* Values in pages, which only devices know, and only where the whole volume does not fit one of their allocations. */
 #define RAY_PAGES 0x1000
@@ -95,7 +96,7 @@ typedef struct stratus_ray_crop {
 
 /* The volume's values and how they lie in memory. */
 typedef struct stratus_ray_values {
-  float last[3]; /* the largest position along each axis, which `clamp` clamps to */
+  float last[3]; /* the largest position along each axis, which `clamp` clamps to, and grids */
   int clamp;     /* 1 for cell_centered volumes: positions are clamped to 0..last */
   int nearest;
   int has_hidden;
@@ -119,6 +120,14 @@ typedef struct stratus_ray_map {
   int bounds_at;                  /* extremes: where the blocks' bounds begin in the map, in units of 64 bytes */
   int bounds_across, bounds_rows; /* blocks in a row of bounds, rows in a slice */
 } stratus_ray_map;
+
+/* The tables of a grid whose spacing changes, for each axis (ray_grid.h): where its bins' first values, planes, inverse lengths of cells
+ * and values' weights begin. Positions are then mean index coordinates. */
+typedef struct stratus_ray_grid_arguments {
+  int on;                              /* 0: the grid has equal spacing, and the rest means nothing */
+  float bins_per_unit[3], last_bin[3]; /* the bin of a position: (int) clamp(position * bins_per_unit, 0, last_bin) */
+  int search_steps[3], first_at[3], plane_at[3], inverse_at[3], weight_at[3];
+} stratus_ray_grid_arguments;
 
 /* Which blocks are rough: a byte a block, as in a map of full distances. */
 typedef struct stratus_ray_rough {
@@ -177,6 +186,7 @@ typedef struct stratus_ray_cast_arguments {
   float termination; /* of transparency: 1 - alpha */
   stratus_ray_crop crop;
   stratus_ray_values values;
+  stratus_ray_grid_arguments grid;
   stratus_ray_map map;
   stratus_ray_rough rough;
   stratus_table_arguments table;

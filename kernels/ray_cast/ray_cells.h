@@ -36,13 +36,13 @@ INLINE vmask cell_not_hidden(CONSTANT stratus_ray_cast_arguments* a, GLOBAL cons
 }
 
 /* The cubic on the way of each ray through its cell, whose corners are v. */
-INLINE void cell_cubic(const stratus_packet* k, const cell_walk* w, const vint inside[3], const vfloat v[8], cell_way* way)
+INLINE void cell_cubic(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, const vint inside[3],
+  const vfloat v[8], cell_way* way)
 {
   vfloat e[3], d[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const vfloat base = v_from_int(inside[axis]);
-    e[axis] = v_clamp(v_fma(w->s, k->d[axis], k->p[axis]) - base, 0.0f, 1.0f);
-    d[axis] = v_clamp(v_fma(w->leave, k->d[axis], k->p[axis]) - base, 0.0f, 1.0f) - e[axis];
+    e[axis] = cell_place(a, k, axis, inside[axis], w->s);
+    d[axis] = cell_place(a, k, axis, inside[axis], w->leave) - e[axis];
   }
   cubic_coefficients(v, e, d, way->k);
 }
@@ -255,7 +255,7 @@ INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_
   mask = cell_not_hidden(a, hidden, inside, mask);
   if (m_any(mask)) {
     vfloat from = v_set(0.0f), to = v_set(1.0f);
-    cell_cubic(k, w, inside, v, &way);
+    cell_cubic(a, k, w, inside, v, &way);
     if (m_any(mask & (v_lt(lowest, first) | v_le(beyond, highest)))) {
       cell_part_that_shows(a, &way, &from, &to);
       mask = mask & v_lt(from, to);
@@ -301,11 +301,11 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
   cell_walk w;
   cell_way ways;
   vmask waiting = m_none();
-  if (!m_any(k->live) || !cell_begin(k, halves, &w)) {
+  if (!m_any(k->live) || !cell_begin(k, halves, nearest && !halves, &w)) {
     return;
   }
   ways.k[0] = ways.k[1] = ways.k[2] = ways.k[3] = ways.lo = ways.hi = ways.from = ways.front = ways.share = ways.left = v_set(0.0f);
-  cell_enter(k, &w);
+  cell_enter(a, k, &w);
   do {
     vmask done = waiting;
     if (m_count(waiting) * CELL_WAITING < m_count(k->live)) {
@@ -322,7 +322,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
     } else {
       waiting = cell_composite(a, sums, k, &w, &ways, waiting);
     }
-    cell_leave(k, m_andnot(done, waiting), &w);
+    cell_leave(a, k, m_andnot(done, waiting), &w);
   } while (m_any(k->live));
 }
 
@@ -338,7 +338,8 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
     return;
   }
   const int halves = (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) && !a->values.clamp;
-  const vfloat scale = v_set(halves ? 2.0f : 1.0f), shift = v_set(halves ? 0.0f : 0.5f), shrink = v_set(halves ? 0.5f : 1.0f);
+  const int even = !RAY_STRETCHED(a), twice = even & halves, moved = even & !halves; /* stretched grids have planes of both kinds */
+  const vfloat scale = v_set(twice ? 2.0f : 1.0f), shift = v_set(moved ? 0.5f : 0.0f), shrink = v_set(twice ? 0.5f : 1.0f);
   const vfloat p[3] = { k->p[0], k->p[1], k->p[2] }, d[3] = { k->d[0], k->d[1], k->d[2] },
                inverse[3] = { k->inverse[0], k->inverse[1], k->inverse[2] };
   for (int axis = 0; axis < 3; ++axis) {

@@ -37,17 +37,21 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
   vfloat x[3];
   for (int axis = 0; axis < 3; ++axis) {
     x[axis] = v_fma(s, k->d[axis], k->p[axis]);
-    if (a->values.clamp) {
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       x[axis] = v_clamp(x[axis], 0.0f, a->values.last[axis]);
     }
   }
   if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_BY_MASK) {
-    mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_BY_MASK, x, mask, v_set(0.0f)));
+    vfloat snapped[3] = { x[0], x[1], x[2] };
+    if (RAY_STRETCHED(a)) {
+      grid_snap(a, k->grid, snapped);
+    }
+    mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_BY_MASK, snapped, mask, v_set(0.0f)));
   }
   if (a->light.on) {
     vfloat g[3];
     stratus_lit_sample lighting;
-    RAY_NAME(ray_gradient)(a, values, x, mask, g);
+    RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
     ray_light(a, 0, x, k->d, g, lighting.diffuse, lighting.specular);
     light_layer(&lighting, layer);
   }
@@ -108,8 +112,8 @@ INLINE void RAY_NAME(surface_visit)(
     for (int axis = 0; axis < 3; ++axis) {
       const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
       const vint low = w->cell[axis], high = low + vi_set(1);
-      e[axis] = cell_fraction(k, axis, inside[axis], w->s, w->enter_at[axis], vi_select(forward, low, high));
-      f[axis] = cell_fraction(k, axis, inside[axis], w->leave, w->leave_at[axis], vi_select(forward, high, low));
+      e[axis] = cell_fraction(a, k, axis, inside[axis], w->s, w->enter_at[axis], vi_select(forward, low, high));
+      f[axis] = cell_fraction(a, k, axis, inside[axis], w->leave, w->leave_at[axis], vi_select(forward, high, low));
     }
     cubic_of_cell(v, e, f, &cubic);
     RAY_NAME(surface_roots)(a, values, hidden, k, w, &cubic, crosses);
@@ -122,15 +126,15 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   cell_walk w;
   (void)rough;
   (void)table;
-  if (!m_any(k->live) || !cell_begin(k, 0, &w)) {
+  if (!m_any(k->live) || !cell_begin(k, 0, 0, &w)) {
     return;
   }
-  cell_enter(k, &w);
+  cell_enter(a, k, &w);
   do {
     if (a->map.structure) {
       cell_skip(a, map, k, k->live & v_le(w.run, w.s), &w);
     }
     RAY_NAME(surface_visit)(a, values, hidden, k, &w);
-    cell_leave(k, k->live, &w);
+    cell_leave(a, k, k->live, &w);
   } while (m_any(k->live));
 }

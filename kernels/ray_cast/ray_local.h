@@ -21,7 +21,7 @@ INLINE vint local_byte(
     block[axis] = cell_inside(a, w, axis) >> vi_set(a->rough.block_log2);
   }
   const vint byte = gather_map(rough, block[0] + (block[1] + block[2] * vi_set(a->rough.rows)) * vi_set(a->rough.pitch), mask);
-  *leave = cell_cube_exit(k, w, block, byte & vi_set(127), a->rough.block_log2);
+  *leave = cell_cube_exit(a, k, w, block, byte & vi_set(127), a->rough.block_log2);
   return byte;
 }
 
@@ -32,10 +32,10 @@ INLINE void local_find(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
   cell_walk w;
   w.s = r->begin;
   w.end = r->end;
-  w.halves = 0;
+  w.halves = w.boxes = 0;
   while (m_any(mask)) {
     vfloat leave;
-    cell_enter(k, &w);
+    cell_enter(a, k, &w);
     const vint byte = local_byte(a, rough, k, &w, mask, &leave);
     const vmask is_rough = mask & vi_ge(byte, vi_set(128));
     k->lookups -= mask_int(mask);

@@ -5,6 +5,7 @@
 #define STRATUS_RAY_SEGMENT_H
 
 #include "gather.h"
+#include "ray_grid.h"
 #include "ray_setup.h"
 
 /* The structure is asked once all lanes that are left need it, or one lane has waited for SKIP_PATIENCE samples. A lane that waits takes
@@ -47,8 +48,9 @@ typedef struct stratus_packet {
   vint run;     /* segments before it need not ask the structure */
   vint octant;  /* offset of the map of the ray's octant */
   vint samples, skipped, lookups;
-  vmask live, hits; /* hits: rays that meet the bounds */
-  vmask fresh;      /* the value at the segment's front is still to be sampled */
+  vmask live, hits;       /* hits: rays that meet the bounds */
+  vmask fresh;            /* the value at the segment's front is still to be sampled */
+  GLOBAL const int* grid; /* the tables of a grid whose spacing changes */
 } stratus_packet;
 
 /* A sample of every ray, in the segment [lo, lo + weight]. */
@@ -106,6 +108,27 @@ INLINE vint gather_map(GLOBAL const uchar* map, vint index, vmask mask)
 #endif
 }
 
+/* The blocks in which the rays are at s. */
+INLINE void packet_blocks(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, vfloat s, vint block[3])
+{
+  if (RAY_STRETCHED(a)) {
+    const vfloat y[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+    vint cell[3];
+    grid_cells(a, k->grid, y, cell);
+    for (int axis = 0; axis < 3; ++axis) {
+      block[axis] = cell[axis] >> vi_set(a->map.block_log2);
+    }
+  } else {
+    for (int axis = 0; axis < 3; ++axis) {
+      vfloat x = v_fma(s, k->d[axis], k->p[axis]);
+      if (a->values.clamp) {
+        x = v_clamp(x, 0.0f, a->values.last[axis]);
+      }
+      block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
+    }
+  }
+}
+
 /* Where the rays leave the cube of blocks nearer than `distance`, in samples. The result is a little too early, by more than division and
  * product can round. */
 INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const vint block[3], vint distance)
@@ -114,7 +137,10 @@ INLINE vfloat cube_exit(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
   for (int axis = 0; axis < 3; ++axis) {
     const vmask forward = v_lt(v_set(0.0f), k->inverse[axis]);
     const vint face = vi_select(forward, block[axis] + distance, block[axis] - distance + vi_set(1));
-    const vfloat plane = v_from_int(face << vi_set(a->map.block_log2));
+    vfloat plane = v_from_int(face << vi_set(a->map.block_log2));
+    if (RAY_STRETCHED(a)) {
+      plane = grid_plane_rare(a, k->grid, axis, face << vi_set(a->map.block_log2 + 1));
+    }
     leave = v_min((plane - k->p[axis]) * k->inverse[axis], leave);
   }
   return v_max(v_fma(leave, v_set(-0x1p-21f), leave - v_set(0x1p-10f)), v_set(0.0f));
@@ -136,6 +162,7 @@ INLINE void packet_nothing(stratus_packet* k)
   k->red = k->green = k->blue = k->front = v_set(0.0f);
   k->depth = v_set(LARGEST_FLOAT);
   k->live = k->hits = k->fresh = m_none();
+  k->grid = 0;
 }
 
 /* Sets up the rays of the packet at pixel (x, y). Returns those whose pixel is in the picture. */

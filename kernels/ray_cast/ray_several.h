@@ -15,16 +15,18 @@
 #define SEVERAL_MOST 8
 #define SEVERAL_NEVER 0x7fffffff
 
-/* The field, or its gradient, at index coordinates of a volume: RAY_NAME(ray_value) and RAY_NAME(ray_gradient) of its type of values. */
-typedef void several_value(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask, vfloat* value);
-typedef void several_gradient(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3]);
+/* The field, or its gradient, at a position in a volume: RAY_NAME(ray_value) and RAY_NAME(ray_gradient) of its type of values. */
+typedef void several_value(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const int* grid,
+  const vfloat x[3], vmask mask, vfloat* value);
+typedef void several_gradient(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3]);
 
 /* What all rays read of a volume. */
 typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
   value_source values;
   GLOBAL const uchar *hidden, *map;
+  GLOBAL const int* grid;
   /* Pre-integrated: running sums. Midpoint: for each entry its colour times optical depth, and optical depth, of a segment's length; and
    * with light or gradient opacity, what these read besides. */
   GLOBAL const void *table, *besides;
@@ -97,13 +99,7 @@ INLINE int several_leap(const several_source* from, several_volume* v, int i, vf
   int next = several_aligned(from, v, several_least(v->offset, waiting));
   if (m_any(inside)) {
     vint block[3], byte;
-    for (int axis = 0; axis < 3; ++axis) {
-      vfloat x = v_fma(s, k->d[axis], k->p[axis]);
-      if (a->values.clamp) {
-        x = v_clamp(x, 0.0f, a->values.last[axis]);
-      }
-      block[axis] = v_to_int(x) >> vi_set(a->map.block_log2);
-    }
+    packet_blocks(a, k, s, block);
     if (a->map.tree) {
       byte = tree_bytes(a, from->map, block, inside);
     } else {
@@ -185,7 +181,7 @@ INLINE void several_light(const several_source* from, const stratus_packet* k, v
   const vfloat s = v_set(0.5f) * (way->lo + way->hi);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3];
-  from->gradient(a, from->values, x, mask, g);
+  from->gradient(a, from->values, from->grid, x, mask, g);
   way->lighting.factor = v_set(1.0f);
   if (a->media.factor_first[0] >= 0) {
     way->lighting.factor = gradient_opacity(a, from->besides, vi_set(a->media.factor_first[0]), v_set(a->media.factor_scale[0]), g, mask);
@@ -311,7 +307,7 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
   }
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat value, front;
-  from->value(from->a, from->values, from->hidden, x, inside, &value);
+  from->value(from->a, from->values, from->hidden, from->grid, x, inside, &value);
   k->samples -= mask_int(inside);
   front = value;
   if (from->preintegrated) {
@@ -320,7 +316,7 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
     if (m_any(fresh)) {
       const vfloat y[3] = { v_fma(lo, k->d[0], k->p[0]), v_fma(lo, k->d[1], k->p[1]), v_fma(lo, k->d[2], k->p[2]) };
       vfloat entered;
-      from->value(from->a, from->values, from->hidden, y, fresh, &entered);
+      from->value(from->a, from->values, from->hidden, from->grid, y, fresh, &entered);
       k->samples -= mask_int(fresh);
       front = v_select(fresh, entered, front);
     }
@@ -557,6 +553,7 @@ INLINE void several_load(
     }
     const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
     packet_begin(a, &rays, inside, &v->k);
+    v->k.grid = from[n].grid;
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       whole[n][lane] = (double)rays.whole[0][lane] + (double)rays.whole[1][lane];
     }

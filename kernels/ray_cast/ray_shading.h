@@ -35,7 +35,7 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, valu
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
   lighting->factor = one;
   if (lit || m_any(thins)) {
-    RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), x, mask, g);
+    RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), k->grid, x, mask, g);
   }
   if (m_any(thins)) {
     const vfloat factor = gradient_opacity(a, table, factor_first, factor_scale, g, thins);
@@ -95,7 +95,7 @@ OUTLINE vfloat RAY_NAME(component_value)(
 {
   const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, x, mask);
+  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, k->grid, x, mask);
 }
 
 /* Independent components: each is a medium, and both their optical depths and their light add up. */
@@ -162,15 +162,20 @@ OUTLINE void RAY_NAME(shade_components)(
   }
 }
 
-/* The labels of the values nearest to the index coordinates x; 0 for labels that have no functions of their own. */
-OUTLINE vint RAY_NAME(label_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const vfloat x[3], vmask mask)
+/* The labels of the values nearest to the positions x; 0 for labels that have no functions of their own. */
+OUTLINE vint RAY_NAME(label_at)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, GLOBAL const int* grid, const vfloat x[3], vmask mask)
 {
   float place[3][STRATUS_WIDTH];
   int wanted[STRATUS_WIDTH], label[STRATUS_WIDTH];
+  vfloat snapped[3] = { x[0], x[1], x[2] };
   vi_store(wanted, vi_select(mask, vi_set(1), vi_set(0)));
+  if (RAY_STRETCHED(a)) {
+    grid_snap(a, grid, snapped);
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    vfloat at = x[axis];
-    if (a->values.clamp) {
+    vfloat at = snapped[axis];
+    if (a->values.clamp & !RAY_STRETCHED(a)) {
       at = v_clamp(at, 0.0f, a->values.last[axis]);
     }
     v_store(place[axis], at);
@@ -191,7 +196,7 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
   GLOBAL const int* ints = (GLOBAL const int*)table;
-  const vint label = RAY_NAME(label_at)(a, sample->hidden, x, valid), record = label + label + label, numbers = record + vi_set(1);
+  const vint label = RAY_NAME(label_at)(a, sample->hidden, k->grid, x, valid), record = label + label + label, numbers = record + vi_set(1);
   vfloat of[4], layer[4];
   vint place[4];
   gather_four(floats + a->media.label_first, record, valid, of);

@@ -2,6 +2,7 @@
  * Several volumes in one picture: against the double reference, against what must be the same by definition, and to the bit where nothing
  * may change a bit. */
 #include "faulty_allocator.h"
+#include "grid_case.h"
 #include "several_case.h"
 
 #include "ray_caster.h"
@@ -54,6 +55,34 @@ static void eight_random_volumes_mix_as_the_reference_does(void** state)
 
 /* Half the optical depth of opacity o has opacity 1 - sqrt(1 - o), which is no line between the points: so both functions are constant
  * over what they show. */
+/* The first two are stretched 20:1, one of them lit, the third is not; structures change no bit. */
+static void stretched_grids_mix_as_the_reference_does(void** state)
+{
+  for (uint32_t seed = 30; seed < 34; ++seed) {
+    several_case m;
+    grid_case grids[2];
+    char what[32];
+    several_create(*state, &m, 3, seed);
+    for (int n = 0; n < 2; ++n) {
+      uint32_t random = seed;
+      grid_case_set(&m.of[n], &grids[n], n ? GRID_RANDOM : GRID_GEOMETRIC, 7 - (int)(seed % 4), 0.0, 1.0, 20.0, &random);
+      m.of[n].options.sample_distance = 0.05;
+    }
+    m.of[0].options.shade = (int)(seed % 2);
+    snprintf(what, sizeof what, "stretched, seed %u", seed);
+    assert_true(several_psnr(what, *state, &m, &drawn) >= SEVERAL_DB);
+    assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
+    for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+      for (int n = 0; n < m.count; ++n) {
+        m.of[n].options.structure = (stratus_structure)structure;
+      }
+      several_draw(*state, &m, &other);
+      expect_same(&drawn, &other);
+    }
+    several_destroy(&m);
+  }
+}
+
 static void halves_of_a_volume_draw_the_whole(void** state)
 {
   for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
@@ -415,6 +444,7 @@ int test_ray_several(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_random_volumes_mix_as_the_reference_does),
     cmocka_unit_test(eight_random_volumes_mix_as_the_reference_does),
+    cmocka_unit_test(stretched_grids_mix_as_the_reference_does),
     cmocka_unit_test(halves_of_a_volume_draw_the_whole),
     cmocka_unit_test(one_volume_alone_is_the_ordinary_picture),
     cmocka_unit_test(an_empty_volume_changes_nothing),
