@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The meshes of record that are generated, not read. The first is a lattice of tetrahedra, whose planes and edges lie in line with one
- * another. The second is a plate full of holes, whose surface a mesher fills: a visibility order has to see across its many gaps. Tests and
- * benchmarks share them. A scene is never changed. */
+ * The meshes of record that are generated, not read. The first is water in layers over the bed of an estuary, wedges of three tetrahedra
+ * each. The second is a lattice of tetrahedra, whose planes and edges lie in line with one another. The third is a plate full of holes,
+ * whose surface a mesher fills: a visibility order has to see across its many gaps. Tests and benchmarks share them. A scene is never
+ * changed. */
 #include "stratus/scenes.h"
 #include "volume.h"
 
@@ -9,6 +10,12 @@
 #include <string.h>
 
 #define LATTICE 55 /* boxes along an axis, six tetrahedra each */
+
+#define ESTUARY_X 96 /* squares of two wedges in a layer */
+#define ESTUARY_Y 48
+#define ESTUARY_LAYERS 12
+#define ESTUARY_LENGTH 12.0 /* km; depths are tens of metres */
+#define ESTUARY_WIDTH 6.0
 
 #define HOLES_X 6
 #define HOLES_Y 4
@@ -51,6 +58,88 @@ static double holes_value(const double point[3])
     across -= 2.0 * RADIUS * RADIUS * x * y / (square * square);
   }
   return sqrt(along * along + across * across) * (1.0 + 0.25 * sin(2.0 * point[2] / THICKNESS));
+}
+
+/* The bed: a channel that winds between shoals with ripples. */
+static double estuary_depth(double x, double y)
+{
+  const double across = (y - 0.5 * ESTUARY_WIDTH - 0.8 * sin(0.7 * x)) / 1.2;
+  return 0.25 + 0.9 * exp(-across * across) + 0.05 * sin(9.0 * x) * cos(11.0 * y);
+}
+
+/* The surface: a tide on its way in from x = 0. */
+static double estuary_surface(double x)
+{
+  return 0.15 * cos(0.5 * x);
+}
+
+/* The share of river water: a plume that spreads at the surface and mixes downwards and on its way to the sea. */
+static double estuary_value(const double point[3])
+{
+  const double depth = estuary_depth(point[0], point[1]), surface = estuary_surface(point[0]);
+  const double below = (surface - point[2]) / (depth + surface), from = (ESTUARY_LENGTH - point[0]) / ESTUARY_LENGTH;
+  const double across = (point[1] - 0.5 * ESTUARY_WIDTH - 0.8 * sin(0.7 * point[0])) / (1.0 + 2.0 * from);
+  return exp(-3.0 * from - across * across - below * (1.0 + 3.0 * from)) * (1.0 + 0.2 * sin(4.0 * point[0] + 3.0 * point[1]));
+}
+
+/* ---------------------------------------------------------------- the estuary */
+
+/* Divides a wedge whose lower points are a, b and c, and whose upper ones have numbers greater by `up`. Side faces are cut from their
+ * lowest point, so that neighbours cut them alike. */
+static void add_wedge(int32_t** vertices, int32_t a, int32_t b, int32_t c, int32_t up)
+{
+  int32_t low[3] = { a, b, c };
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const int32_t less = low[j] < low[j + 1] ? low[j] : low[j + 1], more = low[j] < low[j + 1] ? low[j + 1] : low[j];
+      low[j] = less;
+      low[j + 1] = more;
+    }
+  }
+  for (int cut = 0; cut < 3; ++cut) { /* lower points up to `cut`, upper ones from there */
+    for (int i = 0; i <= cut; ++i) {
+      *(*vertices)++ = low[i];
+    }
+    for (int i = cut; i < 3; ++i) {
+      *(*vertices)++ = low[i] + up;
+    }
+  }
+}
+
+static stratus_status make_estuary(stratus_context* context, mesh_storage* storage)
+{
+  const int32_t row = ESTUARY_X + 1, up = row * (ESTUARY_Y + 1);
+  stratus_mesh* mesh = &storage->scene.mesh;
+  mesh->point_count = (int64_t)up * (ESTUARY_LAYERS + 1);
+  mesh->cell_count = (int64_t)6 * ESTUARY_X * ESTUARY_Y * ESTUARY_LAYERS;
+  TRY(stratus_allocate(context, (size_t)mesh->point_count, 3 * sizeof(double), &storage->points));
+  TRY(stratus_allocate(context, (size_t)mesh->cell_count, 4 * sizeof(int32_t), &storage->vertices));
+  TRY(stratus_allocate(context, (size_t)mesh->point_count, sizeof(float), &storage->values));
+  for (int32_t i = 0; i < mesh->point_count; ++i) {
+    double* p = (double*)storage->points + 3 * (size_t)i;
+    const double level = (double)(i / up) / ESTUARY_LAYERS;
+    p[0] = ESTUARY_LENGTH * (i % row) / ESTUARY_X;
+    p[1] = ESTUARY_WIDTH * (i % up / row) / ESTUARY_Y;
+    const double depth = estuary_depth(p[0], p[1]), surface = estuary_surface(p[0]);
+    p[2] = -depth + (depth + surface) * level * (1.5 - 0.5 * level); /* layers are thinner at the surface */
+    ((float*)storage->values)[i] = (float)estuary_value(p);
+  }
+  int32_t* vertices = storage->vertices;
+  for (int32_t square = 0; square < ESTUARY_X * ESTUARY_Y * ESTUARY_LAYERS; ++square) {
+    const int32_t x = square % ESTUARY_X, y = square / ESTUARY_X % ESTUARY_Y;
+    const int32_t a = square / (ESTUARY_X * ESTUARY_Y) * up + y * row + x, b = a + 1, c = a + row + 1, d = a + row;
+    if ((x + y) % 2 == 0) {
+      add_wedge(&vertices, a, b, c, up);
+      add_wedge(&vertices, a, c, d, up);
+    } else {
+      add_wedge(&vertices, a, b, d, up);
+      add_wedge(&vertices, b, c, d, up);
+    }
+  }
+  mesh->vertices = storage->vertices;
+  mesh->values = storage->values;
+  mesh->type = STRATUS_FLOAT32;
+  return STRATUS_OK;
 }
 
 /* ---------------------------------------------------------------- the lattice */
@@ -186,7 +275,8 @@ static const struct {
   const char* name;
   stratus_status (*make)(stratus_context* context, mesh_storage* storage);
   double (*value)(const double point[3]);
-} recipes[] = { { "holes", make_holes, holes_value }, { "wavelet", make_wavelet, wavelet_value } };
+} recipes[] = { { "estuary", make_estuary, estuary_value }, { "holes", make_holes, holes_value },
+  { "wavelet", make_wavelet, wavelet_value } };
 #define RECIPES ((int)(sizeof recipes / sizeof recipes[0]))
 
 int stratus_mesh_scene_count(void)
@@ -220,7 +310,8 @@ stratus_status stratus_mesh_scene_create(stratus_context* context, const char* n
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the scene's address is NULL");
   }
   if (index < 0) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "unknown mesh \"%.100s\"; there are: holes, wavelet", name ? name : "(null)");
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "unknown mesh \"%.100s\"; there are: estuary, holes, wavelet", name ? name : "(null)");
   }
   TRY(stratus_allocate_zero(context, 1, sizeof(mesh_storage), &memory));
   mesh_storage* storage = memory;

@@ -52,10 +52,11 @@ STRATUS_EXPERIMENTAL void stratus_voxel_scene_release(stratus_context* context, 
 STRATUS_EXPERIMENTAL stratus_status stratus_voxel_scene_rays(
   stratus_context* context, const stratus_voxels* voxels, int kind, stratus_ray* rays);
 
-/* Meshes of record that are generated: holes (a plate with 24 holes) and wavelet (998,250 tetrahedra of a lattice). */
+/* Meshes of record that are generated: estuary (331,776 tetrahedra of water in layers, under a tide), holes (a plate with 24 holes) and
+ * wavelet (998,250 tetrahedra of a lattice). */
 typedef struct stratus_mesh_scene {
   const char* name;
-  /* wavelet: tetrahedra and one float for each point. holes: the points of a closed surface, without cells or values. */
+  /* estuary, wavelet: tetrahedra and one float for each point. holes: the points of a closed surface, without cells or values. */
   stratus_mesh mesh;
   /* holes: faces of the surface, 4 point numbers each, planar, counterclockwise from outside; else NULL. */
   const int32_t* quads;

@@ -18,8 +18,8 @@ namespace {
 
 const char* const help = R"(stratus-bench tetra [options]
 
-  --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice), or a
-                            file of tetrahedra with point scalars; default: the four
+  --mesh NAME|FILE,...      bluntfin, post (of ../shared/data), holes (a plate with 24 holes, filled by TetGen), wavelet (a lattice),
+                            estuary (water in layers), or a file of tetrahedra with point scalars; default: the first four
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
   --method M,...            stratus:auto|march|project, stratus:march|project@device (the first OpenCL device), vtk:projected,
                             vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk), vtk:zsweep; ours with

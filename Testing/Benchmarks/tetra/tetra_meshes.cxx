@@ -37,9 +37,9 @@ scene_pointer make_scene_mesh(stratus_context* context, const char* name)
   return scene_pointer(scene, [context](stratus_mesh_scene* s) { stratus_mesh_scene_destroy(context, s); });
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> make_wavelet(stratus_context* context)
+vtkSmartPointer<vtkUnstructuredGrid> make_listed(stratus_context* context, const char* name)
 {
-  const scene_pointer scene = make_scene_mesh(context, "wavelet");
+  const scene_pointer scene = make_scene_mesh(context, name);
   const stratus_mesh& mesh = scene->mesh;
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
@@ -180,8 +180,8 @@ stratus_mesh tetra_mesh::view() const
 bool make_tetra_mesh(stratus_context* context, const std::string& source, const std::string& cache, tetra_mesh& mesh)
 {
   mesh.name = stem_of(source);
-  if (source == "wavelet") {
-    mesh.grid = make_wavelet(context);
+  if (source == "estuary" || source == "wavelet") {
+    mesh.grid = make_listed(context, source.c_str());
   } else if (source == "holes") {
 #ifdef STRATUS_BENCH_TETGEN
     mesh.grid = make_holes(context, cache);

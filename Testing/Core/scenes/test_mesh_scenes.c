@@ -93,6 +93,61 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
   stratus_context_destroy(context);
 }
 
+/* No tetrahedron is flat, those of a wedge fill it, and only bed, surface and the four sides are borders. */
+static void test_estuary_is_filled_face_to_face(void** state)
+{
+  (void)state;
+  stratus_context* context = host();
+  stratus_mesh_scene* scene = NULL;
+  double filled = 0.0, meant = 0.0;
+  assert_int_equal(stratus_mesh_scene_create(context, "estuary", &scene), STRATUS_OK);
+  const stratus_mesh* mesh = &scene->mesh;
+  assert_int_equal(stratus_mesh_check(context, mesh), STRATUS_OK);
+  assert_int_equal(mesh->cell_count, 6 * 96 * 48 * 12);
+  for (int64_t c = 0; c < mesh->cell_count; ++c) {
+    const int32_t* v = mesh->vertices + 4 * c;
+    const double size = volume(mesh->points + 3 * v[0], mesh->points + 3 * v[1], mesh->points + 3 * v[2], mesh->points + 3 * v[3]);
+    assert_true(fabs(size) > 1e-7);
+    filled += fabs(size);
+  }
+  const int64_t up = 97 * 49;
+  for (int64_t i = 0; i < mesh->point_count; ++i) {
+    const double *p = mesh->points + 3 * i, value = (double)((const float*)mesh->values)[i];
+    assert_true(value == (double)(float)stratus_mesh_scene_value("estuary", p) && value >= 0.0 && value < 1.3);
+    assert_true(i < up || p[2] > p[2 - 3 * up]); /* above the point of the layer beneath */
+  }
+  for (int64_t cell = 0; cell < mesh->cell_count; cell += 3) { /* a wedge: the mean of its heights times its base */
+    const int32_t* v = mesh->vertices + 4 * cell;
+    const int32_t *second = v + 4, *third = v + 8;
+    const double* p[3] = { mesh->points + 3 * v[0], mesh->points + 3 * second[1], mesh->points + 3 * third[2] };
+    double height = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      height += (p[i][3 * up + 2] - p[i][2]) / 3.0;
+    }
+    meant += 0.5 * fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) * height;
+  }
+  assert_true(fabs(filled - meant) < 1e-9 * meant);
+  stratus_tetra_caster* caster = NULL;
+  stratus_tetra_report report;
+  static float rgba[4 * 16 * 16];
+  const double bounds[6] = { 0, 12, 0, 6, -1, 0 }, opacity[4] = { 0, 0, 1, .1 }, color[4] = { 0, 1, 1, 1 };
+  stratus_transfer transfer = stratus_transfer_default();
+  stratus_camera camera;
+  transfer.opacity = opacity;
+  transfer.opacity_count = 2;
+  transfer.color = color;
+  transfer.color_count = 1;
+  const stratus_image image = { .width = 16, .height = 16, .rgba = rgba };
+  assert_int_equal(stratus_scene_camera(context, bounds, 2, 0, 0, 1.0, &camera), STRATUS_OK);
+  assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+  assert_int_equal(stratus_tetra_caster_render(caster, mesh, &transfer, &camera, NULL, &image, &report), STRATUS_OK);
+  assert_int_equal(report.border_faces, 4 * 96 * 48 + 4 * (96 + 48) * 12);
+  assert_true(report.flat == 0 && report.broken_faces == 0 && report.folded_faces == 0);
+  stratus_tetra_caster_destroy(caster);
+  stratus_mesh_scene_destroy(context, scene);
+  stratus_context_destroy(context);
+}
+
 /* Each edge occurs once in each direction, the quads are planar, and they enclose the plate without its holes, which are polygons of 32
  * corners. */
 static void test_holes_are_a_closed_surface(void** state)
@@ -142,10 +197,11 @@ static void test_names_and_refusals(void** state)
   stratus_context* context = host();
   stratus_mesh_scene* scene = NULL;
   const double origin[3] = { 0, 0, 0 };
-  assert_int_equal(stratus_mesh_scene_count(), 2);
-  assert_string_equal(stratus_mesh_scene_name(0), "holes");
-  assert_string_equal(stratus_mesh_scene_name(1), "wavelet");
-  assert_null(stratus_mesh_scene_name(2));
+  assert_int_equal(stratus_mesh_scene_count(), 3);
+  assert_string_equal(stratus_mesh_scene_name(0), "estuary");
+  assert_string_equal(stratus_mesh_scene_name(1), "holes");
+  assert_string_equal(stratus_mesh_scene_name(2), "wavelet");
+  assert_null(stratus_mesh_scene_name(3));
   assert_null(stratus_mesh_scene_name(-1));
   assert_int_equal(stratus_mesh_scene_create(context, "sieve", &scene), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "sieve"));
@@ -189,6 +245,7 @@ int test_mesh_scenes(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_wavelet_fills_its_cube_face_to_face),
+    cmocka_unit_test(test_estuary_is_filled_face_to_face),
     cmocka_unit_test(test_holes_are_a_closed_surface),
     cmocka_unit_test(test_names_and_refusals),
     cmocka_unit_test(test_out_of_memory_is_an_error_without_a_leak),

@@ -3,6 +3,7 @@
  * fill values and layers that cross; their memory; and steps of values. */
 #include "tetra_case.h"
 
+#include "faulty_allocator.h"
 #include "tetra_caster.h"
 
 static const int32_t sizes[3] = { 4, 3, 5 }; /* hexahedra */
@@ -302,6 +303,82 @@ static void memory_of_a_cell(void** state)
   end_case();
 }
 
+/* Lattices whose points lie anywhere near their places, some cells upside down: the pictures of their listed tetrahedra, by both methods.
+ */
+static void random_lattices(void** state)
+{
+  int mixed = 0;
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    tetra_case listed, lattice;
+    double largest, right[4 * TETRA_PIXELS];
+    uint32_t s = seed;
+    tetra_method = seed & 1 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
+    tetra_create(&listed, 4, seed % 3 == 2 ? 0.5 : 0.15, 0.0, seed);
+    for (int hole = 0; hole < (int)(seed % 4); ++hole) { /* all cells of a box */
+      const int box = (int)tetra_uniform(&s, 0.0, 63.99);
+      memset(listed.hidden + 6 * box, 1, 6);
+    }
+    listed.mesh.hidden = listed.hidden;
+    tetra_camera(*state, &listed, 4, (int)(seed % 8), seed % 5 == 4);
+    tetra_draw(*state, &listed, &theirs);
+    lattice = listed;
+    uint8_t hidden[64];
+    for (int box = 0; box < 64; ++box) {
+      hidden[box] = listed.hidden[6 * box];
+    }
+    lattice.mesh.hidden = hidden;
+    tetra_as_lattice(&lattice, 4);
+    tetra_draw(*state, &lattice, &ours);
+    for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
+      right[i] = (double)theirs.rgba[i];
+    }
+    const double error = tetra_error(ours.rgba, right, &largest);
+    if (!(error < 0.02)) {
+      print_error("seed %u: %.4f of 255, at most %.2f\n", (unsigned)seed, error, largest);
+    }
+    assert_true(error < 0.02);
+    mixed += ours.report.inverted > 0 && ours.report.inverted < ours.report.cells;
+    tetra_destroy(&listed);
+  }
+  assert_true(mixed > 3);
+}
+
+/* Memory that is refused at any call leaves an error, and the caster ready; lattices as they are, and listed ones. */
+static void memory_refused_at_any_call(void** state)
+{
+  (void)state;
+  for (int listed = 0; listed < 2; ++listed) {
+    faulty_allocator allocator = { 0 };
+    const stratus_context_options options = faulty_options(&allocator, "host");
+    stratus_context* context = NULL;
+    stratus_tetra_caster* caster = NULL;
+    assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+    assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+    start_case(listed);
+    c.points[3 * point_at(2, 1, 3) + 2] -= listed ? 1.6 : 0.0;
+    c.points[7] = listed ? NAN : c.points[7];
+    tetra_camera(context, &c.listed, 4, 0, 0);
+    const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
+    int refused = 0;
+    for (bool reached = true; reached; refused += reached) {
+      stratus_tetra_caster_release(caster);
+      allocator.fail_at = allocator.calls + refused + 1;
+      const stratus_status status =
+        stratus_tetra_caster_render(caster, &c.lattice, &c.listed.transfer, &c.listed.camera, &c.listed.options, &image, NULL);
+      reached = allocator.calls >= allocator.fail_at;
+      allocator.fail_at = 0;
+      assert_int_equal(status, reached ? STRATUS_OUT_OF_MEMORY : STRATUS_OK);
+    }
+    draw_lattice(context, STRATUS_TETRA_METHOD_MARCH, &theirs);
+    assert_memory_equal(ours.rgba, theirs.rgba, sizeof ours.rgba);
+    assert_true(refused > 8);
+    stratus_tetra_caster_destroy(caster);
+    end_case();
+    stratus_context_destroy(context);
+    assert_int_equal(allocator.live, 0);
+  }
+}
+
 static void wrong_lattices_are_refused(void** state)
 {
   start_case(0);
@@ -358,6 +435,8 @@ int test_tetra_lattice(void)
     cmocka_unit_test_setup_teardown(layers_that_cross, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(steps_take_values_alone, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(memory_of_a_cell, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(random_lattices, tetra_start, tetra_stop),
+    cmocka_unit_test(memory_refused_at_any_call),
     cmocka_unit_test_setup_teardown(wrong_lattices_are_refused, tetra_start, tetra_stop),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

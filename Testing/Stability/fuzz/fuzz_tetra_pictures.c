@@ -26,6 +26,15 @@ static void choose_view(fuzz* f, tetra_case* c)
   o.termination = fuzz_chance(f, 0.6) ? o.termination : fuzz_real(f, 0.0, 1.0);
   o.tolerance = fuzz_chance(f, 0.6) ? o.tolerance : fuzz_real(f, 0.0, 0.1);
   o.leaves = c->partition ? &c->leaves : NULL;
+  o.clip_plane_count = fuzz_chance(f, 0.8) ? 0 : 1 + (int)fuzz_choice(f, STRATUS_TETRA_CLIP_PLANES_MAX);
+  for (int i = 0; i < 4 * STRATUS_TETRA_CLIP_PLANES_MAX; ++i) {
+    o.clip_planes[i / 4][i % 4] = fuzz_chance(f, 0.1) ? 0.0 : fuzz_real(f, -1.0, 1.0);
+  }
+  o.crop = fuzz_chance(f, 0.1);
+  for (int side = 0; side < 6; ++side) {
+    o.crop_bounds[side] = c->mesh.bounds[side] + (side & 1 ? -0.2 : 0.2) * fuzz_real(f, 0.0, 1.0) * c->mesh.edge;
+  }
+  o.crop = o.crop && o.crop_bounds[0] <= o.crop_bounds[1] && o.crop_bounds[2] <= o.crop_bounds[3] && o.crop_bounds[4] <= o.crop_bounds[5];
   c->no_options = fuzz_chance(f, 0.02);
   c->options = c->no_options ? stratus_tetra_options_default() : o;
   c->camera = fuzz_camera(f, c->mesh.bounds);
