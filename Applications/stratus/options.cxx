@@ -42,6 +42,9 @@ rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrah
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits); --variable is the
                           same
+  --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
+                          uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
+                          for N bytes before the values. To be drawn or told of
   --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
                           "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
   --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
@@ -315,6 +318,7 @@ constexpr struct {
   { "--output", keep<&options::output> },
   { "--array", keep<&options::array> },
   { "--variable", keep<&options::array> },
+  { "--raw", keep<&options::raw> },
   { "--time", keep<&options::time> },
   { "--frames", set_frames },
   { "--opacity", keep<&options::opacity> },

@@ -24,6 +24,7 @@ struct options {
   std::string frames; // render: the names of the pictures of all steps, with one %d
   std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
+  std::string raw; // what a .raw file does not tell: see choose_format()
   std::string opacity;
   std::string color;
   std::string background;
