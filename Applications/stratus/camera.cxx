@@ -61,15 +61,26 @@ namespace cli {
 
 stratus_camera place_camera(const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up)
 {
+  return place_camera(core, o, { { &volume, transfer } }, up);
+}
+
+stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up)
+{
   const double degree = std::acos(-1.0) / 180.0;
   double bounds[6];
   double focal[3];
   double half[3];
   double eye[3];
-  if (o.axes) { // the box is seen as a whole
-    core.check(stratus_volume_bounds(core, &volume, bounds), "bounds");
-  } else {
-    shown_bounds(core, volume, transfer, bounds);
+  for (size_t n = 0; n < shown.size(); ++n) {
+    double own[6];
+    if (o.axes) { // the box is seen as a whole
+      core.check(stratus_volume_bounds(core, shown[n].volume, own), "bounds");
+    } else {
+      shown_bounds(core, *shown[n].volume, shown[n].transfer, own);
+    }
+    for (int side = 0; side < 6; ++side) {
+      bounds[side] = n == 0 ? own[side] : side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
+    }
   }
   for (int a = 0; a < 3; ++a) {
     focal[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);

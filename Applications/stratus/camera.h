@@ -4,11 +4,19 @@
 #include "options.h"
 #include "support.h"
 
+#include <vector>
+
 namespace cli {
 
 // Places a camera that looks from the options' azimuth and elevation about the axis `up`. The view contains all that the transfer function
 // shows of the volume.
 stratus_camera place_camera(const context& core, const options& o, const stratus_volume& volume, const stratus_transfer& transfer, int up);
+struct shown_volume {
+  const stratus_volume* volume;
+  stratus_transfer transfer;
+};
+// The same for several volumes.
+stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up);
 // Describes eye, direction, up, and angle or parallel scale in one line, with enough digits for another program to reproduce the view.
 std::string describe(const stratus_camera& camera);
 } // namespace cli

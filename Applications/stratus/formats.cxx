@@ -38,6 +38,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 namespace {
 
@@ -74,6 +76,71 @@ made netcdf(const std::string& path)
 #else
   throw cli::failure("cannot read '" + path + "': this program was built without libnetcdf, which reads netCDF files");
 #endif
+}
+
+// A type of --raw, or nullptr.
+struct raw_type {
+  const char* name;
+  int vtk;
+  size_t bytes;
+};
+const raw_type* raw_type_named(const std::string& name)
+{
+  static constexpr raw_type types[] = { { "int8", VTK_SIGNED_CHAR, 1 }, { "uint8", VTK_UNSIGNED_CHAR, 1 }, { "int16", VTK_SHORT, 2 },
+    { "uint16", VTK_UNSIGNED_SHORT, 2 }, { "int32", VTK_INT, 4 }, { "uint32", VTK_UNSIGNED_INT, 4 }, { "float32", VTK_FLOAT, 4 },
+    { "float64", VTK_DOUBLE, 8 } };
+  const auto found = std::find_if(std::begin(types), std::end(types), [&](const raw_type& one) { return name == one.name; });
+  return found == std::end(types) ? nullptr : found;
+}
+
+// The three numbers of "A<separator>B<separator>C".
+void three(const std::string& text, char separator, double low, double numbers[3])
+{
+  const std::vector<std::string> words = cli::split(text, separator);
+  for (size_t a = 0; a < 3; ++a) {
+    numbers[a] = words.size() == 3 ? cli::number(words[a], "--raw") : 0.0;
+    if (words.size() != 3 || numbers[a] < low || (low >= 1.0 && (numbers[a] != std::floor(numbers[a]) || numbers[a] > 2147483647.0))) {
+      throw cli::usage("--raw: '" + text + "' must be three numbers of at least " + cli::format("%g", low));
+    }
+  }
+}
+
+made raw_reader(const std::string& path, const std::string& raw)
+{
+  const std::vector<std::string> words = cli::split(raw, ':');
+  const raw_type* type = words.size() > 1 ? raw_type_named(words[1]) : nullptr;
+  double size[3], spacing[3] = { 1.0, 1.0, 1.0 }, skip = 0.0;
+  if (!type) {
+    throw cli::usage("--raw: '" + raw + "' is not NXxNYxNZ:TYPE with a type int8, uint8, int16, uint16, int32, uint32, float32 or float64");
+  }
+  three(words[0], 'x', 1.0, size);
+  auto reader = vtkSmartPointer<vtkImageReader2>::New();
+  reader->SetDataByteOrderToLittleEndian();
+  for (size_t i = 2; i < words.size(); ++i) {
+    if (words[i] == "big") {
+      reader->SetDataByteOrderToBigEndian();
+    } else if (words[i].compare(0, 1, "+") == 0) {
+      skip = cli::whole_number(words[i].substr(1), "--raw", 0, 2147483647);
+    } else if (words[i] != "little") {
+      three(words[i], ',', 1e-300, spacing);
+    }
+  }
+  const double needed = skip + size[0] * size[1] * size[2] * static_cast<double>(type->bytes);
+  std::error_code error;
+  const std::uintmax_t there = std::filesystem::file_size(path, error);
+  if (error || static_cast<double>(there) != needed) {
+    throw cli::failure("cannot read '" + path + "': --raw " + raw + cli::format(" needs %.0f bytes, the file has ", needed) +
+      (error ? std::string("no length") : std::to_string(there)));
+  }
+  reader->SetFileName(path.c_str());
+  reader->SetFileDimensionality(3);
+  reader->SetDataExtent(0, static_cast<int>(size[0]) - 1, 0, static_cast<int>(size[1]) - 1, 0, static_cast<int>(size[2]) - 1);
+  reader->SetDataSpacing(spacing);
+  reader->SetDataScalarType(type->vtk);
+  reader->SetNumberOfScalarComponents(1);
+  reader->SetHeaderSize(static_cast<unsigned long>(skip));
+  reader->FileLowerLeftOn(); // the first row is that of the least y
+  return reader;
 }
 
 constexpr struct {
@@ -132,9 +199,15 @@ bool is_collection(const std::string& path)
   return extension_of(path) == ".pvd";
 }
 
-file_format choose_format(const std::string& path)
+file_format choose_format(const std::string& path, const std::string& raw)
 {
   const std::string extension = extension_of(path);
+  if (!raw.empty()) {
+    return { raw_reader(path, raw), "" };
+  }
+  if (extension == ".raw") {
+    throw usage("'" + path + "' tells nothing of itself: give --raw NXxNYxNZ:TYPE[:big][:DX,DY,DZ][:+BYTES BEFORE]");
+  }
   for (const auto& known : formats) {
     if (extension == known.extension) {
       return { known.make(path), known.make == openfoam ? "s" : "" };

@@ -22,7 +22,10 @@ struct file_format {
   vtkSmartPointer<vtkAlgorithm> reader; // null: nothing here reads the file
   std::string time_units;               // what the format itself prescribes, else ""
 };
-file_format choose_format(const std::string& path);
+// `raw` is the value of --raw, for files that tell nothing of themselves (.raw): "NXxNYxNZ:TYPE", then in any order little or big (default
+// little), the spacing "DX,DY,DZ" and the bytes before the values "+N". Throws usage where it is not that, and failure where the file has
+// another length.
+file_format choose_format(const std::string& path, const std::string& raw);
 
 // What a file that is read by variables has: the range is of one step.
 struct variable_entry {

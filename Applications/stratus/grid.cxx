@@ -160,5 +160,9 @@ void grid_drawing::tell() const
 
 std::unique_ptr<cli::drawing> cli::make_grid_drawing(const options& o, context& core)
 {
+  if (!o.companions.empty()) {
+    throw usage(
+      "'" + o.source + "' is drawn as tetrahedra, which do not mix with other volumes: leave out '" + o.companions[0].source + "'");
+  }
   return std::make_unique<grid_drawing>(o, core);
 }

@@ -90,7 +90,7 @@ void info(const cli::options& o)
     print_volume(o, core, in);
     return;
   }
-  cli::series in(o.source, o.array);
+  cli::series in(o.source, o.array, o.raw);
   const size_t step = in.find(o.time);
   const std::vector<cli::variable_entry> variables = in.variables(step); // before the step, because the reader's output is one object
   const cli::routed data = cli::route(in.read(step), o.source, o.array);

@@ -25,6 +25,8 @@ std::string help()
 
   stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus render INPUT --frames OUT-%04d.png  draw every step in time
+  stratus render INPUT INPUT ... -o OUT.png   draw up to eight images that overlap as one medium; --array, --opacity, --color and
+                                              --unit-distance are for the INPUT before them
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
@@ -40,6 +42,9 @@ TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits); --variable is the
                           same
+  --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
+                          uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
+                          for N bytes before the values. To be drawn or told of
   --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
                           "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
   --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
@@ -313,6 +318,7 @@ constexpr struct {
   { "--output", keep<&options::output> },
   { "--array", keep<&options::array> },
   { "--variable", keep<&options::array> },
+  { "--raw", keep<&options::raw> },
   { "--time", keep<&options::time> },
   { "--frames", set_frames },
   { "--opacity", keep<&options::opacity> },
@@ -370,6 +376,22 @@ template <class Table> auto find_word(const Table& table, const std::string& wor
   return found == std::end(table) ? nullptr : found;
 }
 
+// Sets what a word says of the INPUT before it. Returns false for words that are about the whole picture.
+template <class Entry> bool set_companion(companion& last, const Entry* entry, const std::string& value)
+{
+  options alone;
+  const std::string word = entry->word;
+  if (word != "--array" && word != "--variable" && word != "--opacity" && word != "--color" && word != "--unit-distance") {
+    return false;
+  }
+  entry->set(alone, word, value);
+  last.array = alone.array.empty() ? last.array : alone.array;
+  last.opacity = alone.opacity.empty() ? last.opacity : alone.opacity;
+  last.color = alone.color.empty() ? last.color : alone.color;
+  last.unit_distance = alone.unit_distance > 0.0 ? alone.unit_distance : last.unit_distance;
+  return true;
+}
+
 void check_output(const options& o)
 {
   if (o.command != "render") {
@@ -380,6 +402,9 @@ void check_output(const options& o)
   }
   if (!o.frames.empty() && (!o.output.empty() || !(o.time.empty() || o.time == "all"))) {
     throw usage("--frames draws all steps: leave out " + std::string(o.output.empty() ? "--time " + o.time : "-o"));
+  }
+  if (!o.frames.empty() && !o.companions.empty()) {
+    throw usage("--frames draws one INPUT: leave out '" + o.companions[0].source + "'");
   }
   if (o.output.empty() && o.frames.empty()) {
     throw usage("render: where to? Give -o OUT.png");
@@ -439,7 +464,10 @@ options parse(int argc, char* argv[])
       if (i + 1 == argc) {
         throw usage(word + " needs a value");
       }
-      entry->set(o, word, argv[++i]);
+      if (o.companions.empty() || !set_companion(o.companions.back(), entry, argv[i + 1])) {
+        entry->set(o, word, argv[i + 1]);
+      }
+      ++i;
     } else if (const auto* flag = find_word(flags, word)) {
       o.*flag->flag = true;
     } else if (word.size() > 1 && word[0] == '-') {
@@ -448,8 +476,10 @@ options parse(int argc, char* argv[])
       o.command = word;
     } else if (o.source.empty()) {
       o.source = word;
+    } else if (o.command == "render" && o.companions.size() + 1 < STRATUS_SEVERAL_MAX) {
+      o.companions.push_back({ word, "", "", "", 0.0 });
     } else {
-      throw usage("one INPUT at a time: '" + word + "' is too many");
+      throw usage("one INPUT at a time, or of render up to " + std::to_string(STRATUS_SEVERAL_MAX) + ": '" + word + "' is too many");
     }
   }
   check_complete(o);

@@ -10,13 +10,21 @@
 
 namespace cli {
 
+// A volume that is drawn with the first one, and how it looks.
+struct companion {
+  std::string source, array, opacity, color;
+  double unit_distance = 0.0;
+};
+
 struct options {
   std::string command; // render, info, tree, sort, devices, help
   std::string source;
+  std::vector<companion> companions; // render: the INPUTs behind the first
   std::string output;
   std::string frames; // render: the names of the pictures of all steps, with one %d
   std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
+  std::string raw; // what a .raw file does not tell: see choose_format()
   std::string opacity;
   std::string color;
   std::string background;

@@ -185,7 +185,7 @@ void cli::render(const options& o)
     render_one(o, routed(), nullptr, 0);
     return;
   }
-  series in(o.source, o.array);
+  series in(o.source, o.array, o.raw);
   if (!o.frames.empty()) {
     render_film(o, in);
     return;

@@ -152,7 +152,7 @@ void series::open()
     }
     return;
   }
-  const file_format found = choose_format(path);
+  const file_format found = choose_format(path, this->Raw);
   if (!found.reader) {
     throw failure("'" + path + "' is no image file that VTK reads (.vti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
       "and no grid (.nc .vtr .vts .vtu .vtm .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
@@ -174,7 +174,7 @@ void series::open()
   });
 }
 
-series::series(const std::string& path, const std::string& variable) : Path(path), Variable(variable)
+series::series(const std::string& path, const std::string& variable, const std::string& raw) : Path(path), Variable(variable), Raw(raw)
 {
   this->open();
   if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {

@@ -16,7 +16,8 @@ class series
 public:
   // Opens a file and looks up its steps. Throws failure where it cannot be read, and where its time does not increase.
   // `variable` is the one to read of a file that is read by variables (netCDF), "" the first; readers of whole files ignore it.
-  explicit series(const std::string& path, const std::string& variable = "");
+  // `raw` is described at choose_format().
+  explicit series(const std::string& path, const std::string& variable = "", const std::string& raw = "");
 
   size_t steps() const { return this->Times.empty() ? 1 : this->Times.size(); }
   const std::vector<double>& times() const { return this->Times; } // ascending; empty: the file has no time
@@ -44,7 +45,7 @@ private:
 
   void open();
 
-  std::string Path, Variable;
+  std::string Path, Variable, Raw;
   vtkSmartPointer<vtkAlgorithm> Reader; // null for a collection
   std::vector<collection_step> Parts;   // of a collection
   std::vector<double> Times;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -21,7 +23,13 @@ public:
       throw cli::usage("'" + o.source + "' is no unstructured grid: --method is for grids and trees");
     }
   }
-  ~volume_drawing() override { stratus_ray_caster_destroy(this->Caster); }
+  ~volume_drawing() override
+  {
+    stratus_ray_caster_destroy(this->Caster);
+    for (const member& more : this->More) {
+      stratus_ray_caster_destroy(more.caster);
+    }
+  }
   volume_drawing(const volume_drawing&) = delete;
   volume_drawing& operator=(const volume_drawing&) = delete;
 
@@ -35,12 +43,24 @@ public:
   void judge() const override;
 
 private:
+  // A volume that is drawn with the first one.
+  struct member {
+    cli::options o;
+    std::unique_ptr<cli::input> input;
+    cli::transfer functions;
+    stratus_ray_caster* caster = nullptr;
+    stratus_ray_cast_report report = {};
+  };
+
+  void read_more();
+  void draw_several(const stratus_ray_cast_options& cast, const stratus_image& image);
   void choose_parts(stratus_ray_cast_options& cast);
   void tell_report() const;
 
   const cli::options& Options;
   cli::context& Core;
   std::unique_ptr<cli::input> Input, Mask;
+  std::vector<member> More;
   cli::transfer Transfer;
   stratus_camera Camera = {};
   stratus_ray_caster* Caster = nullptr;
@@ -58,6 +78,25 @@ void volume_drawing::take(const cli::routed& data)
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
 }
 
+// Reads the other volumes, each with the options of the first but for what was said of it.
+void volume_drawing::read_more()
+{
+  for (const cli::companion& companion : this->Options.companions) {
+    member more;
+    more.o = this->Options;
+    more.o.source = companion.source;
+    more.o.array = companion.array;
+    more.o.opacity = companion.opacity;
+    more.o.color = companion.color;
+    more.o.unit_distance = companion.unit_distance;
+    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array);
+    more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
+    more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
+    this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
+    this->More.push_back(std::move(more));
+  }
+}
+
 void volume_drawing::look()
 {
   const cli::options& o = this->Options;
@@ -65,7 +104,12 @@ void volume_drawing::look()
   this->Transfer = cli::make_transfer(in.volume, in.scene, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
-  this->Camera = cli::place_camera(this->Core, o, in.volume, view, this->Up);
+  this->read_more();
+  std::vector<cli::shown_volume> shown = { { &in.volume, view } };
+  for (const member& more : this->More) {
+    shown.push_back({ &more.input->volume, more.functions.view() });
+  }
+  this->Camera = cli::place_camera(this->Core, o, shown, this->Up);
 }
 
 std::pair<double, double> volume_drawing::range() const
@@ -79,6 +123,13 @@ cli::scene_frame volume_drawing::place() const
   cli::scene_frame frame;
   frame.camera = this->Camera;
   this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
+  for (const member& more : this->More) {
+    double own[6];
+    this->Core.check(stratus_volume_bounds(this->Core, &more.input->volume, own), "bounds");
+    for (int side = 0; side < 6; ++side) {
+      frame.bounds[side] = side % 2 ? std::max(frame.bounds[side], own[side]) : std::min(frame.bounds[side], own[side]);
+    }
+  }
   frame.scale[this->Up] = this->Options.exaggeration;
   frame.title = this->Input->array_name;
   return frame;
@@ -129,13 +180,46 @@ void volume_drawing::draw(const stratus_image& image)
   if (!this->Caster) {
     this->Core.check(stratus_ray_caster_create(this->Core, &this->Caster), "ray caster");
   }
+  if (!this->More.empty()) {
+    this->draw_several(cast, image);
+    return;
+  }
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_ray_caster_render(this->Caster, &this->Input->volume, &view, &this->Camera, &cast, &image, &this->Report), "render");
 }
 
+// Crop and mask are the first volume's alone.
+void volume_drawing::draw_several(const stratus_ray_cast_options& cast, const stratus_image& image)
+{
+  const size_t count = 1 + this->More.size();
+  stratus_ray_cast_options plain = cast;
+  plain.crop = 0;
+  plain.mask = nullptr;
+  std::vector<stratus_transfer> views = { this->Transfer.view() };
+  for (const member& more : this->More) {
+    views.push_back(more.functions.view());
+  }
+  std::vector<stratus_ray_cast_input> inputs = { { this->Caster, &this->Input->volume, views.data(), &cast } };
+  for (size_t n = 1; n < count; ++n) {
+    inputs.push_back({ this->More[n - 1].caster, &this->More[n - 1].input->volume, &views[n], &plain });
+  }
+  std::vector<stratus_ray_cast_report> reports(count);
+  this->Core.check(
+    stratus_ray_caster_render_several(inputs.data(), static_cast<int>(count), &this->Camera, &image, reports.data()), "render");
+  this->Report = reports[0];
+  for (size_t n = 1; n < count; ++n) {
+    this->More[n - 1].report = reports[n];
+  }
+}
+
 void volume_drawing::tell() const
 {
+  for (const member& more : this->More) {
+    row("with", more.o.source + ": " + cli::describe(more.input->volume) + ", array '" + more.input->array_name + "'");
+    row("opacity", more.functions.origin);
+    row("why", more.report.why);
+  }
   row("volume", cli::describe(this->Input->volume) + ", array '" + this->Input->array_name + "'");
   row("camera", cli::describe(this->Camera));
   this->tell_report();

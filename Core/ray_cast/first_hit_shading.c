@@ -21,6 +21,28 @@ static stratus_status check_light(stratus_context* context, const stratus_light*
   if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has the direction (0, 0, 0), must have a length", number);
   }
+  if (!light->positional) {
+    return STRATUS_OK;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (!(light->attenuation[i] >= 0.0 && light->attenuation[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has attenuation (%g, %g, %g), must be 0..%g", number,
+        light->attenuation[0], light->attenuation[1], light->attenuation[2], STRATUS_LIGHT_MAX);
+    }
+  }
+  if (!(light->cone_angle >= 0.0) || !isfinite(light->cone_angle)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "light %d has a cone of %g degrees, must be 0 or more and finite", number, light->cone_angle);
+  }
+  if (light->cone_angle == 0.0 || light->cone_angle >= 90.0) {
+    return STRATUS_OK;
+  }
+  const double square = light->axis[0] * light->axis[0] + light->axis[1] * light->axis[1] + light->axis[2] * light->axis[2];
+  if (!(square > 0.0) || !isfinite(square) || !(light->cone_exponent >= 0.0 && light->cone_exponent <= STRATUS_LIGHT_MAX)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "light %d has a cone about (%g, %g, %g) of exponent %g, must have a length and be 0..%g", number, light->axis[0], light->axis[1],
+      light->axis[2], light->cone_exponent, STRATUS_LIGHT_MAX);
+  }
   return STRATUS_OK;
 }
 
@@ -182,6 +204,20 @@ static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
 
 /* ---- light */
 
+/* What reaches a point, of 1: `to` leads from there to the light, whose distance is `distance`. */
+static double reaching(const stratus_light* light, const double to[3], double distance)
+{
+  const double* a = light->attenuation;
+  double part = a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0 ? 1.0 : 1.0 / fmax(a[0] + distance * (a[1] + distance * a[2]), 1e-35);
+  if (light->cone_angle > 0.0 && light->cone_angle < 90.0) {
+    double axis[3] = { -light->axis[0], -light->axis[1], -light->axis[2] };
+    (void)stratus_vector_normalize(axis);
+    const double cosine = stratus_vector_dot(axis, to);
+    part *= cosine >= cos(light->cone_angle * 0.017453292519943295) ? pow(cosine, light->cone_exponent) : 0.0;
+  }
+  return part;
+}
+
 static void illuminate(
   const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
 {
@@ -192,7 +228,8 @@ static void illuminate(
     for (int axis = 0; axis < 3; ++axis) {
       to[axis] = shader->lights[i].vector[axis] - (shader->lights[i].positional ? point[axis] : 0.0);
     }
-    if (shader->lights[i].positional && stratus_vector_normalize(to) == 0.0) {
+    const double distance = shader->lights[i].positional ? stratus_vector_normalize(to) : 1.0;
+    if (distance == 0.0) {
       memcpy(to, normal, sizeof to); /* the light stands on the hit */
     }
     const double cosine = stratus_vector_dot(normal, to);
@@ -202,9 +239,10 @@ static void illuminate(
     const double mirrored =
       stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R . V, with V = -direction */
     const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
+    const double part = shader->lights[i].positional ? reaching(&shader->lights[i], to, distance) : 1.0;
     for (int c = 0; c < 3; ++c) {
-      light[c] += shading->diffuse * cosine * shader->lights[i].color[c];
-      gloss[c] += shine * shader->lights[i].color[c];
+      light[c] += part * shading->diffuse * cosine * shader->lights[i].color[c];
+      gloss[c] += part * shine * shader->lights[i].color[c];
     }
   }
   for (int c = 0; c < 3; ++c) {

@@ -35,6 +35,10 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_ray_fetched_drop(caster);
     stratus_ray_grid_release(caster->context, &caster->grid);
     stratus_first_hit_release(caster);
+    for (int c = 0; c < 4; ++c) {
+      stratus_ray_caster_destroy(caster->parts[c]);
+      caster->parts[c] = NULL;
+    }
     stratus_ray_shading_release(caster);
     stratus_ray_device_destroy(caster);
   }

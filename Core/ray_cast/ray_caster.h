@@ -88,6 +88,8 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
+  stratus_ray_caster* parts[4]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
+
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
   stratus_ray_device* device; /* buffers on the OpenCL device; NULL: none */
@@ -132,6 +134,9 @@ void stratus_ray_fill_report(
   const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report);
 /* Returns how many pixels differ in their bits. */
 uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, const float* depth);
+/* One picture, of one component or of all that mix along a ray, of input that was checked. */
+stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes. */
 stratus_ray_cast_frame stratus_ray_frame_of(

@@ -69,6 +69,10 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "tolerance %g, must be at least 0 and finite", options->tolerance);
   }
+  if (!(options->gradient_distance >= 0.0) || !isfinite(options->gradient_distance)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient distance %g, must be positive and finite, or 0 for optical depths",
+      options->gradient_distance);
+  }
   const int size = options->block_size;
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
@@ -84,7 +88,8 @@ stratus_status stratus_ray_check_input(
   TRY(stratus_volume_check(context, volume));
   TRY(stratus_transfer_check(context, transfer));
   TRY(stratus_ray_shading_check_volume(context, volume, transfer, options));
-  return check_options(context, options);
+  TRY(check_options(context, options));
+  return stratus_ray_shading_check_materials(context, volume, options);
 }
 
 /* ---- drawing */
@@ -253,29 +258,11 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   return STRATUS_OK;
 }
 
-stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
-  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
-  stratus_ray_cast_report mine = { 0 };
-  if (!caster) {
-    return STRATUS_INVALID_ARGUMENT;
-  }
-  options = options ? options : &defaults;
-  TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
+  *report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1, .window = { 0, image->width, 0, image->height } };
   caster->in_several = false;
-  TRY(stratus_image_check(caster->context, image));
-  mine.expected_error = NAN;
-  mine.tolerance_met = 1;
-  mine.window[1] = image->width;
-  mine.window[3] = image->height;
-  if (options->mode == STRATUS_MODE_FIRST_HIT) {
-    TRY(stratus_first_hit_render(caster, volume, transfer, camera, options, image, &mine));
-  } else {
-    TRY(render(caster, volume, transfer, camera, options, image, &mine));
-  }
-  if (report) {
-    *report = mine;
-  }
-  return STRATUS_OK;
+  return options->mode == STRATUS_MODE_FIRST_HIT ? stratus_first_hit_render(caster, volume, transfer, camera, options, image, report)
+                                                 : render(caster, volume, transfer, camera, options, image, report);
 }

@@ -130,6 +130,7 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
 static stratus_ray_choice_inputs choice_inputs(
   const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
+  const int materials = options->materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
   stratus_ray_choice_inputs in;
   memset(&in, 0, sizeof in); /* padding, too: inputs are compared as bytes */
   in.sampling = options->sampling;
@@ -138,6 +139,15 @@ static stratus_ray_choice_inputs choice_inputs(
   in.tolerance = options->tolerance;
   in.interpolation = options->interpolation;
   in.shade = options->shade != 0;
+  in.mean_components = options->mean_components != 0;
+  in.gradient_distance = options->gradient_distance;
+  for (int c = 0; c < materials && c < 4; ++c) { /* field by field: their padding is anything */
+    in.materials[c].shade = options->materials[c].shade != 0;
+    in.materials[c].ambient = options->materials[c].ambient;
+    in.materials[c].diffuse = options->materials[c].diffuse;
+    in.materials[c].specular = options->materials[c].specular;
+    in.materials[c].specular_power = options->materials[c].specular_power;
+  }
   in.in_several = caster->in_several;
   in.voxel = stratus_ray_voxel_length(volume);
   return in;

@@ -20,6 +20,12 @@ double stratus_ray_voxel_length(const stratus_volume* volume)
   return fmin(shortest, FLAT_SHORTER * flat);
 }
 
+/* Whether gradient opacity multiplies opacities, which vary within a segment. */
+static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
+{
+  return options->gradient_distance > 0.0 && caster->transfers[0].gradient_count > 0;
+}
+
 /* Rule cells knows a value's colour and opacity alone. The rules that pre-integrate take the field for linear between two values of one
  * medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger volume it
  * would read beyond one layer of ghosts. Cells are of one grid, and several volumes have several. */
@@ -33,7 +39,7 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
       return one_medium && !caster->in_several && !caster->shades && !options->mask &&
         options->interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
     case STRATUS_SAMPLING_PREINTEGRATED:
-      return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST;
+      return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST && !thins_opacity(caster, options);
     default:
       return true;
   }

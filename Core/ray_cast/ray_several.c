@@ -78,6 +78,10 @@ static stratus_status check_supported(stratus_context* context, int n, const sev
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s: only composite mixes", n, stratus_mode_name(options->mode));
   }
+  if (options->gradient_distance > 0.0 && in->of->transfer->gradient_count > 0) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "volume %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n, options->gradient_distance);
+  }
   if (components > 1 || options->label_count > 0) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has %d components and %d labels, must have 1 and 0", n,
       components, options->label_count);

@@ -8,12 +8,43 @@
 #include "ray_caster.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
+#include "vector.h"
 
 _Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
 
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
   return options->shade ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
+}
+
+stratus_status stratus_ray_shading_check_materials(
+  stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  const int components = stratus_volume_components(volume);
+  const bool read = options->materials && components > 1 && !options->dependent && options->mode == STRATUS_MODE_COMPOSITE;
+  for (int c = 0; read && c < components; ++c) {
+    const stratus_material* m = options->materials + c;
+    const double numbers[4] = { m->ambient, m->diffuse, m->specular, m->specular_power };
+    for (int i = 0; m->shade && i < 4; ++i) {
+      if (!(numbers[i] >= 0.0 && numbers[i] <= STRATUS_LIGHT_MAX)) {
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "material of component %d has (%g, %g, %g, %g), must be 0..%g", c,
+          numbers[0], numbers[1], numbers[2], numbers[3], STRATUS_LIGHT_MAX);
+      }
+    }
+    if (m->shade) {
+      TRY(stratus_shading_check(context, &options->shading));
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* The material of component c: the shading's own where there are none of components. */
+static stratus_material material_of(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, int c)
+{
+  const stratus_shading* shading = &options->shading;
+  const bool own = options->materials && !caster->dependent && caster->shading_tables.components > 1;
+  return own ? options->materials[c]
+             : (stratus_material){ options->shade, shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
 }
 
 bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
@@ -24,6 +55,9 @@ bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_tran
 
 /* A positional light at least this many voxel edges away counts as directional. */
 #define LIGHT_FAR 1e15
+#define DEGREE 0.017453292519943295
+/* Samples in the way of gradient_distance, at most: products with the optical depth of opacity 1, 1e30, stay floats. */
+#define REACH_MOST 1e7
 
 static double length_of(const double v[3])
 {
@@ -48,6 +82,22 @@ static void set_light(const stratus_light* light, const double index_to_world[16
     a->light.color[number][axis] = (float)light->color[axis];
   }
   a->light.positional[number] = near;
+  const bool dimmed = near && (light->attenuation[0] != 0.0 || light->attenuation[1] != 0.0 || light->attenuation[2] != 0.0);
+  const double unit[3] = { 1.0, edge, edge * edge };
+  for (int i = 0; i < 3; ++i) {
+    a->light.attenuation[number][i] = dimmed ? (float)fmin(light->attenuation[i] * unit[i], 1e30) : i == 0;
+    a->light.cone[number][i] = 0.0f;
+  }
+  a->light.cone[number][3] = -1.0f;
+  a->light.cone[number][4] = (float)light->cone_exponent;
+  if (near && light->cone_angle > 0.0 && light->cone_angle < 90.0) {
+    double axis[3] = { light->axis[0], light->axis[1], light->axis[2] };
+    const double axis_length = stratus_vector_normalize(axis);
+    for (int i = 0; axis_length > 0.0 && i < 3; ++i) {
+      a->light.cone[number][i] = (float)axis[i];
+    }
+    a->light.cone[number][3] = (float)cos(light->cone_angle * DEGREE);
+  }
 }
 
 static void set_lights(
@@ -67,13 +117,17 @@ static void set_lights(
   }
 }
 
-static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_arguments* a)
+static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const stratus_ray_shading_tables* shading = &caster->shading_tables;
   const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   a->media.components = shading->components;
   a->media.dependent = caster->dependent;
+  a->media.mean = options->mean_components && !caster->dependent;
+  a->media.factor_reach = 0.0f;
+  a->media.factor_last = (float)STRATUS_SHADING_FACTORS;
+  a->media.label_factors = shading->label_tables && shading->label_factors;
   a->media.label_first = shading->label_first;
   a->media.label_steps = shading->label_tables ? shading->label_steps : 0;
   a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
@@ -82,8 +136,10 @@ static void set_tables(const stratus_ray_caster* caster, stratus_ray_cast_argume
     const stratus_table* table = shading->tables[c];
     const bool has = caster->shades && c < shading->components;
     a->media.factor_first[c] = has ? shading->factor_first[c] : -1;
+    if (a->media.factor_first[c] >= 0 || a->media.label_factors) {
+      a->media.factor_reach = (float)fmin(options->gradient_distance / caster->choice.sample_distance, REACH_MOST);
+    }
     a->media.factor_scale[c] = shading->factor_scale[c];
-    a->media.factor_last[c] = (float)STRATUS_SHADING_FACTORS;
     a->media.first[c] = shading->first[c];
     a->media.scale[c] = table ? table->scale : 0.0f;
     a->media.offset[c] = table ? table->offset : 0.0f;
@@ -120,16 +176,19 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   for (int axis = 0; axis < 3; ++axis) {
     a->media.gradient_length[axis] = (float)(mean / spacing[axis]);
   }
-  set_tables(caster, a);
-  if (!options->shade) { /* the lights are unchecked and unused */
+  set_tables(caster, options, a);
+  for (int c = 0; c < 4; ++c) {
+    const bool there = c == 0 || c < caster->shading_tables.components;
+    const stratus_material material = material_of(caster, options, there ? c : 0);
+    const double numbers[4] = { material.ambient, material.diffuse, material.specular, material.specular_power };
+    a->light.on |= there && material.shade ? 1 << c : 0;
+    for (int i = 0; i < 4; ++i) {
+      a->light.material[c][i] = (float)numbers[i];
+    }
+  }
+  if (!a->light.on) { /* the lights are unchecked and unused */
     return;
   }
-  const stratus_shading* shading = &options->shading;
-  a->light.on = 1;
-  a->light.two_sided = !shading->one_sided;
-  a->light.material[0] = (float)shading->ambient;
-  a->light.material[1] = (float)shading->diffuse;
-  a->light.material[2] = (float)shading->specular;
-  a->light.material[3] = (float)shading->specular_power;
-  set_lights(camera, shading, index_to_world, edge, a);
+  a->light.two_sided = !options->shading.one_sided;
+  set_lights(camera, &options->shading, index_to_world, edge, a);
 }

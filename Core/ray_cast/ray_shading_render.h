@@ -6,6 +6,8 @@
 #include "ray_caster.h"
 
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options);
+stratus_status stratus_ray_shading_check_materials(
+  stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options);
 bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
   const stratus_ray_cast_options* options, stratus_ray_cast_arguments* arguments);

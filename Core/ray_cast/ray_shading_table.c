@@ -51,9 +51,11 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d components: only composite takes more than 1",
-      stratus_mode_name(options->mode), components);
+  const bool surfaces = options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE;
+  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->dependent)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d %s components: %s", stratus_mode_name(options->mode),
+      components, options->dependent ? "dependent" : "independent",
+      surfaces ? "only modes without surfaces take more than 1" : "only composite takes dependent ones");
   }
   if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",
@@ -75,10 +77,6 @@ stratus_status stratus_ray_shading_check_volume(
     const double weight = transfer[c].weight;
     if (components > 1 && !options->dependent && !(weight >= 0.0 && weight <= 1.0)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
-    }
-    if (options->label_count > 0 && c > 0 && transfer[c].gradient_count > 0) {
-      return stratus_fail(
-        context, STRATUS_UNSUPPORTED, "gradient opacity of label %d: only transfer function 0's counts, for all labels", c);
     }
   }
   return check_cells(context, volume, transfer, options);
@@ -270,24 +268,47 @@ static size_t rounded_to_four(size_t at)
   return (at + 3) / 4 * 4;
 }
 
-/* Appends a record for each label, see stratus_ray_media, then the labels' tables. Returns the end. */
-static size_t lay_out_labels(stratus_ray_shading_tables* shading, size_t at, float* out)
+/* Appends a gradient opacity, unless out is NULL, and tells where it begins, -1 if there is none. Returns the end. */
+static size_t lay_out_factors(const stratus_transfer* transfer, bool has, size_t at, float* out, int* first, float* scale)
 {
+  const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
+  *first = has ? (int)at : -1;
+  *scale = most > 0.0 ? (float)fmin(STRATUS_SHADING_FACTORS / most, (double)FLT_MAX) : 0.0f;
+  if (has && out) {
+    fill_factors(transfer, out + at);
+  }
+  return at + (has ? STRATUS_SHADING_FACTORS + 2 : 0);
+}
+
+/* Appends a record for each label, see stratus_ray_media, then the labels' tables and gradient opacities. Returns the end. */
+static size_t lay_out_labels(stratus_ray_caster* caster, size_t at, float* out)
+{
+  enum { WORDS = 12 };
+  stratus_ray_shading_tables* shading = &caster->shading_tables;
   const size_t labels = (size_t)shading->label_tables_count;
   shading->label_first = (int)at;
   shading->label_steps = 0;
+  shading->label_factors = false;
   float* record = out ? out + at : NULL;
-  at += 8 * labels;
+  at += WORDS * labels;
   for (size_t l = 0; l < labels; ++l) {
     const stratus_table* table = shading->label_tables[l];
     const size_t begin = at, words = 8 * (size_t)table->size;
-    int32_t numbers[4] = { (int32_t)(begin / 4), table->size };
-    at = rounded_to_four(lay_out_search(table, begin + words, out, &numbers[2], &numbers[3]));
+    const bool own = l > 0 && caster->transfers[l].gradient_count > 0;
+    int32_t numbers[4] = { (int32_t)(begin / 4), table->size }, factors[4] = { shading->factor_first[0] };
+    float scale = shading->factor_scale[0];
+    at = lay_out_search(table, begin + words, out, &numbers[2], &numbers[3]);
+    if (own) {
+      at = lay_out_factors(caster->transfers + l, true, at, out, &factors[0], &scale);
+    }
+    at = rounded_to_four(at);
+    shading->label_factors |= factors[0] >= 0;
     shading->label_steps = table->search_steps > shading->label_steps ? table->search_steps : shading->label_steps;
     if (out) {
-      const float place[4] = { table->scale, table->offset, (float)(table->cells - 1), 0.0f };
-      memcpy(record + 8 * l, place, sizeof place);
-      memcpy(record + 8 * l + 4, numbers, sizeof numbers);
+      const float place[4] = { table->scale, table->offset, (float)(table->cells - 1), scale };
+      memcpy(record + WORDS * l, place, sizeof place);
+      memcpy(record + WORDS * l + 4, numbers, sizeof numbers);
+      memcpy(record + WORDS * l + 8, factors, sizeof factors);
       memcpy(out + begin, table->rgba, words * sizeof *out);
     }
   }
@@ -317,18 +338,12 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
       at = lay_out_search(table, at + 4 * (size_t)table->size, out, &shading->first_at[c], &shading->bound_at[c]);
     }
   }
-  for (int c = 0; c < shading->components; ++c) { /* all labels share the first function's gradient opacity */
+  for (int c = 0; c < shading->components; ++c) {
     const stratus_transfer* transfer = dependent ? caster->transfers : caster->transfers + c;
     const bool has = transfer->gradient_count > 0 && (!dependent || c + 1 == shading->components);
-    const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
-    shading->factor_first[c] = has ? (int)at : -1;
-    shading->factor_scale[c] = most > 0.0 ? (float)fmin(STRATUS_SHADING_FACTORS / most, (double)FLT_MAX) : 0.0f;
-    if (has && out) {
-      fill_factors(transfer, out + at);
-    }
-    at += has ? STRATUS_SHADING_FACTORS + 2 : 0;
+    at = lay_out_factors(transfer, has, at, out, &shading->factor_first[c], &shading->factor_scale[c]);
   }
-  return lay_out_labels(shading, rounded_to_four(at), out);
+  return lay_out_labels(caster, rounded_to_four(at), out);
 }
 
 stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent)

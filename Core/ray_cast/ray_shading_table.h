@@ -20,6 +20,7 @@ typedef struct stratus_ray_shading_tables {
   float factor_scale[4];         /* entries of the gradient opacity per unit of magnitude */
   stratus_table** label_tables;  /* of labels 0, 1, 2 and so on; NULL: no labels */
   int label_tables_count, label_first, label_steps;
+  bool label_factors;                  /* some label has a gradient opacity */
   uint64_t range_builds, table_number; /* the caster's counts when ranges and tables were made */
 } stratus_ray_shading_tables;
 

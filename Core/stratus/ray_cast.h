@@ -59,7 +59,22 @@ typedef struct stratus_light {
   double vector[3];
   double color[3]; /* red, green, blue, each 0..STRATUS_LIGHT_MAX */
   int positional;
+  /* Positional lights, at the world distance r: the colour is divided by a[0] + a[1] r + a[2] r^2, numbers of 0..STRATUS_LIGHT_MAX. All 0
+   * (default): it is not, as by 1, 0, 0. */
+  double attenuation[3];
+  /* Positional lights; half the angle of a cone about `axis`, in degrees, above 0 and below 90, outside which there is no light: inside,
+   * the colour is multiplied by the cosine of the angle to the axis, to the power `cone_exponent`, 0..STRATUS_LIGHT_MAX. 0 (default), or 90
+   * and more: no cone, and the next two are not read. */
+  double cone_angle;
+  double axis[3]; /* world: where the light shines, of any length > 0 */
+  double cone_exponent;
 } stratus_light;
+
+/* What light makes of one component. */
+typedef struct stratus_material {
+  int shade;                                         /* 0: it is not lit, and the rest is not read */
+  double ambient, diffuse, specular, specular_power; /* as in stratus_shading */
+} stratus_material;
 
 /* Phong shading. With the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R
  * V)^power). Samples of volumes (composite) are lit as VTK's mappers light them: N H replaces R V, where H is half way between L and V
@@ -113,11 +128,23 @@ typedef struct stratus_ray_cast_options {
   stratus_normals normals;
   stratus_shading shading; /* used in first hits, and in composite and isosurface if `shade` is 1 */
   int shade;               /* composite and isosurface; 1: `shading` lights the samples. Default 0. */
-  /* Composite, volumes of several components. 0 (default): each component is a medium of its own, with a transfer function of its own;
-   * where media mix, their optical depths and their emitted light add up. 1: the components are one medium with one transfer function. Of 2
-   * components, the first has the colour and the second the opacity. Of 4 (STRATUS_UINT8 only), the first three are red, green and blue in
-   * 0..255, and the fourth has the opacity. The gradient is the last component's. */
+  /* Volumes of several components, which all modes but first hits and isosurface draw, dependent ones composite alone. In modes other than
+   * composite each independent component is drawn by itself; then their premultiplied colours, times the components' weights, add up to at
+   * most 1, and so do the alphas of extremes. Composite, 0 (default): each component is a medium of its own, with a transfer function of
+   * its own; where media mix, their optical depths and their emitted light add up. 1: the components are one medium with one transfer
+   * function. Of 2 components, the first has the colour and the second the opacity. Of 4 (STRATUS_UINT8 only), the first three are red,
+   * green and blue in 0..255, and the fourth has the opacity. The gradient is the last component's. */
   int dependent;
+  /* Composite, independent components: a material for each, which holds in place of `shade` and of the material in `shading`; its lights
+   * are read if one of them has shade. NULL (default): all have those of `shading`. Borrowed during the render. */
+  const stratus_material* materials;
+  /* Composite, independent components. 0 (default): their optical depths add up, as where two media share a place. 1: each counts by its
+   * share of them, so that depths d give (sum of d^2) / (sum of d), while their emitted light adds up, as VTK's mappers mix components. */
+  int mean_components;
+  /* Composite, with a gradient opacity F. 0 (default): F multiplies the optical depth, which no length enters; a value of opacity 1 stays
+   * opaque. Greater than 0, finite: F multiplies the opacity A of a way of this world length, as VTK's mappers multiply the
+   * opacity of a sample: such a way lets 1 - F A pass. Samples are never pre-integrated then. */
+  double gradient_distance;
   /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
   double average_range[2];
   int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */
@@ -129,7 +156,8 @@ typedef struct stratus_ray_cast_options {
   uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
   /* Composite, one component. 0 (default): no labels. 1..255: the mask's bytes are labels and hide nothing. A sample of label l in
    * 1..label_count has the colour and opacity of transfer[l], with the nearest value's label and the interpolated value; other labels have
-   * those of transfer[0]. The gradient opacity of transfer[0] counts for all labels. Samples with labels are never pre-integrated. */
+   * those of transfer[0]. A label without a gradient opacity of its own has that of transfer[0]. Samples with labels are never
+   * pre-integrated. */
   int label_count;
   /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
    * into noise; rule cells has none, and rule local has some in its smooth blocks. Default 0. */

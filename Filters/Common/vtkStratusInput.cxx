@@ -111,7 +111,7 @@ void vtkStratusImageView::Release()
 }
 
 bool vtkStratusImageView::Set(
-  vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
+  vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents, int component)
 {
   this->Volume = stratus_volume_default();
   this->Volume.cell_centered = cells ? 1 : 0;
@@ -127,7 +127,7 @@ bool vtkStratusImageView::Set(
     // VTK counts one layer of cells along an axis of one point.
     this->Volume.dimensions[a] = cells ? std::max(points[a] - 1, 1) : points[a];
   }
-  if (!this->SetValues(image, array, cells, mostComponents, error) || !this->SetGhosts(image, cells, error)) {
+  if (!this->SetValues(image, array, cells, mostComponents, component, error) || !this->SetGhosts(image, cells, error)) {
     return false;
   }
   if (matrix) {
@@ -188,7 +188,8 @@ bool vtkStratusImageView::SetInput(vtkDataSet* image, vtkDataArray* array, int a
   return this->Set(image, array, association == vtkDataObject::FIELD_ASSOCIATION_CELLS, nullptr, error);
 }
 
-bool vtkStratusImageView::SetValues(vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error)
+bool vtkStratusImageView::SetValues(
+  vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error)
 {
   stratus_volume& volume = this->Volume;
   if (!CoreType(array->GetDataType(), volume.type)) {
@@ -197,12 +198,17 @@ bool vtkStratusImageView::SetValues(vtkDataSet* image, vtkDataArray* array, bool
     return false;
   }
   const int components = array->GetNumberOfComponents();
-  if (components < 1 || components > mostComponents) {
+  if (component >= components) {
+    error = "array " + ArrayName(array) + " has " + std::to_string(components) + " components, VectorComponent is " +
+      std::to_string(component) + ", must be 0 to " + std::to_string(components - 1);
+    return false;
+  }
+  if (components < 1 || (component < 0 && components > mostComponents)) {
     error = "array " + ArrayName(array) + " has " + std::to_string(components) + " components, only arrays of 1 " +
       (mostComponents > 1 ? "to " + std::to_string(mostComponents) + " components" : "component") + " are supported";
     return false;
   }
-  volume.components = components;
+  volume.components = component < 0 ? components : 1;
   volume.value_stride = components;
   const vtkIdType expected = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
   if (array->GetNumberOfTuples() < expected) {
@@ -223,7 +229,7 @@ bool vtkStratusImageView::SetValues(vtkDataSet* image, vtkDataArray* array, bool
     this->Plain = nullptr;
   }
   this->Source = array;
-  volume.values = plain->GetVoidPointer(0);
+  volume.values = plain->GetVoidPointer(std::max(component, 0)); // values, not tuples, are counted
   // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
   return true;

@@ -30,7 +30,9 @@ class VTK_STRATUS_PRIVATE vtkStratusImageView
 {
 public:
   // Returns false, with the reason in `error`, where the core cannot take the array. `matrix` is the prop's, or nullptr for the identity.
-  bool Set(vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
+  // `component`: the only one that is taken of an array of any number; -1: all, of which there may be `mostComponents`.
+  bool Set(vtkDataSet* image, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1,
+    int component = -1);
   // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
   bool SetInput(vtkDataSet* image, vtkDataArray* array, int association, std::string& error);
   const stratus_volume& GetVolume() const { return this->Volume; }
@@ -39,7 +41,7 @@ public:
   void Release();
 
 private:
-  bool SetValues(vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, std::string& error);
+  bool SetValues(vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error);
   void SetGeometry(vtkImageData* image);
   bool SetCoordinates(vtkRectilinearGrid* grid, std::string& error);
   bool SetGhosts(vtkDataSet* image, bool cells, std::string& error);
@@ -59,7 +61,7 @@ public:
   // Reads the functions of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
   // Reads the functions of a label. Those of `component0` replace one that the property lacks for the label; it must outlive the use of
-  // this view. Labels have no gradient opacity.
+  // this view. A label without a gradient opacity of its own has none here, which the core takes for that of component 0.
   bool SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }

@@ -72,6 +72,11 @@ bool vtkStratusTransferView::SetLabel(vtkVolumeProperty* property, int label, co
     }
     this->PointToOpacity();
   }
+  vtkPiecewiseFunction* gradient = property->GetDisableGradientOpacity() ? nullptr : property->GetLabelGradientOpacity(label);
+  if (gradient && this->Gradient.Set(gradient, 1)) { // one that is 1 everywhere counts, too: it takes the property's place
+    this->Transfer.gradient = this->Gradient.GetPoints();
+    this->Transfer.gradient_count = this->Gradient.GetCount();
+  }
   if (color) {
     if (!this->Color.Set(color)) {
       error = "the colour transfer function of label " + std::to_string(label) + " has no points, it needs at least 1";

@@ -223,6 +223,13 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Audit: " << (this->Audit ? "On" : "Off") << "\n";
   os << indent << "MaskInput: " << this->MaskInput.GetPointer() << "\n";
   os << indent << "MaskType: " << (this->MaskType == BinaryMaskType ? "binary" : "label map") << "\n";
+  os << indent << "MaskBlendFactor: " << this->MaskBlendFactor << "\n";
+  os << indent << "GradientOpacityDistance: " << this->GradientOpacityDistance << "\n";
+  os << indent << "ComponentMixing: " << (this->ComponentMixing == MEAN_COMPONENTS ? "mean" : "add") << "\n";
+  os << indent << "VectorMode: " << this->VectorMode << "\n";
+  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
+  os << indent << "RenderToImage: " << (this->RenderToImage ? "On" : "Off") << "\n";
+  os << indent << "DepthImageScalarType: " << this->DepthImageScalarType << "\n";
   os << indent << "UseJittering: " << (this->UseJittering ? "On" : "Off") << "\n";
   os << indent << "JitterSeed: " << this->JitterSeed << "\n";
   os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";

@@ -14,24 +14,29 @@
  * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, and isosurface
  *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell);
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
- * - hardware picking, which finds the volume where it is visible.
+ * - hardware picking, which finds the volume where it is visible;
+ * - arrays of any number of components by one component or the magnitude (VectorMode);
+ * - pictures as images, not in the window (RenderToImage).
  *
  * Composite mode also supports:
  * - light (Shade; the renderer's lights and TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each
  *   sample), as isosurfaces do, too;
- * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers; it multiplies the optical depth;
- * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up;
- *   their shading must be alike. Dependent components are colour and opacity (2), or red, green, blue and opacity (4 of
- *   unsigned char);
- * - label maps.
+ * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers; it multiplies the optical depth, or, as VTK means it,
+ *   the opacity (GradientOpacityDistance);
+ * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up, or, as VTK
+ *   means it, each counts by its share (ComponentMixing); each has a Shade and a material of its own. Dependent components are colour and
+ * opacity (2), or red, green, blue and opacity (4 of unsigned char);
+ * - label maps, with colours, opacities and gradient opacities of their own.
  *
- * All else (blend mode slice, two-dimensional transfer functions, gradient opacity of labels, UseClippedVoxelIntensity, shaders of the
- * prop's own, other data than these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing is drawn.
- * docs/vtk-parity.md has a table.
+ * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
+ * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
+ *
+ * All else (blend mode slice, two-dimensional transfer functions, UseClippedVoxelIntensity, shaders of the prop's own, other data than
+ * these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
- * Ambient, Diffuse, Specular and SpecularPower apply. Positional lights have no attenuation and no cone (a cone below 90 degrees is
- * refused). A voxel of point data is a cube about its point, so that the mapper's bounds extend half a voxel farther.
+ * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a cube about its point, so that the mapper's bounds extend
+ * half a voxel farther.
  *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.
@@ -53,7 +58,9 @@
 #include <memory> // For std::unique_ptr
 
 class vtkImageData;
+class vtkRenderWindow;
 class vtkTable;
+class vtkVolumeProperty;
 
 class STRATUSRENDERINGVOLUME_EXPORT vtkStratusVolumeMapper : public vtkVolumeMapper
 {
@@ -202,6 +209,148 @@ public:
   vtkGetMacro(MaskType, int);
   void SetMaskTypeToBinary() { this->SetMaskType(BinaryMaskType); }
   void SetMaskTypeToLabelMap() { this->SetMaskType(LabelMapMaskType); }
+  //@}
+
+  //@{
+  /**
+   * Set/Get how much a label's own functions count where a mask of labels has them, as in vtkGPUVolumeRayCastMapper. Only 1 is supported,
+   * which is the default of VTK's mapper, too: labels replace what the property has. Another value is an error when drawing a label map.
+   */
+  vtkSetClampMacro(MaskBlendFactor, float, 0.0f, 1.0f);
+  vtkGetMacro(MaskBlendFactor, float);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the world length over which gradient opacity multiplies the opacity. 0: none, it multiplies the optical depth; a value of
+   * opacity 1 then stays opaque, and the picture follows from the functions alone. Above 0: a way of this length through opacity A (of this
+   * length) with gradient opacity F lets 1 - F A pass. That is the meaning that VTK's mappers give a sample of this length, but the picture
+   * does not depend on the sample distance. Below 0: half of the mean spacing, the length that vtkSmartVolumeMapper samples by where it
+   * chooses itself. Where the two meanings differ by much, a warning says so, once. NaN and infinity are an error when drawing. Default 0.
+   */
+  vtkSetMacro(GradientOpacityDistance, double);
+  vtkGetMacro(GradientOpacityDistance, double);
+  //@}
+
+  enum ComponentMixingType { ADD_COMPONENTS, MEAN_COMPONENTS };
+  //@{
+  /**
+   * Set/Get how independent components mix. ADD_COMPONENTS adds their optical depths, as of media that share a place. MEAN_COMPONENTS has
+   * each count by its share, (sum of d^2) / (sum of d) of optical depths d, while their light adds up, as VTK's mappers do with opacities:
+   * equal components show no more than one of them. Default ADD_COMPONENTS.
+   */
+  vtkSetClampMacro(ComponentMixing, int, ADD_COMPONENTS, MEAN_COMPONENTS);
+  vtkGetMacro(ComponentMixing, int);
+  void SetComponentMixingToAdd() { this->SetComponentMixing(ADD_COMPONENTS); }
+  void SetComponentMixingToMean() { this->SetComponentMixing(MEAN_COMPONENTS); }
+  //@}
+
+  enum VectorModeType { DISABLED = -1, MAGNITUDE = 0, COMPONENT = 1 };
+  //@{
+  /**
+   * Set/Get what of an array of several components is drawn, as in vtkSmartVolumeMapper: all of them (DISABLED), their magnitude, in double
+   * precision, by the functions of component 0, or VectorComponent alone, by that component's functions where the property's components are
+   * independent and it has so many, else by those of component 0. A component that the array lacks is an error. An array of one component
+   * is drawn as it is. Default DISABLED and 0.
+   */
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
+  vtkSetClampMacro(VectorComponent, int, 0, VTK_INT_MAX);
+  vtkGetMacro(VectorComponent, int);
+  //@}
+
+  //@{
+  /**
+   * Set/Get whether pictures go into images in place of the window, as in vtkGPUVolumeRayCastMapper. Other props and the background have no
+   * part in them. Default off.
+   */
+  vtkSetClampMacro(RenderToImage, vtkTypeBool, 0, 1);
+  vtkGetMacro(RenderToImage, vtkTypeBool);
+  vtkBooleanMacro(RenderToImage, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the scalar type of GetDepthImage(): VTK_UNSIGNED_CHAR, VTK_UNSIGNED_SHORT or VTK_FLOAT. Others become VTK_FLOAT. Default
+   * VTK_FLOAT.
+   */
+  virtual void SetDepthImageScalarType(int type);
+  vtkGetMacro(DepthImageScalarType, int);
+  void SetDepthImageScalarTypeToUnsignedChar() { this->SetDepthImageScalarType(VTK_UNSIGNED_CHAR); }
+  void SetDepthImageScalarTypeToUnsignedShort() { this->SetDepthImageScalarType(VTK_UNSIGNED_SHORT); }
+  void SetDepthImageScalarTypeToFloat() { this->SetDepthImageScalarType(VTK_FLOAT); }
+  //@}
+
+  //@{
+  /**
+   * Get the last picture as an image of the viewport's size, its first pixel at the bottom left. Colours: four bytes a pixel, multiplied by
+   * alpha. Depths: of where the volume begins to show, between the camera's planes from 0 to 1, and 1 where it shows nothing; integers
+   * have this range scaled to theirs. The image becomes empty where there is no picture.
+   */
+  void GetColorImage(vtkImageData* image);
+  void GetDepthImage(vtkImageData* image);
+  //@}
+
+  /**
+   * Get whether a property could be drawn in any window: 1, or 0 where the next picture would be refused for it. The data are not looked
+   * at.
+   */
+  int IsRenderSupported(vtkRenderWindow* window, vtkVolumeProperty* property);
+
+  enum RequestedRenderModeType {
+    DefaultRenderMode = 0,
+    RayCastRenderMode = 1,
+    GPURenderMode = 2,
+    OSPRayRenderMode = 3,
+    UndefinedRenderMode = 4,
+    InvalidRenderMode = 5
+  };
+  //@{
+  /**
+   * Calls of VTK's mappers, kept so that programs run after one changed line. They change no picture: there is one way to draw, SetDevice()
+   * says where, functions are taken at all of their points, opaque geometry always ends rays, and the tolerance governs steps. VTK's ranges
+   * and defaults.
+   */
+  vtkSetClampMacro(RequestedRenderMode, int, DefaultRenderMode, OSPRayRenderMode);
+  vtkGetMacro(RequestedRenderMode, int);
+  void SetRequestedRenderModeToDefault() { this->SetRequestedRenderMode(DefaultRenderMode); }
+  void SetRequestedRenderModeToRayCast() { this->SetRequestedRenderMode(RayCastRenderMode); }
+  void SetRequestedRenderModeToGPU() { this->SetRequestedRenderMode(GPURenderMode); }
+  void SetRequestedRenderModeToOSPRay() { this->SetRequestedRenderMode(OSPRayRenderMode); }
+  int GetLastUsedRenderMode() { return RayCastRenderMode; }
+  vtkSetMacro(MaxMemoryInBytes, vtkIdType);
+  vtkGetMacro(MaxMemoryInBytes, vtkIdType);
+  vtkSetClampMacro(MaxMemoryFraction, float, 0.1f, 1.0f);
+  vtkGetMacro(MaxMemoryFraction, float);
+  vtkSetMacro(ReportProgress, bool);
+  vtkGetMacro(ReportProgress, bool);
+  vtkSetClampMacro(InterpolationMode, int, 0, 2);
+  vtkGetMacro(InterpolationMode, int);
+  void SetInterpolationModeToNearestNeighbor() { this->SetInterpolationMode(0); }
+  void SetInterpolationModeToLinear() { this->SetInterpolationMode(1); }
+  void SetInterpolationModeToCubic() { this->SetInterpolationMode(2); }
+  vtkSetClampMacro(InteractiveAdjustSampleDistances, vtkTypeBool, 0, 1);
+  vtkGetMacro(InteractiveAdjustSampleDistances, vtkTypeBool);
+  vtkBooleanMacro(InteractiveAdjustSampleDistances, vtkTypeBool);
+  vtkSetMacro(InteractiveSampleDistance, float);
+  vtkGetMacro(InteractiveSampleDistance, float);
+  vtkSetClampMacro(LockSampleDistanceToInputSpacing, vtkTypeBool, 0, 1);
+  vtkGetMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkBooleanMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkSetClampMacro(MinimumImageSampleDistance, float, 0.1f, 100.0f);
+  vtkGetMacro(MinimumImageSampleDistance, float);
+  vtkSetClampMacro(IntermixIntersectingGeometry, vtkTypeBool, 0, 1);
+  vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkBooleanMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkSetClampMacro(UseDepthPass, vtkTypeBool, 0, 1);
+  vtkGetMacro(UseDepthPass, vtkTypeBool);
+  vtkBooleanMacro(UseDepthPass, vtkTypeBool);
+  vtkSetMacro(ColorRangeType, int);
+  vtkGetMacro(ColorRangeType, int);
+  vtkSetMacro(ScalarOpacityRangeType, int);
+  vtkGetMacro(ScalarOpacityRangeType, int);
+  vtkSetMacro(GradientOpacityRangeType, int);
+  vtkGetMacro(GradientOpacityRangeType, int);
   //@}
 
   //@{
@@ -421,6 +570,27 @@ protected:
   vtkTypeBool Audit = 0;
   vtkSmartPointer<vtkImageData> MaskInput;
   int MaskType = BinaryMaskType;
+  float MaskBlendFactor = 1.0f;
+  double GradientOpacityDistance = 0.0;
+  int ComponentMixing = ADD_COMPONENTS;
+  int VectorMode = DISABLED;
+  int VectorComponent = 0;
+  vtkTypeBool RenderToImage = 0;
+  int DepthImageScalarType = VTK_FLOAT;
+  int RequestedRenderMode = DefaultRenderMode;
+  vtkIdType MaxMemoryInBytes = 0;
+  float MaxMemoryFraction = 0.75f;
+  bool ReportProgress = true;
+  int InterpolationMode = 1;
+  vtkTypeBool InteractiveAdjustSampleDistances = 1;
+  float InteractiveSampleDistance = 2.0f;
+  vtkTypeBool LockSampleDistanceToInputSpacing = 0;
+  float MinimumImageSampleDistance = 1.0f;
+  vtkTypeBool IntermixIntersectingGeometry = 1;
+  vtkTypeBool UseDepthPass = 0;
+  int ColorRangeType = 0;
+  int ScalarOpacityRangeType = 0;
+  int GradientOpacityRangeType = 0;
   vtkTypeBool UseJittering = 0;
   unsigned int JitterSeed = 0;
   vtkTypeBool CountSamples = 0;

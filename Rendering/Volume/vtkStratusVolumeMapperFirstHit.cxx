@@ -17,39 +17,59 @@
 
 namespace {
 // Converts a light. The renderer has already moved lights that follow the camera.
-bool SetLight(vtkLight* light, stratus_light& result, std::string& error)
+void SetLight(vtkLight* light, stratus_light& result)
 {
   double position[3], focal[3];
   light->GetTransformedPosition(position);
   light->GetTransformedFocalPoint(focal);
   result.positional = light->GetPositional() ? 1 : 0;
   const double* attenuation = light->GetAttenuationValues();
-  if (result.positional && (light->GetConeAngle() < 90.0 || attenuation[0] != 1.0 || attenuation[1] != 0.0 || attenuation[2] != 0.0)) {
-    error = "spot lights and attenuation are not supported, only positional lights of ConeAngle 90 and AttenuationValues 1 0 0 are";
-    return false;
-  }
+  // An angle of 0 has light on the axis alone; the core's 0 is no cone.
+  result.cone_angle = light->GetConeAngle() >= 90.0 ? 0.0 : std::max(light->GetConeAngle(), 1e-6);
+  result.cone_exponent = light->GetExponent();
   for (int a = 0; a < 3; ++a) {
+    result.attenuation[a] = attenuation[a];
+    result.axis[a] = focal[a] - position[a];
     result.vector[a] = result.positional ? position[a] : position[a] - focal[a];
     result.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
   }
-  return true;
 }
 } // namespace
 
-bool vtkStratusVolumeMapper::Internals::SetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+// Independent components have materials of their own where they are not alike. Tells whether any of them is lit.
+bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options)
 {
-  if (!this->IsFirstHit() && !property->GetShade()) {
+  const int components = this->Image.GetVolume().components;
+  bool lit = false, alike = true;
+  for (int c = 0; c < components; ++c) {
+    const int p = this->FirstFunction + c;
+    this->Materials[c] = { property->GetShade(p), property->GetAmbient(p), property->GetDiffuse(p), property->GetSpecular(p),
+      property->GetSpecularPower(p) };
+    const stratus_material &mine = this->Materials[c], &first = this->Materials[0];
+    lit = lit || mine.shade;
+    alike = alike && mine.shade == first.shade && mine.ambient == first.ambient && mine.diffuse == first.diffuse &&
+      mine.specular == first.specular && mine.specular_power == first.specular_power;
+  }
+  const bool mixes = options.mode == STRATUS_MODE_COMPOSITE && components > 1 && property->GetIndependentComponents();
+  options.materials = mixes && !alike ? this->Materials.data() : nullptr;
+  return mixes && lit;
+}
+
+bool vtkStratusVolumeMapper::Internals::SetShading(
+  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
+{
+  const int first = this->FirstFunction; // of the only component that is drawn
+  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !property->GetShade(first)) {
     return true;
   }
   stratus_shading& shading = options.shading;
-  shading.on = property->GetShade() ? 1 : 0;
-  options.shade = shading.on;
+  shading.on = property->GetShade(first) || options.materials ? 1 : 0;
+  options.shade = property->GetShade(first) ? 1 : 0;
   shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
-  shading.ambient = property->GetAmbient();
-  shading.diffuse = property->GetDiffuse();
-  shading.specular = property->GetSpecular();
-  shading.specular_power = property->GetSpecularPower();
+  shading.ambient = property->GetAmbient(first);
+  shading.diffuse = property->GetDiffuse(first);
+  shading.specular = property->GetSpecular(first);
+  shading.specular_power = property->GetSpecularPower(first);
   shading.light_count = 0;
   vtkLightCollection* lights = renderer->GetLights();
   vtkCollectionSimpleIterator iterator;
@@ -62,9 +82,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
       error = "more than " + std::to_string(STRATUS_LIGHTS_MAX) + " lights that are on are not supported";
       return false;
     }
-    if (!SetLight(light, shading.lights[shading.light_count++], error)) {
-      return false;
-    }
+    SetLight(light, shading.lights[shading.light_count++]);
   }
   return true;
 }

@@ -80,6 +80,11 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
     error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
   } else if (this->HasLabels() && (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND)) {
     error = "label maps are supported in blend mode composite (0) only, and not in first hits";
+  } else if (this->HasLabels() && mapper->MaskBlendFactor != 1.0f) {
+    error = "MaskBlendFactor is " + std::to_string(mapper->MaskBlendFactor) + ", only 1 is supported: labels replace what the property has";
+  } else if (!std::isfinite(mapper->GradientOpacityDistance)) {
+    error = "GradientOpacityDistance is " + std::to_string(mapper->GradientOpacityDistance) +
+      ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
   } else if (mapper->FinalColorWindow == 0.0f || !std::isfinite(mapper->FinalColorWindow) || !std::isfinite(mapper->FinalColorLevel)) {
     error = "FinalColorWindow is " + std::to_string(mapper->FinalColorWindow) + " and FinalColorLevel " +
       std::to_string(mapper->FinalColorLevel) + ", they must be finite and the window not 0";
@@ -107,8 +112,6 @@ bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* propert
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
     error = "there are functions of labels, but no MaskInput of type label map to tell where";
-  } else if (property->HasLabelGradientOpacity()) {
-    error = "gradient opacity of labels is not supported, only the property's, for all of them";
   } else if (property->GetUseClippedVoxelIntensity()) {
     error = "UseClippedVoxelIntensity is not supported, only off is";
   }
@@ -138,27 +141,20 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
-  if (components > 1 && !composite) {
-    error =
-      "the array has " + std::to_string(components) + " components: only blend mode composite (0) takes more than 1, and first hits do not";
+  const bool surfaces = this->IsFirstHit() || this->Mapper->BlendMode == vtkVolumeMapper::ISOSURFACE_BLEND;
+  if (components > 1 && !composite && (surfaces || media == 1)) {
+    error = "the array has " + std::to_string(components) +
+      " components: first hits and isosurfaces take 1, or one by VectorMode, and only " + "blend mode composite (0) takes dependent ones";
     return false;
   }
   for (int c = 0; c < media; ++c) {
-    if (!this->Transfers[c].Set(property, c, error)) {
+    if (!this->Transfers[c].Set(property, this->FirstFunction + c, error)) {
       return false;
     }
     this->Functions[c] = this->Transfers[c].GetTransfer();
     if (this->Functions[c].gradient_count > 0 && !composite) {
       error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
               "DisableGradientOpacityOn";
-      return false;
-    }
-    const bool alike = property->GetShade(c) == property->GetShade(0) && property->GetAmbient(c) == property->GetAmbient(0) &&
-      property->GetDiffuse(c) == property->GetDiffuse(0) && property->GetSpecular(c) == property->GetSpecular(0) &&
-      property->GetSpecularPower(c) == property->GetSpecularPower(0);
-    if (!alike && (property->GetShade(c) || property->GetShade(0))) {
-      error = "components of different shading are not supported: component " + std::to_string(c) +
-        "'s Shade, Ambient, Diffuse, Specular and SpecularPower must be component 0's";
       return false;
     }
   }
@@ -193,10 +189,28 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
     error = "the input image is empty, it needs at least one point";
     return false;
   }
-  int cells = 0;
+  bool cells = false;
+  vtkDataArray* array = this->FindArray(image, cells, error);
+  if (!array) {
+    return false;
+  }
+  const int component = this->GetVectorComponent(array);
+  const bool magnitude = mapper->VectorMode == MAGNITUDE && array->GetNumberOfComponents() > 1;
+  const bool own = component >= 0 && component < VTK_MAX_VRCOMP && prop->GetProperty()->GetIndependentComponents();
+  this->FirstFunction = own ? component : 0;
+  array = magnitude ? this->Magnitude(image, array, cells) : array;
+  return this->Image.Set(image, array, cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX, component) &&
+    this->SetTransfers(prop->GetProperty(), error);
+}
+
+vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bool& cells, std::string& error) const
+{
+  vtkStratusVolumeMapper* mapper = this->Mapper;
+  int where = 0;
   vtkDataArray* array =
-    vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
-  if (!array || cells > 1) {
+    vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, where);
+  cells = where == 1;
+  if (!array || where > 1) {
     const bool named = mapper->ScalarMode > VTK_SCALAR_MODE_USE_CELL_DATA;
     const bool byId = mapper->ArrayAccessMode == VTK_GET_ARRAY_BY_ID;
     error = "there is no scalar array";
@@ -204,10 +218,9 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
       error += byId ? " number " + std::to_string(mapper->ArrayId) : " '" + std::string(mapper->ArrayName ? mapper->ArrayName : "") + "'";
     }
     error += std::string(" for scalar mode ") + mapper->GetScalarModeAsString() + ": " + vtkStratusArrayNames(image);
-    return false;
+    return nullptr;
   }
-  return this->Image.Set(image, array, cells == 1, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX) &&
-    this->SetTransfers(prop->GetProperty(), error);
+  return array;
 }
 
 bool vtkStratusVolumeMapper::Internals::SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const
@@ -300,6 +313,8 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.cell_error = mapper->CellError <= 0.0 ? 0.0 : mapper->CellError;
   options.termination = mapper->Termination;
   options.tolerance = mapper->ImageErrorTolerance;
+  options.gradient_distance = this->GetGradientOpacityDistance();
+  options.mean_components = mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.block_size = mapper->BlockSize;
   options.audit = mapper->Audit ? 1 : 0;

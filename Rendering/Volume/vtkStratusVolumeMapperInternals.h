@@ -33,6 +33,10 @@ public:
   bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const;
+  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  // Fills an image of the viewport's size, or empties it where there is no picture.
+  void FillColorImage(vtkImageData* image) const;
+  void FillDepthImage(vtkImageData* image, int type) const;
   // Extends the bounds by half a voxel on all sides, in first hits of point data.
   void WidenBounds(double bounds[6]) const;
 
@@ -59,14 +63,21 @@ private:
   bool OnProgress(double fraction);
   bool CheckMapper(std::string& error) const;
   bool CheckScene(vtkVolume* prop, std::string& error) const;
-  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
   bool PrepareInput(vtkVolume* prop, std::string& error);
+  // Finds the scalar array, and whether it is of cells.
+  vtkDataArray* FindArray(vtkDataSet* image, bool& cells, std::string& error) const;
+  // Vectors and what they mean, pictures as images, and calls of VTK's mappers (vtkStratusVolumeMapperVTK.cxx).
+  vtkDataArray* Magnitude(vtkDataSet* image, vtkDataArray* array, bool cells);
+  int GetVectorComponent(vtkDataArray* array) const;
+  double GetGradientOpacityDistance() const;
+  void WarnOfGradientOpacity(vtkVolumeProperty* property);
   bool HasLabels() const;
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // Light, first hits and carried trees (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
-  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
+  bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   void OfferTree();
 
   bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
@@ -92,6 +103,12 @@ private:
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;
   vtkSmartPointer<vtkImageData> LastImage;
+  std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
+  vtkSmartPointer<vtkDataArray> MagnitudeOf, Magnitudes;            // an array, and its magnitudes as of MagnitudeTime
+  vtkMTimeType MagnitudeTime = 0;
+  int FirstFunction = 0;     // the property's component whose functions component 0 of the volume takes
+  vtkMTimeType WarnedOf = 0; // the property's time when it was last looked at for WarnOfGradientOpacity()
+  bool Warned = false;
 };
 
 #endif

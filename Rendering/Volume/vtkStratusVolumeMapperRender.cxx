@@ -141,6 +141,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     error = stratus_context_message(this->Context.Get());
     return false;
   }
+  this->WarnOfGradientOpacity(property);
   this->OfferTree();
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
@@ -158,8 +159,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return true;
   }
   const double start = Now();
+  const bool alone = this->Mapper->RenderToImage && !renderer->GetSelector();
   const vtkStratusPicture::Others others = this->FindOthers(renderer, prop);
-  const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
+  const float* opaqueDepth = alone ? nullptr : this->Picture.ReadOpaqueDepth(renderer, others);
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
@@ -170,6 +172,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   }
   this->HasPicture = true;
   this->LearnTime(coarseness);
+  if (alone) {
+    return true;
+  }
   const double cast = Now();
   pixels.Rgba = this->Rgba.data();
   std::copy_n(this->Report.window, 4, pixels.Window);

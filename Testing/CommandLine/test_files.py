@@ -348,6 +348,26 @@ def write_range(name, low, high):
     return write(vtkXMLImageDataWriter, data, name)
 
 
+def test_raw():
+    for type, dtype, words in (("uint8", "u1", ""), ("int16", "<i2", ""), ("uint16", ">u2", ":big"), ("float32", "<f4", ":little"),
+                               ("float64", ">f8", ":big:+7"), ("int32", "<i4", ":1,1,1")):
+        with open("values.raw", "wb") as file:
+            file.write(b"7 bytes" if "+7" in words else b"")
+            file.write(values().astype(dtype).tobytes())
+        # Each type has a table of its own, whose entries are rounded differently.
+        difference = abs(drawn("values.raw", "--raw", f"5x4x6:{type}{words}") - drawn("image.vti")).max()
+        if difference > (0 if "float" in type else 2):
+            fail(f"--raw {type}{words} is another picture than image.vti, by {difference}")
+    picture("values.raw", "--raw", "5x4x6:int32:1,2,.5")
+    if "spacing 1 x 2 x 0.5" not in expect(0, "volume", "info", "values.raw", "--raw", "5x4x6:int32:1,2,.5"):
+        fail("the spacing of --raw is lost")
+    expect(2, "tells nothing of itself", "render", "values.raw", "-o", "no.png")
+    expect(1, "needs 240 bytes, the file has 480$", "render", "values.raw", "-o", "no.png", "--raw", "5x4x6:int16")
+    for bad in ("5x4:int16", "5x4x6", "5x4x6:int17", "5x4x0:int16", "5x4x6.5:int16", "ax4x6:int8", "5x4x6:int16:0,1,1", "5x4x6:int16:+x",
+                "5x4x6:int16:middle"):
+        expect(2, "--raw", "render", "values.raw", "-o", "no.png", "--raw", bad)
+
+
 def test_netcdf():
     if not MAKERS:
         open("some.nc", "w").close()

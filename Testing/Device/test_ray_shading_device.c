@@ -61,6 +61,8 @@ static void device_and_host_show_the_same(void** state)
   c.transfer.gradient_count = 2;
   c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   compare(host, device, &c, &c.transfer, "lit, gradient opacity, pre-integrated");
+  c.options.gradient_distance = 1.5;
+  compare(host, device, &c, &c.transfer, "lit, gradient opacity of opacities");
   case_destroy(&c);
 
   case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 6); /* every second value the other component */
@@ -71,6 +73,11 @@ static void device_and_host_show_the_same(void** state)
   case_camera(host, &c, 1, 0);
   const stratus_transfer both[2] = { c.transfer, c.transfer };
   compare(host, device, &c, both, "two components");
+  c.options.mean_components = 1;
+  compare(host, device, &c, both, "two components by their share");
+  const stratus_material materials[2] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, 0.0, 0.0, 0.0, 0.0 } };
+  c.options.materials = materials;
+  compare(host, device, &c, both, "two materials");
   c.options.dependent = 1;
   compare(host, device, &c, both, "two dependent components");
   case_destroy(&c);
@@ -87,6 +94,18 @@ static void device_and_host_show_the_same(void** state)
   c.options.mask = labels;
   c.options.label_count = 1;
   compare(host, device, &c, functions, "labels");
+  functions[1].gradient = steep;
+  functions[1].gradient_count = 2;
+  c.options.shade = 1;
+  c.options.shading.light_count = 1;
+  c.options.shading.lights[0] = (stratus_light){ .vector = { 40, 50, -10 },
+    .color = { 20, 20, 20 },
+    .positional = 1,
+    .attenuation = { 0.5, 0.02, 0.03 },
+    .cone_angle = 20.0,
+    .axis = { -2.5, -2.7, 2.4 },
+    .cone_exponent = 2.0 };
+  compare(host, device, &c, functions, "labels, one thinned, in a cone of dim light");
   case_destroy(&c);
   stratus_context_destroy(host);
   stratus_context_destroy(device);

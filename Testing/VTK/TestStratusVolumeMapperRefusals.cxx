@@ -37,13 +37,15 @@ void Shading()
   pairs->GetPointData()->GetScalars()->Fill(1);
   for (int blend = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; blend <= vtkVolumeMapper::ISOSURFACE_BLEND; ++blend) {
     Refused(
-      "two components in another mode", "2 components",
+      "two dependent components in another mode, and any of surfaces", "2 components",
       [&](Scene& s) {
         s.Mapper->SetInputData(pairs);
         s.Mapper->SetBlendMode(blend);
+        s.Volume->GetProperty()->SetIndependentComponents(blend == vtkVolumeMapper::ISOSURFACE_BLEND);
       },
       [](Scene& s) {
         s.Mapper->SetInputData(s.Image);
+        s.Volume->GetProperty()->IndependentComponentsOn();
         s.Mapper->SetBlendModeToComposite();
       });
   }
@@ -90,12 +92,12 @@ void Lights()
     },
     [](Scene& s) { s.Volume->GetProperty()->ShadeOff(); });
   Refused(
-    "a lamp that fades", "attenuation",
+    "a lamp that gets brighter with the distance without end", "attenuation",
     [](Scene& s) {
       vtkNew<vtkLight> lamp;
       lamp->SetPositional(1);
       lamp->SetConeAngle(90);
-      lamp->SetAttenuationValues(1, 0.1, 0);
+      lamp->SetAttenuationValues(-1, 0.1, 0);
       s.Renderer->AddLight(lamp);
       s.Volume->GetProperty()->ShadeOn();
     },

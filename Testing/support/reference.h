@@ -23,9 +23,12 @@ typedef struct reference_scene {
   double crop_bounds[6];
   int clip_plane_count;
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4];
-  const stratus_shading* shading; /* NULL: unlit */
-  int dependent;                  /* as in stratus_ray_cast_options */
-  const uint8_t* labels;          /* the mask as in stratus_ray_cast_options, if there are labels */
+  const stratus_shading* shading;    /* NULL: unlit, but for what materials say */
+  const stratus_material* materials; /* as in stratus_ray_cast_options; the lights are those of shading */
+  int dependent;                     /* as in stratus_ray_cast_options, as the next two */
+  int mean_components;
+  double gradient_distance;
+  const uint8_t* labels; /* the mask as in stratus_ray_cast_options, if there are labels */
   int label_count;
   int tile; /* n > 1: only one pixel of each n x n is drawn, see reference_picks(); the others stay transparent */
 } reference_scene;

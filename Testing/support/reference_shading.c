@@ -17,7 +17,8 @@ int reference_components(const stratus_volume* volume)
 
 int reference_has_shading(const reference_scene* scene)
 {
-  return scene->shading || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 || scene->label_count > 0;
+  return scene->shading || scene->materials || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 ||
+    scene->label_count > 0;
 }
 
 /* Returns the transfer function of the nearest value's label. */
@@ -142,13 +143,27 @@ static double gradient_factor(const stratus_volume* volume, const stratus_transf
 
 /* ---- light */
 
-static void add_light(const stratus_shading* shading, const stratus_light* light, const reference_place* place, const double normal[3],
+/* The part of a positional light that reaches a place, from which `way` leads to it. */
+static double part_of_light(const stratus_light* light, const double way[3])
+{
+  const double* k = light->attenuation;
+  const double r = length_of(way), sum = k[0] + k[1] * r + k[2] * r * r;
+  double part = k[0] + k[1] + k[2] > 0.0 ? 1.0 / sum : 1.0;
+  if (light->cone_angle > 0.0 && light->cone_angle < 90.0) {
+    const double cosine = -dot(way, light->axis) / (r * length_of(light->axis));
+    part = acos(fmin(cosine, 1.0)) <= light->cone_angle * acos(-1.0) / 180.0 ? part * pow(cosine, light->cone_exponent) : 0.0;
+  }
+  return part;
+}
+
+static void add_light(const stratus_material* shading, const stratus_light* light, const reference_place* place, const double normal[3],
   double diffuse[3], double specular[3])
 {
   double to[3], half_way[3];
   for (int a = 0; a < 3; ++a) {
     to[a] = light->vector[a] - (light->positional ? place->world[a] : 0.0);
   }
+  const double part = light->positional ? part_of_light(light, to) : 1.0;
   unit(to);
   for (int a = 0; a < 3; ++a) {
     half_way[a] = to[a] - place->direction[a];
@@ -157,16 +172,17 @@ static void add_light(const stratus_shading* shading, const stratus_light* light
   const double cosine = dot(normal, to), gloss = dot(normal, half_way);
   if (cosine > 0.0) {
     for (int a = 0; a < 3; ++a) {
-      diffuse[a] += shading->diffuse * cosine * light->color[a];
-      specular[a] += gloss > 0.0 ? shading->specular * pow(gloss, shading->specular_power) * light->color[a] : 0.0;
+      diffuse[a] += part * shading->diffuse * cosine * light->color[a];
+      specular[a] += gloss > 0.0 ? part * shading->specular * pow(gloss, shading->specular_power) * light->color[a] : 0.0;
     }
   }
 }
 
-static void illuminate(const reference_scene* scene, const reference_place* place, const double g[3], double rgb[3])
+static void illuminate(
+  const reference_scene* scene, const stratus_material* material, const reference_place* place, const double g[3], double rgb[3])
 {
   const stratus_shading* shading = scene->shading;
-  double normal[3], diffuse[3] = { shading->ambient, shading->ambient, shading->ambient }, specular[3] = { 0.0, 0.0, 0.0 };
+  double normal[3], diffuse[3] = { material->ambient, material->ambient, material->ambient }, specular[3] = { 0.0, 0.0, 0.0 };
   for (int a = 0; a < 3; ++a) {
     normal[a] = -(g[0] * place->to_index[0][a] + g[1] * place->to_index[1][a] + g[2] * place->to_index[2][a]);
   }
@@ -181,7 +197,7 @@ static void illuminate(const reference_scene* scene, const reference_place* plac
     eye.vector[a] = scene->camera->parallel ? -scene->camera->forward[a] : scene->camera->eye[a];
   }
   for (int i = 0; i < (shading->light_count < 0 ? 1 : shading->light_count); ++i) {
-    add_light(shading, shading->light_count < 0 ? &eye : &shading->lights[i], place, normal, diffuse, specular);
+    add_light(material, shading->light_count < 0 ? &eye : &shading->lights[i], place, normal, diffuse, specular);
   }
   for (int a = 0; a < 3; ++a) {
     rgb[a] = rgb[a] * diffuse[a] + specular[a];
@@ -195,23 +211,40 @@ static double depth_of(double opacity)
   return opacity < 1.0 ? fmin(-log1p(-opacity), OPAQUE_DEPTH) : OPAQUE_DEPTH;
 }
 
-/* Adds the light and optical depth of one medium. shown: the component whose gradient counts. */
-static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
-  double opacity, double weight, double rgb[3], double* tau, double glow[3])
+/* The optical depth per unit distance that is left of `depth` by a gradient opacity. */
+static double thinned(const reference_scene* scene, const stratus_transfer* transfer, double factor, double depth)
 {
+  const double units = scene->gradient_distance / transfer->unit_distance;
+  if (!(units > 0.0) || factor >= 1.0) {
+    return factor * depth;
+  }
+  return -log1p(factor * expm1(-depth * units)) / units;
+}
+
+/* Adds the light and optical depth of one medium. shown: the component whose gradient counts. squares: the sum of squared depths. */
+static void add_medium(const reference_scene* scene, const reference_place* place, const stratus_transfer* transfer, int shown,
+  double opacity, double weight, double rgb[3], double* tau, double* squares, double glow[3])
+{
+  const stratus_transfer* thinning = scene->label_count > 0 && transfer->gradient_count == 0 ? scene->transfer : transfer;
   double g[3] = { 0.0, 0.0, 0.0 };
   if (opacity <= 0.0) {
     return;
   }
-  if (scene->shading || transfer->gradient_count > 0) {
+  const stratus_shading* all = scene->shading;
+  const stratus_material material = scene->materials && !scene->dependent ? scene->materials[shown]
+    : all ? (stratus_material){ 1, all->ambient, all->diffuse, all->specular, all->specular_power }
+          : (stratus_material){ 0 };
+  if (material.shade || thinning->gradient_count > 0) {
     const stratus_volume view = reference_component(scene->volume, shown);
     gradient_at(&view, place->spot, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
   }
-  const double depth = weight * depth_of(opacity) * gradient_factor(scene->volume, transfer, g) / transfer->unit_distance;
-  if (scene->shading) {
-    illuminate(scene, place, g, rgb);
+  const double factor = gradient_factor(scene->volume, thinning, g);
+  const double depth = weight * thinned(scene, transfer, factor, depth_of(opacity)) / transfer->unit_distance;
+  if (material.shade) {
+    illuminate(scene, &material, place, g, rgb);
   }
   *tau += depth;
+  *squares += depth * depth;
   for (int a = 0; a < 3; ++a) {
     glow[a] += depth * rgb[a];
   }
@@ -220,7 +253,7 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3])
 {
   const int components = reference_components(scene->volume), last = components - 1;
-  double rgb[3];
+  double rgb[3], squares = 0.0;
   bool whole = true;
   *tau = glow[0] = glow[1] = glow[2] = 0.0;
   for (int c = 0; c < components; ++c) {
@@ -230,8 +263,8 @@ void reference_shade(const reference_scene* scene, const reference_place* place,
     const stratus_transfer* transfer = components > 1 ? scene->transfer + c : function_of(scene, place);
     if (!isnan(values[c])) {
       reference_color(transfer, values[c], rgb);
-      add_medium(
-        scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau, glow);
+      add_medium(scene, place, transfer, c, reference_opacity(transfer, values[c]), components > 1 ? transfer->weight : 1.0, rgb, tau,
+        &squares, glow);
     }
   }
   if (scene->dependent && whole) {
@@ -239,6 +272,9 @@ void reference_shade(const reference_scene* scene, const reference_place* place,
     for (int c = 0; c < 3 && last == 3; ++c) {
       rgb[c] = values[c] / 255.0;
     }
-    add_medium(scene, place, scene->transfer, last, reference_opacity(scene->transfer, values[last]), 1.0, rgb, tau, glow);
+    add_medium(scene, place, scene->transfer, last, reference_opacity(scene->transfer, values[last]), 1.0, rgb, tau, &squares, glow);
+  }
+  if (scene->mean_components && !scene->dependent && *tau > 0.0) {
+    *tau = squares / *tau;
   }
 }

@@ -41,9 +41,8 @@ INLINE void v_normalize3(vfloat v[3], float least)
   }
 }
 
-/* a^power for 0 < a <= 1, with an error of about 1e-6. The exponent and a series about 1 give the logarithm, v_absorbed() the exponential.
- */
-INLINE vfloat v_power(vfloat a, float power)
+/* The logarithm of a, 0 < a <= 1: by the exponent, and a series about 1. */
+INLINE vfloat v_logarithm(vfloat a)
 {
   const vint bits = v_to_bits(a) - vi_set(0x3f3504f3); /* so that the exponent changes at sqrt(1/2), not at 1 */
   const vint exponent = bits >> vi_set(23);
@@ -54,9 +53,14 @@ INLINE vfloat v_power(vfloat a, float power)
   series = v_fma(square, series, v_set(2.0f / 5.0f));
   series = v_fma(square, series, v_set(2.0f / 3.0f));
   series = v_fma(square * s, series, s + s);
-  const vfloat logarithm = v_fma(v_from_int(exponent), v_set(0.69314718f), series);
-  const vfloat depth = v_clamp(v_set(0.0f) - logarithm * v_set(power), 0.0f, 80.0f);
-  return one - v_absorbed(depth);
+  return v_fma(v_from_int(exponent), v_set(0.69314718f), series);
+}
+
+/* a^power for 0 < a <= 1, with an error of about 1e-6. */
+INLINE vfloat v_power(vfloat a, float power)
+{
+  const vfloat depth = v_clamp(v_set(0.0f) - v_logarithm(a) * v_set(power), 0.0f, 80.0f);
+  return v_set(1.0f) - v_absorbed(depth);
 }
 
 /* The entry of a value in component c's table. */
@@ -71,33 +75,69 @@ INLINE vint shading_entry(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const v
   return cell;
 }
 
-/* What component c's gradient opacity multiplies its optical depth by, where its index gradient is g; 1 without such a function. */
-INLINE vfloat gradient_factor(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const vfloat g[3], vmask mask)
+/* A gradient opacity where the index gradient is g. Each lane has a function of its own: `first` is where its entries begin, and `scale` of
+ * them are in a unit of the magnitude. */
+INLINE vfloat gradient_opacity(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, vint first, vfloat scale, const vfloat g[3], vmask mask)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
-  const float last = a->media.factor_last[c];
+  const float last = a->media.factor_last;
   vfloat v[3];
-  if (a->media.factor_first[c] < 0) {
-    return one;
-  }
   for (int axis = 0; axis < 3; ++axis) { /* in entries. Beyond the last entry the factor is constant, so that components are clamped there,
                                             and their squares stay finite */
-    v[axis] = v_clamp(g[axis] * v_set(a->media.gradient_length[axis]) * v_set(a->media.factor_scale[c]), -last, last);
+    v[axis] = v_clamp(g[axis] * v_set(a->media.gradient_length[axis]) * scale, -last, last);
   }
   const vfloat square = v_dot3(v, v);
   const vmask steep = v_le(v_set(1e-28f), square); /* a shorter gradient takes the first entry */
   const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
-  const vint entry = v_to_int(place);
-  GLOBAL const int* factors = (GLOBAL const int*)table + a->media.factor_first[c];
-  const vfloat low = v_from_bits(gather_int32(factors, entry, mask)), high = v_from_bits(gather_int32(factors + 1, entry, mask));
+  const vint entry = v_to_int(place), at = first + entry;
+  GLOBAL const int* factors = (GLOBAL const int*)table;
+  const vfloat low = v_from_bits(gather_int32(factors, at, mask)), high = v_from_bits(gather_int32(factors + 1, at, mask));
   return v_lerp(low, high, place - v_from_int(entry));
 }
 
-/* Lights samples at index coordinates x with the index gradient g, on rays of index direction d. A colour C of opacity A becomes C diffuse
- * + A specular. diffuse includes the ambient light. */
-INLINE void ray_light(
-  CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
+/* What multiplies the optical depth of a sample, `depth` over a whole one, where `factor`, 0..1, multiplies the opacity of the way that
+ * factor_reach tells. 1 - F A lets pass what a depth of -ln(1 - F A) does. */
+INLINE vfloat factor_of_opacity(CONSTANT stratus_ray_cast_arguments* a, vfloat factor, vfloat depth)
 {
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), way = depth * v_set(a->media.factor_reach), opacity = v_absorbed(way);
+  const vfloat y = factor * opacity;
+  /* Near 1 the logarithm loses what 1 - y has rounded, so that a series takes y from 0 to 1/8. */
+  vfloat thin = v_set(1.0f / 8.0f);
+  for (int n = 7; n > 0; --n) {
+    thin = v_fma(thin, y, v_set(1.0f / (float)n));
+  }
+  const vfloat passes = v_clamp((one - factor) + factor * (one - opacity), 1e-35f, 1.0f);
+  const vfloat effective = v_select(v_lt(y, v_set(0.125f)), thin * y, zero - v_logarithm(passes));
+  return v_select(v_lt(factor, one), effective * v_reciprocal(v_max(way, v_set(1e-30f))), one);
+}
+
+/* What reaches a place from light i, of 1: `way`, in units of `place`, and `light`, its direction, lead from the place to the light. */
+INLINE vfloat light_reaching(CONSTANT stratus_ray_cast_arguments* a, int i, const vfloat way[3], const vfloat light[3])
+{
+  CONSTANT float *far = a->light.attenuation[i], *cone = a->light.cone[i];
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  vfloat part = one;
+  if (far[1] != 0.0f || far[2] != 0.0f || far[0] != 1.0f) {
+    const vfloat square = v_min(v_dot3(way, way), v_set(1e37f)), distance = square * v_inverse_root(v_max(square, v_set(1e-30f)));
+    const vfloat sum = v_fma(distance, v_fma(distance, v_set(far[2]), v_set(far[1])), v_set(far[0]));
+    part = v_reciprocal(v_clamp(sum, 1e-35f, 1e35f));
+  }
+  if (cone[3] >= 0.0f) {
+    const vfloat axis[3] = { zero - v_set(cone[0]), zero - v_set(cone[1]), zero - v_set(cone[2]) };
+    const vfloat cosine = v_dot3(axis, light);
+    const vmask inside = v_le(v_set(cone[3]), cosine) & v_lt(zero, cosine);
+    part = v_select(inside, part * v_power(v_select(inside, v_min(cosine, one), one), cone[4]), zero);
+  }
+  return part;
+}
+
+/* Lights samples of component m at index coordinates x with the index gradient g, on rays of index direction d. A colour C of opacity A
+ * becomes C diffuse + A specular. diffuse includes the ambient light. */
+INLINE void ray_light(CONSTANT stratus_ray_cast_arguments* a, int m, const vfloat x[3], const vfloat d[3], const vfloat g[3],
+  vfloat diffuse[3], vfloat specular[3])
+{
+  CONSTANT float* material = a->light.material[m];
   const vfloat zero = v_set(0.0f);
   vfloat normal[3], eye[3], place[3];
   vfloat steep[3] = { g[0], g[1], g[2] };
@@ -113,7 +153,7 @@ INLINE void ray_light(
     if (a->light.two_sided) {
       normal[axis] = v_select(away, zero - normal[axis], normal[axis]);
     }
-    diffuse[axis] = v_set(a->light.material[0]);
+    diffuse[axis] = v_set(material[0]);
     specular[axis] = zero;
   }
   for (int i = 0; i < a->light.count; ++i) {
@@ -124,17 +164,19 @@ INLINE void ray_light(
         light[axis] = light[axis] - place[axis];
       }
     }
+    const vfloat way[3] = { light[0], light[1], light[2] };
     v_normalize3(light, 0.0f);
+    const vfloat reaching = a->light.positional[i] ? light_reaching(a, i, way, light) : v_set(1.0f);
     for (int axis = 0; axis < 3; ++axis) {
       half_way[axis] = light[axis] + eye[axis];
     }
     v_normalize3(half_way, 1e-6f); /* where light and eye lie opposite, half_way is nothing but rounding */
     const vfloat cosine = v_max(v_dot3(normal, light), zero), gloss = v_dot3(normal, half_way);
     const vmask lit = v_lt(zero, cosine), shines = lit & v_lt(v_set(1e-9f), gloss);
-    const vfloat matt = cosine * v_set(a->light.material[1]);
+    const vfloat matt = cosine * v_set(material[1]) * reaching;
     vfloat shine = zero;
-    if (a->light.material[2] > 0.0f && m_any(shines)) {
-      shine = v_select(shines, v_power(v_select(shines, gloss, v_set(1.0f)), a->light.material[3]) * v_set(a->light.material[2]), zero);
+    if (material[2] > 0.0f && m_any(shines)) {
+      shine = v_select(shines, v_power(v_select(shines, gloss, v_set(1.0f)), material[3]) * v_set(material[2]) * reaching, zero);
     }
     for (int c = 0; c < 3; ++c) {
       diffuse[c] = v_fma(matt, v_set(a->light.color[i][c]), diffuse[c]);

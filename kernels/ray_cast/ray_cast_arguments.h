@@ -147,30 +147,36 @@ typedef struct stratus_ray_mode {
 } stratus_ray_mode;
 
 typedef struct stratus_ray_lights {
-  int on, two_sided, count;
+  int on, two_sided, count;        /* on: bit c where component c is lit */
   float normal[9];                 /* 3x3, by rows: takes a value's index gradient to a normal, of any length */
   float place[9];                  /* 3x3, by rows: takes index displacements to world ones, in units of the shortest voxel edge */
-  float material[4];               /* ambient, diffuse, specular, specular power */
+  float material[4][4];            /* of each component: ambient, diffuse, specular, specular power */
   float vector[8][3], color[8][3]; /* vector: the direction to the light, of length 1; where positional, its position, as `place` maps it */
   int positional[8];
+  float attenuation[8][3]; /* in units of `place`; of lights that are not dimmed 1, 0, 0 */
+  float cone[8][5];        /* the direction in which the light shines, the cosine at the cone's edge, -1: no cone, and the exponent */
 } stratus_ray_lights;
 
 /* Shading by several tables: each component and each label has a table of its own, and each component a gradient opacity. All stand in one
  * array of floats. */
 typedef struct stratus_ray_media {
   int components, dependent;          /* components 0 and 1: one value */
+  int mean;                           /* independent components count by their share of the optical depth */
   int component_bytes;                /* from a value to the next component's */
   float gradient_length[3];           /* takes a value's index gradient to value per mean spacing */
   int first[4];                       /* where each component's table begins */
   float scale[4], offset[4], last[4]; /* a component's table: as in stratus_table_arguments, as the next row */
   int search_steps[4], first_at[4], bound_at[4];
   int factor_first[4]; /* where each component's gradient opacity begins; -1: it has none */
-  float factor_scale[4], factor_last[4];
+  float factor_scale[4], factor_last;
+  float factor_reach; /* > 0: gradient opacities multiply the opacity of so many samples' way; 0: the optical depth */
   float weight[4];
-  /* label_first: where the records of labels 0..label_count begin. Four floats: scale, offset and last cell of a label's grid, 0. Four
-   * ints: its table's first entry / 4; the number of its entries; where the first entries of its cells begin, 0 if entries are cells; where
-   * the entries' bounds begin. label_count 0: there are no labels. label_steps: the most bisections of a label's table. */
+  /* label_first: where the records of labels 0..label_count begin. Four floats: scale, offset and last cell of a label's grid, and the
+   * factor_scale of its gradient opacity. Four ints: its table's first entry / 4; the number of its entries; where the first entries of its
+   * cells begin, 0 if entries are cells; where the entries' bounds begin. Four ints: factor_first, and three that are 0. label_count 0:
+   * there are no labels. label_steps: the most bisections of a label's table. */
   int label_first, label_count, label_steps;
+  int label_factors; /* some label has a gradient opacity */
 } stratus_ray_media;
 
 typedef struct stratus_ray_cast_arguments {

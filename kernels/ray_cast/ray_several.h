@@ -182,13 +182,16 @@ INLINE void several_light(const several_source* from, const stratus_packet* k, v
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3];
   from->gradient(a, from->values, from->grid, x, mask, g);
-  way->lighting.factor = gradient_factor(a, from->besides, 0, g, mask);
+  way->lighting.factor = v_set(1.0f);
+  if (a->media.factor_first[0] >= 0) {
+    way->lighting.factor = gradient_opacity(a, from->besides, vi_set(a->media.factor_first[0]), v_set(a->media.factor_scale[0]), g, mask);
+  }
   for (int c = 0; c < 3; ++c) {
     way->lighting.diffuse[c] = v_set(1.0f);
     way->lighting.specular[c] = v_set(0.0f);
   }
   if (a->light.on) {
-    ray_light(a, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+    ray_light(a, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
   }
 }
 

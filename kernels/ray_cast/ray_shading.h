@@ -23,40 +23,69 @@ INLINE value_source component_values(value_source values, int c)
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 #endif
 
-/* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. */
-OUTLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
-  const stratus_packet* k, vfloat s, vmask mask, stratus_lit_sample* lighting)
+/* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
+ * over a whole sample; read only where media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity;
+ * factor_first is negative where a lane has none. */
+OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vfloat depth, vint factor_first, vfloat factor_scale, vmask mask, stratus_lit_sample* lighting)
 {
-  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) }, one = v_set(1.0f);
+  const vmask thins = mask & vi_ge(factor_first, vi_set(0));
+  const int lit = a->light.on >> c & 1;
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
-  if (a->light.on || a->media.factor_first[c] >= 0) {
+  lighting->factor = one;
+  if (lit || m_any(thins)) {
     RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), k->grid, x, mask, g);
   }
-  lighting->factor = gradient_factor(a, table, c, g, mask);
-  if (a->light.on) {
-    ray_light(a, x, k->d, g, lighting->diffuse, lighting->specular);
+  if (m_any(thins)) {
+    const vfloat factor = gradient_opacity(a, table, factor_first, factor_scale, g, thins);
+    lighting->factor = v_select(thins, a->media.factor_reach > 0.0f ? factor_of_opacity(a, factor, depth) : factor, one);
+  }
+  if (lit) {
+    ray_light(a, c, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
-      lighting->diffuse[i] = v_set(1.0f);
+      lighting->diffuse[i] = one;
       lighting->specular[i] = v_set(0.0f);
     }
   }
 }
 
+/* The same, where all lanes have the gradient opacity of component c. */
+INLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
+  const stratus_packet* k, vfloat s, vfloat depth, vmask mask, stratus_lit_sample* lighting)
+{
+  RAY_NAME(ray_light_by)
+  (a, values, table, c, k, s, depth, vi_set(a->media.factor_first[c]), v_set(a->media.factor_scale[c]), mask, lighting);
+}
+
 #if !STRATUS_PREINTEGRATED
-/* Adds a medium to `sum`. layer: its light and, last, its optical depth, both over a whole sample. Component c's gradient lights and thins
- * it. */
+/* The optical depths of the entries over a whole sample, where gradient opacity asks for them. table: of entries colour times alpha, and
+ * alpha; behind these, from entry `depths` on, each one's optical depth. */
+INLINE vfloat RAY_NAME(entry_depth)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint depths, vmask mask)
+{
+  vfloat depth[4] = { v_set(0.0f), v_set(0.0f), v_set(0.0f), v_set(0.0f) };
+  if (a->media.factor_reach > 0.0f) {
+    gather_four(table, depths, mask, depth);
+  }
+  return depth[0];
+}
+
+/* Adds a medium to `sum`: its light, its optical depth and, last, the square of that. layer: its light and, last, its optical depth, both
+ * over a whole sample. Component c's gradient lights and thins it. */
 OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, int c, const stratus_packet* k,
-  const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[4])
+  const stratus_sample* sample, vmask mask, vfloat layer[4], vfloat sum[5])
 {
   const vmask shows = mask & v_lt(v_set(0.0f), layer[3]);
   stratus_lit_sample lighting;
   if (m_any(shows)) {
-    RAY_NAME(ray_light_sample)(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), layer[3], shows, &lighting);
     light_layer(&lighting, layer);
+    const vfloat share = lighting.factor * v_set(a->media.weight[c]), depth = v_min(layer[3] * share, v_set(1e18f));
     for (int i = 0; i < 4; ++i) {
-      sum[i] = v_select(shows, v_fma(layer[i], lighting.factor * v_set(a->media.weight[c]), sum[i]), sum[i]);
+      sum[i] = v_select(shows, v_fma(layer[i], share, sum[i]), sum[i]);
     }
+    sum[4] = v_select(shows, v_fma(depth, depth, sum[4]), sum[4]); /* 1e18 is opaque, and its square a float */
   }
 }
 
@@ -71,7 +100,7 @@ OUTLINE vfloat RAY_NAME(component_value)(
 
 /* Independent components: each is a medium, and both their optical depths and their light add up. */
 INLINE void RAY_NAME(add_independent)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[5])
 {
   for (int c = 0; c < a->media.components; ++c) {
     const vfloat value = RAY_NAME(component_value)(a, k, sample, c, k->live);
@@ -83,7 +112,7 @@ INLINE void RAY_NAME(add_independent)(
 
 /* Dependent components: the last has the opacity, and the others the colour. */
 INLINE void RAY_NAME(add_dependent)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[4])
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[5])
 {
   const int last = a->media.components - 1;
   vfloat value = RAY_NAME(component_value)(a, k, sample, last, k->live), layer[4], color[4];
@@ -112,7 +141,7 @@ OUTLINE void RAY_NAME(shade_components)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
   const vfloat zero = v_set(0.0f);
-  vfloat sum[4] = { zero, zero, zero, zero };
+  vfloat sum[5] = { zero, zero, zero, zero, zero };
   if (a->media.dependent) {
     RAY_NAME(add_dependent)(a, table, k, sample, sum);
   } else {
@@ -120,9 +149,12 @@ OUTLINE void RAY_NAME(shade_components)(
   }
   const vmask shows = k->live & v_lt(zero, sum[3]);
   if (m_any(shows)) {
-    vfloat layer[4];
-    layer[3] = v_select(shows, v_absorbed(sum[3] * sample->weight), zero);
-    const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(sum[3], v_set(1e-30f))), zero);
+    vfloat layer[4], depth = sum[3];
+    if (a->media.mean) {
+      depth = v_max(sum[4] * v_reciprocal(v_max(v_min(sum[3], v_set(4e18f)), v_set(1e-30f))), v_set(1e-30f));
+    }
+    layer[3] = v_select(shows, v_absorbed(depth * sample->weight), zero);
+    const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(depth, v_set(1e-30f))), zero);
     for (int c = 0; c < 3; ++c) {
       layer[c] = sum[c] * per_depth;
     }
@@ -164,7 +196,7 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   const vmask valid = k->live & v_finite(sample->value);
   GLOBAL const int* ints = (GLOBAL const int*)table;
-  const vint label = RAY_NAME(label_at)(a, sample->hidden, k->grid, x, valid), record = label + label, numbers = record + vi_set(1);
+  const vint label = RAY_NAME(label_at)(a, sample->hidden, k->grid, x, valid), record = label + label + label, numbers = record + vi_set(1);
   vfloat of[4], layer[4];
   vint place[4];
   gather_four(floats + a->media.label_first, record, valid, of);
@@ -188,7 +220,12 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vmask shows = valid & v_lt(zero, layer[3]);
   if (m_any(shows)) {
     stratus_lit_sample lighting;
-    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, s, shows, &lighting);
+    const vfloat depth = RAY_NAME(entry_depth)(a, floats, entry + place[1], shows);
+    vint factors = vi_set(-1);
+    if (a->media.label_factors) {
+      factors = v_gather_ints(ints + a->media.label_first, (record + vi_set(2)) << vi_set(2), shows);
+    }
+    RAY_NAME(ray_light_by)(a, sample->values, table, 0, k, s, depth, factors, of[3], shows, &lighting);
     const vfloat thick = sample->weight * lighting.factor;
     const vmask part = shows & v_lt(thick, v_set(1.0f));
     if (m_any(part)) { /* as shorten_layer() */
@@ -217,7 +254,7 @@ OUTLINE void RAY_NAME(ray_shade)(
   const vmask whole = m_andnot(k->live, k->fresh); /* rays that know the value at the segment's front */
   const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
   if (m_any(shows)) {
-    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), weight, shows, &lighting);
     integrate_lit(a, (GLOBAL const int*)table, k, shows, value, weight * lighting.factor, lo, &lighting);
   }
   k->front = value;
@@ -234,7 +271,8 @@ OUTLINE void RAY_NAME(ray_shade)(
     gather_four((GLOBAL const float*)table, entry, k->live & v_finite(value), layer);
     const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);
     if (m_any(shows)) {
-      RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), shows, &lighting);
+      const vfloat depth = RAY_NAME(entry_depth)(a, (GLOBAL const float*)table + 4 * a->table.entries, entry, shows);
+      RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), depth, shows, &lighting);
       shorten_layer(a, (GLOBAL const float*)table, entry, shows, weight * lighting.factor, layer);
       light_layer(&lighting, layer);
       composite(a, k, shows, layer, lo);

@@ -138,7 +138,7 @@ static void judge(stratus_context* context, member* m, int count, const stratus_
     }
   }
   together(context, m, count, camera, size, rgba, NULL);
-  if (reference_render_several(scenes, count, size, size, 0.125, right, NULL) == 0) {
+  if (reference_render_several(scenes, count, size, size, 0.015625, right, NULL) == 0) {
     printf(",%.5f,%.5f", error_of(rgba, right, pixels), error_of(over, right, pixels));
   }
   free(right);

@@ -201,6 +201,21 @@ static void light_adds_up_as_phong_says(void** state)
     assert_true(fabs(center[1] - (0.25 * (0.1 + 0.9 * 0.8 * 0.5) + 0.5 * gloss)) < 1e-4);
     assert_true(fabs(center[2] - 0.125 * 0.1) < 1e-6);
   }
+  const double dim = 1.0 / (0.5 + 0.1 * 5.0 + 0.04 * 25.0); /* 5 from the hit */
+  shading->lights[0].attenuation[0] = 0.5;
+  shading->lights[0].attenuation[1] = 0.1;
+  shading->lights[0].attenuation[2] = 0.04;
+  case_render(context, &c, &first);
+  assert_true(fabs(center[0] - (0.5 * (0.1 + dim * 0.9 * 0.8) + dim * 0.3 * 0.8 * 0.8 * 0.8)) < 1e-4);
+  memset(shading->lights[0].attenuation, 0, sizeof shading->lights[0].attenuation);
+  for (int inside = 0; inside < 2; ++inside) { /* a cone straight down, from which the hit lies 36.87 degrees aside */
+    shading->lights[0].axis[2] = -2.0;
+    shading->lights[0].cone_exponent = 2.0;
+    shading->lights[0].cone_angle = inside ? 36.9 : 36.8;
+    case_render(context, &c, &first);
+    const double part = inside ? 0.8 * 0.8 : 0.0;
+    assert_true(fabs(center[0] - (0.5 * (0.1 + part * 0.9 * 0.8) + part * 0.3 * 0.8 * 0.8 * 0.8)) < 1e-4);
+  }
   shading->lights[0].vector[2] = -50.0; /* from behind: nothing but ambient */
   case_render(context, &c, &first);
   assert_true(fabs(center[0] - 0.05) < 1e-6);

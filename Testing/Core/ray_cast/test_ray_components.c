@@ -4,6 +4,7 @@
 #include "picture_case.h"
 
 #include "ray_caster.h"
+#include "reference_modes.h"
 #include "volume.h"
 
 /* dB against the reference at a quarter of a voxel, as for one component: only the sampling's own error is left. */
@@ -83,7 +84,10 @@ static void check(const char* what, stratus_context* context, const many* m, dou
   double reference_db = 0.0;
   scene.transfer = m->transfers;
   scene.dependent = m->c.options.dependent;
-  scene.shading = m->c.options.shade ? &m->c.options.shading : NULL;
+  scene.mean_components = m->c.options.mean_components;
+  scene.gradient_distance = m->c.options.gradient_distance;
+  scene.shading = m->c.options.shade || m->c.options.materials ? &m->c.options.shading : NULL;
+  scene.materials = m->c.options.materials;
   draw(context, m, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
@@ -117,6 +121,117 @@ static void gradient_opacity_thins_as_the_reference_says(void** state)
   m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   check("pre-integrated", context, &m, MIDPOINT_DB);
   many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+/* Opacities that are multiplied show less than depths that are, the less the longer the way; and a way of length 0 is the depth. */
+static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.05, 0.1, 0.2, 0.4, 0.45, 0.9 };
+  static const double lengths[] = { 0.001, 0.5, 3.0, 50.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int opaque = 0; opaque < 2; ++opaque) {
+    many m;
+    double before = INFINITY;
+    many_create(context, &m, STRATUS_FLOAT32, 1, 26, 24, 28, 71);
+    m.transfers[0].gradient = steep;
+    m.transfers[0].gradient_count = 3;
+    if (opaque) { /* the largest values have opacity 1, which depths cannot thin */
+      m.c.opacity[5] = m.c.opacity[7] = 1.0;
+    }
+    draw(context, &m, &other);
+    for (int i = 0; i < 4; ++i) {
+      char what[64];
+      double alpha = 0.0;
+      m.c.options.gradient_distance = lengths[i];
+      m.c.options.shade = i == 2;
+      m.c.options.sample_distance = opaque ? 0.02 : m.c.options.sample_distance; /* opacity 1 begins like a step */
+      snprintf(what, sizeof what, "over %g%s%s", lengths[i], opaque ? ", opacity 1" : "", i == 2 ? ", lit" : "");
+      check(what, context, &m, opaque ? 58.0 : MIDPOINT_DB);
+      for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
+        alpha += (double)drawn.rgba[4 * pixel + 3];
+      }
+      assert_true(alpha < before);
+      before = alpha;
+      if (i == 0 && !opaque) {
+        assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 55.0);
+      }
+    }
+    m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+    draw(context, &m, &drawn);
+    assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_MIDPOINT);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* A white slab of opacity 1 in a field of constant gradient: of gradient opacity F, a way of the length that is set shows F. */
+static void a_slab_of_opacity_one_shows_its_gradient_opacity(void** state)
+{
+  (void)state;
+  static const double fifth[] = { 0.0, 0.2, 1.0, 0.2 };
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 8, 8, 5, 3);
+  float* values = c.values;
+  for (int v = 0; v < 8 * 8 * 5; ++v) {
+    values[v] = (float)(v / 64);
+  }
+  c.opacity[0] = 0.0, c.opacity[2] = 1.0, c.opacity[4] = 2.0, c.opacity[6] = 4.0;
+  c.opacity[1] = c.opacity[3] = c.opacity[5] = c.opacity[7] = 1.0;
+  c.transfer.gradient = fifth;
+  c.transfer.gradient_count = 2;
+  c.volume.spacing[0] = c.volume.spacing[1] = c.volume.spacing[2] = 1.0;
+  c.camera = (stratus_camera){ .eye = { 3.5, 3.5, -10.0 },
+    .forward = { 0.0, 0.0, 1.0 },
+    .right = { 5.0, 0.0, 0.0 },
+    .up = { 0.0, 5.0, 0.0 },
+    .far_k = INFINITY,
+    .parallel = 1 };
+  c.options.sample_distance = 0.1;
+  for (int times = 0; times < 4; ++times) { /* the slab is 4 long */
+    const double length = times == 0 ? 0.0 : 4.0 / times, wanted = times == 0 ? 1.0 : 1.0 - pow(0.8, times);
+    stratus_ray_caster* caster = NULL;
+    const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+    c.options.gradient_distance = length;
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
+    const double alpha = (double)drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2) + 3];
+    print_message("             over %g: %.6f, wanted %.6f\n", length, alpha, wanted);
+    assert_true(fabs(alpha - wanted) < 2e-5); /* floats of 40 samples */
+    stratus_ray_caster_destroy(caster);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void components_that_count_by_their_share_mix_as_the_reference_mixes_them(void** state)
+{
+  (void)state;
+  static const double steep[] = { 0.0, 0.2, 10.0, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= COMPONENTS; ++count) {
+    many m;
+    char what[64];
+    double sum = 0.0, mean = 0.0;
+    many_create(context, &m, count == 3 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 20, 17, 19, 5u + (uint32_t)(10 * count));
+    m.transfers[1].weight = 0.4;
+    m.transfers[count - 1].gradient = steep;
+    m.transfers[count - 1].gradient_count = count == 3 ? 2 : 0;
+    m.c.options.shade = count == 2;
+    case_camera(context, &m.c, count, 0);
+    draw(context, &m, &other);
+    m.c.options.mean_components = 1;
+    snprintf(what, sizeof what, "mean of %d%s", count, m.c.options.shade ? ", lit" : "");
+    check(what, context, &m, MIDPOINT_DB);
+    for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
+      sum += (double)other.rgba[4 * pixel + 3];
+      mean += (double)drawn.rgba[4 * pixel + 3];
+    }
+    assert_true(mean < 0.97 * sum);
+    many_destroy(&m);
+  }
   stratus_context_destroy(context);
 }
 
@@ -230,11 +345,19 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
     set_labels(&m, labels);
     m.c.volume.cell_centered = type == STRATUS_UINT32;
     m.c.options.shade = type == STRATUS_FLOAT64;
+    const double scale = case_type_values[type].scale;
+    const double thin[2][4] = { { 0.0, 0.3, 0.3 * scale, 1.0 }, { 0.02 * scale, 1.0, 0.2 * scale, 0.1 } };
+    for (int l = 0; l < 2; ++l) { /* label 1 has a gradient opacity of its own, and label 2 that of no label, where there is one */
+      m.transfers[l].gradient = thin[l];
+      m.transfers[l].gradient_count = type == STRATUS_FLOAT64 || (type == STRATUS_UINT32 && l == 1) ? 2 : 0;
+    }
+    m.c.options.gradient_distance = type == STRATUS_FLOAT64 ? 2.0 : 0.0;
     m.c.options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
     reference_scene scene = case_scene(&m.c);
     scene.transfer = m.transfers;
     scene.labels = labels;
     scene.label_count = 2;
+    scene.gradient_distance = m.c.options.gradient_distance;
     scene.shading = m.c.options.shade ? &m.c.options.shading : NULL;
     draw(context, &m, &drawn);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
@@ -272,6 +395,8 @@ static void no_structure_changes_a_bit(void** state)
     memcpy(m.c.opacity, narrow, sizeof narrow); /* of all components: mostly empty */
     m.transfers[0].gradient = steep;
     m.transfers[0].gradient_count = 2;
+    m.c.options.gradient_distance = seed % 5 == 0 ? 1.5 : 0.0;
+    m.c.options.mean_components = seed % 6 == 0;
     m.c.options.dependent = seed > 8 && (count == 2 || (count == 4 && m.c.volume.type == STRATUS_UINT8));
     m.c.options.shade = seed % 3 == 0;
     m.c.options.sample_distance = 0.7;
@@ -290,6 +415,108 @@ static void no_structure_changes_a_bit(void** state)
   assert_true(lit > 12 && skipped > 100000);
   stratus_context_destroy(contexts[0]);
   stratus_context_destroy(contexts[1]);
+}
+
+/* One component is lit and shines, one is lit without a shine, and one is not. */
+static void each_component_has_a_material_of_its_own(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  stratus_material materials[COMPONENTS] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, NAN, NAN, NAN, NAN }, { 1, 0.3, 0.9, 0.0, 1.0 } };
+  many m;
+  many_create(context, &m, STRATUS_FLOAT32, 3, 20, 17, 19, 55);
+  m.c.options.materials = materials;
+  check("three materials", context, &m, MIDPOINT_DB);
+  draw(context, &m, &other);
+  m.c.options.shade = 1; /* says nothing where there are materials */
+  draw(context, &m, &drawn);
+  assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  for (int c = 0; c < COMPONENTS; ++c) { /* all alike is as without */
+    const stratus_shading* s = &m.c.options.shading;
+    materials[c] = (stratus_material){ 1, s->ambient, s->diffuse, s->specular, s->specular_power };
+  }
+  draw(context, &m, &drawn);
+  assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  m.c.options.materials = NULL;
+  draw(context, &m, &other);
+  assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  m.c.options.shade = 0;
+  m.c.options.materials = materials;
+  materials[2].diffuse = -0.5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "-0.5"));
+  materials[2].diffuse = 0.5;
+  m.c.options.shading.light_count = 9;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  materials[0].shade = materials[1].shade = materials[2].shade = 0; /* no light is read */
+  draw(context, &m, &drawn);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
+/* In modes that find one value a ray: pictures of the reference, one for each component, added in double precision. */
+static void one_value_a_ray_is_found_in_each_component(void** state)
+{
+  (void)state;
+  static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE };
+  static float part[4 * CASE_PIXELS], part_depth[CASE_PIXELS], sum[4 * CASE_PIXELS], depth[CASE_PIXELS];
+  stratus_context* context = case_context("host", 2);
+  for (int m = 0; m < 4; ++m) {
+    many many;
+    const int count = 2 + m % 3;
+    many_create(context, &many, m == 1 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 20, 17, 19, 15u + (uint32_t)m);
+    many.c.options.mode = modes[m];
+    many.c.options.sample_distance = 0.1;
+    memset(sum, 0, sizeof sum);
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      depth[i] = INFINITY;
+    }
+    for (int c = 0; c < count; ++c) {
+      const stratus_volume view = stratus_volume_component(&many.c.volume, c);
+      many.transfers[c].weight = 0.7 - 0.2 * c;
+      reference_modes_render(&view, many.transfers + c, &many.c.camera, &many.c.options, CASE_WIDTH, CASE_HEIGHT, 0.02, part, part_depth);
+      for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+        const float shown = (float)many.transfers[c].weight * part[i];
+        sum[i] = m > 1 && i % 4 == 3 ? fmaxf(sum[i], part[i]) : fminf(sum[i] + shown, 1.0f);
+        depth[i / 4] = fminf(depth[i / 4], part_depth[i / 4]);
+      }
+    }
+    draw(context, &many, &drawn);
+    const double db = reference_psnr(drawn.rgba, sum, CASE_PIXELS);
+    print_message("             %s of %d: %.1f dB, %d pixels\n", stratus_mode_name(modes[m]), count, db, case_lit(&drawn));
+    assert_true(case_lit(&drawn) > 200);
+    assert_true(db >= 60.0);
+    int grazes = 0; /* rays that touch what counts in a point, which samples meet or miss; measured: 1 */
+    for (int i = 0; m > 1 && i < CASE_PIXELS; ++i) {
+      grazes += isinf(depth[i]) != isinf(drawn.depth[i]);
+    }
+    assert_in_range(grazes, 0, 2);
+    assert_true(drawn.report.samples > 0 && drawn.report.range_builds == (uint64_t)count);
+    for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_OCTANT; ++s) {
+      many.c.options.structure = (stratus_structure)s;
+      many.c.options.audit = s != STRATUS_STRUCTURE_NONE;
+      draw(context, &many, &other);
+      assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+      assert_int_equal(other.report.differing_pixels, 0);
+    }
+    static uint8_t bytes[4 * CASE_PIXELS];
+    stratus_ray_caster* caster = NULL;
+    const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .rgba8 = bytes };
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    for (int again = 0; again < 2; ++again) { /* each component's structures are kept */
+      stratus_ray_cast_report report;
+      assert_int_equal(
+        stratus_ray_caster_render(caster, &many.c.volume, many.transfers, &many.c.camera, &many.c.options, &image, &report), STRATUS_OK);
+      assert_int_equal(report.range_builds, count);
+      assert_int_equal(report.table_builds, count);
+    }
+    for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+      assert_int_equal(bytes[i], lrintf(255.0f * other.rgba[i]));
+    }
+    stratus_ray_caster_destroy(caster);
+    many_destroy(&many);
+  }
+  stratus_context_destroy(context);
 }
 
 static void a_function_or_weight_edited_is_seen(void** state)
@@ -342,9 +569,20 @@ static void what_it_cannot_show_is_refused(void** state)
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "gradient"));
   m.transfers[3].gradient_count = 0;
-  m.c.options.mode = STRATUS_MODE_MAXIMUM;
-  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
+  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {
+    const bool surfaces = mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_ISOSURFACE;
+    m.c.options.mode = (stratus_mode)mode;
+    m.c.options.dependent = !surfaces;
+    m.c.options.contour_count = 1;
+    assert_int_equal(draw_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
+    assert_non_null(strstr(stratus_context_message(context), surfaces ? "surfaces" : "dependent"));
+  }
+  m.c.options.dependent = 0;
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
+  m.c.options.gradient_distance = -2.5;
+  assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "-2.5"));
+  m.c.options.gradient_distance = 0.0;
   m.c.options.label_count = 2;
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT); /* without a mask */
   m.c.options.label_count = 0;
@@ -439,6 +677,9 @@ int test_ray_components(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(gradient_opacity_thins_as_the_reference_says),
+    cmocka_unit_test(gradient_opacity_of_opacities_thins_as_the_reference_says),
+    cmocka_unit_test(a_slab_of_opacity_one_shows_its_gradient_opacity),
+    cmocka_unit_test(components_that_count_by_their_share_mix_as_the_reference_mixes_them),
     cmocka_unit_test(independent_components_mix_as_the_reference_mixes_them),
     cmocka_unit_test(each_component_has_its_own_units),
     cmocka_unit_test(dependent_components_are_colour_and_opacity),
@@ -446,6 +687,8 @@ int test_ray_components(void)
     cmocka_unit_test(components_and_labels_take_the_entries_of_the_tolerance),
     cmocka_unit_test(a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit),
     cmocka_unit_test(no_structure_changes_a_bit),
+    cmocka_unit_test(each_component_has_a_material_of_its_own),
+    cmocka_unit_test(one_value_a_ray_is_found_in_each_component),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
   };

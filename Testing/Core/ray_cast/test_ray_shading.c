@@ -67,6 +67,79 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   stratus_context_destroy(context);
 }
 
+/* Lights that get weaker with the distance, and lamps that shine into a cone, whose border crosses the volume. */
+static void lights_are_dimmed_and_have_cones_as_the_reference_says(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
+  shine(&c);
+  c.options.shading.light_count = 2;
+  stratus_light* lamps = c.options.shading.lights;
+  lamps[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 0.2, 0.4, 0.9 } };
+  lamps[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 20, 50, 15 }, .positional = 1, .attenuation = { 0.5, 0.02, 0.03 } };
+  lit_psnr("dimmed", context, &c, MIDPOINT_DB);
+  lamps[1] = (stratus_light){
+    .vector = { 40, 40, -10 }, .color = { 4, 5, 2 }, .positional = 1, .cone_angle = 12.0, .axis = { -2.5, -2.7, 2.4 }, .cone_exponent = 8.0
+  };
+  c.options.sample_distance = 0.02; /* the cone's border is a step */
+  lit_psnr("a cone", context, &c, 55.0);
+  const float before = drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2)];
+  lamps[1].cone_angle = 90.0; /* is none */
+  case_render(context, &c, &drawn);
+  const float wide = drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2)];
+  assert_true(wide != before);
+  lamps[1].cone_angle = 0.0;
+  case_render(context, &c, &drawn);
+  assert_true(drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2)] == wide);
+  c.volume.spacing[0] = 0.7; /* lengths are the world's */
+  c.volume.spacing[1] = 1.6;
+  const double turned[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
+  memcpy(c.volume.matrix, turned, sizeof turned);
+  case_camera(context, &c, 3, 1);
+  c.options.sample_distance = 0.2;
+  lamps[1] = (stratus_light){ .vector = { 60, 40, 930 }, .color = { 30, 50, 15 }, .positional = 1, .attenuation = { 0.1, 0.2, 0.02 } };
+  lit_psnr("dimmed; uneven, turned, mirrored and sheared", context, &c, MIDPOINT_DB);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void what_is_wrong_with_a_lamp_is_said(void** state)
+{
+  (void)state;
+  static const struct {
+    double attenuation, angle, axis, exponent;
+    const char* word;
+  } wrong[] = { { -0.25, 0, 0, 0, "-0.25" }, { NAN, 0, 0, 0, "nan" }, { 0, -7, 1, 0, "-7" }, { 0, INFINITY, 1, 0, "inf" },
+    { 0, 30, 0, 1, "(0, 0, 0)" }, { 0, 30, NAN, 1, "nan" }, { 0, 30, 1, -2, "-2" } };
+  stratus_context* context = case_context("host", 1);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 5, 6, 7, 5);
+  shine(&c);
+  c.options.shading.light_count = 1;
+  stratus_ray_caster* caster = NULL;
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+    for (int positional = 0; positional < 2; ++positional) { /* what a directional light does not read is not checked */
+      c.options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 },
+        .color = { 1, 1, 1 },
+        .positional = positional,
+        .attenuation = { wrong[i].attenuation },
+        .cone_angle = wrong[i].angle,
+        .axis = { 0, wrong[i].axis },
+        .cone_exponent = wrong[i].exponent };
+      assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL),
+        positional ? STRATUS_INVALID_ARGUMENT : STRATUS_OK);
+      assert_true(!positional || strstr(stratus_context_message(context), wrong[i].word));
+    }
+  }
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 /* Borders, cell data, nearest values and generic fetches are lit. */
 static void border_voxels_and_every_type_are_lit(void** state)
 {
@@ -282,6 +355,8 @@ int test_ray_shading(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pictures_are_lit_as_the_reference_lights_them),
+    cmocka_unit_test(lights_are_dimmed_and_have_cones_as_the_reference_says),
+    cmocka_unit_test(what_is_wrong_with_a_lamp_is_said),
     cmocka_unit_test(border_voxels_and_every_type_are_lit),
     cmocka_unit_test(no_structure_thread_or_instruction_set_changes_a_bit),
     cmocka_unit_test(each_number_of_the_shading_has_its_effect),

@@ -159,7 +159,7 @@ void fuzz_volume_changes(fuzz* f, fuzz_field* field); /* writes other values at 
 void fuzz_row_changes(fuzz* f, fuzz_field* row);
 stratus_transfer fuzz_transfer(fuzz* f, double low, double high, double edge);
 /* An array of `count` transfer functions at a guard page. */
-const stratus_transfer* fuzz_transfers(fuzz* f, int count, bool labels, double low, double high, double edge);
+const stratus_transfer* fuzz_transfers(fuzz* f, int count, double low, double high, double edge);
 void fuzz_matrix(fuzz* f, double matrix[16]);
 stratus_camera fuzz_camera(fuzz* f, const double bounds[6]);
 /* A picture of this size to draw into. All its buffers are at guard pages, and a draw must overwrite them. */

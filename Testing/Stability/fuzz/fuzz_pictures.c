@@ -238,7 +238,7 @@ static const stratus_transfer* choose_transfers(fuzz* f, const picture_case* c)
   const stratus_ray_cast_options* o = &c->options;
   const int labels = o->label_count >= 1 && o->label_count <= 255 && o->mask ? o->label_count + 1 : 1;
   const stratus_transfer* transfers =
-    fuzz_transfers(f, c->components > 1 && !o->dependent ? c->components : labels, labels > 1, c->field.low, c->field.high, c->field.edge);
+    fuzz_transfers(f, c->components > 1 && !o->dependent ? c->components : labels, c->field.low, c->field.high, c->field.edge);
   return transfers;
 }
 

@@ -188,7 +188,7 @@ static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const s
 static stratus_occupancy* make_shown(fuzz* f, const fuzz_field* field, const stratus_value_range* ranges)
 {
   stratus_occupancy* occupancy = NULL;
-  const stratus_transfer* transfer = fuzz_transfers(f, 1, false, field->low, field->high, field->edge);
+  const stratus_transfer* transfer = fuzz_transfers(f, 1, field->low, field->high, field->edge);
   const stratus_sampling sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_PREINTEGRATED + 1);
   (void)STATUS(stratus_transfer_check(f->context, transfer));
   const stratus_status status = CREATE(&occupancy, stratus_occupancy_create(f->context, ranges, transfer, sampling, &occupancy));

@@ -38,7 +38,7 @@ static void choose_view(fuzz* f, tetra_case* c)
   c->no_options = fuzz_chance(f, 0.02);
   c->options = c->no_options ? stratus_tetra_options_default() : o;
   c->camera = fuzz_camera(f, c->mesh.bounds);
-  c->transfer = fuzz_transfers(f, 1, false, c->mesh.low, c->mesh.high, c->mesh.edge);
+  c->transfer = fuzz_transfers(f, 1, c->mesh.low, c->mesh.high, c->mesh.edge);
 }
 
 static stratus_status draw(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image,

@@ -54,7 +54,7 @@ static stratus_status make_of_volume(fuzz* f, tree_case* c)
   c->field = fuzz_volume(f, 12, 1);
   c->criterion = stratus_criterion_default();
   if (fuzz_chance(f, 0.5)) {
-    c->criterion.transfer = fuzz_transfers(f, 1, false, c->field.low, c->field.high, c->field.edge);
+    c->criterion.transfer = fuzz_transfers(f, 1, c->field.low, c->field.high, c->field.edge);
   } else {
     c->criterion.lower = fuzz_real(f, c->field.low, c->field.high);
   }

@@ -368,15 +368,11 @@ stratus_transfer fuzz_transfer(fuzz* f, double low, double high, double edge)
   return t;
 }
 
-const stratus_transfer* fuzz_transfers(fuzz* f, int count, bool labels, double low, double high, double edge)
+const stratus_transfer* fuzz_transfers(fuzz* f, int count, double low, double high, double edge)
 {
   stratus_transfer* transfers = calloc((size_t)count, sizeof *transfers);
   for (int i = 0; transfers && i < count; ++i) {
     transfers[i] = fuzz_transfer(f, low, high, edge);
-    if (i > 0 && labels) { /* the first component's gradient opacity counts for all */
-      transfers[i].gradient = NULL;
-      transfers[i].gradient_count = 0;
-    }
   }
   const stratus_transfer* result = fuzz_input(f, transfers, (size_t)count * sizeof *transfers);
   free(transfers);

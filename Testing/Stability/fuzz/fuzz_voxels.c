@@ -89,7 +89,7 @@ static stratus_status make_of_volume(fuzz* f, voxel_set* s, int largest)
   stratus_criterion criterion = CALL(stratus_criterion_default());
   const stratus_volume* volume = fuzz_pointer(f, FUZZ_INPUT(f, field.view));
   if (fuzz_chance(f, 0.5)) {
-    criterion.transfer = fuzz_transfers(f, 1, false, field.low, field.high, field.edge);
+    criterion.transfer = fuzz_transfers(f, 1, field.low, field.high, field.edge);
   } else {
     criterion.lower = fuzz_chance(f, 0.3) ? -INFINITY : fuzz_real(f, field.low, field.high);
     criterion.upper = fuzz_chance(f, 0.3) ? INFINITY : fuzz_real(f, fmax(field.low, criterion.lower), field.high);

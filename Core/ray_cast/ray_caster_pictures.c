@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Draws what is asked for: one picture, or, in modes that find one value a ray, one of each independent component. Such a component has a
+ * caster of its own, which keeps its structures, and the pictures are added. */
+#include "picture.h"
+#include "ray_caster.h"
+#include "ray_shading_table.h"
+
+#include <string.h>
+
+static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  const bool one_value = options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM ||
+    options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
+  return one_value && stratus_volume_components(volume) > 1 && !options->dependent;
+}
+
+/* Adds a component's picture. Sums and means are opaque wherever one of them is; the alphas of extremes add up, as their colours do. */
+static void add_picture(const stratus_image* sum, const stratus_image* part, float weight, bool opaque)
+{
+  const size_t pixels = (size_t)sum->width * (size_t)sum->height;
+  for (size_t i = 0; i < pixels; ++i) {
+    float* to = sum->rgba + 4 * i;
+    const float* from = part->rgba + 4 * i;
+    for (size_t k = 0; k < 3; ++k) {
+      to[k] = fminf(to[k] + weight * from[k], 1.0f);
+    }
+    to[3] = opaque ? fmaxf(to[3], from[3]) : fminf(to[3] + weight * from[3], 1.0f);
+    if (sum->depth) {
+      sum->depth[i] = fminf(sum->depth[i], part->depth[i]);
+    }
+    if (sum->samples) {
+      sum->samples[i] += part->samples[i];
+    }
+  }
+}
+
+static void fill_bytes(const stratus_image* image)
+{
+  const size_t values = 4 * (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; image->rgba8 && i < values; ++i) {
+    image->rgba8[i] = (uint8_t)(image->rgba[i] * 255.0f + 0.5f);
+  }
+}
+
+/* Widens a window of pixels, x0, x1, y0, y1, by another; either may be empty. */
+static void add_window(int window[4], const int other[4])
+{
+  if (other[0] >= other[1] || other[2] >= other[3]) {
+    return;
+  }
+  const bool none = window[0] >= window[1] || window[2] >= window[3];
+  for (int side = 0; side < 4; ++side) {
+    const bool farther = side % 2 ? other[side] > window[side] : other[side] < window[side];
+    window[side] = none || farther ? other[side] : window[side];
+  }
+}
+
+static void add_report(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
+{
+  sum->rays += part->rays;
+  sum->samples += part->samples;
+  sum->skipped += part->skipped;
+  sum->lookups += part->lookups;
+  sum->differing_pixels += part->differing_pixels;
+  sum->blocks += part->blocks;
+  sum->occupied_blocks += part->occupied_blocks;
+  sum->range_builds += part->range_builds;
+  sum->table_builds += part->table_builds;
+  sum->occupancy_builds += part->occupancy_builds;
+  sum->structure_builds += part->structure_builds;
+  sum->uploads += part->uploads;
+  sum->range_ms += part->range_ms;
+  sum->table_ms += part->table_ms;
+  sum->occupancy_ms += part->occupancy_ms;
+  sum->structure_ms += part->structure_ms;
+  sum->upload_ms += part->upload_ms;
+  sum->cast_ms += part->cast_ms;
+  sum->probe_ms += part->probe_ms;
+  sum->structure_bytes += part->structure_bytes;
+  sum->sample_distance = fmin(sum->sample_distance, part->sample_distance);
+  sum->expected_error = fmax(sum->expected_error, part->expected_error);
+  sum->tolerance_met = sum->tolerance_met && part->tolerance_met;
+  sum->probe_builds += part->probe_builds;
+  sum->probe_samples += part->probe_samples;
+  add_window(sum->window, part->window);
+}
+
+/* In the report, counts and times are sums, the choices those of the first component. */
+static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  const bool opaque = options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
+  stratus_image part = *image;
+  void *rgba = NULL, *depth = NULL, *samples = NULL;
+  stratus_status status;
+  part.rgba8 = NULL;
+  TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
+  part.rgba = rgba;
+  if (image->depth) {
+    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(float), &depth));
+    part.depth = depth;
+  }
+  if (image->samples) {
+    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(uint32_t), &samples));
+    part.samples = samples;
+  }
+  stratus_image_clear(image);
+  for (int c = 0; c < stratus_volume_components(volume); ++c) {
+    const stratus_volume view = stratus_volume_component(volume, c);
+    stratus_ray_cast_report mine;
+    if (!caster->parts[c]) {
+      TRY_CLEANUP(stratus_ray_caster_create(caster->context, &caster->parts[c]));
+    }
+    TRY_CLEANUP(stratus_ray_render_one(caster->parts[c], &view, transfer + c, camera, options, &part, &mine));
+    add_picture(image, &part, (float)transfer[c].weight, opaque);
+    if (c == 0) {
+      *report = mine;
+    } else {
+      add_report(report, &mine);
+    }
+  }
+  fill_bytes(image);
+cleanup:
+  stratus_release(caster->context, rgba);
+  stratus_release(caster->context, depth);
+  stratus_release(caster->context, samples);
+  return status;
+}
+
+stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  stratus_ray_cast_report mine;
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  options = options ? options : &defaults;
+  TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
+  TRY(stratus_image_check(caster->context, image));
+  TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
+  if (report) {
+    *report = mine;
+  }
+  return STRATUS_OK;
+}
