@@ -141,7 +141,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     error = stratus_context_message(this->Context.Get());
     return false;
   }
-  this->WarnOfGradientOpacity(property);
+  this->WarnOfGradientOpacity(prop->GetProperty());
   this->OfferTree();
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
