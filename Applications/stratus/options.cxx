@@ -36,8 +36,8 @@ std::string help()
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf and what else VTK reads as an image)
 or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be drawn or
 told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf,
-TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam, system/controlDict) or EnSight
-(.case).
+TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,
+system/controlDict) or EnSight (.case).
 
 What is drawn
   --array NAME            point or cell array of one component (default: the active scalars, else the first that fits); --variable is the

@@ -432,7 +432,7 @@ void Lamps()
   lamp->SetPosition(40, 60, 50);
   lamp->SetFocalPoint(14, 14, 13);
   lamp->SetIntensity(30);
-  lamp->SetConeAngle(10);
+  lamp->SetConeAngle(5);
   lamp->SetExponent(20);
   lamp->SetAttenuationValues(0.2, 0.1, 0.01);
   scene.Renderer->RemoveAllLights();

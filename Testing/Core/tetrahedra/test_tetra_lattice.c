@@ -111,7 +111,7 @@ static void is_right(stratus_context* context, bool marches_listed, const char* 
     tetra_camera(context, &c.listed, 4, view, view == 3);
     tetra_reference(&c.listed, reference, NULL);
     for (int method = STRATUS_TETRA_METHOD_MARCH; method <= STRATUS_TETRA_METHOD_PROJECT; ++method) {
-      draw_lattice(context, method, &ours);
+      draw_lattice(context, (stratus_tetra_method)method, &ours);
       const double error = tetra_error(ours.rgba, reference, &largest);
       if (!(error < 0.15)) {
         print_error("%s, view %d, method %d: %.3f of 255, at most %.3f\n", what, view, method, error, largest);
@@ -208,7 +208,7 @@ static void collapsed_cells(void** state)
     tetra_camera(*state, &c.listed, 4, view, 0);
     tetra_reference(&c.listed, reference, NULL);
     for (int method = STRATUS_TETRA_METHOD_MARCH; method <= STRATUS_TETRA_METHOD_PROJECT; ++method) {
-      draw_lattice(*state, method, &ours);
+      draw_lattice(*state, (stratus_tetra_method)method, &ours);
       assert_true(tetra_error(ours.rgba, reference, &largest) < 0.15);
       assert_true(ours.report.flat > 0);
       assert_int_equal(ours.report.stuck, 0);
@@ -290,7 +290,7 @@ static void memory_of_a_cell(void** state)
   tetra_camera(*state, &c.listed, 4, 0, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
   for (int method = STRATUS_TETRA_METHOD_AUTO; method <= STRATUS_TETRA_METHOD_PROJECT; method += 2) {
-    c.listed.options.method = method;
+    c.listed.options.method = (stratus_tetra_method)method;
     assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
     assert_int_equal(
       stratus_tetra_caster_render(caster, &mesh, &c.listed.transfer, &c.listed.camera, &c.listed.options, &image, &report), STRATUS_OK);
