@@ -247,7 +247,6 @@ void GradientOpacityOfOpacities()
 // 255.
 double BesideVTK(Scene& scene, double& largest, int blend = vtkVolumeMapper::COMPOSITE_BLEND)
 {
-  scene.Render(); // VTK's mapper takes the window's aspect from the frame before
   const std::vector<unsigned char> ours = (scene.Render(), scene.Bytes());
   vtkNew<vtkFixedPointVolumeRayCastMapper> fixed;
   fixed->SetInputData(scene.Image);
@@ -274,7 +273,7 @@ double BesideVTK(Scene& scene, double& largest, int blend = vtkVolumeMapper::COM
 
 void ComponentsByTheirShare()
 {
-  Scene scene;
+  Scene scene(140, 140); // square: VTK's mapper takes another window's aspect in its first picture
   vtkVolumeProperty* property = scene.Volume->GetProperty();
   const std::vector<float> single = scene.Picture();
   vtkNew<vtkFloatArray> three;
@@ -315,7 +314,7 @@ void ComponentsByTheirShare()
 // Three fields, of which each has colours of its own, by one value a ray.
 void ComponentsOfOneValue()
 {
-  Scene scene;
+  Scene scene(140, 140); // square: VTK's mapper takes another window's aspect in its first picture
   vtkVolumeProperty* property = scene.Volume->GetProperty();
   vtkNew<vtkUnsignedCharArray> three; // VTK's mapper shifts and scales other types
   three->SetNumberOfComponents(3);
