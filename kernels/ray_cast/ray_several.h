@@ -516,6 +516,7 @@ INLINE void several_number(const several_source* from, several_volume* volumes, 
       least = meets[n][lane] && whole[n][lane] < least ? whole[n][lane] : least;
     }
   }
+  least = least < 1e300 ? least : 0.0; /* no ray meets any volume */
   for (int n = 0; n < count; ++n) {
     several_volume* v = &volumes[n];
     int offset[STRATUS_WIDTH];
