@@ -8,6 +8,8 @@
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
@@ -94,6 +96,16 @@ vtkDataSet* vtkStratusAsImage(vtkDataObject* object)
 {
   vtkDataSet* image = vtkImageData::SafeDownCast(object);
   return image ? image : vtkRectilinearGrid::SafeDownCast(object);
+}
+
+void vtkStratusMakeOutput(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* input = vtkStratusAsImage(vtkDataObject::GetData(inputs[0]));
+  vtkDataObject* output = vtkDataObject::GetData(outputs);
+  if (!output || (input && output->GetDataObjectType() != input->GetDataObjectType())) {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(input ? input->NewInstance() : vtkImageData::New());
+    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
 }
 
 std::string vtkStratusArrayNames(vtkDataSet* image)

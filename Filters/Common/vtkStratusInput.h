@@ -19,6 +19,7 @@ class vtkDataArray;
 class vtkDataObject;
 class vtkDataSet;
 class vtkImageData;
+class vtkInformationVector;
 class vtkMatrix4x4;
 class vtkPiecewiseFunction;
 class vtkRectilinearGrid;
@@ -84,5 +85,8 @@ VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkDataSet* image);
 VTK_STRATUS_PRIVATE double vtkStratusPosition(const stratus_volume& volume, int axis, double index);
 // Returns the data set where it is one that vtkStratusImageView takes, an image or a rectilinear grid, else nullptr.
 VTK_STRATUS_PRIVATE vtkDataSet* vtkStratusAsImage(vtkDataObject* object);
+// Makes a filter's first output, where it is not there yet, of its first input's class; an image where that is no such data set, which is
+// refused later.
+VTK_STRATUS_PRIVATE void vtkStratusMakeOutput(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 #endif

@@ -257,15 +257,7 @@ vtkTypeBool vtkStratusDistanceMapFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())) {
-    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-    vtkDataObject* output = vtkDataObject::GetData(outputs);
-    if (!vtkStratusAsImage(input)) {
-      input = nullptr; // refused later; until then the output is an image
-    }
-    if (!output || (input && output->GetDataObjectType() != input->GetDataObjectType())) {
-      auto made = vtkSmartPointer<vtkDataObject>::Take(input ? input->NewInstance() : vtkImageData::New());
-      outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
-    }
+    vtkStratusMakeOutput(inputs, outputs);
   }
   return this->Superclass::ProcessRequest(request, inputs, outputs);
 }

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusPicture.h"
 
+#include "vtkAbstractMapper.h"
 #include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkMapper.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkPropCollection.h"
 #include "vtkProperty.h"
@@ -317,6 +321,29 @@ const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Oth
   return this->OpaqueDepth.data();
 }
 
+stratus_image vtkStratusPicture::MakeRoom(std::vector<float>& rgba, std::vector<float>& depth, const float* opaqueDepth,
+  std::vector<uint32_t>* samples, std::vector<unsigned char>* bytes) const
+{
+  const size_t pixels = static_cast<size_t>(this->Size[0]) * this->Size[1];
+  stratus_image image = stratus_image();
+  rgba.resize(4 * pixels);
+  depth.resize(pixels);
+  image.width = this->Size[0];
+  image.height = this->Size[1];
+  image.rgba = rgba.data();
+  image.depth = depth.data();
+  image.opaque_depth = opaqueDepth;
+  if (samples) {
+    samples->resize(pixels);
+    image.samples = samples->data();
+  }
+  if (bytes) {
+    bytes->resize(4 * pixels);
+    image.rgba8 = bytes->data();
+  }
+  return image;
+}
+
 void vtkStratusPicture::ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const
 {
   const stratus_camera& camera = this->Camera;
@@ -377,4 +404,27 @@ vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
     image->GetPointData()->AddArray(counts);
   }
   return image;
+}
+
+bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[4], int& count, std::string& error)
+{
+  vtkPlaneCollection* given = mapper->GetClippingPlanes();
+  count = given ? given->GetNumberOfItems() : 0;
+  if (count > most) {
+    error = std::to_string(count) + " clipping planes are not supported, at most " + std::to_string(most) + " are";
+    return false;
+  }
+  for (int p = 0; p < count; ++p) {
+    vtkPlane* plane = given->GetItem(p);
+    if (plane->GetTransform()) {
+      error = "clipping planes with a transform are not supported, only those of origin and normal";
+      return false;
+    }
+    double normal[3], origin[3];
+    plane->GetNormal(normal);
+    plane->GetOrigin(origin);
+    std::copy(normal, normal + 3, planes[p]);
+    planes[p][3] = -vtkMath::Dot(normal, origin);
+  }
+  return true;
 }

@@ -11,8 +11,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
+class vtkAbstractMapper;
 class vtkImageData;
 class vtkProp;
 class vtkRenderer;
@@ -47,6 +49,9 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // Returns the opaque depth at each ray, valid until the next call; nullptr where nothing can have been drawn before. Reading it costs as
   // much as a simple scene, so only the part of the others is read.
   const float* ReadOpaqueDepth(vtkRenderer* renderer, const Others& others);
+  // Makes room for a picture of these rays, and tells the core where it is. The last two may be nullptr.
+  stratus_image MakeRoom(std::vector<float>& rgba, std::vector<float>& depth, const float* opaqueDepth,
+    std::vector<uint32_t>* samples = nullptr, std::vector<unsigned char>* bytes = nullptr) const;
   // Converts distances along the rays to window depths, 0..1; 1 where nothing is.
   void ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const;
   // Makes an image of the whole viewport from values per ray: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
@@ -60,5 +65,9 @@ private:
   double WorldToClip[16];
   std::vector<float> WindowDepth, OpaqueDepth, PartDepth;
 };
+
+// Converts a mapper's clipping planes to a x + b y + c z + d >= 0, in the world, of which there may be `most`. Returns false, with the
+// reason in `error`, for more of them and for one with a transform.
+VTK_STRATUS_PRIVATE bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[4], int& count, std::string& error);
 
 #endif

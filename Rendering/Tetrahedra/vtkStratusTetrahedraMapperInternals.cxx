@@ -7,8 +7,6 @@
 #include "vtkDataObjectTree.h"
 #include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
-#include "vtkPlane.h"
-#include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkStructuredGrid.h"
@@ -68,24 +66,8 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
 
 bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options& options, std::string& error) const
 {
-  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
-  const int count = planes ? planes->GetNumberOfItems() : 0;
-  if (count > STRATUS_TETRA_CLIP_PLANES_MAX) {
-    error = std::to_string(count) + " clipping planes are not supported, at most " + std::to_string(STRATUS_TETRA_CLIP_PLANES_MAX) + " are";
+  if (!vtkStratusClipPlanes(this->Mapper, STRATUS_TETRA_CLIP_PLANES_MAX, options.clip_planes, options.clip_plane_count, error)) {
     return false;
-  }
-  options.clip_plane_count = count;
-  for (int p = 0; p < count; ++p) {
-    vtkPlane* plane = planes->GetItem(p);
-    if (plane->GetTransform()) {
-      error = "clipping planes with a transform are not supported, only those of origin and normal";
-      return false;
-    }
-    double normal[3], origin[3];
-    plane->GetNormal(normal);
-    plane->GetOrigin(origin);
-    std::copy(normal, normal + 3, options.clip_planes[p]);
-    options.clip_planes[p][3] = -vtkMath::Dot(normal, origin);
   }
   options.crop = this->Mapper->Cropping ? 1 : 0;
   std::copy_n(this->Mapper->CroppingRegionPlanes, 6, options.crop_bounds);
@@ -201,15 +183,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
 bool vtkStratusTetrahedraMapper::Internals::Cast(
   vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error)
 {
-  const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
-  this->Rgba.resize(4 * pixels);
-  this->Depth.resize(pixels);
-  stratus_image image = stratus_image();
-  image.width = this->Picture.Size[0];
-  image.height = this->Picture.Size[1];
-  image.rgba = this->Rgba.data();
-  image.depth = this->Depth.data();
-  image.opaque_depth = opaqueDepth;
+  const stratus_image image = this->Picture.MakeRoom(this->Rgba, this->Depth, opaqueDepth);
   stratus_tetra_options options = stratus_tetra_options_default();
   options.termination = this->Mapper->Termination;
   options.tolerance = this->Mapper->ImageErrorTolerance;

@@ -170,17 +170,8 @@ void vtkStratusMultiVolume::Internals::LearnTime()
 
 bool vtkStratusMultiVolume::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, bool bytes, std::string& error)
 {
-  const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
-  this->Depth.resize(pixels);
-  this->Samples.resize(this->HasSamples ? pixels : 0);
-  stratus_image image = stratus_image();
-  image.width = this->Picture.Size[0];
-  image.height = this->Picture.Size[1];
-  image.rgba = this->Rgba.data();
-  image.depth = this->Depth.data();
-  image.opaque_depth = opaqueDepth;
-  image.samples = this->Samples.empty() ? nullptr : this->Samples.data();
-  image.rgba8 = bytes ? this->Bytes.data() : nullptr;
+  const stratus_image image = this->Picture.MakeRoom(
+    this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
   this->Renderer = renderer;
   const stratus_status status = stratus_ray_caster_render_several(this->Inputs, this->Count, &this->Picture.Camera, &image, reports);

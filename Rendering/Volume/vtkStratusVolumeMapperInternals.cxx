@@ -7,8 +7,6 @@
 #include "vtkImageData.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
-#include "vtkPlane.h"
-#include "vtkPlaneCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkShaderProperty.h"
@@ -223,30 +221,6 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bo
   return array;
 }
 
-bool vtkStratusVolumeMapper::Internals::SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const
-{
-  vtkPlaneCollection* planes = this->Mapper->GetClippingPlanes();
-  const int count = planes ? planes->GetNumberOfItems() : 0;
-  if (count > STRATUS_CLIP_PLANES_MAX) {
-    error = std::to_string(count) + " clipping planes are not supported, at most " + std::to_string(STRATUS_CLIP_PLANES_MAX) + " are";
-    return false;
-  }
-  options.clip_plane_count = count;
-  for (int p = 0; p < count; ++p) {
-    vtkPlane* plane = planes->GetItem(p);
-    if (plane->GetTransform()) {
-      error = "clipping planes with a transform are not supported, only those of origin and normal";
-      return false;
-    }
-    double normal[3], origin[3];
-    plane->GetNormal(normal);
-    plane->GetOrigin(origin);
-    std::copy(normal, normal + 3, options.clip_planes[p]);
-    options.clip_planes[p][3] = -(normal[0] * origin[0] + normal[1] * origin[1] + normal[2] * origin[2]);
-  }
-  return true;
-}
-
 bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   vtkImageData* mask = this->Mapper->MaskInput;
@@ -327,5 +301,6 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   }
   options.jitter = mapper->UseJittering ? 1 : 0;
   options.jitter_seed = mapper->JitterSeed;
-  return this->SetMask(property, options, error) && this->SetContours(property, options, error) && this->SetClipPlanes(options, error);
+  return this->SetMask(property, options, error) && this->SetContours(property, options, error) &&
+    vtkStratusClipPlanes(this->Mapper, STRATUS_CLIP_PLANES_MAX, options.clip_planes, options.clip_plane_count, error);
 }

@@ -80,7 +80,6 @@ private:
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   void OfferTree();
 
-  bool SetClipPlanes(stratus_ray_cast_options& options, std::string& error) const;
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);

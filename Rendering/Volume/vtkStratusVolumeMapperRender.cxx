@@ -94,17 +94,8 @@ vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRende
 bool vtkStratusVolumeMapper::Internals::Cast(
   vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error)
 {
-  const size_t pixels = static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1];
-  this->Depth.resize(pixels);
-  this->Samples.resize(this->HasSamples ? pixels : 0);
-  stratus_image image = stratus_image();
-  image.width = this->Picture.Size[0];
-  image.height = this->Picture.Size[1];
-  image.rgba = this->Rgba.data();
-  image.depth = this->Depth.data();
-  image.opaque_depth = opaqueDepth;
-  image.samples = this->Samples.empty() ? nullptr : this->Samples.data();
-  image.rgba8 = bytes ? this->Bytes.data() : nullptr;
+  const stratus_image image = this->Picture.MakeRoom(
+    this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   this->Renderer = renderer;
   stratus_context_start_build_report(this->Context.Get());
   const stratus_status status = stratus_ray_caster_render(

@@ -11,33 +11,10 @@
 #include <limits>
 
 namespace {
-struct Functions {
-  explicit Functions(Scene& scene)
-  {
-    for (int n = 0; n < scene.Opacity->GetSize(); ++n) {
-      double node[4];
-      scene.Opacity->GetNodeValue(n, node);
-      this->Opacity.insert(this->Opacity.end(), node, node + 2);
-    }
-    for (int n = 0; n < scene.Color->GetSize(); ++n) {
-      double node[6];
-      scene.Color->GetNodeValue(n, node);
-      this->Color.insert(this->Color.end(), node, node + 4);
-    }
-    this->Transfer.opacity = this->Opacity.data();
-    this->Transfer.opacity_count = this->Opacity.size() / 2;
-    this->Transfer.color = this->Color.data();
-    this->Transfer.color_count = this->Color.size() / 4;
-    this->Transfer.unit_distance = scene.Volume->GetProperty()->GetScalarOpacityUnitDistance();
-  }
-  std::vector<double> Opacity, Color;
-  stratus_transfer Transfer = stratus_transfer_default();
-};
-
 // The reference's picture of what `options` ask for.
 std::vector<float> Expected(Scene& scene, const stratus_ray_cast_options& options)
 {
-  const Functions functions(scene);
+  const SceneFunctions functions(scene);
   vtkFloatArray* values = vtkFloatArray::SafeDownCast(scene.Image->GetPointData()->GetScalars());
   const stratus_volume volume = ReferenceVolume(scene.Image, values, false, scene.Volume->GetMatrix());
   const stratus_camera camera = ReferenceCamera(scene.Renderer);

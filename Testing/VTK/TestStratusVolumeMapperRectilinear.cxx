@@ -93,33 +93,10 @@ double LightOf(const std::vector<float>& picture)
   return sum;
 }
 
-struct Functions {
-  explicit Functions(Scene& scene)
-  {
-    for (int n = 0; n < scene.Opacity->GetSize(); ++n) {
-      double node[4];
-      scene.Opacity->GetNodeValue(n, node);
-      this->Opacity.insert(this->Opacity.end(), node, node + 2);
-    }
-    for (int n = 0; n < scene.Color->GetSize(); ++n) {
-      double node[6];
-      scene.Color->GetNodeValue(n, node);
-      this->Color.insert(this->Color.end(), node, node + 4);
-    }
-    this->Transfer.opacity = this->Opacity.data();
-    this->Transfer.opacity_count = this->Opacity.size() / 2;
-    this->Transfer.color = this->Color.data();
-    this->Transfer.color_count = this->Color.size() / 4;
-    this->Transfer.unit_distance = scene.Volume->GetProperty()->GetScalarOpacityUnitDistance();
-  }
-  std::vector<double> Opacity, Color;
-  stratus_transfer Transfer = stratus_transfer_default();
-};
-
 // Draws by the default options, which keep 60 dB, and compares with the reference.
 void Against(const char* what, GridScene& scene, bool cells, const std::function<void(reference_scene&)>& more = nullptr)
 {
-  const Functions functions(scene);
+  const SceneFunctions functions(scene);
   const std::vector<float> picture = scene.Picture();
   const stratus_volume volume = scene.Volume0(cells);
   const stratus_camera camera = ReferenceCamera(scene.Renderer);
@@ -230,7 +207,7 @@ void Modes()
     { vtkVolumeMapper::ISOSURFACE_BLEND, STRATUS_MODE_ISOSURFACE } };
   for (const auto& mode : modes) {
     GridScene scene(20.0);
-    const Functions functions(scene);
+    const SceneFunctions functions(scene);
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     options.mode = mode.second;
     options.contour_count = 1;

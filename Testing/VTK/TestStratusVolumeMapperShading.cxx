@@ -177,6 +177,31 @@ vtkSmartPointer<vtkFloatArray> TwoComponents(vtkImageData* image)
   return array;
 }
 
+// The second component's functions, and both components' in the core's terms.
+struct TwoMedia {
+  explicit TwoMedia(vtkVolumeProperty* property)
+  {
+    this->Opacity->AddPoint(1.0, 0.0);
+    this->Opacity->AddPoint(10.0, 0.4);
+    this->Green->AddRGBPoint(0.0, 0.0, 1.0, 0.2);
+    property->SetScalarOpacity(1, this->Opacity);
+    property->SetColor(1, this->Green);
+    property->SetScalarOpacityUnitDistance(1, 2.0);
+    for (int c = 0; c < 2; ++c) {
+      this->Transfers[c].opacity = this->Opacities[c];
+      this->Transfers[c].opacity_count = 3;
+      this->Transfers[c].color = this->Colors[c];
+      this->Transfers[c].color_count = c ? 1 : 3;
+      this->Transfers[c].unit_distance = c ? 2.0 : 1.5;
+    }
+  }
+  vtkNew<vtkPiecewiseFunction> Opacity;
+  vtkNew<vtkColorTransferFunction> Green;
+  const double Opacities[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 1.0, 0.0, 10.0, 0.4, 11.0, 0.4 } };
+  const double Colors[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 }, { 0.0, 0.0, 1.0, 0.2 } };
+  stratus_transfer Transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
+};
+
 double ComponentsPsnr(Scene& scene, vtkFloatArray* array, const stratus_transfer* transfers, int dependent)
 {
   stratus_volume volume;
@@ -197,45 +222,28 @@ void Components()
   const double single = scene.Light();
   const vtkSmartPointer<vtkFloatArray> array = TwoComponents(scene.Image);
   vtkVolumeProperty* property = scene.Volume->GetProperty();
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(1.0, 0.0);
-  opacity->AddPoint(10.0, 0.4);
-  vtkNew<vtkColorTransferFunction> green;
-  green->AddRGBPoint(0.0, 0.0, 1.0, 0.2);
-  property->SetScalarOpacity(1, opacity);
-  property->SetColor(1, green);
-  property->SetScalarOpacityUnitDistance(1, 2.0);
+  TwoMedia media(property);
   const double both = scene.Light();
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
   CHECK(both > 1.1 * single, "a second component adds no light: %g beside %g", both, single);
 
-  stratus_transfer transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
-  const double opacities[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 1.0, 0.0, 10.0, 0.4, 11.0, 0.4 } };
-  const double colors[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 }, { 0.0, 0.0, 1.0, 0.2 } };
-  for (int c = 0; c < 2; ++c) {
-    transfers[c].opacity = opacities[c];
-    transfers[c].opacity_count = 3;
-    transfers[c].color = colors[c];
-    transfers[c].color_count = c ? 1 : 3;
-    transfers[c].unit_distance = c ? 2.0 : 1.5;
-  }
-  double db = ComponentsPsnr(scene, array, transfers, 0);
+  double db = ComponentsPsnr(scene, array, media.Transfers, 0);
   std::printf("two independent components: %.1f dB\n", db);
   CHECK(db >= WantedDb, "%.1f dB", db);
   property->SetComponentWeight(1, 0.3);
-  transfers[1].weight = 0.3;
+  media.Transfers[1].weight = 0.3;
   CHECK(scene.Light() < 0.97 * both, "SetComponentWeight takes no light");
-  db = ComponentsPsnr(scene, array, transfers, 0);
+  db = ComponentsPsnr(scene, array, media.Transfers, 0);
   CHECK(db >= WantedDb, "with a weight: %.1f dB", db);
   property->SetComponentWeight(1, 0.0);
   CHECK(std::fabs(scene.Light() - single) < 1e-3 * single, "a component of weight 0 shows");
 
   property->IndependentComponentsOff();
-  property->SetScalarOpacity(opacity);
-  transfers[0].opacity = opacities[1];
+  property->SetScalarOpacity(media.Opacity);
+  media.Transfers[0].opacity = media.Opacities[1];
   scene.Render();
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
-  db = ComponentsPsnr(scene, array, transfers, 1);
+  db = ComponentsPsnr(scene, array, media.Transfers, 1);
   std::printf("two dependent components: %.1f dB\n", db);
   CHECK(db >= WantedDb, "%.1f dB", db);
   scene.Mapper->AuditOn();
@@ -373,24 +381,7 @@ void Materials()
   Fine(scene);
   const vtkSmartPointer<vtkFloatArray> array = TwoComponents(scene.Image);
   vtkVolumeProperty* property = scene.Volume->GetProperty();
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(1.0, 0.0);
-  opacity->AddPoint(10.0, 0.4);
-  vtkNew<vtkColorTransferFunction> green;
-  green->AddRGBPoint(0.0, 0.0, 1.0, 0.2);
-  property->SetScalarOpacity(1, opacity);
-  property->SetColor(1, green);
-  property->SetScalarOpacityUnitDistance(1, 2.0);
-  stratus_transfer transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
-  const double opacities[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 1.0, 0.0, 10.0, 0.4, 11.0, 0.4 } };
-  const double colors[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 }, { 0.0, 0.0, 1.0, 0.2 } };
-  for (int c = 0; c < 2; ++c) {
-    transfers[c].opacity = opacities[c];
-    transfers[c].opacity_count = 3;
-    transfers[c].color = colors[c];
-    transfers[c].color_count = c ? 1 : 3;
-    transfers[c].unit_distance = c ? 2.0 : 1.5;
-  }
+  TwoMedia media(property);
   for (int shining = 0; shining < 2; ++shining) { // the first component, too, may be the one that is not lit
     const stratus_material lit = { 1, 0.1, 0.6, 0.4, 9.0 }, plain = { 0, 0.1, 0.7, 0.2, 10.0 };
     stratus_material materials[2] = { plain, plain };
@@ -411,7 +402,7 @@ void Materials()
       volume.components = array->GetNumberOfComponents();
       volume.value_stride = volume.components;
       reference.volume = &volume;
-      reference.transfer = transfers;
+      reference.transfer = media.Transfers;
       reference.shading = &shading;
       reference.materials = materials;
     });

@@ -280,32 +280,40 @@ inline stratus_volume ReferenceVolume(vtkImageData* image, vtkFloatArray* values
   return volume;
 }
 
+// The functions of a scene's property in the core's terms.
+struct SceneFunctions {
+  explicit SceneFunctions(Scene& scene)
+  {
+    for (int n = 0; n < scene.Opacity->GetSize(); ++n) {
+      double node[4];
+      scene.Opacity->GetNodeValue(n, node);
+      this->Opacity.insert(this->Opacity.end(), node, node + 2);
+    }
+    for (int n = 0; n < scene.Color->GetSize(); ++n) {
+      double node[6];
+      scene.Color->GetNodeValue(n, node);
+      this->Color.insert(this->Color.end(), node, node + 4);
+    }
+    this->Transfer.opacity = this->Opacity.data();
+    this->Transfer.opacity_count = this->Opacity.size() / 2;
+    this->Transfer.color = this->Color.data();
+    this->Transfer.color_count = this->Color.size() / 4;
+    this->Transfer.unit_distance = scene.Volume->GetProperty()->GetScalarOpacityUnitDistance();
+  }
+  std::vector<double> Opacity, Color;
+  stratus_transfer Transfer = stratus_transfer_default();
+};
+
 // Returns the PSNR in dB of the scene's float picture against the reference at 1/16 voxel. `more` may add cropping, planes, opaque depth.
 inline double ReferencePsnr(Scene& scene, const std::function<void(reference_scene&)>& more = nullptr, vtkFloatArray* cellValues = nullptr)
 {
-  std::vector<double> opacity, color;
-  for (int n = 0; n < scene.Opacity->GetSize(); ++n) {
-    double node[4];
-    scene.Opacity->GetNodeValue(n, node);
-    opacity.insert(opacity.end(), node, node + 2);
-  }
-  for (int n = 0; n < scene.Color->GetSize(); ++n) {
-    double node[6];
-    scene.Color->GetNodeValue(n, node);
-    color.insert(color.end(), node, node + 4);
-  }
-  stratus_transfer transfer = stratus_transfer_default();
-  transfer.opacity = opacity.data();
-  transfer.opacity_count = opacity.size() / 2;
-  transfer.color = color.data();
-  transfer.color_count = color.size() / 4;
-  transfer.unit_distance = scene.Volume->GetProperty()->GetScalarOpacityUnitDistance();
+  const SceneFunctions functions(scene);
   vtkFloatArray* values = cellValues ? cellValues : vtkFloatArray::SafeDownCast(scene.Image->GetPointData()->GetScalars());
   const stratus_volume volume = ReferenceVolume(scene.Image, values, cellValues != nullptr, scene.Volume->GetMatrix());
   const stratus_camera camera = ReferenceCamera(scene.Renderer);
   reference_scene reference = reference_scene();
   reference.volume = &volume;
-  reference.transfer = &transfer;
+  reference.transfer = &functions.Transfer;
   reference.camera = &camera;
   reference.interpolation = scene.Volume->GetProperty()->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST
                                                                                                              : STRATUS_INTERPOLATION_LINEAR;
