@@ -332,14 +332,19 @@ static void pair_values(const stratus_pair pairs[3], double values[3])
   }
 }
 
+void stratus_ray_frame_table(const stratus_table* table, double tolerance, stratus_ray_cast_arguments* a)
+{
+  a->table = stratus_table_arguments_of(table);
+  const float stricter = (float)(TABLE_COLOR_ERROR / fmax(tolerance, TERMINATION_LEAST));
+  a->table.color_slope *= stricter;
+  a->table.color_most *= stricter;
+}
+
 void stratus_ray_frame_structures(const stratus_ray_grid* grid, const stratus_table* table, double tolerance,
   const stratus_occupancy* occupancy, const stratus_distance_map* map, stratus_ray_cast_arguments* a)
 {
   if (table) {
-    a->table = stratus_table_arguments_of(table);
-    const float stricter = (float)(TABLE_COLOR_ERROR / fmax(tolerance, TERMINATION_LEAST));
-    a->table.color_slope *= stricter;
-    a->table.color_most *= stricter;
+    stratus_ray_frame_table(table, tolerance, a);
   }
   a->map.structure = map != NULL;
   double lo[3], hi[3];

@@ -17,6 +17,8 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   bool* empty);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */
 double stratus_ray_termination(double tolerance);
+/* Sets the arguments of the table. */
+void stratus_ray_frame_table(const stratus_table* table, double tolerance, stratus_ray_cast_arguments* arguments);
 /* Sets the arguments of table and map, each unless NULL, and the window. grid: the caster's; may be NULL if map is. tolerance: decides into
  * how many pieces a deep segment is cut. */
 void stratus_ray_frame_structures(const stratus_ray_grid* grid, const stratus_table* table, double tolerance,

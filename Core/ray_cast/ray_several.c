@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "instruction_set.h"
+#include "matrix.h"
 #include "device.h"
 #include "picture.h"
 #include "ray_cast_rest.h"
@@ -13,6 +14,8 @@
 #include "ray_probe.h"
 #include "ray_several_host.h"
 #include "ray_shading_render.h"
+#include "table_fill.h"
+#include "tetra_caster.h"
 #include "tiles.h"
 
 #include <stdio.h>
@@ -27,11 +30,17 @@
 #define EVENT_COST 0.3
 #define GAIN 0.95
 
+/* Segments of the lattice to the length of a mesh where there are no volumes. */
+#define SEGMENTS_OF_MESHES 256.0
+
 /* What is made of one input for this picture. */
 typedef struct several_input {
   const stratus_ray_cast_input* of;
   stratus_ray_cast_options options; /* with the tolerance of a picture of several, and what all take from the first */
   stratus_ray_cast_report report;
+  stratus_tetra_options tetra_options; /* of a mesh, likewise */
+  stratus_tetra_frame frame;           /* of a mesh that shows */
+  bool shows;
   stratus_structure used;
   int stride, part; /* part: its number among those that are shown; -1: it is not */
   char why[192];
@@ -49,21 +58,30 @@ typedef struct several {
 
 /* ---- checks */
 
+static stratus_context* context_of(const stratus_ray_cast_input* input)
+{
+  return input->caster ? input->caster->context : input->tetra ? input->tetra->context : NULL;
+}
+
 static stratus_status check_numbers(const stratus_ray_cast_input* inputs, int count)
 {
-  stratus_context* context = inputs[0].caster->context;
+  stratus_context* context = context_of(inputs);
   if (count < 1 || count > STRATUS_SEVERAL_MAX) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d volumes, must be 1..%d", count, STRATUS_SEVERAL_MAX);
   }
-  for (int n = 1; n < count; ++n) {
-    if (!inputs[n].caster) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d has no ray caster: caster is NULL", n);
+  for (int n = 0; n < count; ++n) {
+    if (!inputs[n].caster && !inputs[n].tetra) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d has no ray caster: caster is NULL, and so is tetra", n);
     }
-    if (inputs[n].caster->context != context) {
+    if (context_of(&inputs[n]) != context) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the ray caster of volume %d is of another context than that of volume 0", n);
     }
+    if (inputs[n].caster && inputs[n].tetra) {
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "input %d has a ray caster and one of tetrahedra, must be a volume or a mesh", n);
+    }
     for (int other = 0; other < n; ++other) {
-      if (inputs[n].caster == inputs[other].caster) {
+      if (inputs[n].caster == inputs[other].caster && inputs[n].tetra == inputs[other].tetra) {
         return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volumes %d and %d have the same ray caster, each needs its own", other, n);
       }
     }
@@ -99,14 +117,51 @@ static stratus_status check_supported(stratus_context* context, int n, const sev
   return STRATUS_OK;
 }
 
+static stratus_status check_mesh(stratus_context* context, int n, const stratus_tetra_options* options)
+{
+  if (options->mode != STRATUS_TETRA_COMPOSITE) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s: only composite mixes", n, stratus_tetra_mode_name(options->mode));
+  }
+  if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);
+  }
+  return STRATUS_OK;
+}
+
+/* The bounds of an input in the world. Returns whether it has any. */
+static stratus_status bounds_of(const several* s, const several_input* in, double bounds[6], bool* any)
+{
+  *any = true;
+  if (!in->of->tetra) {
+    return stratus_volume_bounds(s->context, in->of->volume, bounds);
+  }
+  const stratus_tetra_mesh* mesh = in->of->tetra->mesh;
+  *any = in->shows;
+  for (int corner = 0; corner < 8 && *any; ++corner) {
+    double local[3], point[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      local[axis] = corner >> axis & 1 ? mesh->hi[axis] : mesh->lo[axis];
+    }
+    stratus_matrix_point(in->of->mesh->matrix, local, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds[2 * axis] = corner ? fmin(bounds[2 * axis], point[axis]) : point[axis];
+      bounds[2 * axis + 1] = corner ? fmax(bounds[2 * axis + 1], point[axis]) : point[axis];
+    }
+  }
+  return STRATUS_OK;
+}
+
 /* Refuses volumes between which a ray has more segments than can be numbered. */
 static stratus_status check_extent(const several* s)
 {
   double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, square = 0.0;
   for (int n = 0; n < s->count; ++n) {
     double bounds[6];
-    TRY(stratus_volume_bounds(s->context, s->inputs[n].of->volume, bounds));
-    for (int axis = 0; axis < 3; ++axis) {
+    bool any;
+    TRY(bounds_of(s, &s->inputs[n], bounds, &any));
+    for (int axis = 0; any && axis < 3; ++axis) {
       lo[axis] = fmin(lo[axis], bounds[2 * axis]);
       hi[axis] = fmax(hi[axis], bounds[2 * axis + 1]);
     }
@@ -114,7 +169,7 @@ static stratus_status check_extent(const several* s)
   for (int axis = 0; axis < 3; ++axis) {
     square += (hi[axis] - lo[axis]) * (hi[axis] - lo[axis]);
   }
-  if (!(sqrt(square) / s->step <= SEGMENTS_MOST)) {
+  if (isfinite(lo[0]) && !(sqrt(square) / s->step <= SEGMENTS_MOST)) {
     return stratus_fail(s->context, STRATUS_INVALID_ARGUMENT,
       "the volumes together are %g wide, too much for sample distance %g: at most %g of them", sqrt(square), s->step, SEGMENTS_MOST);
   }
@@ -122,6 +177,20 @@ static stratus_status check_extent(const several* s)
 }
 
 /* ---- what each volume brings */
+
+/* Updates what is built of a mesh, and makes its frame. */
+static stratus_status update_mesh(several* s, several_input* in)
+{
+  const stratus_tetra_subject of = { in->of->mesh, in->of->transfer, &in->tetra_options };
+  stratus_tetra_report report = { 0 };
+  TRY(stratus_tetra_caster_prepare(in->of->tetra, &of, s->camera, s->image, &in->frame, &in->shows, &report));
+  in->report.table_builds = report.table_builds;
+  in->report.structure_builds = report.mesh_builds;
+  in->report.table_ms = report.table_ms;
+  in->report.structure_ms = report.build_ms;
+  in->report.structure_bytes = report.bytes;
+  return STRATUS_OK;
+}
 
 /* Updates tables, structure and choice of one input. */
 static stratus_status update(several* s, several_input* in)
@@ -153,16 +222,33 @@ static int stride_of(const stratus_ray_caster* caster, double step)
 /* Chooses the lattice: segments of the shortest step that a volume has, or of a half, a third or a quarter of it where other volumes'
  * steps, whole numbers of segments, then come so much nearer to what they may be that fewer samples are taken. Volumes whose samples fall
  * together share a layer of light, which counts EVENT_COST of a sample. */
-static void choose_step(several* s)
+static stratus_status choose_step(several* s)
 {
-  double least = INFINITY, shortest = INFINITY;
+  double least = INFINITY, shortest = INFINITY, longest = 0.0;
   for (int n = 0; n < s->count; ++n) {
-    shortest = fmin(shortest, s->inputs[n].of->caster->choice.sample_distance);
+    const several_input* in = &s->inputs[n];
+    double bounds[6];
+    bool any = false;
+    if (in->of->caster) {
+      shortest = fmin(shortest, in->of->caster->choice.sample_distance);
+      continue;
+    }
+    TRY(bounds_of(s, in, bounds, &any));
+    for (int axis = 0; any && axis < 3; ++axis) {
+      longest = fmax(longest, bounds[2 * axis + 1] - bounds[2 * axis]);
+    }
+  }
+  if (!(shortest < INFINITY)) { /* meshes alone: the lattice is no more than their unit of length */
+    s->step = longest > 0.0 ? longest / SEGMENTS_OF_MESHES : 1.0;
+    return STRATUS_OK;
   }
   for (int parts = 1; parts <= PARTS_MOST; ++parts) {
     double samples = 0.0;
     bool together = true;
     for (int n = 0; n < s->count; ++n) {
+      if (!s->inputs[n].of->caster) {
+        continue;
+      }
       const int stride = stride_of(s->inputs[n].of->caster, shortest / parts);
       samples += (double)parts / stride;
       together = together && stride % parts == 0;
@@ -173,6 +259,7 @@ static void choose_step(several* s)
       s->step = shortest / parts;
     }
   }
+  return STRATUS_OK;
 }
 
 /* Makes the layers of a midpoint table: colour times optical depth, and optical depth, of each entry over a segment of the lattice. */
@@ -197,6 +284,39 @@ static stratus_status update_layers(stratus_ray_caster* caster, double step)
     caster->layers[e + 3] = tau;
   }
   return STRATUS_OK;
+}
+
+/* Sets what rays read of a mesh, unless they meet nothing of it. The arguments have what all rays share, and the table. */
+static void set_mesh(const several* s, several_input* in, int number, stratus_ray_cast_arguments* a, stratus_several_part* part)
+{
+  const stratus_image* image = s->image;
+  in->part = in->shows ? number : -1;
+  in->stride = 1;
+  if (!in->shows) {
+    return;
+  }
+  memset(a, 0, sizeof *a);
+  a->picture = in->frame.arguments.picture;
+  a->termination = in->frame.arguments.termination;
+  a->lattice.step = (float)s->step;
+  a->camera.window[1] = image->width;
+  a->camera.window[3] = image->height;
+  a->camera.has_opaque_depth = image->opaque_depth != NULL;
+  const stratus_ray_cast_options* first = &s->inputs[0].options;
+  stratus_ray_frame_table(in->frame.table, in->tetra_options.tolerance, a);
+  a->table.tau_scale *= (float)s->step; /* the table is of the world's unit of length */
+  *part = (stratus_several_part){ .frame = { .arguments = a,
+                                    .table = in->frame.table->sums,
+                                    .opaque_depth = image->opaque_depth,
+                                    .rgba = image->rgba,
+                                    .depth = image->depth,
+                                    .samples = image->samples,
+                                    .rgba8 = image->rgba8 },
+    .mesh = &in->frame,
+    .jitter = first->jitter,
+    .seed = (int)first->jitter_seed,
+    .stride = 1,
+    .preintegrated = 1 };
 }
 
 /* Sets what rays read of one input, unless they meet nothing of it. */
@@ -276,6 +396,10 @@ static stratus_status draw_on_device(several* s, const stratus_several_frame* fr
     if (in->part >= 0) {
       const stratus_several_part* part = &frame->volumes[in->part];
       const double start = stratus_now_ms();
+      if (part->mesh) {
+        snprintf(s->where, sizeof s->where, "drawn on the host: volume %d is a mesh, and the device draws none among several", n);
+        return STRATUS_OK;
+      }
       TRY(stratus_ray_device_send(part->caster, &part->frame, part->layers, &why_not));
       in->report.upload_ms += stratus_now_ms() - start;
     }
@@ -314,7 +438,9 @@ static stratus_status audit(several* s, const stratus_several_frame* frame, stra
   stratus_status status;
   for (int n = 0; n < frame->count; ++n) {
     plain[n] = *frame->volumes[n].frame.arguments;
-    stratus_ray_frame_structures(NULL, NULL, 0.0, NULL, NULL, &plain[n]);
+    if (!frame->volumes[n].mesh) {
+      stratus_ray_frame_structures(NULL, NULL, 0.0, NULL, NULL, &plain[n]);
+    }
     plain[n].picture.want_samples = plain[n].picture.want_bytes = 0;
     march.volumes[n].frame.arguments = &plain[n];
   }
@@ -347,8 +473,24 @@ static void join_windows(const int of[4], int window[4])
   }
 }
 
+/* Tells of a mesh what was counted. */
+static void report_mesh(const several* s, several_input* in, const stratus_ray_counts* counts, const int window[4])
+{
+  in->report.rays = counts->rays;
+  in->report.samples = counts->samples;
+  in->report.skipped = counts->skipped;
+  in->report.lookups = counts->lookups;
+  memcpy(in->report.window, window, sizeof in->report.window);
+  snprintf(in->report.why, sizeof in->report.why, "a mesh of %lld cells, from face to face%s%s", (long long)in->of->tetra->mesh->cell_count,
+    *s->where ? "; " : "", s->where);
+}
+
 static void report_input(const several* s, several_input* in, const stratus_ray_counts* counts, const int window[4])
 {
+  if (in->of->tetra) {
+    report_mesh(s, in, counts, window);
+    return;
+  }
   stratus_ray_caster* caster = in->of->caster;
   const stratus_ray_choice* choice = &caster->choice;
   char every[64] = "";
@@ -373,14 +515,19 @@ static stratus_status render(several* s, stratus_ray_cast_arguments* arguments, 
   int window[4] = { 0, 0, 0, 0 };
   float termination = 1.0f;
   for (int n = 0; n < s->count; ++n) {
-    TRY(update(s, &s->inputs[n]));
+    TRY((s->inputs[n].of->tetra ? update_mesh : update)(s, &s->inputs[n]));
   }
-  choose_step(s);
+  TRY(choose_step(s));
   TRY(check_extent(s));
+  frame.step = s->step;
   const double start = stratus_now_ms();
   for (int n = 0; n < s->count; ++n) {
     stratus_ray_cast_arguments* a = &arguments[frame.count];
-    TRY(set_part(s, &s->inputs[n], frame.count, a, &frame.volumes[frame.count]));
+    if (s->inputs[n].of->tetra) {
+      set_mesh(s, &s->inputs[n], frame.count, a, &frame.volumes[frame.count]);
+    } else {
+      TRY(set_part(s, &s->inputs[n], frame.count, a, &frame.volumes[frame.count]));
+    }
     if (s->inputs[n].part >= 0) {
       join_windows(a->camera.window, window);
       termination = fminf(termination, a->termination);
@@ -415,24 +562,31 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
 {
   _Alignas(64) stratus_ray_cast_arguments arguments[STRATUS_SEVERAL_MAX], plain[STRATUS_SEVERAL_MAX];
   several s = { .camera = camera, .image = image, .count = count };
-  if (!inputs || !inputs[0].caster) {
+  if (!inputs || !context_of(inputs)) {
     return STRATUS_INVALID_ARGUMENT;
   }
   TRY(check_numbers(inputs, count));
-  s.context = inputs[0].caster->context;
-  if (count == 1) {
+  s.context = context_of(inputs);
+  if (count == 1 && inputs[0].caster) {
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
   for (int n = 0; n < count; ++n) {
     several_input* in = &s.inputs[n];
     in->of = &inputs[n];
     in->options = inputs[n].options ? *inputs[n].options : stratus_ray_cast_options_default();
+    in->report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1 };
+    if (inputs[n].tetra) {
+      in->tetra_options = inputs[n].tetra_options ? *inputs[n].tetra_options : stratus_tetra_options_default();
+      TRY(check_mesh(s.context, n, &in->tetra_options));
+      in->tetra_options.tolerance /= sqrt((double)count);
+      in->tetra_options.method = STRATUS_TETRA_METHOD_MARCH;
+      continue;
+    }
     TRY(stratus_ray_check_input(s.context, inputs[n].volume, inputs[n].transfer, &in->options));
     TRY(check_supported(s.context, n, in));
     in->options.tolerance /= sqrt((double)count);
     in->options.jitter = s.inputs[0].options.jitter;
     in->options.jitter_seed = s.inputs[0].options.jitter_seed;
-    in->report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1 };
   }
   TRY(stratus_image_check(s.context, image));
   TRY(render(&s, arguments, plain));

@@ -7,21 +7,25 @@
 
 #include "ray_cast_host.h"
 #include "ray_several_arguments.h"
+#include "tetra_march_frame.h"
 
 /* A volume as the rays read it. */
 typedef struct stratus_several_part {
-  stratus_ray_caster* caster;
-  stratus_ray_cast_frame frame; /* what rays write is not read */
-  const float* layers;          /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
-  int type;                     /* of its fetch, as of stratus_ray_fetch_type() */
-  int stride;                   /* segments of the lattice to one of its samples */
-  int lit;                      /* 1: it has light or gradient opacity */
-  int preintegrated;            /* 0: the midpoint rule */
+  stratus_ray_caster* caster;      /* NULL: a mesh */
+  const stratus_tetra_frame* mesh; /* NULL: a volume */
+  int jitter, seed;                /* of a mesh's rays */
+  stratus_ray_cast_frame frame;    /* what rays write is not read */
+  const float* layers;             /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
+  int type;                        /* of its fetch, as of stratus_ray_fetch_type() */
+  int stride;                      /* segments of the lattice to one of its samples */
+  int lit;                         /* 1: it has light or gradient opacity */
+  int preintegrated;               /* 0: the midpoint rule */
 } stratus_several_part;
 
 typedef struct stratus_several_frame {
   stratus_ray_cast_frame picture; /* what rays write; the arguments are those of the first volume */
   int count;
+  double step; /* of the lattice */
   stratus_several_part volumes[STRATUS_SEVERAL_MAX];
 } stratus_several_frame;
 

@@ -5,6 +5,7 @@
 
 #include "camera.h"
 #include "skipping.h"
+#include "tetrahedra.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -213,12 +214,15 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
 
 #define STRATUS_SEVERAL_MAX 8
 
-/* One of several volumes that are drawn together. */
+/* One of several volumes that are drawn together, or a mesh of tetrahedra among them. */
 typedef struct stratus_ray_cast_input {
-  stratus_ray_caster* caster; /* keeps what is built of this volume: one of its own for each input, all of one context */
+  stratus_ray_caster* caster; /* keeps what is built of this volume: one of its own for each input, all of one context; NULL: a mesh */
   const stratus_volume* volume;
-  const stratus_transfer* transfer;        /* one function */
-  const stratus_ray_cast_options* options; /* NULL: the defaults */
+  const stratus_transfer* transfer;           /* one function */
+  const stratus_ray_cast_options* options;    /* of a volume; NULL: the defaults */
+  stratus_tetra_caster* tetra;                /* keeps what is built of a mesh, likewise; NULL: a volume */
+  const stratus_mesh* mesh;                   /* read where `tetra` is set */
+  const stratus_tetra_options* tetra_options; /* of a mesh; NULL: the defaults */
 } stratus_ray_cast_input;
 
 /* Draws 1..STRATUS_SEVERAL_MAX volumes that may overlap, each with a place, grid, type, function and options of its own, as one medium:
@@ -233,6 +237,10 @@ typedef struct stratus_ray_cast_input {
  * square root of count, for errors of several volumes add up by their squares; or those that its options set. All volumes share one
  * lattice, whose segments are the shortest of these steps, or a half, a third or a quarter of it; each volume takes a sample every so many
  * whole segments as fit in its own step. What is composited at once is cut into pieces where its colour changes much, as with one volume.
+ *
+ * Meshes, of mode composite and by method auto or march, are drawn cell by cell: within a segment of the lattice, light is composited from
+ * one face to the next. Their clip planes and crop boxes are their own, and where their cells overlap one counts behind the other. The host
+ * draws them.
  *
  * reports: NULL, or one for each input. Each tells of its own volume what was built, chosen and expected, and of the whole picture the
  * rays, samples, skipped segments, look-ups, differing pixels, window and cast_ms. The context's device draws; where one of the volumes

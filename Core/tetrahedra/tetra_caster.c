@@ -370,18 +370,14 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
     b->entries.bytes;
 }
 
-stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+/* Checks what is drawn and takes it: mesh, list and table. *drawn: what the caster has taken. */
+static stratus_status take(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
+  const stratus_image* image, const stratus_mesh** drawn, stratus_tetra_report* report)
 {
-  const stratus_tetra_options defaults = stratus_tetra_options_default();
-  stratus_tetra_report mine = { 0 };
-  if (!caster) {
-    return STRATUS_INVALID_ARGUMENT;
-  }
-  options = options ? options : &defaults;
+  const stratus_mesh* mesh = of->mesh;
   TRY(stratus_image_check(caster->context, image));
-  TRY(check_options(caster->context, options));
-  TRY(stratus_transfer_check(caster->context, transfer));
+  TRY(check_options(caster->context, of->options));
+  TRY(stratus_transfer_check(caster->context, of->transfer));
   TRY(stratus_camera_check(caster->context, camera, image));
   /* a mesh is checked only when it changes, so that a moved camera costs no pass over it */
   const stratus_mesh* known = caster->list ? &caster->list->source : &caster->view;
@@ -392,11 +388,43 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   if (!mesh->values && values > 0) {
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
-  const stratus_mesh* drawn = NULL;
-  TRY(stratus_tetra_modes_check(caster->context, options, mesh));
-  TRY(update(caster, mesh, options, &drawn, &mine.build_ms));
+  TRY(stratus_tetra_modes_check(caster->context, of->options, mesh));
+  TRY(update(caster, mesh, of->options, drawn, &report->build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
-  TRY(update_table(caster, transfer, options, &mine.table_ms));
+  return update_table(caster, of->transfer, of->options, &report->table_ms);
+}
+
+stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
+  const stratus_image* image, stratus_tetra_frame* frame, bool* shows, stratus_tetra_report* report)
+{
+  const stratus_mesh* drawn = NULL;
+  stratus_tetra_counts counts = { 0 };
+  TRY(take(caster, of, camera, image, &drawn, report));
+  *shows = caster->table->shown > 0 && caster->mesh->face_count > 0;
+  if (*shows) {
+    TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
+    frame->table = caster->table;
+    frame->march_sums = caster->march_sums;
+    stratus_tetra_frame_shade(frame, of->options);
+    stratus_tetra_frame_clip(frame, drawn, of->options);
+    TRY(stratus_tetra_count_entries(caster->context, frame, &caster->buffers, &counts));
+  }
+  fill_report(caster, report);
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+{
+  const stratus_tetra_options defaults = stratus_tetra_options_default();
+  stratus_tetra_report mine = { 0 };
+  const stratus_mesh* drawn = NULL;
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  options = options ? options : &defaults;
+  const stratus_tetra_subject of = { mesh, transfer, options };
+  TRY(take(caster, &of, camera, image, &drawn, &mine));
   TRY(draw(caster, drawn, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {

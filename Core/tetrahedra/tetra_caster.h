@@ -59,6 +59,18 @@ struct stratus_tetra_caster {
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
+/* What is drawn, and how. */
+typedef struct stratus_tetra_subject {
+  const stratus_mesh* mesh;
+  const stratus_transfer* transfer;
+  const stratus_tetra_options* options;
+} stratus_tetra_subject;
+
+/* tetra_caster.c: makes a frame of mode composite whose rays another room marches: its entries are counted, and to be found by tile. *shows
+ * false: nothing of the mesh shows, and there is no frame. */
+stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
+  const stratus_image* image, stratus_tetra_frame* frame, bool* shows, stratus_tetra_report* report);
+
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash is that of what neighbours, planes and orders follow from. */
 uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh);
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);

@@ -59,18 +59,25 @@ stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra
   return STRATUS_OK;
 }
 
-stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
-  stratus_tetra_counts* counts, double* entries_ms, double* march_ms)
+stratus_status stratus_tetra_count_entries(
+  stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts)
 {
   const size_t pixels = (size_t)frame->columns * (size_t)frame->rows * PIXELS;
-  const double start = stratus_now_ms();
+  size_t total = 0;
   TRY(stratus_tetra_reserve(context, &buffers->first, pixels + 1, sizeof(uint32_t)));
   frame->first = buffers->first.memory;
   TRY(each_tile(context, frame, true, counts));
-  size_t total = 0;
   TRY(stratus_tetra_sum_entries(context, frame, pixels, &total));
   TRY(stratus_tetra_reserve(context, &buffers->entries, total, 2 * sizeof(int32_t)));
   frame->entries = buffers->entries.memory;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
+  stratus_tetra_counts* counts, double* entries_ms, double* march_ms)
+{
+  const double start = stratus_now_ms();
+  TRY(stratus_tetra_count_entries(context, frame, buffers, counts));
   const double marching = stratus_now_ms();
   TRY(each_tile(context, frame, false, counts));
   *entries_ms += marching - start;

@@ -54,6 +54,7 @@ typedef struct stratus_tetra_frame {
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
   stratus_camera camera;
+  float farthest;                /* no point has a larger z */
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;
@@ -74,6 +75,9 @@ stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tet
 /* tetra_march.c: turns the counts of entries in frame->first, one per pixel, into where each pixel's entries begin; first[pixels] is the
  * end. */
 stratus_status stratus_tetra_sum_entries(stratus_context* context, stratus_tetra_frame* frame, size_t pixels, size_t* total);
+/* Makes room for all entries: the march of a tile finds them. */
+stratus_status stratus_tetra_count_entries(
+  stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts);
 /* Marches all tiles. */
 stratus_status stratus_tetra_march(stratus_context* context, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers,
   stratus_tetra_counts* counts, double* entries_ms, double* march_ms);

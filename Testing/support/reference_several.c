@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The reference's ray through several volumes. It knows no lattice, no table and no structure: between the places where the ray enters or
- * leaves a volume it takes even steps, and at the middle of each asks every volume. */
+ * leaves a volume, or a cell of a mesh, it takes even steps, and at the middle of each asks every volume and cell. */
 #include "reference_several.h"
 
 #include "reference_field.h"
@@ -9,6 +9,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The optical depth of a unit of what has opacity 1. */
+#define WALL 1e9
 
 typedef struct medium {
   const reference_scene* scene;
@@ -34,9 +37,14 @@ static void keep_positive(double f0, double slope, double* begin, double* end)
   }
 }
 
-static line line_of(const reference_scene* scene, double u, double v, const float* opaque)
+/* A cell that a line passes: from begin to end, where the field is value + slope times the place. */
+typedef struct passed_cell {
+  const reference_mesh* of;
+  double begin, end, value, slope;
+} passed_cell;
+
+static line line_of(const stratus_camera* camera, double u, double v, const float* opaque)
 {
-  const stratus_camera* camera = scene->camera;
   const double n = camera->near_k, f = camera->far_k;
   line r;
   double length = 0.0, far_k = f;
@@ -104,22 +112,100 @@ static void add_medium(medium* m, const line* r, double s, double* tau, double g
   }
 }
 
+/* Six times the signed volume of the tetrahedron of a and three vectors from it. */
+static double determinant(const double a[3], const double b[3], const double c[3])
+{
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/* Where the line is in a cell: at weights, which are linear along it, of at least 0. Returns 0 if nowhere. */
+static int meet_cell(const reference_mesh* of, int64_t cell, const line* r, passed_cell* passed)
+{
+  const stratus_mesh* mesh = of->mesh;
+  const float* values = mesh->values;
+  double p[4][3], edge[3][3], from[3], weight[4] = { 1.0, 0.0, 0.0, 0.0 }, slope[4] = { 0.0 };
+  for (int i = 0; i < 4; ++i) {
+    const double* at = mesh->points + 3 * (int64_t)mesh->vertices[4 * cell + i];
+    for (int a = 0; a < 3; ++a) {
+      const double* m = mesh->matrix + 4 * a;
+      p[i][a] = m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3];
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    from[a] = r->origin[a] - p[0][a];
+    for (int i = 0; i < 3; ++i) {
+      edge[i][a] = p[i + 1][a] - p[0][a];
+    }
+  }
+  const double whole = determinant(edge[0], edge[1], edge[2]);
+  if (whole == 0.0 || (mesh->hidden && mesh->hidden[cell])) {
+    return 0;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double *next = edge[(i + 1) % 3], *last = edge[(i + 2) % 3];
+    weight[i + 1] = determinant(from, next, last) / whole;
+    slope[i + 1] = determinant(r->direction, next, last) / whole;
+    weight[0] -= weight[i + 1];
+    slope[0] -= slope[i + 1];
+  }
+  *passed = (passed_cell){ of, r->begin, r->end, 0.0, 0.0 };
+  for (int i = 0; i < 4; ++i) {
+    keep_positive(weight[i], slope[i], &passed->begin, &passed->end);
+    const double value = mesh->cell_values ? (double)values[cell] / 4.0 : (double)values[mesh->vertices[4 * cell + i]];
+    passed->value += mesh->cell_values ? value : weight[i] * value;
+    passed->slope += mesh->cell_values ? 0.0 : slope[i] * value;
+  }
+  for (int i = 0; i < of->clip_plane_count; ++i) {
+    const double* c = of->clip_planes[i];
+    keep_positive(c[0] * r->origin[0] + c[1] * r->origin[1] + c[2] * r->origin[2] + c[3],
+      c[0] * r->direction[0] + c[1] * r->direction[1] + c[2] * r->direction[2], &passed->begin, &passed->end);
+  }
+  return passed->begin < passed->end;
+}
+
+static void add_cell(const passed_cell* cell, double s, double* tau, double glow[3])
+{
+  const stratus_transfer* transfer = cell->of->transfer;
+  const double value = cell->value + s * cell->slope, opacity = reference_opacity(transfer, value);
+  const double own = fmin(-log1p(-opacity) / transfer->unit_distance, WALL);
+  double rgb[3];
+  reference_color(transfer, value, rgb);
+  *tau += own;
+  for (int a = 0; a < 3; ++a) {
+    glow[a] += own * rgb[a];
+  }
+}
+
 static int ascending(const void* a, const void* b)
 {
   const double x = *(const double*)a, y = *(const double*)b;
   return (x > y) - (x < y);
 }
 
-static double trace_several(medium* media, int count, const line* r, double longest, float pixel[4])
+/* A ray's places: what it passes, and where that begins and ends. */
+typedef struct passage {
+  medium* media;
+  int count;
+  passed_cell* cells;
+  size_t cell_count;
+  double* cuts;
+} passage;
+
+static double trace_several(const passage* p, const line* r, double longest, float pixel[4])
 {
-  double cuts[2 * REFERENCE_SEVERAL_MAX], left = 1.0, sum[3] = { 0.0, 0.0, 0.0 }, first = (double)INFINITY;
+  double left = 1.0, sum[3] = { 0.0, 0.0, 0.0 }, first = (double)INFINITY;
+  double* cuts = p->cuts;
   size_t n = 0;
-  for (int i = 0; i < count; ++i) {
-    meet(&media[i], r);
-    if (media[i].begin < media[i].end) {
-      cuts[n++] = media[i].begin;
-      cuts[n++] = media[i].end;
+  for (int i = 0; i < p->count; ++i) {
+    meet(&p->media[i], r);
+    if (p->media[i].begin < p->media[i].end) {
+      cuts[n++] = p->media[i].begin;
+      cuts[n++] = p->media[i].end;
     }
+  }
+  for (size_t i = 0; i < p->cell_count; ++i) {
+    cuts[n++] = p->cells[i].begin;
+    cuts[n++] = p->cells[i].end;
   }
   qsort(cuts, n, sizeof *cuts, ascending);
   for (size_t c = 1; c < n; ++c) {
@@ -128,9 +214,14 @@ static double trace_several(medium* media, int count, const line* r, double long
     for (int64_t i = 0; i < steps && left > 1e-12; ++i) {
       const double s = cuts[c - 1] + ((double)i + 0.5) * length / (double)steps;
       double tau = 0.0, glow[3] = { 0.0, 0.0, 0.0 };
-      for (int m = 0; m < count; ++m) {
-        if (s > media[m].begin && s < media[m].end) {
-          add_medium(&media[m], r, s, &tau, glow);
+      for (int m = 0; m < p->count; ++m) {
+        if (s > p->media[m].begin && s < p->media[m].end) {
+          add_medium(&p->media[m], r, s, &tau, glow);
+        }
+      }
+      for (size_t m = 0; m < p->cell_count; ++m) {
+        if (s > p->cells[m].begin && s < p->cells[m].end) {
+          add_cell(&p->cells[m], s, &tau, glow);
         }
       }
       if (tau > 0.0) {
@@ -150,36 +241,75 @@ static double trace_several(medium* media, int count, const line* r, double long
   return first;
 }
 
-int reference_render_several(const reference_scene* scenes, int count, int width, int height, double step, float* rgba, float* depth)
+/* Draws a row of pixels. Returns 0, or -1 without memory. */
+static int draw_row(
+  const reference_mixture* mixture, const medium* media, int width, int height, int y, double step, float* rgba, float* depth)
+{
+  medium mine[REFERENCE_SEVERAL_MAX];
+  size_t cells = 0;
+  for (int m = 0; m < mixture->mesh_count; ++m) {
+    cells += (size_t)mixture->meshes[m].mesh->cell_count;
+  }
+  memcpy(mine, media, sizeof mine);
+  passage p = { .media = mine, .count = mixture->count };
+  p.cells = calloc(cells + 1, sizeof *p.cells);
+  p.cuts = calloc(2 * cells + 2 * REFERENCE_SEVERAL_MAX, sizeof *p.cuts);
+  for (int x = 0; p.cells && p.cuts && x < width; ++x) {
+    const size_t at = (size_t)y * (size_t)width + (size_t)x;
+    const line r = line_of(mixture->camera, (2.0 * x + 1.0) / width - 1.0, (2.0 * y + 1.0) / height - 1.0,
+      mixture->opaque_depth ? mixture->opaque_depth + at : NULL);
+    p.cell_count = 0;
+    for (int m = 0; m < mixture->mesh_count; ++m) {
+      for (int64_t cell = 0; cell < mixture->meshes[m].mesh->cell_count; ++cell) {
+        p.cell_count += (size_t)meet_cell(&mixture->meshes[m], cell, &r, &p.cells[p.cell_count]);
+      }
+    }
+    const double first = trace_several(&p, &r, step, rgba + 4 * at);
+    if (depth) {
+      depth[at] = (float)first;
+    }
+  }
+  const int result = p.cells && p.cuts ? 0 : -1;
+  free(p.cells);
+  free(p.cuts);
+  return result;
+}
+
+int reference_render_mixture(const reference_mixture* mixture, int width, int height, double step, float* rgba, float* depth)
 {
   medium media[REFERENCE_SEVERAL_MAX];
-  double edge = (double)INFINITY;
-  int made = 0;
-  while (made < count && reference_field_create(&scenes[made], &media[made].field) == 0) {
-    media[made].scene = &scenes[made];
-    edge = fmin(edge, media[made].field.edge);
+  int made = 0, failed = 0;
+  while (made < mixture->count && reference_field_create(&mixture->scenes[made], &media[made].field) == 0) {
+    media[made].scene = &mixture->scenes[made];
     ++made;
   }
-  if (made == count) {
-#pragma omp parallel for schedule(dynamic, 1)
+  if (made == mixture->count) {
+#pragma omp parallel for schedule(dynamic, 1) reduction(| : failed)
     for (int y = 0; y < height; ++y) {
-      medium mine[REFERENCE_SEVERAL_MAX];
-      memcpy(mine, media, sizeof mine);
-      for (int x = 0; x < width; ++x) {
-        const size_t at = (size_t)y * (size_t)width + (size_t)x;
-        const line r = line_of(&scenes[0], (2.0 * x + 1.0) / width - 1.0, (2.0 * y + 1.0) / height - 1.0,
-          scenes[0].opaque_depth ? scenes[0].opaque_depth + at : NULL);
-        const double first = trace_several(mine, count, &r, step * edge, rgba + 4 * at);
-        if (depth) {
-          depth[at] = (float)first;
-        }
-      }
+      failed |= draw_row(mixture, media, width, height, y, step, rgba, depth);
     }
   }
   for (int i = 0; i < made; ++i) {
     reference_field_release(&media[i].field);
   }
-  return made == count ? 0 : -1;
+  return made == mixture->count && !failed ? 0 : -1;
+}
+
+int reference_render_several(const reference_scene* scenes, int count, int width, int height, double step, float* rgba, float* depth)
+{
+  const reference_mixture mixture = {
+    .scenes = scenes, .count = count, .camera = scenes[0].camera, .opaque_depth = scenes[0].opaque_depth
+  };
+  double edge = (double)INFINITY;
+  for (int i = 0; i < count; ++i) {
+    reference_field field;
+    if (reference_field_create(&scenes[i], &field) != 0) {
+      return -1;
+    }
+    edge = fmin(edge, field.edge);
+    reference_field_release(&field);
+  }
+  return reference_render_mixture(&mixture, width, height, step * edge, rgba, depth);
 }
 
 int reference_converged_several(

@@ -91,9 +91,12 @@ INLINE void several_number(
     v->offset = vi_load(offset);
     v->phase = (int)(least % from[n].stride);
     v->phase += v->phase < 0 ? from[n].stride : 0;
-    v->next = several_least(v->k.i + v->offset, v->k.live);
     const int beyond = several_least(vi_set(0) - (v->k.last + v->offset), v->k.live);
     v->last = beyond == SEVERAL_NEVER ? 0 : -beyond;
+    v->next = several_least(v->k.i + v->offset, v->k.live);
+    if (several_is_mesh(&from[n]) && v->next != SEVERAL_NEVER) { /* it shows from the beginning on, and nothing is due before its end */
+      v->next = v->last;
+    }
     v->run = from[n].a->map.structure ? 0 : SEVERAL_NEVER;
   }
 }
@@ -111,6 +114,14 @@ INLINE void several_load(
     v->now = v->shows = v->comes = 0;
     v->knows = m_none();
     v->ahead = v_set(0.0f);
+#ifndef STRATUS_DEVICE
+    if (from[n].mesh) {
+      several_mesh_load(&from[n], v, x, y, whole[n]);
+      k->hits = k->hits | v->k.hits;
+      k->live = k->live | v->k.live;
+      continue;
+    }
+#endif
     if (packet_outside(a, x, y)) {
       packet_nothing(&v->k);
       v->k.i = v->k.last = vi_set(0);
@@ -133,14 +144,23 @@ INLINE void several_load(
 INLINE void several_march(const several_source* from, several_volume* volumes, int count, stratus_packet* k)
 {
   vint since = vi_set(0);
-  int i = 0;
+  int i = 0, meshes = 0;
+  for (int n = 0; n < count; ++n) {
+    meshes |= several_is_mesh(&from[n]) && volumes[n].shows;
+  }
   while (m_any(k->live) && i != SEVERAL_NEVER) {
     int next = SEVERAL_NEVER, shows = 0;
     vmask changed = m_none();
     for (int n = 0; n < count; ++n) {
       several_volume* v = &volumes[n];
       shows |= v->shows;
-      if (v->next <= i) {
+      if (several_is_mesh(&from[n])) {
+        v->comes = -1;
+        if (v->next <= i) {
+          v->next = SEVERAL_NEVER;
+          changed = changed | v->k.live;
+        }
+      } else if (v->next <= i) {
         several_advance(&from[n], v, i, k->live);
         changed = changed | several_shown(&v->ways[v->now], v->shows) | several_shown(&v->ways[1 - v->now], v->comes);
       } else {
@@ -150,12 +170,17 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
     }
     if (m_any(changed)) {
       if (shows) {
-        several_interval(from, volumes, count, since, i, changed & k->live, k);
+        several_interval(from, volumes, count, since, i, changed & k->live, meshes, k);
       }
       since = vi_select(changed, vi_set(i), since);
     }
     for (int n = 0; n < count; ++n) {
-      if (volumes[n].comes >= 0) {
+      if (several_is_mesh(&from[n])) {
+#ifndef STRATUS_DEVICE
+        several_mesh_again(&volumes[n], i, k->live);
+        next = volumes[n].next < next ? volumes[n].next : next;
+#endif
+      } else if (volumes[n].comes >= 0) {
         volumes[n].now = 1 - volumes[n].now;
         volumes[n].shows = volumes[n].comes;
       }

@@ -6,6 +6,9 @@
 
 #include "several_state.h"
 #include "several_way.h"
+#ifndef STRATUS_DEVICE
+#include "several_mesh.h"
+#endif
 
 /* Of what the rays are on, nothing changes before a volume whose way shows anything takes its next sample. So a ray composites from one
  * such change to the next. Where a way shows nothing, and whether it was sampled or skipped, makes no difference to that. */
@@ -70,15 +73,15 @@ INLINE void several_composite(CONSTANT stratus_ray_cast_arguments* a, stratus_pa
   composite(a, k, mask, layer, lo);
 }
 
-/* Composites the interval from `since` on, `stop` long, in several pieces on the rays of the mask. */
+/* Composites what is from `start` to `stop` segments behind `since` in several pieces on the rays of the mask. */
 INLINE void several_pieces(const several_source* from, const several_volume* volumes, int count, vint since, vmask mask, vfloat pieces,
-  vfloat stop, vfloat lo, stratus_packet* k)
+  vfloat start, vfloat stop, vfloat lo, stratus_packet* k)
 {
-  const vfloat share = stop * v_reciprocal(pieces), one = v_set(1.0f);
+  const vfloat share = (stop - start) * v_reciprocal(pieces), one = v_set(1.0f);
   vfloat piece = v_set(0.0f);
   do {
     const vmask last = v_le(pieces, piece + one);
-    const vfloat u0 = piece * share, u1 = v_select(last, stop, (piece + one) * share);
+    const vfloat u0 = start + piece * share, u1 = v_select(last, stop, start + (piece + one) * share);
     vfloat sum[4] = { v_set(0.0f), v_set(0.0f), v_set(0.0f), v_set(0.0f) };
     for (int n = 0; n < count; ++n) {
       if (volumes[n].shows) {
@@ -96,15 +99,15 @@ INLINE void several_pieces(const several_source* from, const several_volume* vol
   } while (m_any(mask));
 }
 
-/* Rays that end in the interval from `since` on, which is *stop long and then ends there. wall: the colour that ends them. */
+/* Rays that end between `start` and *stop segments behind `since`, which then is there. wall: the colour that ends them. */
 INLINE vmask several_walls(
-  const several_source* from, const several_volume* volumes, int count, vint since, vmask mask, vfloat* stop, vfloat wall[3])
+  const several_source* from, const several_volume* volumes, int count, vint since, vmask mask, vfloat start, vfloat* stop, vfloat wall[3])
 {
   vmask stops = m_none();
   for (int n = 0; n < count; ++n) {
     const several_way* way = &volumes[n].ways[volumes[n].now];
     if (volumes[n].shows && m_any(way->stops)) {
-      const vfloat at = v_max(way->hi - v_from_int(since - volumes[n].offset), v_set(0.0f));
+      const vfloat at = v_max(way->hi - v_from_int(since - volumes[n].offset), start);
       const vmask first = mask & way->stops & v_le(at, *stop);
       *stop = v_select(first, at, *stop);
       for (int c = 0; c < 3; ++c) {
@@ -120,25 +123,42 @@ INLINE vmask several_walls(
   return stops;
 }
 
-/* Composites what all volumes show from segment `since` to i on the rays of the mask. */
-INLINE void several_interval(
-  const several_source* from, const several_volume* volumes, int count, vint since, int i, vmask mask, stratus_packet* k)
+/* Adds what the volume shows between two places: by its mean rate on the way, or, of a mesh's stretch, which may be many segments long, by
+ * the values there if that is a part of it. */
+INLINE void several_add_way(const several_source* from, const several_volume* v, vfloat begin, vfloat end, vmask mask, vfloat sum[4])
+{
+  const several_way* way = &v->ways[v->now];
+  const vfloat length = end - begin;
+  vmask part = m_none();
+  if (several_is_mesh(from)) {
+    part = mask & v_lt(begin, end) & (v_lt(way->lo, begin) | v_lt(end, way->hi));
+  }
+  for (int c = 0; c < 4; ++c) {
+    const vfloat whole = v_fma(way->rate[c], length, sum[c]);
+    sum[c] = v_select(part, sum[c], whole);
+  }
+  if (m_any(part)) {
+    several_add_part(from, v, begin, end, part, sum);
+  }
+}
+
+/* Composites what all volumes show from `start` to `stop` segments behind `since` on the rays of the mask. None takes another way within.
+ */
+INLINE void several_stretch(const several_source* from, const several_volume* volumes, int count, vint since, vfloat start, vfloat stop,
+  vmask mask, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vfloat sum[4] = { zero, zero, zero, zero }, wall[3] = { zero, zero, zero }, error = zero, nearest = v_set(LARGEST_FLOAT);
-  vfloat stop = v_from_int(vi_set(i) - since);
-  const vmask stops = several_walls(from, volumes, count, since, mask, &stop, wall);
+  const vmask stops = several_walls(from, volumes, count, since, mask, start, &stop, wall);
   for (int n = 0; n < count; ++n) {
     const several_volume* v = &volumes[n];
     if (v->shows) {
       CONSTANT stratus_table_arguments* t = &from[n].a->table;
       const several_way* way = &v->ways[v->now];
       vfloat begin, end;
-      several_part(v, since, zero, stop, &begin, &end);
+      several_part(v, since, start, stop, &begin, &end);
       const vfloat length = end - begin;
-      for (int c = 0; c < 4; ++c) {
-        sum[c] = v_fma(way->rate[c], length, sum[c]);
-      }
+      several_add_way(&from[n], v, begin, end, mask, sum);
       const vmask here = v_lt(begin, end) & v_lt(zero, way->rate[3]);
       const vmask there = here | (stops & way->stops);
       nearest = v_select(there, v_min(begin + v->k.first, nearest), nearest);
@@ -152,7 +172,7 @@ INLINE void several_interval(
     several_composite(from[0].a, k, single, sum, nearest);
   }
   if (m_any(several)) {
-    several_pieces(from, volumes, count, since, several, v_select(several, pieces_for(q), one), stop, nearest, k);
+    several_pieces(from, volumes, count, since, several, v_select(several, pieces_for(q), one), start, stop, nearest, k);
   }
   if (m_any(stops)) {
     vfloat layer[4] = { wall[0], wall[1], wall[2], v_select(stops, one, zero) };
@@ -162,6 +182,35 @@ INLINE void several_interval(
     composite(from[0].a, k, stops, layer, nearest);
   }
   k->live = m_andnot(k->live, v_lt(k->transparency, v_set(from[0].a->termination)));
+}
+
+/* Composites what all volumes show from segment `since` to i on the rays of the mask: at once, or, where there are meshes, from one face to
+ * the next. */
+INLINE void several_interval(
+  const several_source* from, several_volume* volumes, int count, vint since, int i, vmask mask, int meshes, stratus_packet* k)
+{
+  vfloat start = v_set(0.0f), stop = v_from_int(vi_set(i) - since);
+  if (!meshes) {
+    several_stretch(from, volumes, count, since, start, stop, mask, k);
+    return;
+  }
+#ifndef STRATUS_DEVICE
+  while (m_any(mask)) {
+    vfloat until = stop;
+    for (int n = 0; n < count; ++n) {
+      if (from[n].mesh && volumes[n].shows) {
+        several_mesh_until(&from[n], &volumes[n], since, start, mask, &until);
+      }
+    }
+    several_stretch(from, volumes, count, since, start, until, mask, k);
+    mask = mask & k->live & v_lt(until, stop);
+    /* places stay near `since`, so that floats tell them apart */
+    const vint whole = vi_select(mask, v_to_int(v_select(mask, until, v_set(0.0f))), vi_set(0));
+    since = since + whole;
+    start = until - v_from_int(whole);
+    stop = v_from_int(vi_set(i) - since);
+  }
+#endif
 }
 
 /* Lanes on which a way shows anything. */

@@ -5,6 +5,9 @@
 #define STRATUS_SEVERAL_STATE_H
 
 #include "lighting.h"
+#ifndef STRATUS_DEVICE
+#include "tetra_tile.h"
+#endif
 
 /* A device compiles a kernel for as many volumes as there are. */
 #ifndef SEVERAL_MOST
@@ -28,6 +31,24 @@ typedef void several_gradient(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3]);
 #endif
 
+#ifndef STRATUS_DEVICE
+/* What all rays read of a mesh of tetrahedra: its frame, and how their z goes over to segments of the lattice. */
+typedef struct several_mesh {
+  stratus_tetra_view view;
+  const stratus_tetra_arguments* a;
+  double forward[3], right[3], up[3], middle, per_z, lean[2], per_step;
+  float farthest; /* no point has a larger z */
+  int width, height, parallel, jitter, seed;
+} several_mesh;
+
+typedef struct several_mesh_rays {
+  stratus_tetra_walk walk;
+  stratus_tetra_lanes lanes;
+  vfloat base, scale; /* segments from the one in which the ray enters are base + scale z */
+  vfloat reached;     /* where the last stretch ends */
+} several_mesh_rays;
+#endif
+
 /* What all rays read of a volume. */
 typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
@@ -40,6 +61,7 @@ typedef struct several_source {
 #ifndef STRATUS_DEVICE
   several_value* value;
   several_gradient* gradient;
+  const several_mesh* mesh; /* NULL: a volume */
 #endif
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
   int lit;           /* 1: it has light or gradient opacity */
@@ -67,7 +89,21 @@ typedef struct several_volume {
   several_way ways[2];
   int now;          /* which of them is the way that rays are on; the other is the coming one */
   int shows, comes; /* whether anything shows on these */
+#ifndef STRATUS_DEVICE
+  several_mesh_rays mesh;
+#endif
 } several_volume;
+
+/* Whether it is a mesh, whose ways are its stretches and change within segments. */
+INLINE int several_is_mesh(const several_source* from)
+{
+#ifdef STRATUS_DEVICE
+  (void)from;
+  return 0;
+#else
+  return from->mesh != 0;
+#endif
+}
 
 /* The field, and its gradient, at x. A device has no pointers to functions, and one type of values for all volumes. */
 INLINE vfloat several_value_at(const several_source* from, const vfloat x[3], vmask mask)
