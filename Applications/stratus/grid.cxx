@@ -35,14 +35,7 @@ namespace cli {
 
 stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view)
 {
-  stratus_volume box = m.box();
-  const uint8_t nothing[8] = {}; // of no value, so that the whole box counts as shown
-  box.values = nothing;
-  box.type = STRATUS_UINT8;
-  for (int a = 0; a < 3; ++a) {
-    box.spacing[a] *= static_cast<double>(box.dimensions[a]) / 2.0;
-    box.dimensions[a] = 2;
-  }
+  const stratus_volume box = m.outline();
   return place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
 }
 
@@ -161,8 +154,8 @@ void grid_drawing::tell() const
 std::unique_ptr<cli::drawing> cli::make_grid_drawing(const options& o, context& core)
 {
   if (!o.companions.empty()) {
-    throw usage(
-      "'" + o.source + "' is drawn as tetrahedra, which do not mix with other volumes: leave out '" + o.companions[0].source + "'");
+    throw usage("'" + o.source + "' is drawn as tetrahedra, which mix with an image or a rectilinear grid that comes first: name '" +
+      o.companions[0].source + "' before it");
   }
   return std::make_unique<grid_drawing>(o, core);
 }

@@ -57,4 +57,18 @@ stratus_volume mesh::box() const
   }
   return box;
 }
+
+stratus_volume mesh::outline() const
+{
+  static const uint8_t nothing[8] = {}; // of no value, so that the whole box counts as shown
+  stratus_volume box = this->box();
+  box.values = nothing;
+  box.type = STRATUS_UINT8;
+  box.value_stride = 1;
+  for (int a = 0; a < 3; ++a) {
+    box.spacing[a] *= static_cast<double>(box.dimensions[a]) / 2.0;
+    box.dimensions[a] = 2;
+  }
+  return box;
+}
 } // namespace cli

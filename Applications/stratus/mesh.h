@@ -26,6 +26,8 @@ public:
   // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity
   // from the frequency of values and the length of rays.
   stratus_volume box() const;
+  // Returns a volume of the grid's size, all of which counts as shown, to place a camera by.
+  stratus_volume outline() const;
 
   std::string array_name;
   vtkIdType points = 0; // of the grid

@@ -25,7 +25,7 @@ std::string help()
 
   stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus render INPUT --frames OUT-%04d.png  draw every step in time
-  stratus render INPUT INPUT ... -o OUT.png   draw up to eight images that overlap as one medium; --array, --opacity, --color and
+  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium, an image first; --array, --opacity, --color and
                                               --unit-distance are for the INPUT before them
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes

@@ -3,6 +3,7 @@
 #include "camera.h"
 #include "drawing.h"
 #include "input.h"
+#include "mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,7 @@ public:
     stratus_ray_caster_destroy(this->Caster);
     for (const member& more : this->More) {
       stratus_ray_caster_destroy(more.caster);
+      stratus_tetra_caster_destroy(more.tetra);
     }
   }
   volume_drawing(const volume_drawing&) = delete;
@@ -43,16 +45,21 @@ public:
   void judge() const override;
 
 private:
-  // A volume that is drawn with the first one.
+  // A volume that is drawn with the first one, or a mesh.
   struct member {
     cli::options o;
     std::unique_ptr<cli::input> input;
+    std::unique_ptr<cli::mesh> mesh; // null for a volume
     cli::transfer functions;
+    stratus_volume outline = {}; // of a mesh
+    stratus_tetra_options how = {};
     stratus_ray_caster* caster = nullptr;
+    stratus_tetra_caster* tetra = nullptr;
     stratus_ray_cast_report report = {};
   };
 
   void read_more();
+  void read_member(member& more);
   void draw_several(const stratus_ray_cast_options& cast, const stratus_image& image);
   void choose_parts(stratus_ray_cast_options& cast);
   void tell_report() const;
@@ -78,6 +85,32 @@ void volume_drawing::take(const cli::routed& data)
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
 }
 
+// Reads a scene, an image or a rectilinear grid, or else cells.
+void volume_drawing::read_member(member& more)
+{
+  const std::string& source = more.o.source;
+  const bool scene = cli::is_scene(source);
+  const cli::routed data = scene ? cli::routed() : cli::route(cli::read_data(source), source, more.o.array);
+  if (scene || data.image) {
+    more.input = scene ? std::make_unique<cli::input>(this->Core, source, more.o.array)
+                       : std::make_unique<cli::input>(this->Core, source, data.image, more.o.array);
+    more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
+    more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
+    this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
+    return;
+  }
+  if (more.o.shade) {
+    throw cli::usage("'" + source + "' is a grid of cells, which is not lit among several INPUTs: leave out --shade");
+  }
+  more.o.up = std::string(1, static_cast<char>('x' + this->Up));
+  more.mesh = std::make_unique<cli::mesh>();
+  more.mesh->set(data.grid, more.o);
+  this->Core.check(stratus_mesh_check(this->Core, &more.mesh->view()), "'" + source + "'");
+  more.outline = more.mesh->outline();
+  more.functions = cli::make_transfer(more.mesh->box(), nullptr, more.o);
+  this->Core.check(stratus_tetra_caster_create(this->Core, &more.tetra), "caster of tetrahedra");
+}
+
 // Reads the other volumes, each with the options of the first but for what was said of it.
 void volume_drawing::read_more()
 {
@@ -89,10 +122,7 @@ void volume_drawing::read_more()
     more.o.opacity = companion.opacity;
     more.o.color = companion.color;
     more.o.unit_distance = companion.unit_distance;
-    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array);
-    more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
-    more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
-    this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
+    this->read_member(more);
     this->More.push_back(std::move(more));
   }
 }
@@ -107,7 +137,7 @@ void volume_drawing::look()
   this->read_more();
   std::vector<cli::shown_volume> shown = { { &in.volume, view } };
   for (const member& more : this->More) {
-    shown.push_back({ &more.input->volume, more.functions.view() });
+    shown.push_back({ more.mesh ? &more.outline : &more.input->volume, more.functions.view() });
   }
   this->Camera = cli::place_camera(this->Core, o, shown, this->Up);
 }
@@ -125,7 +155,7 @@ cli::scene_frame volume_drawing::place() const
   this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
   for (const member& more : this->More) {
     double own[6];
-    this->Core.check(stratus_volume_bounds(this->Core, &more.input->volume, own), "bounds");
+    this->Core.check(stratus_volume_bounds(this->Core, more.mesh ? &more.outline : &more.input->volume, own), "bounds");
     for (int side = 0; side < 6; ++side) {
       frame.bounds[side] = side % 2 ? std::max(frame.bounds[side], own[side]) : std::min(frame.bounds[side], own[side]);
     }
@@ -200,9 +230,21 @@ void volume_drawing::draw_several(const stratus_ray_cast_options& cast, const st
   for (const member& more : this->More) {
     views.push_back(more.functions.view());
   }
-  std::vector<stratus_ray_cast_input> inputs = { { this->Caster, &this->Input->volume, views.data(), &cast } };
-  for (size_t n = 1; n < count; ++n) {
-    inputs.push_back({ this->More[n - 1].caster, &this->More[n - 1].input->volume, &views[n], &plain });
+  std::vector<stratus_ray_cast_input> inputs(count);
+  for (size_t n = 0; n < count; ++n) {
+    member* more = n > 0 ? &this->More[n - 1] : nullptr;
+    inputs[n].transfer = &views[n];
+    if (more && more->mesh) {
+      more->how = stratus_tetra_options_default();
+      more->how.tolerance = this->Options.tolerance;
+      inputs[n].tetra = more->tetra;
+      inputs[n].mesh = &more->mesh->view();
+      inputs[n].tetra_options = &more->how;
+    } else {
+      inputs[n].caster = more ? more->caster : this->Caster;
+      inputs[n].volume = more ? &more->input->volume : &this->Input->volume;
+      inputs[n].options = more ? &plain : &cast;
+    }
   }
   std::vector<stratus_ray_cast_report> reports(count);
   this->Core.check(
@@ -216,7 +258,10 @@ void volume_drawing::draw_several(const stratus_ray_cast_options& cast, const st
 void volume_drawing::tell() const
 {
   for (const member& more : this->More) {
-    row("with", more.o.source + ": " + cli::describe(more.input->volume) + ", array '" + more.input->array_name + "'");
+    row("with",
+      more.o.source + ": " +
+        (more.mesh ? cli::grouped(static_cast<unsigned long long>(more.mesh->points)) + " points, array '" + more.mesh->array_name + "'"
+                   : cli::describe(more.input->volume) + ", array '" + more.input->array_name + "'"));
     row("opacity", more.functions.origin);
     row("why", more.report.why);
   }

@@ -54,7 +54,6 @@ static void set_mesh(const stratus_several_part* part, double step, several_mesh
     .middle = frame->middle,
     .per_z = frame->per_z,
     .per_step = 1.0 / step,
-    .farthest = frame->farthest,
     .width = frame->image.width,
     .height = frame->image.height,
     .parallel = frame->camera.parallel,

@@ -157,7 +157,6 @@ static stratus_status find_scale(frame_build* build)
   (void)frexp(largest, &exponent);
   build->scale = ldexp(1.0, -exponent);
   build->frame->per_z = 1.0 / build->scale;
-  build->frame->farthest = (float)((farthest - middle) * build->scale * (1.0 + 1e-6));
   build->frame->arguments.middle = parallel ? 1.0f : (float)(middle * build->scale);
   build->frame->arguments.shear = parallel ? 0.0f : 1.0f;
   return STRATUS_OK;

@@ -54,7 +54,6 @@ typedef struct stratus_tetra_frame {
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
   stratus_camera camera;
-  float farthest;                /* no point has a larger z */
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;

@@ -73,6 +73,11 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+bool vtkStratusTetrahedraMapper::Describe(vtkVolume* volume, vtkStratusMeshDescription& description)
+{
+  return this->Internal->Describe(volume, description);
+}
+
 void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Internal->Display.ReleaseGraphicsResources(window);

@@ -46,6 +46,7 @@
 class vtkDataObjectTree;
 class vtkImageData;
 class vtkTable;
+struct vtkStratusMeshDescription;
 
 class STRATUSRENDERINGTETRAHEDRA_EXPORT vtkStratusTetrahedraMapper : public vtkUnstructuredGridVolumeMapper
 {
@@ -230,8 +231,14 @@ public:
   using Superclass::GetBounds;
   //@}
 
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
   void Render(vtkRenderer* ren, vtkVolume* vol) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
+#ifndef __VTK_WRAP__
+  bool Describe(vtkVolume* volume, vtkStratusMeshDescription& description);
+#endif
 
 protected:
   vtkStratusTetrahedraMapper();

@@ -178,18 +178,41 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
   return true;
 }
 
+bool vtkStratusTetrahedraMapper::Internals::SetOptions(
+  vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+{
+  options = stratus_tetra_options_default();
+  options.termination = this->Mapper->Termination;
+  options.tolerance = this->Mapper->ImageErrorTolerance;
+  options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
+  options.leaves = this->Mesh.GetLeaves();
+  return this->SetMode(property, options, error) && this->SetClipPlanes(options, error);
+}
+
+bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratusMeshDescription& description)
+{
+  bool empty = false;
+  description = vtkStratusMeshDescription();
+  if (!this->CheckProperty(prop->GetProperty(), description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
+    !this->SetOptions(prop->GetProperty(), description.Options, description.Error)) {
+    return false;
+  }
+  if (!empty) {
+    description.Mesh = &this->Mesh.GetMesh();
+    description.Transfer = &this->Transfer.GetTransfer();
+    description.Box = this->Mesh.GetBox();
+  }
+  return true;
+}
+
 // ---------------------------------------------------------------- a picture
 
 bool vtkStratusTetrahedraMapper::Internals::Cast(
   vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error)
 {
   const stratus_image image = this->Picture.MakeRoom(this->Rgba, this->Depth, opaqueDepth);
-  stratus_tetra_options options = stratus_tetra_options_default();
-  options.termination = this->Mapper->Termination;
-  options.tolerance = this->Mapper->ImageErrorTolerance;
-  options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
-  options.leaves = this->Mesh.GetLeaves();
-  if (!this->SetMode(property, options, error) || !this->SetClipPlanes(options, error)) {
+  stratus_tetra_options options;
+  if (!this->SetOptions(property, options, error)) {
     return false;
   }
   this->Renderer = renderer;

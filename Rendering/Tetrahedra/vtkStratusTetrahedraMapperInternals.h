@@ -6,6 +6,7 @@
 #include "vtkStratusBlocks.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
+#include "vtkStratusMeshDescription.h"
 #include "vtkStratusMeshView.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusTetrahedraMapper.h"
@@ -30,6 +31,8 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
+  // Tells what the input, updated, is to another module's picture. On failure the description's error says why.
+  bool Describe(vtkVolume* prop, vtkStratusMeshDescription& description);
   // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
   const double* FindBounds();
   vtkImageData* GetLastImage();
@@ -56,6 +59,7 @@ private:
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
+  bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 

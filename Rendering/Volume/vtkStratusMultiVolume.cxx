@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMultiVolume.h"
 
+#include "vtkStratusMeshDescription.h"
+#include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkBoundingBox.h"
@@ -36,6 +38,8 @@ public:
 private:
   bool OnProgress();
   bool Describe(vtkRenderer* renderer, std::string& error);
+  bool DescribeVolume(vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error);
+  bool DescribeMesh(vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error);
   bool PrepareContext(std::string& error);
   double ChooseCoarseness(vtkRenderer* renderer) const;
   void LearnTime();
@@ -43,10 +47,12 @@ private:
 
   vtkStratusContext Context;
   stratus_ray_caster* Casters[STRATUS_SEVERAL_MAX] = {};
-  // What is drawn, by the number of visible volumes so far.
+  stratus_tetra_caster* TetraCasters[STRATUS_SEVERAL_MAX] = {};
+  // What is drawn, by the number of visible volumes so far. Options are of volumes, descriptions of meshes.
   int Count = 0;
   int Ports[STRATUS_SEVERAL_MAX];
   stratus_ray_cast_options Options[STRATUS_SEVERAL_MAX];
+  vtkStratusMeshDescription Meshes[STRATUS_SEVERAL_MAX];
   stratus_ray_cast_input Inputs[STRATUS_SEVERAL_MAX];
   vtkStratusVolumeMapper* First = nullptr; // the mapper whose settings hold for the whole picture
   vtkRenderer* Renderer = nullptr;
@@ -66,6 +72,10 @@ vtkStratusMultiVolume::Internals::Internals(vtkStratusMultiVolume* prop)
   this->Context.OnRelease = [this] {
     for (stratus_ray_caster*& caster : this->Casters) {
       stratus_ray_caster_destroy(caster);
+      caster = nullptr;
+    }
+    for (stratus_tetra_caster*& caster : this->TetraCasters) {
+      stratus_tetra_caster_destroy(caster);
       caster = nullptr;
     }
   };
@@ -99,49 +109,87 @@ bool vtkStratusMultiVolume::Internals::PrepareContext(std::string& error)
   this->Context.SetDevice(this->First->GetDevice(), this->First->NumberOfThreads, error);
   bool ready = error.empty() && this->Context.Prepare(this->First->NumberOfThreads, error);
   for (int n = 0; ready && n < this->Count; ++n) {
+    stratus_ray_cast_input& input = this->Inputs[n];
     stratus_ray_caster*& caster = this->Casters[this->Ports[n]];
-    ready = caster || stratus_ray_caster_create(this->Context.Get(), &caster) == STRATUS_OK;
+    stratus_tetra_caster*& tetra = this->TetraCasters[this->Ports[n]];
+    if (input.mesh) {
+      ready = tetra || stratus_tetra_caster_create(this->Context.Get(), &tetra) == STRATUS_OK;
+      input.tetra = tetra;
+    } else {
+      ready = caster || stratus_ray_caster_create(this->Context.Get(), &caster) == STRATUS_OK;
+      input.caster = caster;
+    }
     if (!ready) {
       error = stratus_context_message(this->Context.Get());
     }
-    this->Inputs[n].caster = caster;
   }
   return ready;
+}
+
+// Asks a mapper of images and rectilinear grids what its volume draws.
+bool vtkStratusMultiVolume::Internals::DescribeVolume(
+  vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error)
+{
+  if (mapper->RenderMode != vtkStratusVolumeMapper::COMPOSITE_MODE) {
+    error = "first hits are not supported by vtkStratusMultiVolume, only render mode composite is";
+    return false;
+  }
+  mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error);
+  this->First = this->First ? this->First : mapper;
+  this->Inputs[this->Count].volume = &mapper->Internal->Image.GetVolume();
+  this->Inputs[this->Count].transfer = mapper->Internal->Functions.data();
+  this->Inputs[this->Count].options = &this->Options[this->Count];
+  return error.empty();
+}
+
+// Asks a mapper of tetrahedra.
+bool vtkStratusMultiVolume::Internals::DescribeMesh(vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error)
+{
+  vtkStratusMeshDescription& mesh = this->Meshes[this->Count];
+  if (!mapper->Describe(volume, mesh)) {
+    error = mesh.Error;
+    return false;
+  }
+  this->Inputs[this->Count].mesh = mesh.Mesh;
+  this->Inputs[this->Count].transfer = mesh.Transfer;
+  this->Inputs[this->Count].tetra_options = &mesh.Options;
+  return true;
 }
 
 // Asks the mappers what their volumes draw.
 bool vtkStratusMultiVolume::Internals::Describe(vtkRenderer* renderer, std::string& error)
 {
   this->Count = 0;
+  this->First = nullptr;
   for (int port = 0; port < STRATUS_SEVERAL_MAX; ++port) {
     vtkVolume* volume = this->Volumes[port];
     if (!volume || !volume->GetVisibility()) {
       continue;
     }
-    vtkStratusVolumeMapper* mapper = this->GetMapper(port);
-    if (!mapper) {
-      error = volume->GetMapper() ? std::string("a mapper of class ") + volume->GetMapper()->GetClassName() + " is not supported"
-                                  : std::string("there is no mapper");
-      error += ", the volume must have a vtkStratusVolumeMapper";
-    } else if (mapper->RenderMode != vtkStratusVolumeMapper::COMPOSITE_MODE) {
-      error = "first hits are not supported by vtkStratusMultiVolume, only render mode composite is";
+    vtkAbstractVolumeMapper* mapper = volume->GetMapper();
+    volume->GetMatrix(); // computes it
+    this->Inputs[this->Count] = stratus_ray_cast_input();
+    if (auto* images = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
+      this->DescribeVolume(renderer, volume, images, error);
+    } else if (auto* meshes = vtkStratusTetrahedraMapper::SafeDownCast(mapper)) {
+      if (this->DescribeMesh(volume, meshes, error) && !this->Inputs[this->Count].mesh) {
+        continue; // it has no cells
+      }
     } else {
-      volume->GetMatrix(); // computes it
-      mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error);
+      error = mapper ? std::string("a mapper of class ") + mapper->GetClassName() + " is not supported" : std::string("there is no mapper");
+      error += ", the volume must have a vtkStratusVolumeMapper or a vtkStratusTetrahedraMapper";
     }
     if (!error.empty()) {
       error = "the volume at port " + std::to_string(port) + ": " + error;
       return false;
     }
-    this->First = this->Count == 0 ? mapper : this->First;
     this->Ports[this->Count] = port;
-    this->Inputs[this->Count] = stratus_ray_cast_input();
-    this->Inputs[this->Count].volume = &mapper->Internal->Image.GetVolume();
-    this->Inputs[this->Count].transfer = mapper->Internal->Functions.data();
-    this->Inputs[this->Count].options = &this->Options[this->Count];
     ++this->Count;
   }
-  return true;
+  if (this->Count > 0 && !this->First) {
+    error = "no volume has a vtkStratusVolumeMapper, whose settings hold for the whole picture: at least one must";
+  }
+  return error.empty();
 }
 
 // Returns the pixels between rays: fewer rays while the window asks for more pictures a second than exact ones allow.
@@ -205,6 +253,10 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   }
   std::vector<vtkStratusPicture::Box> boxes;
   for (int n = 0; n < this->Count; ++n) {
+    if (this->Inputs[n].mesh) {
+      boxes.push_back({ &this->Meshes[n].Box, nullptr });
+      continue;
+    }
     if (stratus_volume_check(this->Context.Get(), this->Inputs[n].volume) != STRATUS_OK) { // the rectangle relies on it
       error = stratus_context_message(this->Context.Get());
       return false;

@@ -11,16 +11,20 @@
  * array, cropping, clipping planes, mask, sampling and ImageErrorTolerance, beside its vtkVolumeProperty and matrix. Those volumes are not
  * added to the renderer; this prop is. A volume that is not visible (SetVisibility) is left out.
  *
- * Supported are blend mode composite, one component, point and cell data, light, gradient opacity, binary masks, crop boxes (the inside
- * region, or all) and up to six clipping planes a volume; opaque geometry, translucent surfaces peeled with volumes, hardware picking of
- * the prop. All else, sampling by cells and label maps included, is refused by an error, and nothing is drawn. One volume alone is drawn
- * as its mapper draws it.
+ * A volume may have a vtkStratusTetrahedraMapper instead: unstructured and structured grids, and blocks of such, mix with the others cell
+ * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
+ * vtkStratusVolumeMapper. Where there is a mesh the host draws.
+ *
+ * Of volumes, supported are blend mode composite, one component, point and cell data, light, gradient opacity, binary masks, crop boxes
+ * (the inside region, or all) and up to six clipping planes a volume; opaque geometry, translucent surfaces peeled with volumes, hardware
+ * picking of the prop. All else, sampling by cells and label maps included, is refused by an error, and nothing is drawn. One volume alone
+ * is drawn as its mapper draws it.
  *
  * Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances,
- * InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the mapper at the lowest port. The
- * sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps.
+ * InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the vtkStratusVolumeMapper at the
+ * lowest port. The sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps.
  *
- * @sa vtkStratusVolumeMapper vtkMultiVolume
+ * @sa vtkStratusVolumeMapper vtkStratusTetrahedraMapper vtkMultiVolume
  */
 #ifndef vtkStratusMultiVolume_h
 #define vtkStratusMultiVolume_h

@@ -5,6 +5,7 @@
 
 #include "Testing/support/reference_several.h"
 #include "vtkStratusMultiVolume.h"
+#include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkActor.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
@@ -16,6 +17,7 @@
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkSphereSource.h"
+#include "vtkUnstructuredGrid.h"
 
 namespace {
 // Scene's own volume at port 0 and a second one, turned and of other spacing, at port 5.
@@ -61,7 +63,7 @@ struct Pair : Scene {
   }
 
   // Returns the PSNR of a picture against the reference with both fields.
-  double Psnr(const std::vector<float>& picture, const float* opaqueDepth = nullptr)
+  double Psnr(const std::vector<float>& picture, const float* opaqueDepth = nullptr, const reference_mesh* mesh = nullptr)
   {
     const double opacity[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 4.0, 0.0, 80.0, 0.6 } };
     const double color[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 },
@@ -88,7 +90,8 @@ struct Pair : Scene {
     }
     std::vector<float> rgba(4 * this->Pixels());
     const int* size = this->Renderer->GetSize();
-    if (picture.empty() || reference_render_several(scenes, 2, size[0], size[1], 1.0 / 16, rgba.data(), nullptr) != 0) {
+    const reference_mixture mixture = { scenes, 2, mesh, mesh ? 1 : 0, &camera, opaqueDepth };
+    if (picture.empty() || reference_render_mixture(&mixture, size[0], size[1], 0.6 / 16, rgba.data(), nullptr) != 0) {
       return -1.0;
     }
     return reference_psnr(picture.data(), rgba.data(), this->Pixels());
@@ -284,6 +287,115 @@ void Peeling()
   }
 }
 
+// A mesh of 6 n^3 tetrahedra that leans and overlaps the scene's volume, as VTK's grid and as the reference's mesh.
+struct Cells {
+  Cells()
+  {
+    static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
+    const int n = 4, side = n + 1, step[3] = { 1, side, side * side };
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkFloatArray> scalars;
+    points->SetDataTypeToDouble();
+    scalars->SetName("heat");
+    for (int i = 0; i < side * side * side; ++i) {
+      const double at[3] = { 6.0 * (i % side), 5.0 * (i / side % side) + 2.0 * (i % side), 5.0 * (i / side / side) };
+      points->InsertNextPoint(at);
+      this->Points.insert(this->Points.end(), at, at + 3);
+      this->Values.push_back(static_cast<float>(0.5 + 0.5 * std::sin(1.7 * i)));
+      scalars->InsertNextValue(this->Values.back());
+    }
+    this->Grid->SetPoints(points);
+    this->Grid->GetPointData()->SetScalars(scalars);
+    for (int box = 0; box < n * n * n; ++box) {
+      const int corner = (box / n / n * side + box / n % n) * side + box % n;
+      for (const int* turn : path) {
+        const int a = corner + step[turn[0]], b = a + step[turn[1]], last = corner + 1 + side + side * side;
+        const vtkIdType ids[4] = { corner, a, b, last };
+        this->Grid->InsertNextCell(VTK_TETRA, 4, ids);
+        this->Vertices.insert(this->Vertices.end(), ids, ids + 4);
+      }
+    }
+    this->Opacity->AddPoint(0.1, 0.0);
+    this->Opacity->AddPoint(1.0, 0.4);
+    this->Color->AddRGBPoint(0.0, 0.9, 0.2, 0.8);
+    this->Color->AddRGBPoint(1.0, 0.2, 1.0, 0.4);
+    vtkVolumeProperty* property = this->Volume->GetProperty();
+    property->SetScalarOpacity(this->Opacity);
+    property->SetColor(this->Color);
+    property->SetInterpolationTypeToLinear();
+    property->SetScalarOpacityUnitDistance(3.0);
+    this->Mapper->SetInputData(this->Grid);
+    this->Volume->SetMapper(this->Mapper);
+    this->Volume->SetPosition(3, 1, 4);
+    this->Volume->RotateY(15);
+  }
+
+  // The reference's view of it, valid as long as this.
+  reference_mesh Reference()
+  {
+    this->Mesh = stratus_mesh_default();
+    this->Mesh.points = this->Points.data();
+    this->Mesh.point_count = static_cast<int64_t>(this->Values.size());
+    this->Mesh.vertices = this->Vertices.data();
+    this->Mesh.cell_count = static_cast<int64_t>(this->Vertices.size() / 4);
+    this->Mesh.values = this->Values.data();
+    for (int i = 0; i < 16; ++i) {
+      this->Mesh.matrix[i] = this->Volume->GetMatrix()->GetElement(i / 4, i % 4);
+    }
+    this->Transfer = stratus_transfer_default();
+    this->Transfer.opacity = this->OpacityPoints;
+    this->Transfer.opacity_count = 2;
+    this->Transfer.color = this->ColorPoints;
+    this->Transfer.color_count = 2;
+    this->Transfer.unit_distance = 3.0;
+    return { &this->Mesh, &this->Transfer, 0, nullptr };
+  }
+
+  double OpacityPoints[4] = { 0.1, 0.0, 1.0, 0.4 }, ColorPoints[8] = { 0.0, 0.9, 0.2, 0.8, 1.0, 0.2, 1.0, 0.4 };
+  std::vector<double> Points;
+  std::vector<int32_t> Vertices;
+  std::vector<float> Values;
+  stratus_mesh Mesh;
+  stratus_transfer Transfer;
+  vtkNew<vtkUnstructuredGrid> Grid;
+  vtkNew<vtkPiecewiseFunction> Opacity;
+  vtkNew<vtkColorTransferFunction> Color;
+  vtkNew<vtkStratusTetrahedraMapper> Mapper;
+  vtkNew<vtkVolume> Volume;
+};
+
+// An unstructured grid mixes with two images, and what is asked of it that does not mix is refused.
+void Meshes()
+{
+  Pair scene;
+  Cells cells;
+  scene.Multi->SetVolume(cells.Volume, 2);
+  scene.Renderer->ResetCamera();
+  const std::vector<float> picture = scene.Mixed();
+  const reference_mesh mesh = cells.Reference();
+  const double db = scene.Psnr(picture, nullptr, &mesh);
+  CHECK(db >= 60.0, "%.1f dB with a mesh at the default tolerance", db);
+  CHECK(scene.Errors->Count == 0 && std::string(scene.Multi->GetReason(2)).find("from face to face") != std::string::npos, "%s, %s",
+    scene.Errors->Text.c_str(), scene.Multi->GetReason(2));
+  scene.Mapper->AuditOn();
+  scene.Mapper->SetStructureToDistance();
+  CHECK(scene.Mixed() == picture && scene.Multi->GetDifferingPixels() == 0, "%llu pixels differ",
+    static_cast<unsigned long long>(scene.Multi->GetDifferingPixels()));
+  cells.Volume->SetVisibility(0);
+  CHECK(scene.Mixed() != picture, "a mesh that is not visible is drawn");
+  cells.Volume->SetVisibility(1);
+  cells.Grid->GetPointData()->GetScalars()->FillComponent(0, 0.0);
+  cells.Grid->GetPointData()->GetScalars()->Modified();
+  CHECK(scene.Mixed() != picture, "other values on a mesh are not seen");
+  vtkNew<vtkUnstructuredGrid> none;
+  cells.Mapper->SetInputData(none);
+  CHECK(!scene.Mixed().empty() && scene.Errors->Count == 0, "a grid without cells: %s", scene.Errors->Text.c_str());
+  scene.Multi->RemoveVolume(0);
+  scene.Multi->RemoveVolume(5);
+  cells.Mapper->SetInputData(cells.Grid);
+  CHECK(scene.Mixed().empty() && scene.Errors->Has("no volume has a vtkStratusVolumeMapper"), "%s", scene.Errors->Text.c_str());
+}
+
 void Refusals()
 {
   const auto refuses = [](const char* words, const std::function<void(Pair&)>& change) {
@@ -311,6 +423,21 @@ void Refusals()
     scene.OtherMapper->SetCroppingRegionPlanes(1, 2, 1, 2, 1, 2);
     scene.OtherMapper->SetCroppingRegionFlagsToFence();
   });
+  refuses("mesh 1 of several has mode maximum", [](Pair& scene) {
+    const Cells cells;
+    cells.Mapper->SetBlendMode(vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);
+    scene.Multi->SetVolume(cells.Volume, 2);
+  });
+  refuses("is to be projected", [](Pair& scene) {
+    const Cells cells;
+    cells.Mapper->SetMethodToProject();
+    scene.Multi->SetVolume(cells.Volume, 2);
+  });
+  refuses("the volume at port 2: the input is a", [](Pair& scene) {
+    const Cells cells;
+    cells.Mapper->SetInputData(static_cast<vtkDataSet*>(scene.OtherImage));
+    scene.Multi->SetVolume(cells.Volume, 2);
+  });
   refuses("there is no scalar array", [](Pair& scene) { scene.OtherImage->GetPointData()->Initialize(); });
 }
 
@@ -335,6 +462,7 @@ int main()
   Geometry();
   Picking();
   Peeling();
+  Meshes();
   Refusals();
   Interactive();
   std::printf("%d failures\n", Failures);

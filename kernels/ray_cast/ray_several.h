@@ -91,11 +91,11 @@ INLINE void several_number(
     v->offset = vi_load(offset);
     v->phase = (int)(least % from[n].stride);
     v->phase += v->phase < 0 ? from[n].stride : 0;
+    v->next = several_least(v->k.i + v->offset, v->k.live);
     const int beyond = several_least(vi_set(0) - (v->k.last + v->offset), v->k.live);
     v->last = beyond == SEVERAL_NEVER ? 0 : -beyond;
-    v->next = several_least(v->k.i + v->offset, v->k.live);
-    if (several_is_mesh(&from[n]) && v->next != SEVERAL_NEVER) { /* it shows from the beginning on, and nothing is due before its end */
-      v->next = v->last;
+    if (several_is_mesh(&from[n])) { /* it takes its stretches where the others' ways are composited */
+      v->next = SEVERAL_NEVER;
     }
     v->run = from[n].a->map.structure ? 0 : SEVERAL_NEVER;
   }
@@ -148,19 +148,17 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
   for (int n = 0; n < count; ++n) {
     meshes |= several_is_mesh(&from[n]) && volumes[n].shows;
   }
+  for (int n = 0; meshes && n < count; ++n) { /* places are counted from where each ray meets anything, so that they round alike */
+    const vint first = vi_select(volumes[n].k.live, volumes[n].offset, vi_set(SEVERAL_NEVER));
+    since = n == 0 ? first : vi_min(since, first);
+  }
   while (m_any(k->live) && i != SEVERAL_NEVER) {
     int next = SEVERAL_NEVER, shows = 0;
     vmask changed = m_none();
     for (int n = 0; n < count; ++n) {
       several_volume* v = &volumes[n];
       shows |= v->shows;
-      if (several_is_mesh(&from[n])) {
-        v->comes = -1;
-        if (v->next <= i) {
-          v->next = SEVERAL_NEVER;
-          changed = changed | v->k.live;
-        }
-      } else if (v->next <= i) {
+      if (v->next <= i && v->next != SEVERAL_NEVER) {
         several_advance(&from[n], v, i, k->live);
         changed = changed | several_shown(&v->ways[v->now], v->shows) | several_shown(&v->ways[1 - v->now], v->comes);
       } else {
@@ -175,17 +173,15 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
       since = vi_select(changed, vi_set(i), since);
     }
     for (int n = 0; n < count; ++n) {
-      if (several_is_mesh(&from[n])) {
-#ifndef STRATUS_DEVICE
-        several_mesh_again(&volumes[n], i, k->live);
-        next = volumes[n].next < next ? volumes[n].next : next;
-#endif
-      } else if (volumes[n].comes >= 0) {
+      if (volumes[n].comes >= 0) {
         volumes[n].now = 1 - volumes[n].now;
         volumes[n].shows = volumes[n].comes;
       }
     }
     i = next;
+  }
+  if (meshes && m_any(k->live)) { /* what is behind all samples */
+    several_interval(from, volumes, count, since, SEVERAL_NEVER, k->live, meshes, k);
   }
   for (int n = 0; n < count; ++n) {
     k->samples = k->samples + volumes[n].k.samples;

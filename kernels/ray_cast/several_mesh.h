@@ -8,7 +8,7 @@
 
 /* Where the way is of a ray that has no stretch left. */
 #define SEVERAL_BEYOND 1e30f
-/* Segments between a ray's first and last place in a mesh are ints. */
+/* Segments between a ray's places are ints. */
 #define SEVERAL_SEGMENTS_MOST 1e9
 
 /* The number of segments from the eye to z = 0 of the mesh's rays (base) and for each unit of z (scale), and by how much a ray's lattice
@@ -106,6 +106,7 @@ INLINE void several_mesh_next(const several_source* from, several_volume* v, vma
     left = m_andnot(left, shown);
   }
   several_shade(from, v, found);
+  v->comes = -1; /* nothing is due of a mesh */
   way->lo = v_select(mask, next->lo, way->lo);
   way->hi = v_select(mask, next->hi, way->hi);
   way->front = v_select(mask, next->front, way->front);
@@ -142,30 +143,27 @@ INLINE void several_mesh_load(const several_source* from, several_volume* v, int
   vmask meets = several_mesh_entry(v, inside, &z);
   z = v_max(z, lanes->ray.begin);
   meets = meets & v_lt(z, lanes->ray.end);
-  float enters[STRATUS_WIDTH], ends[STRATUS_WIDTH], base[STRATUS_WIDTH], scale[STRATUS_WIDTH], first[STRATUS_WIDTH];
-  int met[STRATUS_WIDTH], last[STRATUS_WIDTH];
+  float enters[STRATUS_WIDTH], base[STRATUS_WIDTH], scale[STRATUS_WIDTH], first[STRATUS_WIDTH];
+  int met[STRATUS_WIDTH];
   v_store(enters, z);
-  v_store(ends, v_min(lanes->ray.end, v_set(m->farthest)));
   vi_store(met, vi_select(meets, vi_set(1), vi_set(0)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     base[lane] = scale[lane] = first[lane] = 0.0f;
-    whole[lane] = last[lane] = 0;
+    whole[lane] = 0;
     if (met[lane]) {
       double from_eye, per_z;
       float shift;
       several_mesh_places(m, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), &from_eye, &per_z, &shift);
-      const double number = floor(from_eye + per_z * (double)enters[lane]) - 1.0, end = from_eye + per_z * (double)ends[lane] - number;
+      const double number = floor(from_eye + per_z * (double)enters[lane]) - 1.0;
       whole[lane] = (several_number_t)fmax(fmin(number, (double)SEVERAL_FARTHEST), -(double)SEVERAL_FARTHEST);
       base[lane] = (float)(from_eye - number);
       scale[lane] = (float)per_z;
       first[lane] = (float)(number - (double)shift);
-      last[lane] = (int)fmax(fmin(ceil(end) + 1.0, SEVERAL_SEGMENTS_MOST), 1.0);
     }
   }
   packet_nothing(&v->k);
   v->k.first = v_load(first);
-  v->k.i = vi_set(0);
-  v->k.last = vi_load(last);
+  v->k.i = v->k.last = vi_set(0);
   v->k.hits = meets;
   v->mesh.base = v_load(base);
   v->mesh.scale = v_load(scale);
@@ -181,22 +179,6 @@ INLINE void several_mesh_load(const several_source* from, several_volume* v, int
   v->shows = m_any(v->k.live) != 0;
 }
 
-/* What is left of a mesh at its end, because cells overlapped and count one behind the other, is due where it ends then. */
-INLINE void several_mesh_again(several_volume* v, int i, vmask live)
-{
-  const several_way* way = &v->ways[v->now];
-  if (!v->shows || v->next != SEVERAL_NEVER) {
-    return;
-  }
-  const vmask left = live & v->k.live & v_lt(way->hi, v_set(SEVERAL_BEYOND));
-  v->shows = m_any(left) != 0;
-  if (v->shows) {
-    const vint end = v->offset + v_to_int(v_select(left, v_min(way->hi, v_set((float)SEVERAL_SEGMENTS_MOST)), v_set(0.0f)));
-    const int last = -several_least(vi_set(0) - end, left);
-    v->next = last < i ? i + 1 : last + 1;
-  }
-}
-
 /* From `u` segments behind `since` on, at which the rays of the mask are: gives those whose stretch has ended another. Lowers *until to
  * where each ray's stretch ends or, at a whole segment before it where that is far, begins. */
 INLINE void several_mesh_until(const several_source* from, several_volume* v, vint since, vfloat u, vmask mask, vfloat* until)
@@ -210,7 +192,8 @@ INLINE void several_mesh_until(const several_source* from, several_volume* v, vi
   }
   const vfloat begins = way->lo - s0;
   const vfloat whole = v_from_int(v_to_int(v_clamp(begins, 0.0f, (float)SEVERAL_SEGMENTS_MOST)));
-  const vmask before = v_lt(u, begins), far = before & v_le(one, begins - u) & v_lt(u, whole);
+  const vmask before = v_lt(u, begins),
+              far = before & v_le(one, begins - u) & v_lt(u, whole) & v_lt(begins, v_set((float)SEVERAL_SEGMENTS_MOST));
   *until = v_min(v_select(far, whole, v_select(before, begins, way->hi - s0)), *until);
 }
 

@@ -37,7 +37,6 @@ typedef struct several_mesh {
   stratus_tetra_view view;
   const stratus_tetra_arguments* a;
   double forward[3], right[3], up[3], middle, per_z, lean[2], per_step;
-  float farthest; /* no point has a larger z */
   int width, height, parallel, jitter, seed;
 } several_mesh;
 
