@@ -72,7 +72,8 @@ private:
 void volume_drawing::take(const cli::routed& data)
 {
   const cli::options& o = this->Options;
-  this->Input.reset(data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array));
+  this->Input.reset(
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
   this->Input->volume.revision = ++this->Steps;
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
@@ -89,7 +90,7 @@ void volume_drawing::read_more()
     more.o.opacity = companion.opacity;
     more.o.color = companion.color;
     more.o.unit_distance = companion.unit_distance;
-    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array);
+    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array, companion.raw);
     more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
     more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
     this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
@@ -147,7 +148,7 @@ void volume_drawing::choose_parts(stratus_ray_cast_options& cast)
     return;
   }
   if (!this->Mask) {
-    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "");
+    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "", o.mask_raw);
   }
   const stratus_volume& bytes = this->Mask->volume;
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
