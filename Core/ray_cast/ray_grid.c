@@ -76,8 +76,11 @@ static void fill_axis(const stratus_ray_grid* grid, int axis, int32_t* table, st
   int most = 0;
   plane[-2] = -FAR_PLANE;
   plane[2 * n] = FAR_PLANE;
+  a->even[axis] = n > 1;
+  a->last_cell[axis] = last_cell;
   for (int p = -1; p < 2 * n; ++p) {
     plane[p] = (float)grid->plane[axis][p + 1];
+    a->even[axis] &= plane[p] == 0.5f * (float)p;
   }
   a->bins_per_unit[axis] = (float)((double)bins / (n > 1 ? n - 1 : 1));
   a->last_bin[axis] = (float)(bins - 1);

@@ -126,6 +126,8 @@ typedef struct stratus_ray_map {
 typedef struct stratus_ray_grid_arguments {
   int on;                              /* 0: the grid has equal spacing, and the rest means nothing */
   float bins_per_unit[3], last_bin[3]; /* the bin of a position: (int) clamp(position * bins_per_unit, 0, last_bin) */
+  int even[3];                         /* whether the axis has equal spacing; else 0 */
+  int last_cell[3];                    /* the number of the axis's last cell between values */
   int search_steps[3], first_at[3], plane_at[3], inverse_at[3], weight_at[3];
 } stratus_ray_grid_arguments;
 

@@ -8,7 +8,10 @@
  * position: search_steps of them, 0 to 2 where spacings differ little, and never more than the logarithm of n.
  *
  * Positions are compared with planes as the floats that they are. So the cell of a position is a monotone function of it, and a position
- * before the float of a plane is in a cell before it: that is what structures count on when they leap up to a plane. */
+ * before the float of a plane is in a cell before it: that is what structures count on when they leap up to a plane.
+ *
+ * Along even axes every plane's float is half its number; most grids of levels have two. Cells and fractions need no table there, and are
+ * the same ones. */
 #ifndef STRATUS_RAY_GRID_H
 #define STRATUS_RAY_GRID_H
 
@@ -49,15 +52,19 @@ GRID_OUTLINE vfloat grid_plane_rare(CONSTANT stratus_ray_cast_arguments* a, GLOB
   return grid_plane(a, grid, axis, plane);
 }
 
-/* The cell between values at a position, that of the border beyond them. */
+/* The cell between values at a position, that of the border beyond them. A bisection needs no bin's end: it takes no plane beyond the
+ * position. */
 INLINE vint grid_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vfloat y)
 {
+  if (a->grid.even[axis]) {
+    return v_to_int(v_clamp(y, 0.0f, (float)a->grid.last_cell[axis]));
+  }
   const vint bin = v_to_int(v_clamp(y * v_set(a->grid.bins_per_unit[axis]), 0.0f, a->grid.last_bin[axis])) + vi_set(a->grid.first_at[axis]);
+  const vint last = vi_set(a->grid.last_cell[axis]), planes = vi_set(a->grid.plane_at[axis]);
   vint cell = grid_ints(grid, bin);
-  const vint last = grid_ints(grid, bin + vi_set(1));
   for (int ahead = (1 << a->grid.search_steps[axis]) >> 1; ahead > 0; ahead >>= 1) {
     const vint next = cell + vi_set(ahead), at = vi_min(next, last);
-    const vmask behind = vi_ge(last, next) & v_le(grid_floats(grid, at + at + vi_set(a->grid.plane_at[axis])), y);
+    const vmask behind = vi_ge(last, next) & v_le(grid_floats(grid, at + at + planes), y);
     cell = vi_select(behind, next, cell);
   }
   return cell;
@@ -66,6 +73,9 @@ INLINE vint grid_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* 
 /* The fraction of a cell at a position; 0 or 1 beyond it. */
 INLINE vfloat grid_fraction(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint cell, vfloat y)
 {
+  if (a->grid.even[axis]) {
+    return v_clamp(y - v_from_int(cell), 0.0f, 1.0f);
+  }
   const vfloat per_unit = grid_floats(grid, cell + vi_set(a->grid.inverse_at[axis]));
   return v_clamp((y - grid_plane(a, grid, axis, cell + cell)) * per_unit, 0.0f, 1.0f);
 }

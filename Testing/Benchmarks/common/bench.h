@@ -48,8 +48,8 @@ struct scene {
   std::shared_ptr<void> memory;
 };
 
-// Makes a built-in scene, cloud-N (the cloud resampled to N x N/2 x N over the same space), or the scene of a file, named by its stem. The
-// suffix "+shade" lights it.
+// Makes a built-in scene, cloud-N (the cloud resampled to N x N/2 x N over the same space), cumulus-rectilinear:K (peers draw an image of K
+// times as many cells along stretched axes), or the scene of a file, named by its stem. The suffix "+shade" lights it.
 scene make_scene(stratus_context* context, const std::string& source);
 // Returns the transfer functions of all components.
 std::vector<stratus_transfer> transfers_of(const scene& s);

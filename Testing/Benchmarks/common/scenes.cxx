@@ -83,8 +83,9 @@ vtkSmartPointer<vtkImageData> wrap(const stratus_volume& v)
   return image;
 }
 
-// Makes the grid of a scene with coordinates, and the image with as many points that VTK resamples it to.
-void wrap_grid(scene& s)
+// Makes the grid of a scene with coordinates, and the image that VTK resamples it to: along stretched axes with `finer` times as many
+// cells.
+void wrap_grid(scene& s, int finer)
 {
   const stratus_volume& v = s.volume;
   vtkNew<vtkDoubleArray> axes[3];
@@ -104,6 +105,9 @@ void wrap_grid(scene& s)
   const auto start = std::chrono::steady_clock::now();
   vtkNew<vtkResampleToImage> resampled;
   resampled->SetInputDataObject(s.grid);
+  for (int a = 0; a < 3; ++a) {
+    n[a] = v.coordinates[a] ? (n[a] - 1) * finer + 1 : n[a];
+  }
   resampled->SetSamplingDimensions(n);
   resampled->Update();
   s.resample_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -196,7 +200,16 @@ scene make_scene(stratus_context* context, const std::string& whole)
   scene s;
   const size_t plus = whole.rfind("+shade");
   const bool shaded = plus != std::string::npos && plus + 6 == whole.size();
-  const std::string source = shaded ? whole.substr(0, plus) : whole;
+  std::string source = shaded ? whole.substr(0, plus) : whole;
+  int finer = 1;
+  const size_t colon = source.rfind(':');
+  if (colon != std::string::npos && source.rfind("cumulus-rectilinear", 0) == 0) {
+    finer = std::atoi(source.c_str() + colon + 1);
+    source.erase(colon);
+    if (finer < 1 || finer > 16) {
+      throw failure("scene " + whole + ": cumulus-rectilinear:K takes K within 1..16");
+    }
+  }
   if (source.find_first_of("./") != std::string::npos) {
     s = scene_of_file(source);
   } else if (source.rfind("cloud-", 0) == 0) {
@@ -211,8 +224,8 @@ scene make_scene(stratus_context* context, const std::string& whole)
     s = scene_of_record(context, source);
   }
   if (s.volume.coordinates[0] || s.volume.coordinates[1] || s.volume.coordinates[2]) {
-    wrap_grid(s);
-    std::printf("%s: vtkResampleToImage takes %.0f ms, which VTK's mappers do not count\n", source.c_str(), s.resample_ms);
+    wrap_grid(s, finer);
+    s.name += finer > 1 ? ":" + std::to_string(finer) : "";
   } else if (!s.image) {
     s.image = wrap(s.volume);
   }

@@ -15,9 +15,11 @@ namespace {
 const char* const help = R"(stratus-bench volume [options]
 
   --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), bone, skin, stripes, shell,
-                            plate, labels, cloud-N (resampled to N x N/2 x N), or an image file; each with +shade behind it: lit by a
-                            headlight; default: all of these but haze and cloud-N, cloud+shade, and ../shared/data/isabel_02.vti, plain and
-                            lit, where it is
+                            plate, labels, cloud-N (resampled to N x N/2 x N), cumulus-rectilinear:K (stretched levels, which peers
+                            draw resampled to an image of K times as many cells upwards; resample_ms is what that takes, and
+                            no frame counts it; default 1), or an image file; each with +shade behind it: lit by a headlight;
+                            default: all of these but haze, cloud-N and cumulus-rectilinear, cloud+shade, and
+                            ../shared/data/isabel_02.vti, plain and lit, where it is
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with /2 or /4 (rays every 2 or 4 pixels) behind it, then
                             ~TOLERANCE, a number, or ~fixedpoint, which is the root mean square error that vtk:fixedpoint has in this
@@ -151,6 +153,9 @@ void run_scene(
   stratus_context* context, const std::string& source, const options& o, bench::progress& progress, std::vector<bench::row>& rows)
 {
   const bench::scene scene = bench::make_scene(context, source);
+  if (scene.grid) {
+    rows.push_back({ scene.name, "vtkResampleToImage", "resample_ms", "ms", scene.resample_ms });
+  }
   std::vector<bench::result> results;
   bench::judge judge(context, scene, o.how, o.cache, progress);
   double fixed_point = 0.0;
