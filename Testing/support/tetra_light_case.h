@@ -225,7 +225,7 @@ static inline double tetra_thinned(
 static inline void tetra_integrate_lit(const tetra_case* c, const tetra_space* world, const tetra_space* local, const tetra_lit_stretch* s,
   const double origin[3], const double along[3], double out[4])
 {
-  enum { STEPS = 200 };
+  enum { STEPS = 100 };
   const double length = sqrt(tetra_dot(along, along)), first = s->stretch.first, rise = s->stretch.last - first;
   for (int i = 0; i < STEPS && c->options.mode == STRATUS_TETRA_COMPOSITE; ++i) {
     const double t = (i + 0.5) / STEPS, at = s->stretch.from + t * (s->stretch.to - s->stretch.from), value = first + t * rise;
