@@ -2,12 +2,17 @@
 #include "formats.h"
 
 #include "support.h"
+#include "vectors.h"
 
 #ifdef STRATUS_NETCDF
 #include "vtkStratusCFReader.h"
 #include "vtkStratusUgridReader.h"
 #endif
 #include "vtkStratusTetGenReader.h"
+#ifdef STRATUS_VDB
+#include "vtkStratusVDBReader.h"
+#endif
+#include "vtkStratusVariableReader.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
@@ -74,7 +79,18 @@ made netcdf(const std::string& path)
 #ifdef STRATUS_NETCDF
   return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
 #else
-  throw cli::failure("cannot read '" + path + "': this program was built without libnetcdf, which reads netCDF files");
+  throw cli::failure(
+    "cannot read '" + path + "': this program was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files");
+#endif
+}
+
+made vdb(const std::string& path)
+{
+#ifdef STRATUS_VDB
+  return reader_for<vtkStratusVDBReader>(path);
+#else
+  throw cli::failure("cannot read '" + path + "': this program was built without OpenVDB and NanoVDB (Debian: libopenvdb-dev, " +
+    "libnanovdb-dev), which read .vdb and .nvdb files");
 #endif
 }
 
@@ -163,6 +179,8 @@ constexpr struct {
   { ".nc", netcdf },
   { ".nc4", netcdf },
   { ".cdf", netcdf },
+  { ".vdb", vdb },
+  { ".nvdb", vdb },
   { ".foam", openfoam },
   { "controldict", openfoam },
   { ".case", ensight },
@@ -173,6 +191,21 @@ constexpr struct {
   { ".nhdr", reader_for<vtkNrrdReader> },
   { ".nii", reader_for<vtkNIFTIImageReader> },
 };
+
+// The reader's variable of that name, or the one whose component it names; "" where there is none.
+std::string name_in(vtkStratusVariableReader* reader, const std::string& name)
+{
+  const std::string vectors = cli::vector_part_of(name).array;
+  std::string found;
+  for (int i = 0; i < reader->GetNumberOfVariables(); ++i) {
+    const std::string one = reader->GetNameOfVariable(i);
+    if (one == name) {
+      return one;
+    }
+    found = one == vectors ? one : found;
+  }
+  return found;
+}
 } // namespace
 
 namespace cli {
@@ -224,32 +257,31 @@ file_format choose_format(const std::string& path, const std::string& raw)
   return { other, "" };
 }
 
-#ifdef STRATUS_NETCDF
 std::string time_units_of(vtkAlgorithm* reader)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  return netcdf ? netcdf->GetTimeUnits() : "";
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return by_name ? by_name->GetTimeUnits() : "";
 }
 
 std::string description_of(vtkAlgorithm* reader)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  return netcdf ? netcdf->GetDescription() : "";
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return by_name ? by_name->GetDescription() : "";
 }
 
 std::string length_units_of(vtkAlgorithm* reader)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  return netcdf ? netcdf->GetLengthUnits() : "";
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return by_name ? by_name->GetLengthUnits() : "";
 }
 
 std::string value_units_of(vtkAlgorithm* reader)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  const std::string chosen = netcdf && netcdf->GetVariableName() ? netcdf->GetVariableName() : "";
-  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
-    if (chosen.empty() || chosen == netcdf->GetNameOfVariable(i)) {
-      return netcdf->GetUnitsOfVariable(i);
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  const std::string chosen = by_name && by_name->GetVariableName() ? by_name->GetVariableName() : "";
+  for (int i = 0; by_name && i < by_name->GetNumberOfVariables(); ++i) {
+    if (chosen.empty() || chosen == by_name->GetNameOfVariable(i)) {
+      return by_name->GetUnitsOfVariable(i);
     }
   }
   return "";
@@ -257,39 +289,35 @@ std::string value_units_of(vtkAlgorithm* reader)
 
 bool has_variable(vtkAlgorithm* reader, const std::string& name)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
-    if (name == netcdf->GetNameOfVariable(i)) {
-      return true;
-    }
-  }
-  return !netcdf;
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return !by_name || !name_in(by_name, name).empty();
 }
 
 void choose_variable(vtkAlgorithm* reader, const std::string& name)
 {
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  if (netcdf) {
-    netcdf->SetVariableName(name.empty() ? nullptr : name.c_str());
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  if (by_name) {
+    const std::string known = name.empty() ? name : name_in(by_name, name);
+    by_name->SetVariableName(known.empty() ? nullptr : known.c_str());
   }
 }
 
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
 {
   std::vector<variable_entry> list;
-  vtkStratusNetCDFReader* const netcdf = vtkStratusNetCDFReader::SafeDownCast(reader);
-  for (int i = 0; netcdf && i < netcdf->GetNumberOfVariables(); ++i) {
-    list.push_back({ netcdf->GetNameOfVariable(i), netcdf->GetUnitsOfVariable(i), netcdf->GetLongNameOfVariable(i), 1.0, 0.0 });
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  for (int i = 0; by_name && i < by_name->GetNumberOfVariables(); ++i) {
+    list.push_back({ by_name->GetNameOfVariable(i), by_name->GetUnitsOfVariable(i), by_name->GetLongNameOfVariable(i), 1.0, 0.0 });
   }
   for (variable_entry& one : list) {
-    netcdf->SetVariableName(one.name.c_str());
-    netcdf->UpdateTimeStep(time);
-    vtkDataSet* const data = netcdf->GetOutput();
+    by_name->SetVariableName(one.name.c_str());
+    by_name->UpdateTimeStep(time);
+    vtkDataSet* const data = by_name->GetOutput();
     vtkDataArray* values = data ? data->GetPointData()->GetArray(one.name.c_str()) : nullptr;
     values = values || !data ? values : data->GetCellData()->GetArray(one.name.c_str());
     if (values) {
       double range[2];
-      values->GetFiniteRange(range);
+      values->GetFiniteRange(range, values->GetNumberOfComponents() == 1 ? 0 : -1); // -1: of lengths
       one.low = range[0];
       one.high = range[1];
     }
@@ -297,39 +325,6 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
   choose_variable(reader, "");
   return list;
 }
-#else
-std::string time_units_of(vtkAlgorithm*)
-{
-  return "";
-}
-
-std::string description_of(vtkAlgorithm*)
-{
-  return "";
-}
-
-std::string length_units_of(vtkAlgorithm*)
-{
-  return "";
-}
-
-std::string value_units_of(vtkAlgorithm*)
-{
-  return "";
-}
-
-bool has_variable(vtkAlgorithm*, const std::string&)
-{
-  return true;
-}
-
-void choose_variable(vtkAlgorithm*, const std::string&) {}
-
-std::vector<variable_entry> list_variables(vtkAlgorithm*, double)
-{
-  return {};
-}
-#endif
 
 std::vector<collection_step> read_collection(const std::string& path)
 {

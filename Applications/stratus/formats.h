@@ -38,8 +38,9 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string length_units_of(vtkAlgorithm* reader);
-std::string value_units_of(vtkAlgorithm* reader);                 // of the chosen variable
-bool has_variable(vtkAlgorithm* reader, const std::string& name); // true where the reader does not read by variables
+std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable
+// True where the reader does not read by variables. "wind.x" is there where "wind" is.
+bool has_variable(vtkAlgorithm* reader, const std::string& name);
 void choose_variable(vtkAlgorithm* reader, const std::string& name);
 
 // The parts of a step of a .pvd: all files of one time.

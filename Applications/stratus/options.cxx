@@ -33,15 +33,15 @@ std::string help()
   stratus devices                             list the OpenCL devices
   stratus --help
 
-INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf and what else VTK reads as an image)
-or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be drawn or
-told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf,
-TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,
+INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf .vdb .nvdb and what else VTK reads as an
+image) or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be
+drawn or told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu
+.vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,
 system/controlDict) or EnSight (.case).
 
 What is drawn
-  --array NAME            point or cell array of one component (default: the active scalars, else the first that fits); --variable is the
-                          same
+  --array NAME            point or cell array (default: the active scalars, else the first of one component); of vectors the lengths, or
+                          with .x, .y or .z behind its name a component. --variable is the same
   --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
                           uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
                           for N bytes before the values. To be drawn or told of

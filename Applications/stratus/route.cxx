@@ -2,6 +2,7 @@
 #include "route.h"
 
 #include "support.h"
+#include "vectors.h"
 
 #include "vtkStratusArrays.h"
 #include "vtkStratusBlocks.h"
@@ -58,6 +59,20 @@ vtkDataArray* first_single(vtkDataSetAttributes* data)
   return active;
 }
 
+// A part of the vectors that the name says, or the lengths of the first ones.
+vtkDataArray* part_of_vectors(vtkDataSetAttributes* data, const std::string& name)
+{
+  const cli::vector_part wanted = cli::vector_part_of(name);
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && cli::is_vector(array) &&
+      (name.empty() || (wanted.part >= 0 && wanted.array == (array->GetName() ? array->GetName() : "")))) {
+      return cli::add_vector_part(data, array, name.empty() ? 3 : wanted.part);
+    }
+  }
+  return nullptr;
+}
+
 // Lists the arrays, with the ranges of those of one component.
 std::string names_of(vtkDataSet* data_set)
 {
@@ -90,6 +105,7 @@ void join(vtkCompositeDataSet* whole, const std::string& path, const std::string
     for (cells = 0; cells < 2 && !values; cells += values ? 0 : 1) {
       vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(part->GetCellData()) : part->GetPointData();
       values = array.empty() ? first_single(data) : data->GetArray(array.c_str());
+      values = values || array.empty() ? values : data->GetArray(cli::vector_part_of(array).array.c_str());
     }
     return values;
   };
@@ -149,13 +165,11 @@ routed route(vtkDataObject* data, const std::string& path, const std::string& ar
 vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells)
 {
   vtkDataArray* array = nullptr;
-  for (bool cells : { false, true }) {
-    vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(data_set->GetCellData()) : data_set->GetPointData();
-    array = name.empty() ? first_single(data) : data->GetArray(name.c_str());
-    if (array) {
-      on_cells = cells;
-      break;
-    }
+  for (int look = 0; look < 4 && !array; ++look) { // single values before vectors
+    on_cells = look % 2 == 1;
+    vtkDataSetAttributes* data = on_cells ? static_cast<vtkDataSetAttributes*>(data_set->GetCellData()) : data_set->GetPointData();
+    array = look < 2 ? (name.empty() ? first_single(data) : data->GetArray(name.c_str())) : part_of_vectors(data, name);
+    array = look < 2 && array && is_vector(array) ? add_vector_part(data, array, 3) : array;
   }
   if (!array) {
     throw failure((name.empty() ? std::string("no array to draw") : "no array '" + name + "'") + "; the arrays are: " + names_of(data_set));

@@ -24,7 +24,8 @@ struct routed {
 // the first.
 routed route(vtkDataObject* data, const std::string& path, const std::string& array);
 
-// Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component. Points come
-// before cells.
+// Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component, or else the
+// lengths of the first vectors. Points come before cells. Of vectors, the lengths are added to the data set and returned, or the component
+// that "NAME.x", "NAME.y" or "NAME.z" names.
 vtkDataArray* choose_array(vtkDataSet* data_set, const std::string& name, bool& on_cells);
 } // namespace cli

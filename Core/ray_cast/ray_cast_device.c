@@ -5,17 +5,12 @@
 #include "device_frame.h"
 #include "ray_cast_host.h"
 #include "ray_caster.h"
+#include "ray_device_buffers.h"
 #include "ray_mask.h"
-#include "ray_pages_device.h"
 #include "ray_shading_table.h"
 
 #include <stdio.h>
 #include <string.h>
-
-#define LOCAL_SIDE 8 /* work items along each side of a group, if a work item is a ray */
-/* Pixels along each side of the tile that a work item marches in packets. PoCL hands out the last 64 groups in one piece, so tiles are
- * small. */
-#define TILE 16
 
 /* All members are 4-byte scalars, so no padding separates them. The kernel gets the size by a define and asserts it, too. */
 _Static_assert(sizeof(stratus_ray_cast_arguments) ==
@@ -24,30 +19,6 @@ _Static_assert(sizeof(stratus_ray_cast_arguments) ==
       sizeof(stratus_ray_rough) + sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) +
       sizeof(stratus_ray_media),
   "arguments must have no padding");
-
-typedef enum buffer_name {
-  VALUES,
-  HIDDEN,
-  MAP,
-  ROUGH,
-  GRID,
-  TABLE,
-  ARGUMENTS,
-  OPAQUE,
-  RGBA,
-  RGBA8,
-  DEPTH,
-  SAMPLES,
-  COUNTS,
-  BUFFERS
-} buffer_name;
-
-struct stratus_ray_device {
-  stratus_device_slot slots[BUFFERS];
-  stratus_ray_pages pages;
-  bool in_pages; /* the values are in pages, and there is no buffer VALUES */
-  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial;
-};
 
 void stratus_ray_device_destroy(stratus_ray_caster* caster)
 {
@@ -154,8 +125,7 @@ static const char* obstacle(const stratus_ray_caster* caster)
   return NULL;
 }
 
-/* Returns what the frame has of that which few frames have. */
-static int rarities(const stratus_ray_cast_arguments* a)
+int stratus_ray_rarities(const stratus_ray_cast_arguments* a)
 {
   return (a->crop.regions ? RAY_REGIONS : 0) | (a->crop.clip_count ? RAY_CLIP : 0) | (a->crop.has_piece ? RAY_PIECE : 0) |
     (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
@@ -179,8 +149,9 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
   int used = snprintf(defines, sizeof defines,
     "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d "
     "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s",
-    type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1, TILE,
-    sizeof(stratus_ray_cast_arguments), rarities(arguments), stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+    type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1,
+    STRATUS_RAY_DEVICE_TILE, sizeof(stratus_ray_cast_arguments), stratus_ray_rarities(arguments),
+    stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
   }
@@ -215,7 +186,7 @@ static stratus_status draw(
   for (size_t i = 0; i < COUNT_OF(others); ++i) {
     TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), &slots[others[i]].memory));
   }
-  const size_t side = packets ? TILE : 1, group = packets ? 1 : LOCAL_SIDE;
+  const size_t side = packets ? STRATUS_RAY_DEVICE_TILE : 1, group = packets ? 1 : STRATUS_RAY_DEVICE_GROUP;
   const size_t global[2] = { (width + side - 1) / side, (height + side - 1) / side }, local[2] = { group, group };
   TRY(stratus_device_run(context, kernel, 2, global, local));
   TRY(stratus_slot_receive(context, slots + RGBA, frame->rgba, pixels * 4 * sizeof(float)));
@@ -225,7 +196,13 @@ static stratus_status draw(
   return stratus_slot_receive(context, slots + COUNTS, counts, counts_bytes);
 }
 
-static void add_counts(const cl_uint* part, size_t parts, stratus_ray_counts* counts)
+size_t stratus_ray_device_parts(size_t width, size_t height, bool packets)
+{
+  const size_t side = STRATUS_RAY_DEVICE_TILE;
+  return packets ? ((width + side - 1) / side) * ((height + side - 1) / side) : height;
+}
+
+void stratus_ray_device_count(const cl_uint* part, size_t parts, stratus_ray_counts* counts)
 {
   *counts = (stratus_ray_counts){ 0 };
   for (size_t i = 0; i < parts; ++i) {
@@ -242,7 +219,7 @@ static stratus_status draw_and_count(
   stratus_context* context = caster->context;
   const bool packets = stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
   const size_t width = (size_t)frame->arguments->picture.width, height = (size_t)frame->arguments->picture.height;
-  const size_t parts = packets ? ((width + TILE - 1) / TILE) * ((height + TILE - 1) / TILE) : height;
+  const size_t parts = stratus_ray_device_parts(width, height, packets);
   cl_kernel kernel;
   void* memory = NULL;
   TRY(find_kernel(caster, frame->arguments, type, variant, packets, &kernel));
@@ -250,7 +227,7 @@ static stratus_status draw_and_count(
   const stratus_status status = draw(caster, frame, kernel, packets, memory, parts * 4 * sizeof(cl_uint));
   stratus_slots_return(caster->context, caster->device->slots, BUFFERS);
   if (status == STRATUS_OK) {
-    add_counts(memory, parts, counts);
+    stratus_ray_device_count(memory, parts, counts);
   }
   stratus_release(context, memory);
   return status;
@@ -291,6 +268,42 @@ static stratus_status upload_all(stratus_ray_caster* caster, const stratus_ray_c
   return upload(caster, frame);
 }
 
+/* Makes the caster's state on the device, unless it has one. */
+static stratus_status make_device(stratus_ray_caster* caster)
+{
+  void* memory = NULL;
+  if (!caster->device) {
+    TRY(stratus_allocate_zero(caster->context, 1, sizeof *caster->device, &memory));
+    caster->device = memory;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_device_send(
+  stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, const float* layers, const char** why_not)
+{
+  *why_not = obstacle(caster);
+  if (!*why_not && value_bytes(caster) > stratus_device_largest_allocation(caster->context->device)) {
+    *why_not = "a volume is larger than the device's largest allocation, and several are not drawn from pages";
+  }
+  if (*why_not) {
+    return STRATUS_OK;
+  }
+  TRY(make_device(caster));
+  stratus_ray_device* d = caster->device;
+  TRY(upload_data(caster, frame, false));
+  TRY(upload(caster, frame));
+  if (layers &&
+    (!d->slots[LAYERS].memory || d->layers != layers || d->layers_of != caster->layers_of || d->layers_step != caster->layers_step)) {
+    d->layers_of = 0; /* until they are there: tables count from 1 */
+    TRY(replace(caster, LAYERS, layers, 4 * (size_t)caster->made.table->size * sizeof(float)));
+    d->layers = layers;
+    d->layers_of = caster->layers_of;
+    d->layers_step = caster->layers_step;
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, int type,
   stratus_ray_variant variant, stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
@@ -304,11 +317,7 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
     draw_on_host(caster, why_not);
     return STRATUS_OK;
   }
-  if (!caster->device) {
-    void* memory = NULL;
-    TRY(stratus_allocate_zero(context, 1, sizeof *caster->device, &memory));
-    caster->device = memory;
-  }
+  TRY(make_device(caster));
   const double start = stratus_now_ms();
   TRY(upload_all(caster, frame, variant, in_pages, text, sizeof text, &why_not));
   *upload_ms += stratus_now_ms() - start;

@@ -4,8 +4,10 @@
 
 #include "camera.h"
 #include "instruction_set.h"
+#include "device.h"
 #include "picture.h"
 #include "ray_cast_rest.h"
+#include "ray_device_buffers.h"
 #include "ray_fetched.h"
 #include "ray_frame.h"
 #include "ray_probe.h"
@@ -31,8 +33,7 @@ typedef struct several_input {
   stratus_ray_cast_options options; /* with the tolerance of a picture of several, and what all take from the first */
   stratus_ray_cast_report report;
   stratus_structure used;
-  int stride;
-  bool shown;
+  int stride, part; /* part: its number among those that are shown; -1: it is not */
   char why[192];
 } several_input;
 
@@ -41,7 +42,8 @@ typedef struct several {
   const stratus_camera* camera;
   const stratus_image* image;
   int count;
-  double step; /* of the lattice */
+  double step;     /* of the lattice */
+  char where[160]; /* why the host draws though there is a device; else empty */
   several_input inputs[STRATUS_SEVERAL_MAX];
 } several;
 
@@ -197,8 +199,8 @@ static stratus_status update_layers(stratus_ray_caster* caster, double step)
   return STRATUS_OK;
 }
 
-/* Sets what rays read of one input. *shown: whether they meet anything. */
-static stratus_status set_part(const several* s, several_input* in, stratus_ray_cast_arguments* a, stratus_several_part* part)
+/* Sets what rays read of one input, unless they meet nothing of it. */
+static stratus_status set_part(const several* s, several_input* in, int number, stratus_ray_cast_arguments* a, stratus_several_part* part)
 {
   stratus_ray_caster* caster = in->of->caster;
   const bool with_map = in->used != STRATUS_STRUCTURE_NONE;
@@ -210,14 +212,17 @@ static stratus_status set_part(const several* s, several_input* in, stratus_ray_
     TRY(update_layers(caster, s->step));
   }
   TRY(stratus_ray_frame_arguments(caster, s->camera, &in->options, s->image, s->step, a, &empty));
-  in->shown = !empty && stratus_ray_shading_show(caster) && !(with_map && caster->occupancy->count == 0);
+  const bool shown = !empty && stratus_ray_shading_show(caster) && !(with_map && caster->occupancy->count == 0);
   in->stride = stride_of(caster, s->step);
-  if (in->shown) {
+  in->part = -1;
+  if (shown) {
+    in->part = number;
     a->values.has_hidden = caster->hides;
     stratus_ray_shading_arguments(caster, in->of->volume, s->camera, &in->options, a);
     stratus_ray_frame_structures(
       &caster->grid, caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);
-    *part = (stratus_several_part){ .frame = stratus_ray_frame_of(caster, a, s->image, with_map),
+    *part = (stratus_several_part){ .caster = caster,
+      .frame = stratus_ray_frame_of(caster, a, s->image, with_map),
       .layers = preintegrated ? NULL : caster->layers,
       .type = stratus_ray_fetch_type(&caster->traversed),
       .stride = in->stride,
@@ -250,7 +255,7 @@ static void draw_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_C
   counts[3] += mine.lookups;
 }
 
-static stratus_status draw(stratus_context* context, const stratus_several_frame* frame, stratus_ray_counts* counts)
+static stratus_status draw_on_host(stratus_context* context, const stratus_several_frame* frame, stratus_ray_counts* counts)
 {
   static stratus_ray_cast_tile* const tiles[] = STRATUS_ISA_EACH(stratus_several_tile);
   const int width = frame->picture.arguments->picture.width, height = frame->picture.arguments->picture.height;
@@ -262,8 +267,45 @@ static stratus_status draw(stratus_context* context, const stratus_several_frame
   return STRATUS_OK;
 }
 
+/* *drawn stays false if the device cannot draw one of the volumes. */
+static stratus_status draw_on_device(several* s, const stratus_several_frame* frame, stratus_ray_counts* counts, bool* drawn)
+{
+  const char* why_not = NULL;
+  for (int n = 0; n < s->count; ++n) {
+    several_input* in = &s->inputs[n];
+    if (in->part >= 0) {
+      const stratus_several_part* part = &frame->volumes[in->part];
+      const double start = stratus_now_ms();
+      TRY(stratus_ray_device_send(part->caster, &part->frame, part->layers, &why_not));
+      in->report.upload_ms += stratus_now_ms() - start;
+    }
+    if (why_not) {
+      stratus_log(s->context, STRATUS_LOG_WARNING, "drawing on the host: volume %d: %s", n, why_not);
+      snprintf(s->where, sizeof s->where, "drawn on the host: volume %d: %s", n, why_not);
+      return STRATUS_OK;
+    }
+  }
+  *drawn = true;
+  return stratus_several_device(s->context, frame, counts);
+}
+
+static stratus_status draw(several* s, const stratus_several_frame* frame, stratus_ray_counts* counts)
+{
+  if (s->context->device) {
+    bool drawn = false;
+    const stratus_status status = draw_on_device(s, frame, counts, &drawn);
+    if (status != STRATUS_OK) { /* if the host is to draw, the message goes to the log only */
+      snprintf(s->where, sizeof s->where, "drawn on the host: %s", stratus_context_message(s->context));
+    }
+    if (!stratus_device_hands_back(s->context, status) && (status != STRATUS_OK || drawn)) {
+      return status;
+    }
+  }
+  return draw_on_host(s->context, frame, counts);
+}
+
 /* Draws the frame again without structures and counts the pixels whose bits differ. */
-static stratus_status audit(const several* s, const stratus_several_frame* frame, stratus_ray_cast_arguments* plain, uint64_t* differing)
+static stratus_status audit(several* s, const stratus_several_frame* frame, stratus_ray_cast_arguments* plain, uint64_t* differing)
 {
   const size_t pixels = (size_t)s->image->width * (size_t)s->image->height;
   stratus_several_frame march = *frame;
@@ -273,6 +315,7 @@ static stratus_status audit(const several* s, const stratus_several_frame* frame
   for (int n = 0; n < frame->count; ++n) {
     plain[n] = *frame->volumes[n].frame.arguments;
     stratus_ray_frame_structures(NULL, NULL, 0.0, NULL, NULL, &plain[n]);
+    plain[n].picture.want_samples = plain[n].picture.want_bytes = 0;
     march.volumes[n].frame.arguments = &plain[n];
   }
   TRY_CLEANUP(stratus_allocate(s->context, pixels, 4 * sizeof(float), &rgba));
@@ -283,7 +326,7 @@ static stratus_status audit(const several* s, const stratus_several_frame* frame
   }
   march.picture.samples = NULL;
   march.picture.rgba8 = NULL;
-  TRY_CLEANUP(draw(s->context, &march, &counts));
+  TRY_CLEANUP(draw(s, &march, &counts));
   *differing = stratus_ray_differing(s->image, rgba, depth);
 cleanup:
   stratus_release(s->context, rgba);
@@ -315,9 +358,9 @@ static void report_input(const several* s, several_input* in, const stratus_ray_
   stratus_ray_fill_report(caster, counts, in->used, &in->report);
   in->report.sample_distance = in->stride * s->step;
   memcpy(in->report.window, window, sizeof in->report.window);
-  snprintf(in->report.why, sizeof in->report.why, "%s; %s, sample distance %.4g%s%s%s%s", in->why, stratus_sampling_name(choice->sampling),
-    in->report.sample_distance, every, s->context->device ? "; drawn on the host: no device draws several volumes at once" : "",
-    *caster->tried ? ": " : "", caster->tried);
+  snprintf(in->report.why, sizeof in->report.why, "%s; %s, sample distance %.4g%s%s%s%s%s", in->why,
+    stratus_sampling_name(choice->sampling), in->report.sample_distance, every, *s->where ? "; " : "", s->where, *caster->tried ? ": " : "",
+    caster->tried);
   caster->samples_since_data += counts->samples / (uint64_t)s->count;
 }
 
@@ -337,8 +380,8 @@ static stratus_status render(several* s, stratus_ray_cast_arguments* arguments, 
   const double start = stratus_now_ms();
   for (int n = 0; n < s->count; ++n) {
     stratus_ray_cast_arguments* a = &arguments[frame.count];
-    TRY(set_part(s, &s->inputs[n], a, &frame.volumes[frame.count]));
-    if (s->inputs[n].shown) {
+    TRY(set_part(s, &s->inputs[n], frame.count, a, &frame.volumes[frame.count]));
+    if (s->inputs[n].part >= 0) {
       join_windows(a->camera.window, window);
       termination = fminf(termination, a->termination);
       ++frame.count;
@@ -349,15 +392,19 @@ static stratus_status render(several* s, stratus_ray_cast_arguments* arguments, 
   } else {
     arguments[0].termination = termination;
     frame.picture = frame.volumes[0].frame;
-    TRY(draw(s->context, &frame, &counts));
+    TRY(draw(s, &frame, &counts));
     if (s->inputs[0].options.audit) {
       TRY(audit(s, &frame, plain, &differing));
     }
   }
   const double cast_ms = stratus_now_ms() - start;
+  double upload_ms = 0.0;
+  for (int n = 0; n < s->count; ++n) {
+    upload_ms += s->inputs[n].report.upload_ms;
+  }
   for (int n = 0; n < s->count; ++n) {
     s->inputs[n].report.differing_pixels = differing;
-    s->inputs[n].report.cast_ms = cast_ms;
+    s->inputs[n].report.cast_ms = cast_ms - upload_ms;
     report_input(s, &s->inputs[n], &counts, window);
   }
   return STRATUS_OK;

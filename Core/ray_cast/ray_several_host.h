@@ -6,9 +6,11 @@
 #include "stratus/ray_cast.h"
 
 #include "ray_cast_host.h"
+#include "ray_several_arguments.h"
 
 /* A volume as the rays read it. */
 typedef struct stratus_several_part {
+  stratus_ray_caster* caster;
   stratus_ray_cast_frame frame; /* what rays write is not read */
   const float* layers;          /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
   int type;                     /* of its fetch, as of stratus_ray_fetch_type() */
@@ -25,5 +27,8 @@ typedef struct stratus_several_frame {
 
 /* One definition for each instruction set: a stratus_ray_cast_tile that takes the picture of a stratus_several_frame. */
 stratus_ray_cast_tile stratus_several_tile_isa0, stratus_several_tile_isa1, stratus_several_tile_isa2;
+
+/* ray_several_device.c: draws on the context's device, which has what stratus_ray_device_send() gave it of every volume. */
+stratus_status stratus_several_device(stratus_context* context, const stratus_several_frame* frame, stratus_ray_counts* counts);
 
 #endif

@@ -235,8 +235,9 @@ typedef struct stratus_ray_cast_input {
  * whole segments as fit in its own step. What is composited at once is cut into pieces where its colour changes much, as with one volume.
  *
  * reports: NULL, or one for each input. Each tells of its own volume what was built, chosen and expected, and of the whole picture the
- * rays, samples, skipped segments, look-ups, differing pixels, window and cast_ms. The host draws, whatever the context's device. Each
- * caster borrows and keeps what it does in stratus_ray_caster_render(). A failed call leaves the picture undefined. */
+ * rays, samples, skipped segments, look-ups, differing pixels, window and cast_ms. The context's device draws; where one of the volumes
+ * exceeds its largest allocation the host does, and the reports say why. Each caster borrows and keeps what it does in
+ * stratus_ray_caster_render(). A failed call leaves the picture undefined. */
 STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports);
 

@@ -25,7 +25,7 @@ public:
   // Returns whether the variable has three dimensions in space, longer than 1, and numbers.
   static bool IsVolume(const vtkStratusNetCDFFile& file, const Variable& variable);
 
-  vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable); // throws vtkStratusNetCDFError
+  vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable); // throws vtkStratusReadError
 
   bool IsCurved() const { return this->Horizontal[0] || this->Height || this->Formula > 0; }
   bool IsUniform() const;

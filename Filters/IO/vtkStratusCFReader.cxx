@@ -33,7 +33,7 @@ std::set<std::string> FindReferred(const vtkStratusNetCDFFile& file)
 }
 } // namespace
 
-std::string vtkStratusCFReader::Inspect(const vtkStratusNetCDFFile& file)
+std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
 {
   const std::set<std::string> referred = FindReferred(file);
   for (const vtkStratusNetCDFFile::Variable& one : file.GetVariables()) {
@@ -41,7 +41,7 @@ std::string vtkStratusCFReader::Inspect(const vtkStratusNetCDFFile& file)
       this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
     }
   }
-  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName(file)));
+  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()));
   for (int a = 0; a < 3; ++a) {
     if (grid.GetLength(a) > static_cast<size_t>(INT_MAX)) {
       file.Fail("a dimension of " + std::to_string(grid.GetLength(a)) + " values is longer than VTK's grids, 2147483647");
@@ -60,9 +60,9 @@ std::string vtkStratusCFReader::Inspect(const vtkStratusNetCDFFile& file)
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }
 
-void vtkStratusCFReader::Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
 {
-  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName(file)));
+  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()));
   const int n[3] = { static_cast<int>(grid.GetLength(0)), static_cast<int>(grid.GetLength(1)), static_cast<int>(grid.GetLength(2)) };
   if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
     image->SetDimensions(n[0], n[1], n[2]);

@@ -35,8 +35,8 @@ protected:
   vtkStratusCFReader() = default;
   ~vtkStratusCFReader() override = default;
 
-  std::string Inspect(const vtkStratusNetCDFFile& file) override;
-  void Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
+  std::string InspectFile(const vtkStratusNetCDFFile& file) override;
+  void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
 
 private:
   vtkStratusCFReader(const vtkStratusCFReader&) = delete;

@@ -114,7 +114,7 @@ std::string vtkStratusNumberText(double value)
 
 void vtkStratusNetCDFFile::Fail(const std::string& why) const
 {
-  throw vtkStratusNetCDFError{ this->Path + ": " + why };
+  throw vtkStratusReadError{ this->Path + ": " + why };
 }
 
 void vtkStratusNetCDFFile::Check(int status, const std::string& what) const
@@ -147,7 +147,7 @@ vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path) : Path(path)
       this->Variables.push_back(one);
     }
     this->CheckLength(attributes, unlimited);
-  } catch (const vtkStratusNetCDFError&) {
+  } catch (const vtkStratusReadError&) {
     nc_close(this->Id);
     throw;
   }

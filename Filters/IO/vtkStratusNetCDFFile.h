@@ -4,16 +4,13 @@
 #ifndef vtkStratusNetCDFFile_h
 #define vtkStratusNetCDFFile_h
 
+#include "vtkStratusReadError.h"
+
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
 #include <string>
 #include <vector>
-
-// What is wrong with a file, as a sentence.
-struct vtkStratusNetCDFError {
-  std::string Text;
-};
 
 class vtkStratusNetCDFFile
 {
@@ -25,7 +22,7 @@ public:
     std::vector<int> Dimensions; // numbers of dimensions, slowest first
   };
 
-  explicit vtkStratusNetCDFFile(const std::string& path); // throws vtkStratusNetCDFError, as all members do
+  explicit vtkStratusNetCDFFile(const std::string& path); // throws vtkStratusReadError, as all members do
   ~vtkStratusNetCDFFile();
   vtkStratusNetCDFFile(const vtkStratusNetCDFFile&) = delete;
   void operator=(const vtkStratusNetCDFFile&) = delete;

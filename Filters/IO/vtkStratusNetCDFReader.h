@@ -1,114 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusNetCDFReader
- * @brief   what the readers of netCDF files share: a file, a variable, and time
+ * @brief   what the readers of netCDF files share
  *
- * A reader puts out one variable on its grid, at the time step that the pipeline asks for (the nearest one before it, else the first).
- * Values that are missing (_FillValue, missing_value, outside of valid_range) are NaN; scale_factor and add_offset are applied. An error
- * names the file and what is wrong, and empties the output.
+ * Values that are missing (_FillValue, missing_value, outside of valid_range) are NaN; scale_factor and add_offset are applied.
  *
  * @sa vtkStratusCFReader vtkStratusUgridReader
  */
 #ifndef vtkStratusNetCDFReader_h
 #define vtkStratusNetCDFReader_h
 
-#include "StratusFiltersIOModule.h" // For export macro
-#include "vtkDataSetAlgorithm.h"
-
-#include <memory> // For std::unique_ptr
-#include <string> // For std::string
-#include <vector> // For std::vector
+#include "vtkStratusVariableReader.h"
 
 class vtkStratusNetCDFFile;
 
-class STRATUSFILTERSIO_EXPORT vtkStratusNetCDFReader : public vtkDataSetAlgorithm
+class STRATUSFILTERSIO_EXPORT vtkStratusNetCDFReader : public vtkStratusVariableReader
 {
 public:
-  vtkTypeMacro(vtkStratusNetCDFReader, vtkDataSetAlgorithm);
+  vtkTypeMacro(vtkStratusNetCDFReader, vtkStratusVariableReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  //@{
-  /**
-   * Set/Get the file's name. Default none.
-   */
-  vtkSetFilePathMacro(FileName);
-  vtkGetFilePathMacro(FileName);
-  //@}
-
-  //@{
-  /**
-   * Set/Get the variable to read. One that the file does not have is an error that lists those that it has. Default none: the first.
-   */
-  vtkSetStringMacro(VariableName);
-  vtkGetStringMacro(VariableName);
-  //@}
-
-  //@{
-  /**
-   * Get the variables that can be read, after UpdateInformation(): their number, and the name, units and long name of each, "" for what the
-   * file does not tell. An index out of range gives "".
-   */
-  int GetNumberOfVariables();
-  const char* GetNameOfVariable(int index);
-  const char* GetUnitsOfVariable(int index);
-  const char* GetLongNameOfVariable(int index);
-  //@}
-
-  /**
-   * Get the unit of the time steps as the file has it ("hours since 2001-01-01 00:00"), "" if it has none. After UpdateInformation().
-   */
-  const char* GetTimeUnits();
-
-  /**
-   * Get the unit of all three of the output's coordinates: "m", or "" where the file does not tell or they differ. After
-   * UpdateInformation().
-   */
-  const char* GetLengthUnits();
-
-  /**
-   * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and what was made of their
-   * units.
-   */
-  const char* GetDescription();
-
 protected:
-  vtkStratusNetCDFReader();
-  ~vtkStratusNetCDFReader() override;
+  vtkStratusNetCDFReader() = default;
+  ~vtkStratusNetCDFReader() override = default;
 
-  struct VariableEntry {
-    std::string Name, Units, LongName;
-  };
+  /// As those of the superclass, with the file open.
+  virtual std::string InspectFile(const vtkStratusNetCDFFile& file) = 0;
+  virtual void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
 
-  /// Looks up Variables, Times, TimeUnits, Description and WholeExtent. Returns the class of the output for the chosen variable.
-  virtual std::string Inspect(const vtkStratusNetCDFFile& file) = 0;
-  /// Fills the output with a step, which is 0 in a file without time.
-  virtual void Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
-  /// Returns VariableName, or the first variable if there is none. Fails with the list of variables for another name.
-  std::string ChosenName(const vtkStratusNetCDFFile& file) const;
-
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  char* FileName = nullptr;
-  char* VariableName = nullptr;
-  std::vector<VariableEntry> Variables;
-  std::vector<double> Times;
-  std::string TimeUnits;
-  std::string Description;
-  std::string LengthUnits;
-  int WholeExtent[6]; // of an output with an extent
+  std::string Inspect() override;
+  void Build(size_t step, vtkDataSet* output) override;
 
 private:
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;
   void operator=(const vtkStratusNetCDFReader&) = delete;
-
-  bool Look();
-
-  vtkMTimeType LookTime = 0;
-  std::string OutputClass;
 };
 
 #endif

@@ -13,7 +13,7 @@ class vtkStratusUgridLayers
 public:
   using Variable = vtkStratusNetCDFFile::Variable;
 
-  explicit vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh); // throws vtkStratusNetCDFError
+  explicit vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh); // throws vtkStratusReadError
 
   size_t GetCount() const { return this->Count; }
   // Which of the borders or layers of a variable is this one, since files count from the top or from the bottom.

@@ -24,7 +24,7 @@ public:
   using Variable = vtkStratusNetCDFFile::Variable;
 
   static const Variable* FindTopology(const vtkStratusNetCDFFile& file); // or FVCOM's nv; nullptr
-  explicit vtkStratusUgridMesh(const vtkStratusNetCDFFile& file);        // throws vtkStratusNetCDFError
+  explicit vtkStratusUgridMesh(const vtkStratusNetCDFFile& file);        // throws vtkStratusReadError
 
   size_t GetNodes() const { return this->X.size(); }
   size_t GetFaces() const { return this->Offsets.size() - 1; }

@@ -124,12 +124,12 @@ bool vtkStratusUgridReader::CanReadFile(const char* name)
   try {
     const vtkStratusNetCDFFile file(name ? name : "");
     return vtkStratusUgridMesh::FindTopology(file) != nullptr;
-  } catch (const vtkStratusNetCDFError&) {
+  } catch (const vtkStratusReadError&) {
     return false;
   }
 }
 
-std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
+std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
 {
   const vtkStratusUgridMesh mesh(file);
   const vtkStratusUgridLayers layers(mesh);
@@ -140,7 +140,7 @@ std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
       }
     }
   }
-  const Variable& chosen = *file.Find(this->ChosenName(file));
+  const Variable& chosen = *file.Find(this->ChosenName());
   const Variable* time = mesh.FindTime(chosen) ? mesh.FindTime(chosen) : layers.GetTime();
   if (time) {
     this->Times = file.ReadTimes(*time);
@@ -154,7 +154,7 @@ std::string vtkStratusUgridReader::Inspect(const vtkStratusNetCDFFile& file)
   return "vtkUnstructuredGrid";
 }
 
-void vtkStratusUgridReader::Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
 {
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(output);
   const vtkStratusUgridMesh mesh(file);
@@ -164,7 +164,7 @@ void vtkStratusUgridReader::Build(const vtkStratusNetCDFFile& file, size_t step,
   layers.Read(step, z, dry);
   grid->SetPoints(MakePoints(mesh, z));
   AddCells(mesh, z, dry, grid);
-  const Variable& chosen = *file.Find(this->ChosenName(file));
+  const Variable& chosen = *file.Find(this->ChosenName());
   const vtkStratusUgridValues values = mesh.Read(chosen, step);
   const size_t count = layers.GetCount();
   const bool on_nodes = mesh.IsOnNodes(chosen), borders = layers.IsOnBorders(chosen), layered = layers.IsOnLayers(chosen);

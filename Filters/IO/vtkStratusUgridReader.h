@@ -50,8 +50,8 @@ protected:
   vtkStratusUgridReader() = default;
   ~vtkStratusUgridReader() override = default;
 
-  std::string Inspect(const vtkStratusNetCDFFile& file) override;
-  void Build(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
+  std::string InspectFile(const vtkStratusNetCDFFile& file) override;
+  void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
 
 private:
   vtkStratusUgridReader(const vtkStratusUgridReader&) = delete;

@@ -63,8 +63,6 @@ private:
 vtkStratusMultiVolume::Internals::Internals(vtkStratusMultiVolume* prop)
     : Prop(prop), Reports(), Whole(), Context([this](double) { return this->OnProgress(); })
 {
-  std::string error;
-  this->Context.SetDevice("host", 0, error); // there is no kernel for several volumes
   this->Context.OnRelease = [this] {
     for (stratus_ray_caster*& caster : this->Casters) {
       stratus_ray_caster_destroy(caster);
@@ -98,7 +96,8 @@ int vtkStratusMultiVolume::Internals::GetLowest() const
 
 bool vtkStratusMultiVolume::Internals::PrepareContext(std::string& error)
 {
-  bool ready = this->Context.Prepare(this->First->NumberOfThreads, error);
+  this->Context.SetDevice(this->First->GetDevice(), this->First->NumberOfThreads, error);
+  bool ready = error.empty() && this->Context.Prepare(this->First->NumberOfThreads, error);
   for (int n = 0; ready && n < this->Count; ++n) {
     stratus_ray_caster*& caster = this->Casters[this->Ports[n]];
     ready = caster || stratus_ray_caster_create(this->Context.Get(), &caster) == STRATUS_OK;

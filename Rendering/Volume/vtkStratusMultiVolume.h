@@ -14,11 +14,11 @@
  * Supported are blend mode composite, one component, point and cell data, light, gradient opacity, binary masks, crop boxes (the inside
  * region, or all) and up to six clipping planes a volume; opaque geometry, translucent surfaces peeled with volumes, hardware picking of
  * the prop. All else, sampling by cells and label maps included, is refused by an error, and nothing is drawn. One volume alone is drawn
- * as its mapper draws it. The host draws.
+ * as its mapper draws it.
  *
- * FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances, InteractiveUpdateRate,
- * UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the mapper at the lowest port. The sampling's step is the
- * smallest that any volume asks for; volumes that need less take every so many of these steps.
+ * Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances,
+ * InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the mapper at the lowest port. The
+ * sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps.
  *
  * @sa vtkStratusVolumeMapper vtkMultiVolume
  */

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
-[PATHS OF MAKE-CUMULUS AND MAKE-RIVER, where libnetcdf was there to build with]"""
+[PATHS OF make-cumulus AND make-river, where libnetcdf was there to build with, AND OF write-vdb, where OpenVDB and NanoVDB were]"""
 import math
 import os
 import re
@@ -20,7 +20,7 @@ from vtkmodules.vtkIOXML import (
 import numpy
 
 STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
-MAKERS = [os.path.realpath(path) for path in sys.argv[3:]]
+MAKERS = {os.path.basename(path): os.path.realpath(path) for path in sys.argv[3:]}
 SIDE = (5, 4, 6)
 LOOK = ("--size", "48x40", "--device", "host", "--opacity", "0:0,30:.6", "--color", "viridis", "--unit-distance", "1")
 failures = 0
@@ -369,11 +369,11 @@ def test_raw():
 
 
 def test_netcdf():
-    if not MAKERS:
+    if "make-cumulus" not in MAKERS:
         open("some.nc", "w").close()
         expect(1, "built without libnetcdf", "render", "some.nc", "-o", "no.png")
         return
-    subprocess.run([MAKERS[0], "cumulus.nc", "24"], check=True)
+    subprocess.run([MAKERS["make-cumulus"], "cumulus.nc", "24"], check=True)
     said = expect(0, "rectilinear grid of 24 x 24 x 64 points", "info", "cumulus.nc", "--time", "2h")
     for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2 hours",
                     r"variable +'qc' in g kg-1, cloud liquid water mixing ratio, 0 \.\. [0-9.]+$", r"z by 'z' \(m\)"):
@@ -388,7 +388,7 @@ def test_netcdf():
     with open("cut.nc", "wb") as file:
         file.write(text[:-1000])
     expect(1, "the file is cut short: it has ", "render", "cut.nc", "-o", "no.png")
-    subprocess.run([MAKERS[1], "river.nc", "1"], check=True)
+    subprocess.run([MAKERS["make-river"], "river.nc", "1"], check=True)
     said = expect(0, "10 layers by sigma", "info", "river.nc", "--variable", "dye", "--time", "5h")
     for pattern in (r"vtkHexahedron \(12\)", r"vtkWedge \(13\)", r"0 without volume, 0 of negative orientation", r"variable +'salinity' in psu",
                     r"drawn +'dye' on points"):
@@ -399,6 +399,55 @@ def test_netcdf():
     if len({open(f"river-{i:02d}.png", "rb").read() for i in range(31)}) < 25:
         fail("the film of a tide stands still")
     expect(0, "array 'salinity' on cells", "render", "river.nc", "--variable", "salinity", "-o", "salt.png", "--size", "32x32")
+
+
+def test_vdb():
+    if "write-vdb" not in MAKERS:
+        open("cloud.vdb", "w").close()
+        expect(1, "libopenvdb-dev", "render", "cloud.vdb", "-o", "no.png")
+        return
+    subprocess.run([MAKERS["write-vdb"], "."], check=True)
+    said = expect(0, r"kind +image of 41 x 41 x 25 points", "info", "cloud.vdb")
+    for pattern in (r"coordinates +fog volume of float, \d+ active voxels in \d+ leaves", r"variable +'density', float, 0 \.\. 1$",
+                    r"variable +'wind', vec3s, 0 \.\. 5$", r"drawn +'density'", r"spacing 0\.5 x 2 x 1"):
+        if not re.search(pattern, said, re.MULTILINE):
+            fail(f"info of cloud.vdb does not say '{pattern}':\n{said}")
+    look = ("--opacity", "0:0,1:.5", "--unit-distance", "4", "--size", "200x150")
+    cloud = drawn("cloud.vdb", *look)
+    if not 40 < (cloud - drawn("cloud.vdb", *look, "--opacity", "0:0")).max():
+        fail("nothing is drawn of cloud.vdb")
+    if (drawn("cloud.nvdb", *look) != cloud).any() or (drawn("cloud.vdb", *look, "--variable", "density") != cloud).any():
+        fail("cloud.nvdb is another picture than cloud.vdb")
+    # the wind is the density times (3, -4, 0)
+    single = drawn("cloud.vdb", *look, "--color", "0:0:0:1,1:1:1:0")
+    for name, scale in (("wind", 5), ("wind.magnitude", 5), ("wind.x", 3), ("wind.y", -4)):
+        words = ("--variable", name, "--opacity", f"0:0,{scale}:.5" if scale > 0 else f"{scale}:.5,0:0", "--color",
+                 f"0:0:0:1,{scale}:1:1:0" if scale > 0 else f"{scale}:1:1:0,0:0:0:1")
+        if abs(drawn("cloud.vdb", *look, *words) - single).max() > 1:  # by other roundings of the values
+            fail(f"{name} of cloud.vdb is another picture than the density it is a multiple of")
+    expect(1, r"no variable 'qc' in 'cloud.vdb'; the variables are: density \(0 \.\. 1\), wind \(0 \.\. 5\)$",
+           "render", "cloud.vdb", "-o", "no.png", "--variable", "qc")
+    expect(1, r"would take 256\d{9} bytes .* the limit is 4096 MiB", "render", "wide.vdb", "-o", "no.png")
+    with open("cloud.vdb", "rb") as file:
+        text = file.read()
+    with open("cut.vdb", "wb") as file:
+        file.write(text[:len(text) // 2])
+    # OpenVDB reads grids one by one: the first one is whole
+    expect(1, "^stratus: cannot read 'cut.vdb'", "render", "cut.vdb", "-o", "no.png", "--variable", "wind")
+
+
+def test_vectors():
+    grid = curved(range(5), range(4), range(6))
+    array = numpy_to_vtk(numpy.stack([3 * values(), -4 * values(), 0 * values()], axis=1), deep=True)
+    array.SetName("U")
+    grid.GetPointData().AddArray(array)
+    write(vtkXMLStructuredGridWriter, grid, "wind.vts")
+    single = drawn("low.vts", "--opacity", "0:0,30:.6", "--color", "0:0:0:1,30:1:1:0")
+    for name, scale in (("U", 5), ("U.x", 3)):
+        words = ("--variable", name, "--opacity", f"0:0,{30 * scale}:.6", "--color", f"0:0:0:1,{30 * scale}:1:1:0")
+        if abs(drawn("wind.vts", *words) - single).max() > 1:
+            fail(f"{name} of wind.vts is another picture than what it is a multiple of")
+    expect(1, r"no array 'U\.w'; the arrays are: U$", "render", "wind.vts", "-o", "no.png", "--variable", "U.w")
 
 
 def openfoam(cells=(2, 2, 2)):

@@ -65,7 +65,7 @@ void check_values(vtkDataSet* data, int t, bool turned, const std::string& what)
 
 void test_stretched(const std::string& folder)
 {
-  netcdf_reader<vtkStratusCFReader> r(write_netcdf(folder + "/stretched.nc", cloud()), nullptr);
+  variable_reader<vtkStratusCFReader> r(write_netcdf(folder + "/stretched.nc", cloud()), nullptr);
   for (int t = 0; t < nt; ++t) {
     vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(r.read(6.0 * t));
     check(grid && grid->GetNumberOfPoints() == nx * ny * nz && r.errors->heard.empty(),
@@ -87,7 +87,7 @@ void test_uniform(const std::string& folder)
 {
   netcdf_content c = cloud();
   c.of("z").values = { 1, 2, 3, 4 };
-  netcdf_reader<vtkStratusCFReader> r(write_netcdf(folder + "/uniform.nc", c), "qc");
+  variable_reader<vtkStratusCFReader> r(write_netcdf(folder + "/uniform.nc", c), "qc");
   vtkImageData* image = vtkImageData::SafeDownCast(r.read(6.0));
   check(image, "even levels are an image");
   if (image) {
@@ -112,7 +112,7 @@ void test_order(const std::string& folder)
       }
     }
   }
-  netcdf_reader<vtkStratusCFReader> r(write_netcdf(folder + "/order.nc", c), "v");
+  variable_reader<vtkStratusCFReader> r(write_netcdf(folder + "/order.nc", c), "v");
   vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(r.read());
   check(grid && grid->GetZCoordinates()->GetComponent(0, 0) == -70, "depth goes down: " + r.errors->heard);
   for (int k = 0; grid && k < nz; ++k) {
@@ -132,7 +132,7 @@ netcdf_content sigma()
 
 void test_sigma(const std::string& folder)
 {
-  netcdf_reader<vtkStratusCFReader> r(write_netcdf(folder + "/sigma.nc", sigma()), "qc");
+  variable_reader<vtkStratusCFReader> r(write_netcdf(folder + "/sigma.nc", sigma()), "qc");
   for (int t = 0; t < nt; ++t) {
     vtkStructuredGrid* grid = vtkStructuredGrid::SafeDownCast(r.read(6.0 * t));
     check(grid, "levels that follow the bottom are a curvilinear grid: " + r.errors->heard);
@@ -160,7 +160,7 @@ void test_turned(const std::string& folder)
   c.variables.push_back({ "lon", NC_DOUBLE, { "y", "x" }, { 0, 1, 2, .5, 1.5, 2.5 }, { { "units", "degrees_east" } }, {} });
   c.variables.push_back({ "lat", NC_DOUBLE, { "y", "x" }, { 50, 50.5, 51, 51, 51.5, 52 }, { { "units", "degrees_north" } }, {} });
   c.of("qc").texts["coordinates"] = "lat lon";
-  netcdf_reader<vtkStratusCFReader> r(write_netcdf(folder + "/turned.nc", c), "qc");
+  variable_reader<vtkStratusCFReader> r(write_netcdf(folder + "/turned.nc", c), "qc");
   vtkStructuredGrid* grid = vtkStructuredGrid::SafeDownCast(r.read());
   check(grid, "two-dimensional latitudes are a curvilinear grid: " + r.errors->heard);
   if (grid) {
@@ -213,7 +213,7 @@ void test_bad(const std::string& folder)
   }
   for (int format : { 0, NC_64BIT_OFFSET }) { // of which libnetcdf itself reads zeros behind the end
     const std::string classic = write_netcdf(folder + "/classic.nc", cloud(), format);
-    netcdf_reader<reader> r(classic, "qc");
+    variable_reader<reader> r(classic, "qc");
     vtkDataSet* data = r.read(6.0);
     check(data && r.errors->heard.empty(), "a classic file: " + r.errors->heard);
     if (data && data->GetNumberOfPoints() > 0) {
@@ -223,7 +223,7 @@ void test_bad(const std::string& folder)
     refuse<reader>(cut(classic, folder + "/cut.nc", .4), "qc", "cut.nc");
   }
   refuse<reader>(folder + "/nowhere.nc", "qc", "no netCDF file that can be read: No such file");
-  netcdf_reader<reader> r("", nullptr);
+  variable_reader<reader> r("", nullptr);
   r.read();
   check(r.errors->heard.find("FileName is not set") != std::string::npos, "no name");
   // a reader that failed reads the next file

@@ -43,7 +43,7 @@ netcdf_content delft()
   return c;
 }
 
-vtkUnstructuredGrid* grid_of(netcdf_reader<reader>& r, double time)
+vtkUnstructuredGrid* grid_of(variable_reader<reader>& r, double time)
 {
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(r.read(time));
   check(grid && r.errors->heard.empty(), "the file is read: " + r.errors->heard);
@@ -88,7 +88,7 @@ void test_delft(const std::string& folder)
 {
   const std::string path = write_netcdf(folder + "/delft.nc", delft());
   check(reader::CanReadFile(path.c_str()), "the mesh is seen");
-  netcdf_reader<reader> r(path, nullptr);
+  variable_reader<reader> r(path, nullptr);
   vtkUnstructuredGrid* grid = grid_of(r, 0);
   check_cells(grid);
   check(
@@ -114,7 +114,7 @@ void test_dry(const std::string& folder)
 {
   netcdf_content c = delft();
   c.of("mesh2d_s1").values = { -11, 0, 2, -999 }; // below the bottom; without a value
-  netcdf_reader<reader> r(write_netcdf(folder + "/dry.nc", c), nullptr);
+  variable_reader<reader> r(write_netcdf(folder + "/dry.nc", c), nullptr);
   vtkUnstructuredGrid* grid = grid_of(r, 0);
   check(hidden(grid, 0) && hidden(grid, 2) && !hidden(grid, 1) && !hidden(grid, 3), "a face below the bottom is dry");
   grid = grid_of(r, 600);
@@ -129,7 +129,7 @@ void test_levels(const std::string& folder)
   c.of(
     "mesh2d_interface_sigma") = { "mesh2d_interface_z", NC_DOUBLE, { "border" }, { -8, -4, 0 }, { { "standard_name", "altitude" } }, {} };
   c.of("mesh2d_flowelem_bl").values = { -10, -3 };
-  netcdf_reader<reader> r(write_netcdf(folder + "/levels.nc", c), nullptr);
+  variable_reader<reader> r(write_netcdf(folder + "/levels.nc", c), nullptr);
   vtkUnstructuredGrid* grid = grid_of(r, 0);
   check(near(height(grid, 0, 0), -10) && near(height(grid, 0, 1), -4) && near(height(grid, 0, 2), 0), "levels end at the bottom");
   check(near(height(grid, 4, 0), -3) && near(height(grid, 4, 1), -3) && near(height(grid, 4, 2), 0), "levels are cut off by the bottom");
@@ -157,7 +157,7 @@ netcdf_content fvcom()
 
 void test_fvcom(const std::string& folder)
 {
-  netcdf_reader<reader> r(write_netcdf(folder + "/fvcom.nc", fvcom()), "temp");
+  variable_reader<reader> r(write_netcdf(folder + "/fvcom.nc", fvcom()), "temp");
   vtkUnstructuredGrid* grid = grid_of(r, 5);
   check(grid->GetNumberOfCells() == 4 && grid->GetCellType(0) == VTK_WEDGE, "two triangles, two layers");
   check(near(height(grid, 0, 0, 4), -8) && near(height(grid, 0, 1, 4), -2) && near(height(grid, 0, 2, 4), 0), "sigma from the top");
@@ -184,7 +184,7 @@ void test_schism(const std::string& folder)
     { "zcor", NC_FLOAT, { "time", "node", "siglev" }, { -9, -4, 0, -8, -3, 1, -99, -2, 0, -99, -99, -99 }, {}, { { "_FillValue", -99 } } });
   c.variables.push_back({ "salt", NC_DOUBLE, { "time", "node", "siglev" }, { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 }, {}, {} });
   const std::string path = write_netcdf(folder + "/schism.nc", c);
-  netcdf_reader<reader> r(path, "salt");
+  variable_reader<reader> r(path, "salt");
   vtkUnstructuredGrid* grid = grid_of(r, 5);
   check(near(height(grid, 1, 0, 4), -8) && near(height(grid, 1, 1, 4), -3) && near(height(grid, 1, 2, 4), 1), "heights as given");
   check(near(height(grid, 2, 0, 4), -2) && near(height(grid, 2, 1, 4), -2) && near(height(grid, 2, 2, 4), 0), "below the lowest layer");
@@ -213,7 +213,7 @@ void test_polygons(const std::string& folder)
       c.of("zeta").values.push_back(1);
       c.of("h").values.push_back(2);
     }
-    netcdf_reader<reader> r(write_netcdf(folder + "/polygon.nc", c), "q");
+    variable_reader<reader> r(write_netcdf(folder + "/polygon.nc", c), "q");
     vtkUnstructuredGrid* grid = grid_of(r, 0);
     const int types[] = { VTK_PENTAGONAL_PRISM, VTK_HEXAGONAL_PRISM, VTK_POLYHEDRON };
     check(grid->GetNumberOfCells() == 1 && grid->GetCellType(0) == types[corners - 5] &&

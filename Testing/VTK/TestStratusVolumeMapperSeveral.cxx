@@ -128,6 +128,11 @@ void Mixed()
     CHECK(scene.Multi->GetSamplesTaken() > 1000 && scene.Multi->GetCastTime() > 0.0 && scene.Multi->GetUsedSampleDistance(5) > 0.0 &&
         std::string(scene.Multi->GetReason(5)).find("sample distance") != std::string::npos,
       "reports: %s", scene.Multi->GetReason(5));
+    if (stratus_device_count() > 0) {
+      scene.Mapper->SetDevice("0");
+      CHECK(scene.Mixed() == picture && std::string(scene.Multi->GetReason(0)).find("drawn on the host") == std::string::npos,
+        "the device draws otherwise: %s", scene.Multi->GetReason(0));
+    }
     CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
   }
 }

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Grids of a .vdb file, by OpenVDB.
+#include "vtkStratusSparseGrid.h"
+
+#include <openvdb/openvdb.h>
+
+#include <exception>
+#include <new>
+#include <type_traits>
+
+namespace {
+
+// Of a kind of values: the type of a component, how many there are, and where they lie.
+template <class V> struct Traits {
+  using Type = V;
+  static constexpr int Components = 1;
+  static const Type* Get(const V& value) { return &value; }
+};
+template <> struct Traits<bool> {
+  using Type = uint8_t;
+  static constexpr int Components = 1;
+  static const Type* Get(bool value)
+  {
+    static constexpr uint8_t values[] = { 0, 1 };
+    return &values[value ? 1 : 0];
+  }
+};
+template <class T> struct Traits<openvdb::math::Vec3<T>> {
+  using Type = T;
+  static constexpr int Components = 3;
+  static const Type* Get(const openvdb::math::Vec3<T>& value) { return value.asV(); }
+};
+
+constexpr int NumberOf(float)
+{
+  return VTK_FLOAT;
+}
+constexpr int NumberOf(double)
+{
+  return VTK_DOUBLE;
+}
+constexpr int NumberOf(int32_t)
+{
+  return VTK_INT;
+}
+constexpr int NumberOf(int64_t)
+{
+  return VTK_LONG_LONG;
+}
+constexpr int NumberOf(uint8_t)
+{
+  return VTK_UNSIGNED_CHAR;
+}
+
+template <class Grid> class SparseGrid : public vtkStratusSparseGrid
+{
+public:
+  using Value = typename Grid::ValueType;
+  using Component = typename Traits<Value>::Type;
+
+  SparseGrid(openvdb::GridBase::ConstPtr owner, const Grid& grid) : Owner(owner), Source(grid)
+  {
+    this->Type = NumberOf(Component());
+    this->Components = Traits<Value>::Components;
+  }
+
+  void Write(void* values, const int64_t low[3], const int64_t high[3]) const override
+  {
+    vtkStratusDenseBox<Component> box(values, low, high, this->Components);
+    const auto& tree = this->Source.constTree();
+    const Value background = tree.background();
+    box.SetBackground(Traits<Value>::Get(background));
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); // tiles alone: leaves come below
+    for (; tile; ++tile) {
+      openvdb::CoordBBox place;
+      tile.getBoundingBox(place);
+      const Value value = tile.getValue();
+      const int64_t first[3] = { place.min().x(), place.min().y(), place.min().z() };
+      box.SetCube(first, static_cast<int64_t>(place.max().x()) - first[0] + 1, Traits<Value>::Get(value));
+    }
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+      const openvdb::Coord origin = leaf->origin();
+      const int64_t first[3] = { origin.x(), origin.y(), origin.z() };
+      Value value;
+      box.Fill(first, 8, [&](int64_t x, int64_t y, int64_t z) {
+        value = leaf->getValue(static_cast<openvdb::Index>((x * 8 + y) * 8 + z));
+        return Traits<Value>::Get(value);
+      });
+    }
+  }
+
+private:
+  openvdb::GridBase::ConstPtr Owner;
+  const Grid& Source;
+};
+
+class File : public vtkStratusSparseFile
+{
+public:
+  explicit File(const std::string& path) : Path(path), Source(path)
+  {
+    this->Guard([this] {
+      openvdb::initialize();
+      this->Source.open(false);
+      for (auto name = this->Source.beginName(); name != this->Source.endName(); ++name) {
+        const openvdb::GridBase::Ptr head = this->Source.readGridMetadata(name.gridName());
+        const bool known = head->apply<Every>([](const auto&) {});
+        this->Entries.push_back({ name.gridName(), known ? head->valueType() : head->type(), known });
+      }
+    });
+  }
+
+  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) override
+  {
+    std::unique_ptr<vtkStratusSparseGrid> result;
+    this->Guard([&] {
+      const openvdb::GridBase::Ptr grid = this->Source.readGrid(name);
+      grid->apply<Every>([&](const auto& one) { result = std::make_unique<SparseGrid<std::decay_t<decltype(one)>>>(grid, one); });
+      this->Describe(*grid, name, *result);
+    });
+    return result;
+  }
+
+private:
+  using Every = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid, openvdb::BoolGrid,
+    openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
+
+  void Describe(const openvdb::GridBase& grid, const std::string& name, vtkStratusSparseGrid& to) const
+  {
+    if (!grid.transform().isLinear()) {
+      throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' lies in a " + grid.transform().mapType() +
+        ", whose voxels differ in size; those of a linear map are drawn" };
+    }
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    const openvdb::math::Mat4d map = grid.transform().baseMap()->getAffineMap()->getMat4(); // rows are the images of the axes
+    to.Empty = box.empty();
+    for (int a = 0; a < 3; ++a) {
+      to.Low[a] = to.Empty ? 0 : box.min()[a];
+      to.High[a] = to.Empty ? 0 : box.max()[a];
+      to.Offset[static_cast<size_t>(a)] = map[3][a];
+      for (int b = 0; b < 3; ++b) {
+        to.Matrix[static_cast<size_t>(3 * a + b)] = map[b][a];
+      }
+    }
+    to.Active = grid.activeVoxelCount();
+    to.Leaves = grid.constBaseTree().leafCount();
+    to.Bytes = grid.memUsage();
+    to.Kind = (grid.getGridClass() == openvdb::GRID_UNKNOWN ? "grid" : openvdb::GridBase::gridClassToString(grid.getGridClass())) + " of " +
+      grid.valueType() + (grid.saveFloatAsHalf() ? ", kept in halves" : "");
+  }
+
+  template <class Work> void Guard(const Work& work) const
+  {
+    try {
+      work();
+    } catch (const std::bad_alloc&) { // also of a size that was read from a damaged file
+      throw vtkStratusReadError{ this->Path + ": OpenVDB wants more memory than there is: the file is large, cut short or damaged" };
+    } catch (const std::exception& error) {
+      throw vtkStratusReadError{ this->Path + ": OpenVDB says: " + error.what() };
+    }
+  }
+
+  std::string Path;
+  openvdb::io::File Source;
+};
+} // namespace
+
+std::unique_ptr<vtkStratusSparseFile> vtkStratusOpenVDBFile(const std::string& path)
+{
+  return std::make_unique<File>(path);
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusVDBReader.h"
+
+#include "vtkStratusSparseGrid.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+vtkStandardNewMacro(vtkStratusVDBReader);
+
+namespace {
+constexpr double Orthogonal = 1e-6; // the most that the cosine of an angle between two axes may be: what a map of floats makes of a turn
+
+std::string TellBytes(double bytes)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, bytes < 1e15 ? "%.0f bytes (%.4g MiB)" : "%.4g bytes (%.4g MiB)", bytes, bytes / 1048576.0);
+  return text;
+}
+
+std::string TellBox(const vtkStratusSparseGrid& grid)
+{
+  std::string text;
+  for (int a = 0; a < 3; ++a) {
+    text += (a ? ", " : "") + std::to_string(grid.Low[a]) + ".." + std::to_string(grid.High[a]);
+  }
+  return text;
+}
+
+double Length(const vtkStratusSparseGrid& grid, size_t axis)
+{
+  return std::sqrt(
+    grid.Matrix[axis] * grid.Matrix[axis] + grid.Matrix[3 + axis] * grid.Matrix[3 + axis] + grid.Matrix[6 + axis] * grid.Matrix[6 + axis]);
+}
+
+// An array whose memory comes zeroed from the system, which gives a page only where something is written.
+vtkSmartPointer<vtkDataArray> MakeArray(int type, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  const vtkIdType values = tuples * components;
+  void* memory = std::calloc(static_cast<size_t>(values), static_cast<size_t>(array->GetDataTypeSize()));
+  if (!memory) {
+    throw std::bad_alloc();
+  }
+  array->SetNumberOfComponents(components);
+  array->SetVoidArray(memory, values, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  return array;
+}
+} // namespace
+
+vtkStratusVDBReader::vtkStratusVDBReader() = default;
+vtkStratusVDBReader::~vtkStratusVDBReader() = default;
+
+void vtkStratusVDBReader::Fail(const std::string& why) const
+{
+  throw vtkStratusReadError{ std::string(this->FileName) + ": " + why };
+}
+
+std::string vtkStratusVDBReader::Inspect()
+{
+  const std::unique_ptr<vtkStratusSparseFile> file = vtkStratusSparseFile::Open(this->FileName);
+  std::string others;
+  this->Grid.reset();
+  for (const vtkStratusSparseFile::Entry& one : file->GetEntries()) {
+    if (one.Known) {
+      this->Variables.push_back({ one.Name, "", one.Kind });
+    } else {
+      others += (others.empty() ? "" : ", ") + ("'" + one.Name + "' of " + one.Kind);
+    }
+  }
+  if (this->Variables.empty()) {
+    this->Fail("there is no grid of numbers or vectors; the file has: " + (others.empty() ? "no grid" : others));
+  }
+  this->GridName = this->ChosenName();
+  this->Grid = file->Read(this->GridName);
+  this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in " +
+    std::to_string(this->Grid->Leaves) + " leaves and tiles of " + TellBytes(static_cast<double>(this->Grid->Bytes));
+  this->Description += this->Grid->Empty ? ": nothing but background"
+                                         : ", within " + TellBox(*this->Grid) + ": an image of this box and a border of one voxel";
+  this->Description += others.empty() ? "" : "; left out: " + others;
+  this->CheckMap();
+  this->CheckSize();
+  return "vtkImageData";
+}
+
+// Finds the extent.
+void vtkStratusVDBReader::CheckSize()
+{
+  const vtkStratusSparseGrid& grid = *this->Grid;
+  double bytes = vtkDataArray::GetDataTypeSize(grid.Type) * static_cast<double>(grid.Components);
+  for (int a = 0; a < 3; ++a) {
+    if (grid.Low[a] > grid.High[a] || grid.Low[a] <= INT_MIN || grid.High[a] >= INT_MAX) {
+      this->Fail("the box of the active voxels of '" + this->GridName + "' is " + TellBox(grid) +
+        "; bounds must rise and lie within -2147483647..2147483646");
+    }
+    this->WholeExtent[2 * a] = static_cast<int>(grid.Low[a] - 1);
+    this->WholeExtent[2 * a + 1] = static_cast<int>(grid.High[a] + 1);
+    bytes *= static_cast<double>(grid.High[a] - grid.Low[a] + 3);
+  }
+  if (bytes > 1048576.0 * static_cast<double>(this->MemoryLimit)) {
+    this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(bytes) + " as an image: its active voxels lie within " +
+      TellBox(grid) + ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
+      std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)");
+  }
+}
+
+// An image has axes at right angles.
+void vtkStratusVDBReader::CheckMap()
+{
+  const vtkStratusSparseGrid& grid = *this->Grid;
+  const double* m = grid.Matrix.data();
+  for (size_t a = 0; a < 3; ++a) {
+    const double length = Length(grid, a);
+    if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(grid.Offset[a])) {
+      this->Fail("the grid '" + this->GridName + "' has voxels of the size " + std::to_string(length) + " along " + "xyz"[a] +
+        ", which must be above 0 and finite");
+    }
+  }
+  for (size_t a = 0; a < 3; ++a) {
+    const size_t b = (a + 1) % 3;
+    const double cosine = (m[a] * m[b] + m[3 + a] * m[3 + b] + m[6 + a] * m[6 + b]) / (Length(grid, a) * Length(grid, b));
+    if (!(std::fabs(cosine) <= Orthogonal)) {
+      this->Fail("the map of the grid '" + this->GridName + "' shears: its axes " + "xyz"[a] + " and " + "xyz"[b] + " meet at " +
+        std::to_string(std::acos(cosine) * 180.0 / std::acos(-1.0)) + " degrees, an image needs 90");
+    }
+  }
+}
+
+void vtkStratusVDBReader::Build(size_t, vtkDataSet* output)
+{
+  vtkImageData* image = vtkImageData::SafeDownCast(output);
+  std::unique_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
+  if (!grid) {
+    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName);
+  }
+  double spacing[3], direction[9];
+  int64_t low[3], high[3];
+  for (int i = 0; i < 9; ++i) {
+    direction[i] = grid->Matrix[static_cast<size_t>(i)] / Length(*grid, static_cast<size_t>(i % 3));
+  }
+  for (int a = 0; a < 3; ++a) {
+    spacing[a] = Length(*grid, static_cast<size_t>(a));
+    low[a] = this->WholeExtent[2 * a];
+    high[a] = this->WholeExtent[2 * a + 1];
+  }
+  image->SetExtent(this->WholeExtent);
+  image->SetOrigin(grid->Offset.data());
+  image->SetSpacing(spacing);
+  image->SetDirectionMatrix(direction);
+  const vtkSmartPointer<vtkDataArray> values = MakeArray(grid->Type, grid->Components, image->GetNumberOfPoints());
+  grid->Write(values->GetVoidPointer(0), low, high);
+  values->SetName(this->GridName.c_str());
+  image->GetPointData()->AddArray(values);
+  if (grid->Components == 1) {
+    image->GetPointData()->SetActiveScalars(this->GridName.c_str());
+  } else {
+    image->GetPointData()->SetActiveVectors(this->GridName.c_str());
+  }
+}
+
+void vtkStratusVDBReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusVariableReader.h"
+
+#include "vtkStratusReadError.h"
+
+#include "vtkDataObjectTypes.h"
+#include "vtkDataSet.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <new>
+
+vtkStratusVariableReader::vtkStratusVariableReader()
+{
+  this->SetNumberOfInputPorts(0);
+  std::fill_n(this->WholeExtent, 6, 0);
+}
+
+vtkStratusVariableReader::~vtkStratusVariableReader()
+{
+  this->SetFileName(nullptr);
+  this->SetVariableName(nullptr);
+}
+
+int vtkStratusVariableReader::FillInputPortInformation(int, vtkInformation*)
+{
+  return 0;
+}
+
+int vtkStratusVariableReader::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
+}
+
+int vtkStratusVariableReader::GetNumberOfVariables()
+{
+  return static_cast<int>(this->Variables.size());
+}
+
+const char* vtkStratusVariableReader::GetNameOfVariable(int index)
+{
+  return index >= 0 && index < this->GetNumberOfVariables() ? this->Variables[static_cast<size_t>(index)].Name.c_str() : "";
+}
+
+const char* vtkStratusVariableReader::GetUnitsOfVariable(int index)
+{
+  return index >= 0 && index < this->GetNumberOfVariables() ? this->Variables[static_cast<size_t>(index)].Units.c_str() : "";
+}
+
+const char* vtkStratusVariableReader::GetLongNameOfVariable(int index)
+{
+  return index >= 0 && index < this->GetNumberOfVariables() ? this->Variables[static_cast<size_t>(index)].LongName.c_str() : "";
+}
+
+const char* vtkStratusVariableReader::GetTimeUnits()
+{
+  return this->TimeUnits.c_str();
+}
+
+const char* vtkStratusVariableReader::GetLengthUnits()
+{
+  return this->LengthUnits.c_str();
+}
+
+const char* vtkStratusVariableReader::GetDescription()
+{
+  return this->Description.c_str();
+}
+
+std::string vtkStratusVariableReader::ChosenName() const
+{
+  const std::string wanted = this->VariableName ? this->VariableName : "";
+  std::string names;
+  for (const VariableEntry& one : this->Variables) {
+    if (wanted.empty() || one.Name == wanted) {
+      return one.Name;
+    }
+    names += (names.empty() ? "" : ", ") + one.Name + (one.Units.empty() ? "" : " (" + one.Units + ")");
+  }
+  throw vtkStratusReadError{ std::string(this->FileName) + ": " +
+    (wanted.empty() ? "there is no variable on a grid of three dimensions"
+                    : "there is no variable '" + wanted + "' on the grid; those that are: " + (names.empty() ? "none" : names)) };
+}
+
+// Inspects the file where it or the variable was set anew.
+bool vtkStratusVariableReader::Look()
+{
+  if (this->LookTime == this->GetMTime()) {
+    return !this->OutputClass.empty();
+  }
+  this->LookTime = this->GetMTime();
+  this->OutputClass.clear();
+  this->Variables.clear();
+  this->Times.clear();
+  this->TimeUnits.clear();
+  this->Description.clear();
+  this->LengthUnits.clear();
+  this->SetErrorCode(vtkErrorCode::NoError);
+  if (!this->FileName || !*this->FileName) {
+    this->SetErrorCode(vtkErrorCode::NoFileNameError);
+    vtkErrorMacro("FileName is not set");
+    return false;
+  }
+  try {
+    this->OutputClass = this->Inspect();
+  } catch (const vtkStratusReadError& error) {
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< error.Text);
+  } catch (const std::bad_alloc&) {
+    this->SetErrorCode(vtkErrorCode::UnknownError);
+    vtkErrorMacro(<< "out of memory while looking at " << this->FileName);
+  }
+  return !this->OutputClass.empty();
+}
+
+int vtkStratusVariableReader::RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  if (!this->Look()) {
+    return 0;
+  }
+  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkDataObject* before = vtkDataObject::GetData(info);
+  if (!before || this->OutputClass != before->GetClassName()) {
+    vtkDataObject* output = vtkDataObjectTypes::NewDataObject(this->OutputClass.c_str());
+    info->Set(vtkDataObject::DATA_OBJECT(), output);
+    output->Delete();
+  }
+  return 1;
+}
+
+int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  if (!this->Look()) {
+    return 0;
+  }
+  vtkInformation* info = outputs->GetInformationObject(0);
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->WholeExtent, 6);
+  if (this->Times.empty()) {
+    info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+    info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
+  } else {
+    double range[2] = { this->Times.front(), this->Times.back() };
+    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
+    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
+  }
+  return 1;
+}
+
+int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkDataSet* output = vtkDataSet::GetData(info);
+  if (!output || !this->Look()) {
+    return 0;
+  }
+  size_t step = 0;
+  if (!this->Times.empty() && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())) {
+    const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+    const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time);
+    step = after == this->Times.begin() ? 0 : static_cast<size_t>(after - this->Times.begin()) - 1;
+  }
+  try {
+    this->Build(step, output);
+    if (!this->Times.empty()) {
+      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[step]);
+    }
+    return 1;
+  } catch (const vtkStratusReadError& error) {
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< error.Text);
+  } catch (const std::bad_alloc&) {
+    this->SetErrorCode(vtkErrorCode::UnknownError);
+    vtkErrorMacro(<< "out of memory while reading " << this->FileName);
+  }
+  output->Initialize();
+  return 0;
+}
+
+void vtkStratusVariableReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "VariableName: " << (this->VariableName ? this->VariableName : "(the first)") << "\n";
+  os << indent << "Description: " << this->Description << "\n";
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusVariableReader
+ * @brief   what readers that read a file's variables one by one share: the file, the variable, and time
+ *
+ * A reader puts out one variable on its grid, at the time step that the pipeline asks for (the nearest one before it, else the first). An
+ * error names the file and what is wrong, and empties the output.
+ *
+ * @sa vtkStratusCFReader vtkStratusUgridReader vtkStratusVDBReader
+ */
+#ifndef vtkStratusVariableReader_h
+#define vtkStratusVariableReader_h
+
+#include "StratusFiltersIOModule.h" // For export macro
+#include "vtkDataSetAlgorithm.h"
+
+#include <string> // For std::string
+#include <vector> // For std::vector
+
+class STRATUSFILTERSIO_EXPORT vtkStratusVariableReader : public vtkDataSetAlgorithm
+{
+public:
+  vtkTypeMacro(vtkStratusVariableReader, vtkDataSetAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  //@{
+  /**
+   * Set/Get the file's name. Default none.
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the variable to read. One that the file does not have is an error that lists those that it has. Default none: the first.
+   */
+  vtkSetStringMacro(VariableName);
+  vtkGetStringMacro(VariableName);
+  //@}
+
+  //@{
+  /**
+   * Get the variables that can be read, after UpdateInformation(): their number, and the name, units and long name of each, "" for what the
+   * file does not tell. An index out of range gives "".
+   */
+  int GetNumberOfVariables();
+  const char* GetNameOfVariable(int index);
+  const char* GetUnitsOfVariable(int index);
+  const char* GetLongNameOfVariable(int index);
+  //@}
+
+  /**
+   * Get the unit of the time steps as the file has it ("hours since 2001-01-01 00:00"), "" if it has none. After UpdateInformation().
+   */
+  const char* GetTimeUnits();
+
+  /**
+   * Get the unit of all three of the output's coordinates: "m", or "" where the file does not tell or they differ. After
+   * UpdateInformation().
+   */
+  const char* GetLengthUnits();
+
+  /**
+   * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and what was made of their
+   * units.
+   */
+  const char* GetDescription();
+
+protected:
+  vtkStratusVariableReader();
+  ~vtkStratusVariableReader() override;
+
+  struct VariableEntry {
+    std::string Name, Units, LongName;
+  };
+
+  /// Looks up Variables, Times, TimeUnits, Description and WholeExtent. Returns the class of the output for the chosen variable.
+  /// Throws vtkStratusReadError, as Build() and ChosenName() do.
+  virtual std::string Inspect() = 0;
+  /// Fills the output with a step, which is 0 in a file without time.
+  virtual void Build(size_t step, vtkDataSet* output) = 0;
+  /// Returns VariableName, or the first variable if there is none. Fails with the list of variables for another name.
+  std::string ChosenName() const;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  char* FileName = nullptr;
+  char* VariableName = nullptr;
+  std::vector<VariableEntry> Variables;
+  std::vector<double> Times;
+  std::string TimeUnits;
+  std::string Description;
+  std::string LengthUnits;
+  int WholeExtent[6]; // of an output with an extent
+
+private:
+  vtkStratusVariableReader(const vtkStratusVariableReader&) = delete;
+  void operator=(const vtkStratusVariableReader&) = delete;
+
+  bool Look();
+
+  vtkMTimeType LookTime = 0;
+  std::string OutputClass;
+};
+
+#endif

@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Pictures of several volumes by the OpenCL device equal the host's to the bit, by packets and by one work item a ray, of one type of
+ * values and of different ones. The device keeps what did not change, and what it cannot draw the host draws. */
+#include "grid_case.h"
+#include "several_case.h"
+#include "testing.h"
+
+#include "device_state.h"
+
+static picture on_host, on_device;
+static stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
+
+/* Two to four volumes: of one type where seed is even, with light, gradient opacity, jitter, stretched grids and walls in turn. */
+static void make_case(stratus_context* context, uint32_t seed, several_case* m, grid_case* grid)
+{
+  static const double gradient[4] = { 0.0, 0.2, 1e9, 1.0 };
+  uint32_t random = seed;
+  several_create(context, m, 2 + (int)(seed % 3), 700 + seed);
+  const stratus_camera camera = m->of[0].camera;
+  for (int n = 0; n < m->count; ++n) {
+    picture_case* c = &m->of[n];
+    if (seed % 2 == 0) {
+      const stratus_type type = (stratus_type)(seed / 2 % 10);
+      case_destroy(c);
+      case_create(context, c, type, 20 + 3 * n, 24, 31 - 2 * n, seed + (uint32_t)n);
+      several_place(c, seed + 17u * (uint32_t)n);
+      several_color(c, n);
+    }
+    c->options.sampling = (seed + (uint32_t)n) % 3 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+    c->options.sample_distance = n == 1 ? 0.9 : 0.4;
+    c->options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
+    c->options.shade = (seed + (uint32_t)n) % 4 == 0;
+    c->transfer.gradient = gradient;
+    c->transfer.gradient_count = (seed + (uint32_t)n) % 5 == 0 ? 2 : 0;
+  }
+  m->of[0].camera = camera;
+  m->of[0].options.audit = 1;
+  m->of[0].options.jitter = seed % 3 == 0;
+  if (seed % 4 == 1) { /* a wall */
+    picture_case* c = &m->of[1];
+    const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
+    const double opacity[8] = { base - scale, 0, base + 0.2 * scale, 0.1, base + 0.2 * scale, 1.0, base + scale, 1.0 };
+    memcpy(c->opacity, opacity, sizeof opacity);
+  }
+  if (seed % 4 == 2) {
+    grid_case_set(&m->of[0], grid, GRID_GEOMETRIC, 3, -10.0, 1.0, 20.0, &random);
+  }
+}
+
+/* Samples are not compared: which of them a packet leaps over depends on its width. */
+static int differing(void)
+{
+  int count = 0;
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    count += memcmp(on_host.rgba + 4 * i, on_device.rgba + 4 * i, 4 * sizeof(float)) != 0 || on_host.depth[i] != on_device.depth[i];
+  }
+  return count;
+}
+
+static void compare(bool one_ray)
+{
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  assert_true(stratus_context_on_device(device));
+  device->device->is_cpu = !one_ray;
+  for (uint32_t seed = 0; seed < 9; seed += one_ray ? 5 : 1) {
+    several_case m;
+    grid_case grid;
+    make_case(host, seed, &m, &grid);
+    several_draw(host, &m, &on_host);
+    several_draw(device, &m, &on_device);
+    print_message(
+      "             seed %u: %d volumes, %d pixels, %d differ; %s\n", seed, m.count, case_lit(&on_host), differing(), on_device.report.why);
+    assert_true(case_lit(&on_host) > 100);
+    assert_int_equal(differing(), 0);
+    assert_int_equal(on_device.report.differing_pixels, 0);
+    assert_true(on_device.report.samples > 0);
+    assert_int_equal(on_device.report.rays, on_host.report.rays);
+    assert_null(strstr(on_device.report.why, "drawn on the host"));
+    several_destroy(&m);
+  }
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+static void a_device_by_packets_draws_the_hosts_pictures(void** state)
+{
+  (void)state;
+  compare(false);
+}
+
+static void a_device_by_rays_draws_the_hosts_pictures(void** state)
+{
+  (void)state;
+  compare(true);
+}
+
+/* Only what changed is sent again: for another function of one volume by the midpoint rule, its table, its layers and its map. */
+static void what_did_not_change_stays_on_the_device(void** state)
+{
+  (void)state;
+  stratus_context* device = case_context("0", 2);
+  several_case m;
+  several_casters casters;
+  several_create(device, &m, 2, 44);
+  m.of[0].options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  m.of[1].options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  several_casters_create(device, &casters);
+  assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
+  const uint64_t first[2] = { reports[0].uploads, reports[1].uploads };
+  assert_true(first[0] >= 5 && first[1] >= 6);
+  m.of[0].camera.eye[0] += 1.0;
+  assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
+  assert_int_equal(reports[0].uploads, first[0]);
+  assert_int_equal(reports[1].uploads, first[1]);
+  m.of[1].opacity[5] *= 0.5;
+  assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
+  assert_int_equal(reports[0].uploads, first[0]);
+  print_message("             uploads %d, then %d\n", (int)first[1], (int)reports[1].uploads);
+  assert_true(reports[1].uploads > first[1] && reports[1].uploads <= first[1] + 3);
+  /* another step changes the layers alone */
+  const uint64_t second = reports[1].uploads;
+  m.of[0].options.sample_distance = m.of[1].options.sample_distance = 0.3;
+  assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
+  assert_int_equal(reports[0].uploads, first[0]);
+  assert_true(reports[1].uploads > second);
+  stratus_context* host = case_context("host", 2);
+  several_draw(host, &m, &on_host);
+  assert_int_equal(differing(), 0);
+  several_casters_destroy(&casters);
+  several_destroy(&m);
+  stratus_context_destroy(host);
+  stratus_context_destroy(device);
+}
+
+/* Several volumes are not drawn from pages. */
+static void the_host_draws_what_the_device_cannot_hold(void** state)
+{
+  (void)state;
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  several_case m;
+  several_create(device, &m, 2, 45);
+  several_draw(host, &m, &on_host);
+  device->device->largest_allocation = 30000;
+  several_draw(device, &m, &on_device);
+  assert_non_null(strstr(on_device.report.why, "drawn on the host: volume 0: "));
+  assert_non_null(strstr(on_device.report.why, "largest allocation"));
+  assert_int_equal(differing(), 0);
+  several_destroy(&m);
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+/* Without double, rays are set up in pairs of floats: as test_ray_cast_pairs has it of one volume. */
+static void a_device_without_double_draws_nearly_the_same(void** state)
+{
+  (void)state;
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  several_case m;
+  float most = 0.0f;
+  device->device->has_double = false;
+  several_create(host, &m, 3, 46);
+  for (int n = 0; n < 3; ++n) {
+    case_destroy(&m.of[n]);
+    case_create(host, &m.of[n], n ? STRATUS_FLOAT32 : STRATUS_UINT8, 20, 24, 22, 46u + (uint32_t)n);
+    several_place(&m.of[n], 5u + 17u * (uint32_t)n);
+  }
+  const double eye[3] = { 30, 40, 35 }, focal[3] = { 0, 0, 0 }, up[3] = { 0, 1, 0 };
+  assert_int_equal(stratus_camera_perspective(host, eye, focal, up, 40.0, 1.2, &m.of[0].camera), STRATUS_OK);
+  several_draw(host, &m, &on_host);
+  several_draw(device, &m, &on_device);
+  for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+    most = fmaxf(most, fabsf(on_host.rgba[i] - on_device.rgba[i]));
+  }
+  assert_true(case_lit(&on_host) > 100);
+  assert_null(strstr(on_device.report.why, "drawn on the host"));
+  assert_true(most <= 2e-3f);
+  several_destroy(&m);
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+int test_ray_several_device(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_device_by_packets_draws_the_hosts_pictures),
+    cmocka_unit_test(a_device_by_rays_draws_the_hosts_pictures),
+    cmocka_unit_test(what_did_not_change_stays_on_the_device),
+    cmocka_unit_test(the_host_draws_what_the_device_cannot_hold),
+    cmocka_unit_test(a_device_without_double_draws_nearly_the_same),
+  };
+  if (stratus_device_count() == 0) {
+    return test_skip("no OpenCL device on this machine");
+  }
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

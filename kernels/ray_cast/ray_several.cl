@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The ray cast through several volumes on a device, of SEVERAL_MOST volumes whose values have one STRATUS_TYPE; -1 serves any. Where
+ * STRATUS_WIDTH is 1 (a GPU) a work item does one ray; else (a CPU) it does a tile in packets, as the host does. */
+#ifndef STRATUS_DEVICE
+#define STRATUS_DEVICE 1
+#endif
+#ifndef STRATUS_WIDTH
+#define STRATUS_WIDTH 1
+#endif
+#ifndef STRATUS_TYPE
+#define STRATUS_TYPE -1
+#endif
+#define STRATUS_PREINTEGRATED 0
+#define STRATUS_RAY_MODE STRATUS_RAY_SHADING
+#define RAY_NAME(x) kernel_##x
+/* Pixels along each side of a work item's tile of packets. */
+#ifndef RAY_TILE
+#define RAY_TILE 16
+#endif
+
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wunused-function" /* a volume has no crop regions, and does not march alone */
+#endif
+
+#include "ray_segment.h"
+
+#include "ray_cast.h"
+#include "ray_several.h"
+#include "ray_several_arguments.h"
+#include "ray_store.h"
+
+#ifdef STRATUS_ARGUMENTS_BYTES
+/* Arrays of negative size, which do not compile, where the host lays the arguments out otherwise. */
+typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
+#endif
+
+/* The kernel's arguments of a volume; those of numbers that no volume has are not read. */
+#define VOLUME_ARGUMENTS(n)                                                                                                                \
+  __global const void *values##n, __global const uchar *hidden##n, __global const uchar *map##n, __global const int *grid##n,              \
+    __global const void *table##n, __global const void *besides##n
+
+#define VOLUME_SOURCE(n)                                                                                                                   \
+  if (n < count) {                                                                                                                         \
+    from[n].a = a + n;                                                                                                                     \
+    from[n].values = values##n;                                                                                                            \
+    from[n].hidden = hidden##n;                                                                                                            \
+    from[n].map = map##n;                                                                                                                  \
+    from[n].grid = grid##n;                                                                                                                \
+    from[n].table = table##n;                                                                                                              \
+    from[n].besides = besides##n;                                                                                                          \
+    from[n].stride = parts[n].stride;                                                                                                      \
+    from[n].lit = parts[n].lit;                                                                                                            \
+    from[n].preintegrated = parts[n].preintegrated;                                                                                        \
+  }
+
+/* a, parts: one for each volume; those of the first tell what is written. counts: rays, samples, skipped, lookups of each row of pixels, or
+ * of each tile. */
+PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __constant stratus_several_arguments* parts, int count,
+  VOLUME_ARGUMENTS(0), VOLUME_ARGUMENTS(1), VOLUME_ARGUMENTS(2), VOLUME_ARGUMENTS(3), VOLUME_ARGUMENTS(4), VOLUME_ARGUMENTS(5),
+  VOLUME_ARGUMENTS(6), VOLUME_ARGUMENTS(7), __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
+  __global float* depth, __global uint* samples, __global uint* counts)
+{
+  const stratus_pixels to = { rgba, rgba8, depth, samples };
+  several_source from[SEVERAL_MOST];
+  several_volume volumes[SEVERAL_MOST];
+  count = min(count, SEVERAL_MOST);
+  VOLUME_SOURCE(0)
+  VOLUME_SOURCE(1)
+#if SEVERAL_MOST > 2
+  VOLUME_SOURCE(2)
+#endif
+#if SEVERAL_MOST > 3
+  VOLUME_SOURCE(3)
+#endif
+#if SEVERAL_MOST > 4
+  VOLUME_SOURCE(4)
+#endif
+#if SEVERAL_MOST > 5
+  VOLUME_SOURCE(5)
+#endif
+#if SEVERAL_MOST > 6
+  VOLUME_SOURCE(6)
+#endif
+#if SEVERAL_MOST > 7
+  VOLUME_SOURCE(7)
+#endif
+#if STRATUS_WIDTH == 1
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= a->picture.width || y >= a->picture.height) {
+    return;
+  }
+  stratus_packet k;
+  several_load(from, count, opaque_depth, x, y, volumes, &k);
+  several_march(from, volumes, count, &k);
+  store_pixel(a, &to, x, y, (float4)(k.red, k.green, k.blue, 1.0f - k.transparency), k.depth, (uint)k.samples);
+  if (k.hits) {
+    __global uint* sums = counts + 4 * y;
+    atomic_inc(sums);
+    atomic_add(sums + 1, (uint)k.samples);
+    atomic_add(sums + 2, (uint)k.skipped);
+    atomic_add(sums + 3, (uint)k.lookups);
+  }
+#else
+  const int x0 = (int)get_global_id(0) * RAY_TILE, y0 = (int)get_global_id(1) * RAY_TILE;
+  const int x1 = min(x0 + RAY_TILE, a->picture.width), y1 = min(y0 + RAY_TILE, a->picture.height);
+  vint taken = vi_set(0), skipped = vi_set(0), lookups = vi_set(0);
+  uint rays = 0;
+  for (int y = y0; y < y1; y += PACKET_Y) {
+    for (int x = x0; x < x1; x += PACKET_X) {
+      stratus_packet k;
+      several_load(from, count, opaque_depth, x, y, volumes, &k);
+      several_march(from, volumes, count, &k);
+      store_packet(a, &to, &k, x, y);
+      rays += (uint)m_count(k.hits);
+      taken = taken + k.samples;
+      skipped = skipped + k.skipped;
+      lookups = lookups + k.lookups;
+    }
+  }
+  const size_t tile = get_global_id(1) * get_global_size(0) + get_global_id(0);
+  vstore4((uint4)(rays, sum_lanes(taken), sum_lanes(skipped), sum_lanes(lookups)), tile, counts);
+#endif
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What one of several volumes shows on the way of a sample.
+ */
+#ifndef STRATUS_SEVERAL_WAY_H
+#define STRATUS_SEVERAL_WAY_H
+
+#include "several_state.h"
+
+/* Cuts off what lies beyond the table, where the volume is transparent. */
+INLINE void several_cut(CONSTANT stratus_table_arguments* t, vmask mask, several_way* way)
+{
+  const vfloat scale = v_set(t->scale), offset = v_set(t->offset), length = way->hi - way->lo;
+  const vfloat from = v_clamp(v_fma(way->front, scale, offset), -1e30f, 1e30f),
+               to = v_clamp(v_fma(way->front + way->rise, scale, offset), -1e30f, 1e30f);
+  const vmask cut = mask & (v_lt(v_min(from, to), v_set(0.0f)) | v_lt(v_set(t->last + 1.0f), v_max(from, to)));
+  if (m_any(cut)) {
+    vfloat before, part;
+    part_within(t, from, to, &before, &part);
+    way->front = v_select(cut, v_fma(way->rise, before, way->front), way->front);
+    way->rise = v_select(cut, way->rise * part, way->rise);
+    way->lo = v_select(cut, v_fma(length, before, way->lo), way->lo);
+    way->hi = v_select(cut, v_fma(length, part, way->lo), way->hi);
+  }
+}
+
+/* Ends the way before an entry of opacity 1. Returns the lanes whose way has no other entries before it. */
+INLINE vmask several_stop(
+  CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vmask mask, vint front, vint* entry, several_way* way)
+{
+  vint first;
+  const vmask stops = opaque_on_the_way(t, sums + 4 * (t->entries + 1), front, *entry, mask & v_lt(way->lo, way->hi), &first);
+  if (!m_any(stops)) {
+    return stops;
+  }
+  const vint one = vi_set(1), low = vi_min(*entry, front), beyond = vi_max(*entry, front) + one;
+  const vmask rises = vi_ge(first, front), at_once = stops & vi_zero(first - front);
+  const vfloat before =
+    width_between(t, sums, vi_select(rises, front, first + one), vi_select(rises, first, front + one), m_andnot(stops, at_once));
+  const vfloat part = before * v_reciprocal(v_max(width_between(t, sums, low, beyond, stops), v_set(1.0f)));
+  vfloat sum[4];
+  sums_between(sums, first, first + one, stops, sum);
+  const vfloat per_tau = v_reciprocal(v_max(sum[3], v_set(1.0f)));
+  for (int c = 0; c < 3; ++c) {
+    way->wall[c] = sum[c] * per_tau;
+  }
+  way->stops = stops;
+  way->hi = v_select(stops, v_fma(way->hi - way->lo, part, way->lo), way->hi);
+  way->rise = v_select(stops, way->rise * part, way->rise);
+  *entry = vi_select(stops, vi_select(rises, first - one, first + one), *entry);
+  return at_once;
+}
+
+/* How light and gradient change the way, by the gradient in its middle. */
+INLINE void several_light(const several_source* from, const stratus_packet* k, vmask mask, several_way* way)
+{
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
+  const vfloat s = v_set(0.5f) * (way->lo + way->hi);
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  vfloat g[3];
+  several_gradient_at(from, x, mask, g);
+  way->lighting.factor = v_set(1.0f);
+  if (a->media.factor_first[0] >= 0) {
+    way->lighting.factor = gradient_opacity(a, from->besides, vi_set(a->media.factor_first[0]), v_set(a->media.factor_scale[0]), g, mask);
+  }
+  for (int c = 0; c < 3; ++c) {
+    way->lighting.diffuse[c] = v_set(1.0f);
+    way->lighting.specular[c] = v_set(0.0f);
+  }
+  if (a->light.on) {
+    ray_light(a, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+  }
+}
+
+/* Lights what a segment's length of a way shows. */
+INLINE void several_light_rate(const several_way* way, vmask mask, vfloat rate[4])
+{
+  light_layer(&way->lighting, rate);
+  for (int c = 0; c < 4; ++c) {
+    rate[c] = v_select(mask, rate[c] * way->lighting.factor, v_set(0.0f));
+  }
+}
+
+/* What a segment's length of a way between two values shows. */
+INLINE vmask several_rate(
+  const several_source* from, const several_way* way, vint low, vint beyond, vmask mask, vfloat rate[4], vfloat* width)
+{
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
+  GLOBAL const int* sums = (GLOBAL const int*)from->table;
+  sums_between(sums, low, beyond, mask, rate);
+  mask = mask & v_lt(v_set(0.0f), rate[3]);
+  *width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
+  const vfloat scale = v_select(mask, v_set(a->table.tau_scale) * v_reciprocal(*width), v_set(0.0f));
+  for (int c = 0; c < 4; ++c) {
+    rate[c] = rate[c] * scale;
+  }
+  if (from->lit) {
+    several_light_rate(way, mask, rate);
+  }
+  return mask;
+}
+
+/* Makes the coming way one of the value in its middle. */
+INLINE void several_shade_middle(const several_source* from, several_volume* v, vmask mask)
+{
+  several_way* way = &v->ways[1 - v->now];
+  gather_four((GLOBAL const float*)from->table, table_entry(&from->a->table, from->besides, way->front), mask, way->rate);
+  const vmask shown = mask & v_lt(v_set(0.0f), way->rate[3]);
+  way->stops = m_none();
+  way->entries = v_set(0.0f);
+  v->comes = m_any(shown) != 0;
+  if (from->lit && v->comes) {
+    several_light(from, &v->k, shown, way);
+    several_light_rate(way, shown, way->rate);
+  }
+}
+
+/* Makes the coming way of what the field does on it, in the lanes of the mask. */
+INLINE void several_shade(const several_source* from, several_volume* v, vmask mask)
+{
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
+  GLOBAL const int* sums = (GLOBAL const int*)from->table;
+  several_way* way = &v->ways[1 - v->now];
+  const vfloat zero = v_set(0.0f), length = way->hi - way->lo;
+  const vfloat front_place = table_place(&a->table, way->front), place = table_place(&a->table, way->front + way->rise);
+  mask =
+    mask & v_lt(v_min(place, front_place), v_set(a->table.shown_beyond)) & v_le(v_set(a->table.shown_first), v_max(place, front_place));
+  v->comes = 0;
+  way->stops = m_none();
+  way->rate[0] = way->rate[1] = way->rate[2] = way->rate[3] = zero;
+  if (!m_any(mask)) {
+    return;
+  }
+  const vint front = entry_in_cell(&a->table, sums, v_to_int(front_place), way->front, mask);
+  vint entry = entry_in_cell(&a->table, sums, v_to_int(place), way->front + way->rise, mask);
+  vmask shown = mask;
+  if (a->table.cut) {
+    several_cut(&a->table, mask, way);
+  }
+  if (a->table.has_opaque) {
+    shown = m_andnot(shown, several_stop(&a->table, sums, mask, front, &entry, way));
+  }
+  if (from->lit) {
+    const vint low = vi_min(front, entry), beyond = vi_max(front, entry) + vi_set(1);
+    const vmask lit = way->stops | (shown & v_lt(zero, tau_between(sums, low, beyond, shown)));
+    if (!m_any(lit)) {
+      return;
+    }
+    several_light(from, &v->k, lit, way);
+  }
+  vfloat width;
+  shown = several_rate(from, way, vi_min(front, entry), vi_max(front, entry) + vi_set(1), shown, way->rate, &width);
+  way->entries = width * v_reciprocal(v_max(length, v_set(1e-3f)));
+  v->comes = m_any(shown | way->stops) != 0;
+}
+
+#endif
