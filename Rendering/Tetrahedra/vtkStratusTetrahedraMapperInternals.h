@@ -57,6 +57,7 @@ private:
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
