@@ -157,10 +157,11 @@ def test_modes_of_grids():
         expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
         seen.add(open("out.png", "rb").read())
     seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
-    if len(seen) != 8:
-        fail(f"of 8 pictures in other modes and cropped, {len(seen)} differ")
+    seen.add(picture("stretched.vts", "--shade"))
+    if len(seen) != 9:
+        fail(f"of 9 pictures in other modes, cropped and lit, {len(seen)} differ")
     expect(2, "--mode first-hit is for images", "render", "stretched.vts", "-o", "no.png", "--mode", "first-hit")
-    for words in (("--shade",), ("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
+    for words in (("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
         expect(2, "are for images", "render", "stretched.vts", "-o", "no.png", *words)
 
 
