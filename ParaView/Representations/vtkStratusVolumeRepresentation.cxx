@@ -3,7 +3,12 @@
 
 #include "vtkStratusVolumeMapper.h"
 
+#include "vtkColorTransferFunction.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVLODVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
@@ -18,6 +23,47 @@ vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
 vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetStratusMapper()
 {
   return vtkStratusVolumeMapper::SafeDownCast(this->VolumeMapper);
+}
+
+void vtkStratusVolumeRepresentation::UpdateMapperParameters()
+{
+  this->Superclass::UpdateMapperParameters();
+  vtkStratusVolumeMapper* mapper = this->GetStratusMapper();
+  if (!mapper) {
+    return;
+  }
+  this->Actor->SetVisibility(this->Actor->GetVisibility() && this->GetVisibility());
+  // A colour map shows a vector's magnitude or one of its components; components that the property takes as colour and opacity are left
+  // as they are.
+  vtkColorTransferFunction* colors = this->Property->GetRGBTransferFunction(0);
+  const bool magnitude = colors->GetVectorMode() != vtkScalarsToColors::COMPONENT;
+  mapper->SetVectorMode(!this->Property->GetIndependentComponents() ? vtkStratusVolumeMapper::DISABLED
+      : magnitude                                                   ? vtkStratusVolumeMapper::MAGNITUDE
+                                                                    : vtkStratusVolumeMapper::COMPONENT);
+  const int component = std::max(colors->GetVectorComponent(), 0);
+  mapper->SetVectorComponent(component);
+  if (!magnitude && component > 0 && component < VTK_MAX_VRCOMP) { // ParaView edits the first component's functions, whichever shows
+    this->Property->SetColor(component, colors);
+    this->Property->SetScalarOpacity(component, this->Property->GetScalarOpacity(0));
+    this->Property->SetScalarOpacityUnitDistance(component, this->Property->GetScalarOpacityUnitDistance(0));
+  }
+}
+
+void vtkStratusVolumeRepresentation::ApplyBlendMode()
+{
+  this->VolumeMapper->SetBlendMode(this->Projection != vtkVolumeMapper::COMPOSITE_BLEND ? this->Projection : this->BlendMode);
+}
+
+void vtkStratusVolumeRepresentation::SetBlendMode(int mode)
+{
+  this->BlendMode = mode;
+  this->ApplyBlendMode();
+}
+
+void vtkStratusVolumeRepresentation::SetProjection(int mode)
+{
+  this->Projection = mode;
+  this->ApplyBlendMode();
 }
 
 void vtkStratusVolumeRepresentation::SetRenderMode(int mode)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumeRepresentation
- * @brief   ParaView's volume rendering of uniform grids by vtkStratusVolumeMapper
+ * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
  * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
@@ -25,6 +25,15 @@ public:
 
   //@{
   /**
+   * Set what a ray shows: by the blend mode, where the projection is vtkVolumeMapper::COMPOSITE_BLEND, else by the projection, one of
+   * vtkVolumeMapper's other modes up to ADDITIVE_BLEND.
+   */
+  void SetBlendMode(int mode);
+  void SetProjection(int mode);
+  //@}
+
+  //@{
+  /**
    * Forwarded to the mapper.
    */
   void SetRenderMode(int mode);
@@ -42,11 +51,17 @@ protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
 
+  void UpdateMapperParameters() override;
+
 private:
   vtkStratusVolumeRepresentation(const vtkStratusVolumeRepresentation&) = delete;
   void operator=(const vtkStratusVolumeRepresentation&) = delete;
 
   vtkStratusVolumeMapper* GetStratusMapper();
+  void ApplyBlendMode();
+
+  int BlendMode = 0;
+  int Projection = 0;
 };
 
 #endif
