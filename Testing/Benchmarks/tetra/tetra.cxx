@@ -49,7 +49,8 @@ reference_rmse255: by how much that changes with steps of four times the length.
 included, build_ms (neighbours; VTK: centres) apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over
 24 views: 6 directions (3 along axes) x parallel, perspective, near, inside. cycles are the sum over those. bytes: the core's own after
 the first picture or order, peak_bytes: at most until then; of images their values. resample_ms: what vtkResampleToImage took, which no
-frame counts; points beside the mesh are transparent, and errors there and of the resampling count. VTK's mappers of tetrahedra take opacity for attenuation: they are given
+frame counts; points beside the mesh are transparent, and errors there and of the resampling count.
+VTK's mappers of tetrahedra take opacity for attenuation: they are given
 functions that mean the same to them.
 )";
 
