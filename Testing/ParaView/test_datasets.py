@@ -5,7 +5,7 @@ import os
 import sys
 
 import numpy
-from paraview.vtk import vtkIOXML, vtkCommonCore, vtkCommonDataModel, vtkFiltersCore
+from paraview.vtk import vtkIOXML, vtkCommonCore, vtkCommonDataModel, vtkFiltersCore, vtkFiltersExtraction
 from paraview.vtk.util.numpy_support import numpy_to_vtk
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -80,6 +80,21 @@ def structured():
     return fill(grid)
 
 
+def blocks():
+    """The rectilinear grid in three uneven blocks within blocks."""
+    whole = rectilinear()
+    inner, outer = vtkCommonDataModel.vtkMultiBlockDataSet(), vtkCommonDataModel.vtkMultiBlockDataSet()
+    nx, ny, nz = (count - 1 for count in COUNTS)
+    for number, extent in enumerate(((0, 9, 0, ny, 0, nz), (9, nx, 0, 25, 0, nz), (9, nx, 25, ny, 0, nz))):
+        crop = vtkFiltersExtraction.vtkExtractRectilinearGrid()
+        crop.SetInputData(whole)
+        crop.SetVOI(*extent)
+        crop.Update()
+        inner.SetBlock(number, crop.GetOutput())
+    outer.SetBlock(0, inner)
+    return outer
+
+
 def unstructured(grid):
     join = vtkFiltersCore.vtkAppendFilter()
     join.AddInputData(grid)
@@ -91,6 +106,8 @@ load()
 levels = write(rectilinear(), vtkIOXML.vtkXMLRectilinearGridWriter(), "levels.vtr")
 hills = write(structured(), vtkIOXML.vtkXMLStructuredGridWriter(), "hills.vts")
 cells = write(unstructured(structured()), vtkIOXML.vtkXMLUnstructuredGridWriter(), "cells.vtu")
+parts = write(blocks(), vtkIOXML.vtkXMLMultiBlockDataWriter(), "parts.vtm")
+draw(parts, "hill", OPACITY, COLORS, 1.0, 53, judge=levels, representation="UniformGridRepresentation")
 for path in levels, hills, cells:
     draw(path, "hill", OPACITY, COLORS, 1.0, 55)
     draw(path, "wind", OPACITY, COLORS, 1.0, 55, component="Magnitude", judged="wind_alone")
