@@ -22,7 +22,9 @@ stratus_add_test(paraview_plugin paraview "${CMAKE_CTEST_COMMAND}" --build-and-t
 stratus_test_needs(paraview_plugin stratus-core)
 set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700 PROCESSORS 2)
 
-stratus_add_test(paraview_pictures paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_plugin.py"
-  "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
-  "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")
-set_tests_properties(paraview_pictures PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
+foreach (test IN ITEMS pictures datasets)
+  stratus_add_test(paraview_${test} paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_${test}.py"
+    "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
+    "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")
+  set_tests_properties(paraview_${test} PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
+endforeach ()

@@ -15,10 +15,10 @@ namespace {
 // silently.
 stratus_tetra_mode mode_of(const cli::options& o)
 {
-  if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.shade || o.audit ||
-    o.sample_distance != 0.0 || o.cell_error != 0.0 || o.crop_regions != STRATUS_CROP_INSIDE || !o.mask.empty() || o.jitter >= 0) {
+  if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.audit || o.sample_distance != 0.0 ||
+    o.cell_error != 0.0 || o.crop_regions != STRATUS_CROP_INSIDE || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +
-      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, light, crop regions, mask, jitter and " +
+      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, crop regions, mask, jitter and " +
       "audit are for images");
   }
   for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_ISOSURFACE; ++i) {
@@ -119,6 +119,7 @@ void grid_drawing::draw(const stratus_image& image)
   std::copy(o.average.begin(), o.average.end(), how.average_range);
   how.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), how.contours);
+  how.shade = o.shade;
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");

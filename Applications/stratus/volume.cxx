@@ -79,7 +79,8 @@ private:
 void volume_drawing::take(const cli::routed& data)
 {
   const cli::options& o = this->Options;
-  this->Input.reset(data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array));
+  this->Input.reset(
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
   this->Input->volume.revision = ++this->Steps;
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
@@ -90,9 +91,9 @@ void volume_drawing::read_member(member& more)
 {
   const std::string& source = more.o.source;
   const bool scene = cli::is_scene(source);
-  const cli::routed data = scene ? cli::routed() : cli::route(cli::read_data(source), source, more.o.array);
+  const cli::routed data = scene ? cli::routed() : cli::route(cli::read_data(source, more.o.array, more.o.raw), source, more.o.array);
   if (scene || data.image) {
-    more.input = scene ? std::make_unique<cli::input>(this->Core, source, more.o.array)
+    more.input = scene ? std::make_unique<cli::input>(this->Core, source, more.o.array, more.o.raw)
                        : std::make_unique<cli::input>(this->Core, source, data.image, more.o.array);
     more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
     more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
@@ -119,6 +120,7 @@ void volume_drawing::read_more()
     more.o = this->Options;
     more.o.source = companion.source;
     more.o.array = companion.array;
+    more.o.raw = companion.raw;
     more.o.opacity = companion.opacity;
     more.o.color = companion.color;
     more.o.unit_distance = companion.unit_distance;
@@ -177,7 +179,7 @@ void volume_drawing::choose_parts(stratus_ray_cast_options& cast)
     return;
   }
   if (!this->Mask) {
-    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "");
+    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "", o.mask_raw);
   }
   const stratus_volume& bytes = this->Mask->volume;
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {

@@ -6,6 +6,7 @@
 #include "first_hit_picture.h"
 
 #include "camera.h"
+#include "lights.h"
 #include "matrix.h"
 #include "picture.h"
 #include "ray_caster.h"

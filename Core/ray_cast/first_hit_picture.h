@@ -62,7 +62,6 @@ typedef struct stratus_shader {
 } stratus_shader;
 
 /* first_hit_shading.c */
-stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading);
 void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16]);
 /* Computes colour (alpha 1) and world distance of a hit from ray and voxel alone, so that every structure gives the same bits. */

@@ -9,62 +9,6 @@
 
 /* ---- set-up */
 
-static stratus_status check_light(stratus_context* context, const stratus_light* light, int number)
-{
-  for (int i = 0; i < 3; ++i) {
-    if (!isfinite(light->vector[i]) || !(light->color[i] >= 0.0 && light->color[i] <= STRATUS_LIGHT_MAX)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-        "light %d has vector (%g, %g, %g) and colour (%g, %g, %g), must be finite and colours 0..%g", number, light->vector[0],
-        light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2], STRATUS_LIGHT_MAX);
-    }
-  }
-  if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has the direction (0, 0, 0), must have a length", number);
-  }
-  if (!light->positional) {
-    return STRATUS_OK;
-  }
-  for (int i = 0; i < 3; ++i) {
-    if (!(light->attenuation[i] >= 0.0 && light->attenuation[i] <= STRATUS_LIGHT_MAX)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has attenuation (%g, %g, %g), must be 0..%g", number,
-        light->attenuation[0], light->attenuation[1], light->attenuation[2], STRATUS_LIGHT_MAX);
-    }
-  }
-  if (!(light->cone_angle >= 0.0) || !isfinite(light->cone_angle)) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "light %d has a cone of %g degrees, must be 0 or more and finite", number, light->cone_angle);
-  }
-  if (light->cone_angle == 0.0 || light->cone_angle >= 90.0) {
-    return STRATUS_OK;
-  }
-  const double square = light->axis[0] * light->axis[0] + light->axis[1] * light->axis[1] + light->axis[2] * light->axis[2];
-  if (!(square > 0.0) || !isfinite(square) || !(light->cone_exponent >= 0.0 && light->cone_exponent <= STRATUS_LIGHT_MAX)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "light %d has a cone about (%g, %g, %g) of exponent %g, must have a length and be 0..%g", number, light->axis[0], light->axis[1],
-      light->axis[2], light->cone_exponent, STRATUS_LIGHT_MAX);
-  }
-  return STRATUS_OK;
-}
-
-stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading)
-{
-  const double factors[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
-  static const char* const names[4] = { "ambient", "diffuse", "specular", "specular power" };
-  for (int i = 0; i < 4; ++i) {
-    if (!(factors[i] >= 0.0 && factors[i] <= STRATUS_LIGHT_MAX)) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
-    }
-  }
-  if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count, STRATUS_LIGHTS_MAX);
-  }
-  for (int i = 0; i < shading->light_count; ++i) {
-    TRY(check_light(context, &shading->lights[i], i));
-  }
-  return STRATUS_OK;
-}
-
 static void set_lights(stratus_shader* shader, const stratus_camera* camera, const stratus_shading* shading)
 {
   shader->light_count = shading->light_count;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Render options: their names and defaults. */
+#include "lights.h"
 #include "ray_caster.h"
 
 const char* stratus_structure_name(stratus_structure structure)
@@ -16,8 +17,7 @@ const char* stratus_sampling_name(stratus_sampling sampling)
 
 stratus_ray_cast_options stratus_ray_cast_options_default(void)
 {
-  return (stratus_ray_cast_options){ .tolerance = 0.001,
-    .shading = { .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 },
-    .average_range = { -INFINITY, INFINITY },
-    .crop_regions = STRATUS_CROP_INSIDE };
+  return (stratus_ray_cast_options){
+    .tolerance = 0.001, .shading = stratus_shading_default(), .average_range = { -INFINITY, INFINITY }, .crop_regions = STRATUS_CROP_INSIDE
+  };
 }

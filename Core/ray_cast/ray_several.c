@@ -117,7 +117,7 @@ static stratus_status check_supported(stratus_context* context, int n, const sev
   return STRATUS_OK;
 }
 
-static stratus_status check_mesh(stratus_context* context, int n, const stratus_tetra_options* options)
+static stratus_status check_mesh(stratus_context* context, int n, const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(
@@ -126,6 +126,10 @@ static stratus_status check_mesh(stratus_context* context, int n, const stratus_
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);
+  }
+  if (transfer && stratus_tetra_light_wanted(transfer, options)) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "mesh %d of several has light or gradient opacity, which only volumes have in one march", n);
   }
   return STRATUS_OK;
 }
@@ -577,7 +581,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     in->report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1 };
     if (inputs[n].tetra) {
       in->tetra_options = inputs[n].tetra_options ? *inputs[n].tetra_options : stratus_tetra_options_default();
-      TRY(check_mesh(s.context, n, &in->tetra_options));
+      TRY(check_mesh(s.context, n, inputs[n].transfer, &in->tetra_options));
       in->tetra_options.tolerance /= sqrt((double)count);
       in->tetra_options.method = STRATUS_TETRA_METHOD_MARCH;
       continue;

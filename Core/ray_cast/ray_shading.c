@@ -3,14 +3,15 @@
  * the arguments of their rays. */
 #include "ray_shading_render.h"
 
-#include "first_hit_picture.h"
+#include "lights.h"
 #include "matrix.h"
 #include "ray_caster.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
-#include "vector.h"
 
-_Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
+#include <string.h>
+
+_Static_assert(sizeof(stratus_ray_lights) == sizeof(stratus_light_arguments), "the same fields");
 
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
@@ -53,69 +54,8 @@ bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_tran
   return options->mode == STRATUS_MODE_COMPOSITE && more;
 }
 
-/* A positional light at least this many voxel edges away counts as directional. */
-#define LIGHT_FAR 1e15
-#define DEGREE 0.017453292519943295
 /* Samples in the way of gradient_distance, at most: products with the optical depth of opacity 1, 1e30, stay floats. */
 #define REACH_MOST 1e7
-
-static double length_of(const double v[3])
-{
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* Converts a light to floats: a direction of length 1, or a position relative to index (0,0,0) in units of `edge`. */
-static void set_light(const stratus_light* light, const double index_to_world[16], double edge, int number, stratus_ray_cast_arguments* a)
-{
-  double vector[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    vector[axis] = light->vector[axis] - (light->positional ? index_to_world[4 * axis + 3] : 0.0);
-  }
-  const double largest = fmax(fmax(fabs(vector[0]), fabs(vector[1])), fabs(vector[2]));
-  const bool near = light->positional && largest < LIGHT_FAR * edge;
-  for (int axis = 0; axis < 3; ++axis) {
-    vector[axis] /= near ? edge : largest;
-  }
-  const double length = near ? 1.0 : length_of(vector);
-  for (int axis = 0; axis < 3; ++axis) {
-    a->light.vector[number][axis] = (float)(vector[axis] / length);
-    a->light.color[number][axis] = (float)light->color[axis];
-  }
-  a->light.positional[number] = near;
-  const bool dimmed = near && (light->attenuation[0] != 0.0 || light->attenuation[1] != 0.0 || light->attenuation[2] != 0.0);
-  const double unit[3] = { 1.0, edge, edge * edge };
-  for (int i = 0; i < 3; ++i) {
-    a->light.attenuation[number][i] = dimmed ? (float)fmin(light->attenuation[i] * unit[i], 1e30) : i == 0;
-    a->light.cone[number][i] = 0.0f;
-  }
-  a->light.cone[number][3] = -1.0f;
-  a->light.cone[number][4] = (float)light->cone_exponent;
-  if (near && light->cone_angle > 0.0 && light->cone_angle < 90.0) {
-    double axis[3] = { light->axis[0], light->axis[1], light->axis[2] };
-    const double axis_length = stratus_vector_normalize(axis);
-    for (int i = 0; axis_length > 0.0 && i < 3; ++i) {
-      a->light.cone[number][i] = (float)axis[i];
-    }
-    a->light.cone[number][3] = (float)cos(light->cone_angle * DEGREE);
-  }
-}
-
-static void set_lights(
-  const stratus_camera* camera, const stratus_shading* shading, const double index_to_world[16], double edge, stratus_ray_cast_arguments* a)
-{
-  a->light.count = shading->light_count;
-  for (int i = 0; i < shading->light_count; ++i) {
-    set_light(&shading->lights[i], index_to_world, edge, i, a);
-  }
-  if (shading->light_count < 0) {
-    stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
-    for (int axis = 0; axis < 3; ++axis) {
-      light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
-    }
-    set_light(&light, index_to_world, edge, 0, a);
-    a->light.count = 1;
-  }
-}
 
 static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
@@ -189,6 +129,9 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   if (!a->light.on) { /* the lights are unchecked and unused */
     return;
   }
-  a->light.two_sided = !options->shading.one_sided;
-  set_lights(camera, &options->shading, index_to_world, edge, a);
+  const double origin[3] = { index_to_world[3], index_to_world[7], index_to_world[11] };
+  stratus_light_arguments lights;
+  memcpy(&lights, &a->light, sizeof lights);
+  stratus_lights_set(camera, &options->shading, origin, edge, &lights);
+  memcpy(&a->light, &lights, sizeof lights);
 }

@@ -6,7 +6,6 @@
 #include "ray_caster.h"
 #include "ray_sampling.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Rays store entry numbers as floats, which are exact up to 2^24. The margin is for the tables before those of the labels. */
@@ -230,23 +229,6 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
   return create_table(caster, caster->transfers, last, caster->made.entries, &shading->tables[last]);
 }
 
-/* Samples the gradient opacity from magnitude 0 to the function's last point. */
-static void fill_factors(const stratus_transfer* transfer, float* out)
-{
-  const stratus_transfer function = { .opacity = transfer->gradient,
-    .opacity_count = transfer->gradient_count,
-    .color = transfer->color,
-    .color_count = transfer->color_count,
-    .clamp = 1 };
-  const double most = transfer->gradient[2 * (transfer->gradient_count - 1)];
-  double rgba[4];
-  for (int e = 0; e < STRATUS_SHADING_FACTORS + 2; ++e) {
-    const int at = e < STRATUS_SHADING_FACTORS ? e : STRATUS_SHADING_FACTORS;
-    stratus_transfer_at(&function, most > 0.0 ? most * at / STRATUS_SHADING_FACTORS : most, rgba);
-    out[e] = (float)rgba[3];
-  }
-}
-
 /* Appends what finds an entry in a table of several entries a cell, unless out is NULL. Returns the end. */
 static size_t lay_out_search(const stratus_table* table, size_t at, float* out, int* first_at, int* bound_at)
 {
@@ -271,12 +253,8 @@ static size_t rounded_to_four(size_t at)
 /* Appends a gradient opacity, unless out is NULL, and tells where it begins, -1 if there is none. Returns the end. */
 static size_t lay_out_factors(const stratus_transfer* transfer, bool has, size_t at, float* out, int* first, float* scale)
 {
-  const double most = has ? transfer->gradient[2 * (transfer->gradient_count - 1)] : 0.0;
   *first = has ? (int)at : -1;
-  *scale = most > 0.0 ? (float)fmin(STRATUS_SHADING_FACTORS / most, (double)FLT_MAX) : 0.0f;
-  if (has && out) {
-    fill_factors(transfer, out + at);
-  }
+  *scale = has ? stratus_gradient_factors(transfer, out ? out + at : NULL) : 0.0f;
   return at + (has ? STRATUS_SHADING_FACTORS + 2 : 0);
 }
 

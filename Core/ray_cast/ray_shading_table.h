@@ -3,11 +3,9 @@
 #ifndef STRATUS_RAY_SHADING_TABLE_H
 #define STRATUS_RAY_SHADING_TABLE_H
 
+#include "gradient_factors.h"
 #include "stratus/ray_cast.h"
 #include "volume.h"
-
-/* Steps of a sampled gradient opacity, which is linear between them. */
-#define STRATUS_SHADING_FACTORS 4096
 
 typedef struct stratus_ray_shading_tables {
   int components;                 /* of the volume */

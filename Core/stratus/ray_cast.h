@@ -5,7 +5,6 @@
 
 #include "camera.h"
 #include "skipping.h"
-#include "tetrahedra.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -214,15 +213,19 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
 
 #define STRATUS_SEVERAL_MAX 8
 
+struct stratus_mesh; /* tetrahedra.h */
+struct stratus_tetra_caster;
+struct stratus_tetra_options;
+
 /* One of several volumes that are drawn together, or a mesh of tetrahedra among them. */
 typedef struct stratus_ray_cast_input {
   stratus_ray_caster* caster; /* keeps what is built of this volume: one of its own for each input, all of one context; NULL: a mesh */
   const stratus_volume* volume;
-  const stratus_transfer* transfer;           /* one function */
-  const stratus_ray_cast_options* options;    /* of a volume; NULL: the defaults */
-  stratus_tetra_caster* tetra;                /* keeps what is built of a mesh, likewise; NULL: a volume */
-  const stratus_mesh* mesh;                   /* read where `tetra` is set */
-  const stratus_tetra_options* tetra_options; /* of a mesh; NULL: the defaults */
+  const stratus_transfer* transfer;                  /* one function */
+  const stratus_ray_cast_options* options;           /* of a volume; NULL: the defaults */
+  struct stratus_tetra_caster* tetra;                /* keeps what is built of a mesh, likewise; NULL: a volume */
+  const struct stratus_mesh* mesh;                   /* read where `tetra` is set */
+  const struct stratus_tetra_options* tetra_options; /* of a mesh; NULL: the defaults */
 } stratus_ray_cast_input;
 
 /* Draws 1..STRATUS_SEVERAL_MAX volumes that may overlap, each with a place, grid, type, function and options of its own, as one medium:

@@ -3,6 +3,7 @@
 #ifndef STRATUS_PUBLIC_TETRAHEDRA_H
 #define STRATUS_PUBLIC_TETRAHEDRA_H
 
+#include "ray_cast.h"
 #include "visibility.h"
 
 #ifdef __cplusplus
@@ -48,7 +49,7 @@ typedef enum stratus_tetra_method {
   STRATUS_TETRA_METHOD_AUTO,
   STRATUS_TETRA_METHOD_MARCH, /* follows each ray from cell to cell */
   /* Sorts the cells that can show, assigns them to tiles of pixels, and composites them there. It draws composite and maximum; asked for
-   * another mode it gives STRATUS_UNSUPPORTED, while auto marches. */
+   * another mode, or light or gradient opacity, it gives STRATUS_UNSUPPORTED, while auto marches. */
   STRATUS_TETRA_METHOD_PROJECT
 } stratus_tetra_method;
 
@@ -75,6 +76,16 @@ typedef struct stratus_tetra_options {
   double average_range[2];
   int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */
   double contours[STRATUS_TETRA_CONTOURS_MAX]; /* finite, in any order */
+  /* Composite and isosurface; 1: `shading` lights what shows, by marching alone. Default 0. The gradient of a cell is constant; each point
+   * has the mean of those of its cells, weighted by their volumes, and between points it is interpolated as values are, so that light is
+   * smooth across cells. Values of cells are averaged at points first, in the same way. */
+  int shade;
+  stratus_shading shading; /* `on` is not read */
+  /* Composite, with a gradient opacity F, which is marched, too. 0 (default): F multiplies the optical depth; a value of opacity 1 stays
+   * opaque where F is above 0. Greater than 0: F multiplies the opacity of a way of this world length. Less than 0: of half a spacing in
+   * the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's magnitude is in values per
+   * spacing, whatever the mesh's matrix. */
+  double gradient_distance;
 } stratus_tetra_options;
 
 STRATUS_API stratus_tetra_options stratus_tetra_options_default(void);
@@ -100,6 +111,7 @@ typedef struct stratus_tetra_report {
   /* Builds since the caster was created: a camera move adds none. Other values on points and cells of the same content, whose cells that
    * show are the same, add one to value_builds alone. */
   uint64_t mesh_builds, value_builds, table_builds;
+  uint64_t gradient_builds;                                      /* likewise, once for values that are lit or have a gradient opacity */
   double build_ms, table_ms, transform_ms, entries_ms, march_ms; /* times in this call; 0: the step was not needed */
   int64_t cells_in_view;                                         /* project: cells that can show in some pixel */
   uint64_t pairs;                                                /* project: pairs of a cell and a tile */

@@ -7,6 +7,7 @@
 #include "device.h"
 #include "picture.h"
 #include "camera.h"
+#include "lights.h"
 #include "mesh.h"
 
 #include <stdio.h>
@@ -17,7 +18,9 @@
 
 stratus_tetra_options stratus_tetra_options_default(void)
 {
-  return (stratus_tetra_options){ .tolerance = 0.001, .average_range = { -(double)INFINITY, (double)INFINITY } };
+  return (stratus_tetra_options){
+    .tolerance = 0.001, .average_range = { -(double)INFINITY, (double)INFINITY }, .shading = stratus_shading_default()
+  };
 }
 
 stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)
@@ -38,6 +41,7 @@ stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tet
 static void drop_table(stratus_tetra_caster* caster)
 {
   stratus_tetra_device_drop_table(caster->device);
+  stratus_tetra_light_drop_factors(caster);
   stratus_table_destroy(caster->table);
   stratus_release(caster->context, caster->march_sums);
   stratus_release(caster->context, caster->transfer);
@@ -48,7 +52,8 @@ static void drop_table(stratus_tetra_caster* caster)
 
 static void drop_mesh(stratus_tetra_caster* caster)
 {
-  drop_table(caster);                                            /* the table spans the mesh's values */
+  drop_table(caster); /* the table spans the mesh's values */
+  stratus_tetra_light_drop(caster);
   stratus_tetra_device_destroy(caster->context, caster->device); /* the device may read the mesh in place */
   caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
@@ -122,6 +127,7 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
     TRY(stratus_tetra_mesh_take_values(known, mesh, taken));
   }
   if (*taken) {
+    stratus_tetra_light_drop(caster);
     if (caster->projector) {
       stratus_tetra_projector_take(caster->projector, mesh, known);
     }
@@ -268,7 +274,7 @@ static stratus_status update_table(
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
   return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count };
+    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count, caster->gradient_builds };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -325,8 +331,8 @@ static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* 
   return stratus_tetra_project(caster->projector, mesh, frame, leaves, project_tiles, caster, report);
 }
 
-static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
-  const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
@@ -337,7 +343,7 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
     stratus_image_clear(image);
     return STRATUS_OK;
   }
-  TRY(stratus_tetra_choose(caster, mesh, camera, options, image, report));
+  TRY(stratus_tetra_choose(caster, mesh, transfer, camera, options, image, report));
   const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
   frame.table = caster->table;
@@ -345,6 +351,7 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   stratus_tetra_frame_shade(&frame, options);
   stratus_tetra_frame_contours(&frame, caster->mesh, caster->transfer, options);
   stratus_tetra_frame_clip(&frame, mesh, options);
+  stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
@@ -365,9 +372,10 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
   report->mesh_builds = caster->mesh_builds;
   report->value_builds = caster->value_builds;
   report->table_builds = caster->table_builds;
-  report->bytes += (caster->projector ? stratus_tetra_projector_bytes(caster->projector) : 0) + mesh->bytes + b->points.bytes +
-    b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes + b->bins.bytes + b->first.bytes +
-    b->entries.bytes;
+  report->gradient_builds = caster->gradient_builds;
+  report->bytes += (caster->projector ? stratus_tetra_projector_bytes(caster->projector) : 0) + mesh->bytes + caster->gradients.bytes +
+    b->points.bytes + b->places.bytes + b->faces.bytes + b->lines.bytes + b->ends.bytes + b->bin_begin.bytes + b->bins.bytes +
+    b->first.bytes + b->entries.bytes;
 }
 
 /* Checks what is drawn and takes it: mesh, list and table. *drawn: what the caster has taken. */
@@ -389,9 +397,11 @@ static stratus_status take(stratus_tetra_caster* caster, const stratus_tetra_sub
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
   TRY(stratus_tetra_modes_check(caster->context, of->options, mesh));
+  TRY(stratus_tetra_light_check(caster->context, of->transfer, of->options));
   TRY(update(caster, mesh, of->options, drawn, &report->build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
-  return update_table(caster, of->transfer, of->options, &report->table_ms);
+  TRY(update_table(caster, of->transfer, of->options, &report->table_ms));
+  return stratus_tetra_light_update(caster, *drawn, of->transfer, of->options, &report->build_ms);
 }
 
 stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
@@ -425,7 +435,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   options = options ? options : &defaults;
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
-  TRY(draw(caster, drawn, camera, options, image, &mine));
+  TRY(draw(caster, drawn, transfer, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {
     *report = mine;

@@ -38,6 +38,13 @@ struct stratus_tetra_mesh {
   size_t bytes;
 };
 
+/* Gradients at points, made when light or gradient opacity first asks for them, and dropped with the values. */
+typedef struct stratus_tetra_gradients {
+  float* vectors;       /* in local coordinates, four floats a point in the order of `names`, the fourth 0; NULL: none */
+  double unit, spacing; /* by what they are multiplied; the edge of a cube that six cells of the mean volume fill */
+  size_t bytes;
+} stratus_tetra_gradients;
+
 typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
 typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
@@ -55,7 +62,10 @@ struct stratus_tetra_caster {
   int32_t* march_sums;          /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
-  uint64_t mesh_builds, value_builds, table_builds;
+  stratus_tetra_gradients gradients;
+  float* factors; /* the gradient opacity of `transfer`, STRATUS_SHADING_FACTORS + 2; NULL: none */
+  float factor_scale;
+  uint64_t mesh_builds, value_builds, table_builds, gradient_builds;
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
@@ -94,8 +104,9 @@ stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh*
 
 /* tetra_march.c: converts a table's running sums for rays. The result holds four sums per entry, up to the entry's middle, because values
  * are rounded to the nearest entry: sums up to its lower end would be half an entry too low. Then come four numbers per entry of the entry
- * by itself, then the table's two rows of opaque entries. *sums is NULL if the table has no sums. */
-#define STRATUS_TETRA_SUMS 10 /* ints per entry */
+ * by itself, then the table's two rows of opaque entries, and last two per entry: the running sum, up to the entry's middle, of optical
+ * depth times the entry's number, less its lowest 16 bits, and these. *sums is NULL if the table has no sums. */
+#define STRATUS_TETRA_SUMS 12 /* ints per entry */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
 /* tetra_frame.c: sets all of a frame but its table: points in the rays' coordinates, rays by row and column; to march, also border faces by
@@ -117,9 +128,21 @@ void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_op
 void stratus_tetra_frame_contours(
   stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* tetra_light.c: light and gradient opacity. */
+stratus_status stratus_tetra_light_check(stratus_context* context, const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* Whether the gradient decides how cells look. */
+bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* Makes what is needed of gradients and factors. */
+stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_tetra_options* options, double* ms);
+void stratus_tetra_light_drop(stratus_tetra_caster* caster); /* the gradients */
+void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster);
+/* Sets the arguments of a frame that stratus_tetra_frame_prepare() has prepared. */
+void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
+  const stratus_transfer* transfer, const stratus_tetra_options* options);
 /* tetra_method.c: sets the report's method, march or project, and the reason. */
-stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
-  const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
+stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
 void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffers* buffers);
 /* Grows the buffer to at least `count` elements of `size` bytes. Old contents are lost. */
 stratus_status stratus_tetra_reserve(stratus_context* context, stratus_tetra_buffer* buffer, size_t count, size_t size);

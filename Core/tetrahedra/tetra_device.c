@@ -15,6 +15,7 @@ void stratus_tetra_device_drop_table(stratus_tetra_device* device)
   if (device) {
     stratus_slot_drop(&device->slots[TETRA_SUMS]);
     stratus_slot_drop(&device->slots[TETRA_COLORS]);
+    stratus_slot_drop(&device->slots[TETRA_FACTORS]);
     device->table = 0;
   }
 }
@@ -25,6 +26,14 @@ void stratus_tetra_device_drop_values(stratus_tetra_device* device)
     stratus_slot_drop(&device->slots[TETRA_CELL_VALUES]);
     stratus_slot_drop(&device->slots[TETRA_MESH_VALUES]);
     device->march_values = device->project_values = 0;
+  }
+}
+
+void stratus_tetra_device_drop_gradients(stratus_tetra_device* device)
+{
+  if (device) {
+    stratus_slot_drop(&device->slots[TETRA_GRADIENTS]);
+    device->gradients = 0;
   }
 }
 
@@ -107,12 +116,12 @@ stratus_status stratus_tetra_device_receive_picture(stratus_context* context, st
 }
 
 stratus_status stratus_tetra_device_launch(stratus_context* context, stratus_tetra_device* device, const char* source, const char* name,
-  bool packets, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2])
+  bool packets, bool lit, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2])
 {
-  char defines[96];
+  char defines[112];
   cl_kernel kernel;
-  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu", packets ? 16 : 1,
-    sizeof(stratus_tetra_arguments));
+  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu%s", packets ? 16 : 1,
+    sizeof(stratus_tetra_arguments), lit ? " -DTETRA_LIT=1" : "");
   TRY(stratus_device_kernel(context, source, defines, name, &kernel));
   for (unsigned i = 0; i < parameters; ++i) {
     TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &device->slots[order[i]].memory));

@@ -13,9 +13,11 @@ typedef enum stratus_tetra_slot {
   TETRA_CELL_VALUES,
   TETRA_VERTICES,
   TETRA_MESH_VALUES,
+  TETRA_GRADIENTS,
   /* of the table */
   TETRA_SUMS,
   TETRA_COLORS,
+  TETRA_FACTORS,
   /* of a frame */
   TETRA_ARGUMENTS,
   TETRA_POINTS,
@@ -40,7 +42,7 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table; /* build numbers of what the slots hold */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients; /* build numbers of what the slots hold */
 } stratus_tetra_device;
 
 /* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A
@@ -50,6 +52,7 @@ typedef struct stratus_tetra_device_source {
   uint64_t mesh, values, table;
   int64_t cell_count, point_count;
   size_t cell_ints, value_count; /* of the cells that rays march through, and of values, be it of cells or points */
+  uint64_t gradients;            /* build number, read only of frames that are lit */
 } stratus_tetra_device_source;
 
 /* stratus_tetra_march() on the device. Makes *device if that is NULL. *drawn false: the device cannot draw this mesh; a warning says why.
@@ -62,6 +65,7 @@ stratus_status stratus_tetra_project_device(stratus_context* context, stratus_te
   const stratus_tetra_device_source* source, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts, bool* drawn);
 void stratus_tetra_device_drop_table(stratus_tetra_device* device);                        /* takes NULL */
 void stratus_tetra_device_drop_values(stratus_tetra_device* device);                       /* takes NULL */
+void stratus_tetra_device_drop_gradients(stratus_tetra_device* device);                    /* takes NULL */
 void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device); /* takes NULL */
 
 /* ---- steps of both */
@@ -76,8 +80,9 @@ stratus_status stratus_tetra_device_send(stratus_context* context, stratus_tetra
 /* Makes room for the picture, and gets it. */
 stratus_status stratus_tetra_device_lend_picture(stratus_context* context, stratus_tetra_device* device, const stratus_image* image);
 stratus_status stratus_tetra_device_receive_picture(stratus_context* context, stratus_tetra_device* device, const stratus_image* image);
-/* Launches a kernel of `source` whose parameters are the slots of `order`. packets: a work item does packets of 16 rays. */
+/* Launches a kernel of `source` whose parameters are the slots of `order`. packets: a work item does packets of 16 rays; lit: the variant
+ * TETRA_LIT. */
 stratus_status stratus_tetra_device_launch(stratus_context* context, stratus_tetra_device* device, const char* source, const char* name,
-  bool packets, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2]);
+  bool packets, bool lit, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2]);
 
 #endif

@@ -159,6 +159,13 @@ static stratus_status find_scale(frame_build* build)
   build->frame->per_z = 1.0 / build->scale;
   build->frame->arguments.middle = parallel ? 1.0f : (float)(middle * build->scale);
   build->frame->arguments.shear = parallel ? 0.0f : 1.0f;
+  double basis[16];
+  find_basis(build, basis);
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      build->frame->basis[row][axis] = basis[4 * axis + row] * (parallel && row < 2 ? 1.0 : build->frame->per_z);
+    }
+  }
   return STRATUS_OK;
 }
 

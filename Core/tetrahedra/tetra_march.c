@@ -10,10 +10,11 @@
 
 #define PIXELS ((size_t)TETRA_TILE * TETRA_TILE)
 
-static stratus_tetra_tile* tile_for(int isa)
+static stratus_tetra_tile* tile_for(int isa, bool lit)
 {
   static stratus_tetra_tile* const tiles[] = STRATUS_ISA_EACH(stratus_tetra_tile);
-  return tiles[stratus_isa_at_most(isa)];
+  static stratus_tetra_tile* const lit_tiles[] = STRATUS_ISA_EACH(stratus_tetra_light_tile);
+  return (lit ? lit_tiles : tiles)[stratus_isa_at_most(isa)];
 }
 
 typedef struct march_job {
@@ -35,7 +36,7 @@ static void march_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_
 
 static stratus_status each_tile(stratus_context* context, const stratus_tetra_frame* frame, bool counting, stratus_tetra_counts* counts)
 {
-  const march_job job = { frame, tile_for(context->isa), counting };
+  const march_job job = { frame, tile_for(context->isa, frame->lit && !counting), counting };
   uint64_t sums[STRATUS_TILE_COUNTS];
   const stratus_status status =
     stratus_each_tile(context, counting ? "entry faces" : "march", frame->columns * frame->rows, march_tile, &job, sums);
@@ -96,7 +97,13 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
   TRY(stratus_allocate(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
   *sums = memory;
   memcpy(*sums + 8 * size, table->sums + 4 * (size + 1), 2 * size * sizeof(int32_t)); /* the rows of opaque entries */
+  int64_t moment = 0;
   for (size_t entry = 0; entry < size; ++entry) {
+    const int64_t own = (int64_t)(table->sums[4 * (entry + 1) + 3] - table->sums[4 * entry + 3]) * (int64_t)entry,
+                  middle = moment + own / 2;
+    (*sums)[10 * size + 2 * entry] = (int32_t)(middle >> 16);
+    (*sums)[10 * size + 2 * entry + 1] = (int32_t)(middle & 0xffff);
+    moment += own;
     for (size_t which = 0; which < 4; ++which) {
       const int64_t below = table->sums[4 * entry + which], above = table->sums[4 * (entry + 1) + which];
       (*sums)[4 * entry + which] = (int32_t)((below + above + 1) / 2);

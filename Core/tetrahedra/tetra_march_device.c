@@ -3,6 +3,7 @@
  * kernels. */
 #include "tetra_device.h"
 
+#include "gradient_factors.h"
 #include "tetra_caster.h"
 
 #include <string.h>
@@ -35,6 +36,15 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
     TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, source->value_count * sizeof(float)));
     d->march_values = source->values;
   }
+  if (frame->lit && d->gradients != source->gradients) {
+    TRY(stratus_slot_keep(
+      m->context, m->slots + TETRA_GRADIENTS, frame->gradients, (size_t)source->point_count * 4 * sizeof *frame->gradients));
+    d->gradients = source->gradients;
+  }
+  if (frame->lit) {
+    const size_t factors = frame->factors ? STRATUS_SHADING_FACTORS + 2 : 0;
+    TRY(stratus_slot_send(m->context, m->slots + TETRA_FACTORS, CL_MEM_READ_ONLY, frame->factors, factors * sizeof *frame->factors));
+  }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));
   TRY(stratus_slot_send(
@@ -43,11 +53,11 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
     m->context, m->slots + TETRA_BINS, CL_MEM_READ_ONLY, frame->bins, frame->bin_begin[m->tiles] * sizeof *frame->bins);
 }
 
-static stratus_status launch(device_march* m, const char* name, const stratus_tetra_slot* order, unsigned parameters)
+static stratus_status launch(device_march* m, const char* name, bool lit, const stratus_tetra_slot* order, unsigned parameters)
 {
   const size_t global[2] = { (size_t)m->frame->columns * (m->packets ? 1 : PIXELS), (size_t)m->frame->rows };
   const size_t local[2] = { m->packets ? 1 : GROUP, 1 };
-  return stratus_tetra_device_launch(m->context, m->device, "tetra_march", name, m->packets, order, parameters, global, local);
+  return stratus_tetra_device_launch(m->context, m->device, "tetra_march", name, m->packets, lit, order, parameters, global, local);
 }
 
 static stratus_status count_entries(device_march* m, stratus_tetra_buffers* buffers, size_t* total)
@@ -58,7 +68,7 @@ static stratus_status count_entries(device_march* m, stratus_tetra_buffers* buff
   TRY(stratus_tetra_reserve(m->context, &buffers->first, m->pixels + 1, sizeof(uint32_t)));
   m->frame->first = buffers->first.memory;
   TRY(stratus_slot_lend(m->context, m->slots + TETRA_FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes));
-  TRY(launch(m, "tetra_count", order, COUNT_OF(order)));
+  TRY(launch(m, "tetra_count", false, order, COUNT_OF(order)));
   TRY(stratus_slot_receive(m->context, m->slots + TETRA_FIRST, m->frame->first, bytes));
   TRY(stratus_tetra_sum_entries(m->context, m->frame, m->pixels, total));
   return stratus_slot_send(m->context, m->slots + TETRA_FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes);
@@ -69,14 +79,14 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
 {
   static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_CELLS, TETRA_CELL_VALUES, TETRA_SUMS, TETRA_COLORS, TETRA_POINTS,
     TETRA_LINES, TETRA_ENDS, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND, TETRA_RGBA, TETRA_RGBA8,
-    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS };
+    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS }; /* the last two of a lit frame alone */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
   TRY(stratus_slot_reserve(m->context, m->slots + TETRA_ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
   TRY(stratus_slot_reserve(m->context, m->slots + TETRA_FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t)));
   TRY(stratus_tetra_device_lend_picture(m->context, m->device, image));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
-  TRY(launch(m, "tetra_march", order, COUNT_OF(order)));
+  TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 2)));
   TRY(stratus_tetra_device_receive_picture(m->context, m->device, image));
   return stratus_slot_receive(m->context, m->slots + TETRA_COUNTS, sums, sums_bytes);
 }

@@ -53,7 +53,11 @@ typedef struct stratus_tetra_frame {
   const float* ends;         /* z of opaque geometry in each pixel; NULL: none */
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
+  bool lit;               /* light and opacity depend on the gradient */
+  const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
+  const float* factors;   /* the gradient opacity; NULL: there is none */
   stratus_camera camera;
+  double basis[3][3];            /* what a unit of a, b and z of the rays' coordinates is in the world */
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;
@@ -70,6 +74,8 @@ static inline double stratus_tetra_middle(const stratus_tetra_frame* frame, int 
 typedef void stratus_tetra_tile(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts);
 
 stratus_tetra_tile stratus_tetra_tile_isa0, stratus_tetra_tile_isa1, stratus_tetra_tile_isa2;
+/* The variant TETRA_LIT. */
+stratus_tetra_tile stratus_tetra_light_tile_isa0, stratus_tetra_light_tile_isa1, stratus_tetra_light_tile_isa2;
 
 /* tetra_march.c: turns the counts of entries in frame->first, one per pixel, into where each pixel's entries begin; first[pixels] is the
  * end. */

@@ -1,42 +1,4 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Marches a tile of rays on the host: kernels/tetrahedra/tetra_tile.h compiled for one instruction set, STRATUS_ISA. */
-#include "tetra_march_frame.h"
-
-#include "tetra_tile.h"
-
-#ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
-#endif
-
-static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
-{
-  return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values },
-    .lines = frame->us,
-    .ends = frame->ends,
-    .faces = (const int32_t*)frame->faces,
-    .bin_begin = frame->bin_begin,
-    .bins = frame->bins,
-    .first = frame->first,
-    .entries = frame->entries,
-    .colors = frame->table->rgba,
-    .picture = { frame->image.rgba, frame->image.rgba8, frame->image.depth, frame->image.samples } };
-}
-
-void STRATUS_ISA_NAME(stratus_tetra_tile)(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
-{
-  const stratus_tetra_view view = view_of(frame);
-  uint32_t filled[TETRA_PIXELS];
-  uint32_t* first = frame->first + (size_t)tile * TETRA_PIXELS;
-  if (counting) {
-    find_entries(&view, &frame->arguments, tile, 0, TETRA_PIXELS, 1, first);
-    return;
-  }
-  if (first[0] < first[TETRA_PIXELS]) {
-    find_entries(&view, &frame->arguments, tile, 0, TETRA_PIXELS, 0, filled);
-  }
-  const stratus_tetra_found found = draw_tile(&view, &frame->arguments, tile, 0, TETRA_PIXELS);
-  counts->rays += found.rays;
-  counts->entries += found.entries;
-  counts->segments += found.segments;
-  counts->stuck += found.stuck;
-}
+ * Marches a tile of rays on the host. */
+#define TETRA_TILE_NAME STRATUS_ISA_NAME(stratus_tetra_tile)
+#include "tetra_march_tile.h"

@@ -14,8 +14,8 @@ const char* stratus_tetra_method_name(stratus_tetra_method method)
   return (unsigned)method < sizeof names / sizeof *names ? names[method] : "unknown";
 }
 
-stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_camera* camera,
-  const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   const stratus_tetra_shown shown = { caster->mesh, caster->table, caster->mode };
   stratus_tetra_costs costs;
@@ -28,6 +28,10 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
   report->method = STRATUS_TETRA_METHOD_MARCH;
   if (stratus_tetra_modes_march(options)) {
     snprintf(report->why, sizeof report->why, "march: mode %s cannot be projected", stratus_tetra_mode_name(options->mode));
+    return STRATUS_OK;
+  }
+  if (stratus_tetra_light_wanted(transfer, options)) {
+    snprintf(report->why, sizeof report->why, "march: light and gradient opacity cannot be projected");
     return STRATUS_OK;
   }
   if (!caster->mesh->names) {

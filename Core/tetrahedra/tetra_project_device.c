@@ -59,7 +59,7 @@ static stratus_status launch(device_projection* p, const char* name, size_t item
 {
   const size_t global[2] = { items, 1 }, local[2] = { group, 1 };
   return stratus_tetra_device_launch(
-    p->context, p->device, "tetra_project", name, p->packets, parameters, COUNT_OF(parameters), global, local);
+    p->context, p->device, "tetra_project", name, p->packets, false, parameters, COUNT_OF(parameters), global, local);
 }
 
 /* Draws the pixels that the kernel has listed. */

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumeRepresentation
- * @brief   ParaView's volume rendering of uniform grids by vtkStratusVolumeMapper
+ * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
+ * Composite data are drawn block by block, in exact order (vtkStratusMultiBlockVolumeMapper).
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
  * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
  *
- * @sa vtkStratusVolumeMapper
+ * @sa vtkStratusVolumeMapper vtkStratusMultiBlockVolumeMapper
  */
 #ifndef vtkStratusVolumeRepresentation_h
 #define vtkStratusVolumeRepresentation_h
@@ -22,6 +23,15 @@ public:
   static vtkStratusVolumeRepresentation* New();
   vtkTypeMacro(vtkStratusVolumeRepresentation, vtkImageVolumeRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  //@{
+  /**
+   * Set what a ray shows: by the blend mode, where the projection is vtkVolumeMapper::COMPOSITE_BLEND, else by the projection, one of
+   * vtkVolumeMapper's other modes up to ADDITIVE_BLEND.
+   */
+  void SetBlendMode(int mode);
+  void SetProjection(int mode);
+  //@}
 
   //@{
   /**
@@ -42,11 +52,18 @@ protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
 
+  int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  void UpdateMapperParameters() override;
+
 private:
   vtkStratusVolumeRepresentation(const vtkStratusVolumeRepresentation&) = delete;
   void operator=(const vtkStratusVolumeRepresentation&) = delete;
 
-  vtkStratusVolumeMapper* GetStratusMapper();
+  vtkStratusVolumeMapper* GetSettings();
+  void ApplyBlendMode();
+
+  int BlendMode = 0;
+  int Projection = 0;
 };
 
 #endif

@@ -23,12 +23,17 @@
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
  *   tetrahedron). All but composite and maximum are marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
+ * - light (Shade; the renderer's lights and TwoSidedLighting), in composite and isosurface, as vtkStratusVolumeMapper takes it. In a
+ *   tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it is
+ *   interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it;
+ * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
+ * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
  * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (shading, gradient opacity, more components, two-dimensional transfer functions, label maps, slices) is refused by an error, and
+ * All else (more components, two-dimensional transfer functions, label maps, slices) is refused by an error, and
  * nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
@@ -103,6 +108,16 @@ public:
   vtkBooleanMacro(Cropping, bool);
   vtkSetVector6Macro(CroppingRegionPlanes, double);
   vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the world length over which gradient opacity multiplies the opacity. 0: none, it multiplies the optical depth; a value of
+   * opacity 1 then stays opaque. Above 0: a way of this length through opacity A (of this length) with gradient opacity F lets 1 - F A
+   * pass. Below 0: half of the mean spacing. NaN and infinity are an error when drawing. Default 0.
+   */
+  vtkSetMacro(GradientOpacityDistance, double);
+  vtkGetMacro(GradientOpacityDistance, double);
   //@}
 
   //@{
@@ -247,6 +262,7 @@ protected:
 
   double ImageErrorTolerance = 0.001;
   double Termination = 0.0;
+  double GradientOpacityDistance = 0.0;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
   double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetrahedraMapperInternals.h"
 
+#include "vtkStratusLights.h"
+
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
 #include "vtkDataObjectTree.h"
 #include "vtkMath.h"
-#include "vtkPiecewiseFunction.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkStructuredGrid.h"
@@ -15,6 +16,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 
 vtkStratusTetrahedraMapper::Internals::Internals(vtkStratusTetrahedraMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
@@ -45,21 +47,16 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
       " is not supported, only composite (0), maximum (1), minimum (2), average (3), additive (4) and isosurface (5) are";
-  } else if (property->GetShade()) {
-    error = "shading is not supported, only ShadeOff is";
+  } else if (property->GetShade() && this->Mapper->BlendMode != COMPOSITE_BLEND && this->Mapper->BlendMode != ISOSURFACE_BLEND) {
+    error = "shading is not supported in blend mode " + std::to_string(this->Mapper->BlendMode) +
+      ", only composite (0) and isosurface (5) are lit";
+  } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
+    error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
+      ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
   } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
     error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0) {
     error = "label maps are not supported, only the scalar transfer functions are";
-  } else if (!property->GetDisableGradientOpacity() && property->HasGradientOpacity()) {
-    vtkPiecewiseFunction* gradient = property->GetGradientOpacity();
-    for (int n = 0; n < gradient->GetSize(); ++n) {
-      double node[4];
-      gradient->GetNodeValue(n, node);
-      if (node[1] != 1.0) {
-        error = "gradient opacity is not supported, only a function that is 1 everywhere, or DisableGradientOpacityOn";
-      }
-    }
   }
   return error.empty();
 }
@@ -72,6 +69,19 @@ bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options&
   options.crop = this->Mapper->Cropping ? 1 : 0;
   std::copy_n(this->Mapper->CroppingRegionPlanes, 6, options.crop_bounds);
   return true;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetShading(
+  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+{
+  options.gradient_distance = this->Mapper->GradientOpacityDistance;
+  if (this->Transfer.GetTransfer().gradient_count > 0 && options.mode != STRATUS_TETRA_COMPOSITE) {
+    error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
+            "DisableGradientOpacityOn";
+    return false;
+  }
+  options.shade = property->GetShade();
+  return !options.shade || vtkStratusSetShading(renderer, property, 0, options.shading, error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
@@ -193,6 +203,10 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratus
 {
   bool empty = false;
   description = vtkStratusMeshDescription();
+  if (prop->GetProperty()->GetShade()) {
+    description.Error = "light on a mesh is not supported among several volumes, only ShadeOff";
+    return false;
+  }
   if (!this->CheckProperty(prop->GetProperty(), description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
     !this->SetOptions(prop->GetProperty(), description.Options, description.Error)) {
     return false;
@@ -212,7 +226,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
 {
   const stratus_image image = this->Picture.MakeRoom(this->Rgba, this->Depth, opaqueDepth);
   stratus_tetra_options options;
-  if (!this->SetOptions(property, options, error)) {
+  if (!this->SetOptions(property, options, error) || !this->SetShading(renderer, property, options, error)) {
     return false;
   }
   this->Renderer = renderer;

@@ -61,6 +61,7 @@ private:
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering

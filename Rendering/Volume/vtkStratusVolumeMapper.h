@@ -599,6 +599,9 @@ private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;
   void operator=(const vtkStratusVolumeMapper&) = delete;
 
+  friend class vtkStratusMultiBlockVolumeMapper;
+  bool FollowsBlock = false; // another block of the prop is in the window already
+
   friend class vtkStratusMultiVolume; // draws what the mappers of its volumes describe
   class Internals;
   std::unique_ptr<Internals> Internal;

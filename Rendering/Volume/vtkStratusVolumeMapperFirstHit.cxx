@@ -2,39 +2,17 @@
 // The light of vtkStratusVolumeMapper's pictures, the bounds of first hits, and the tree that an image may carry.
 #include "vtkStratusVolumeMapperInternals.h"
 
+#include "vtkStratusLights.h"
 #include "vtkStratusTreeArrays.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLight.h"
-#include "vtkLightCollection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
-
-namespace {
-// Converts a light. The renderer has already moved lights that follow the camera.
-void SetLight(vtkLight* light, stratus_light& result)
-{
-  double position[3], focal[3];
-  light->GetTransformedPosition(position);
-  light->GetTransformedFocalPoint(focal);
-  result.positional = light->GetPositional() ? 1 : 0;
-  const double* attenuation = light->GetAttenuationValues();
-  // An angle of 0 has light on the axis alone; the core's 0 is no cone.
-  result.cone_angle = light->GetConeAngle() >= 90.0 ? 0.0 : std::max(light->GetConeAngle(), 1e-6);
-  result.cone_exponent = light->GetExponent();
-  for (int a = 0; a < 3; ++a) {
-    result.attenuation[a] = attenuation[a];
-    result.axis[a] = focal[a] - position[a];
-    result.vector[a] = result.positional ? position[a] : position[a] - focal[a];
-    result.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
-  }
-}
-} // namespace
 
 // Independent components have materials of their own where they are not alike. Tells whether any of them is lit.
 bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options)
@@ -65,26 +43,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   stratus_shading& shading = options.shading;
   shading.on = property->GetShade(first) || options.materials ? 1 : 0;
   options.shade = property->GetShade(first) ? 1 : 0;
-  shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
-  shading.ambient = property->GetAmbient(first);
-  shading.diffuse = property->GetDiffuse(first);
-  shading.specular = property->GetSpecular(first);
-  shading.specular_power = property->GetSpecularPower(first);
-  shading.light_count = 0;
-  vtkLightCollection* lights = renderer->GetLights();
-  vtkCollectionSimpleIterator iterator;
-  lights->InitTraversal(iterator);
-  while (vtkLight* light = shading.on ? lights->GetNextLight(iterator) : nullptr) {
-    if (!light->GetSwitch()) {
-      continue;
-    }
-    if (shading.light_count == STRATUS_LIGHTS_MAX) {
-      error = "more than " + std::to_string(STRATUS_LIGHTS_MAX) + " lights that are on are not supported";
-      return false;
-    }
-    SetLight(light, shading.lights[shading.light_count++]);
-  }
-  return true;
+  return vtkStratusSetShading(renderer, property, first, shading, error);
 }
 
 void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const

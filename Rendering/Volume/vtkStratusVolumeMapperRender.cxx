@@ -2,6 +2,7 @@
 // Draws one picture of vtkStratusVolumeMapper: chooses its coarseness, reads depths, casts rays and displays the result.
 #include "vtkStratusVolumeMapperInternals.h"
 
+#include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusMultiVolume.h"
 
 #include "vtkImageData.h"
@@ -80,15 +81,19 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
 {
-  return this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
+  vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
     if (vtkStratusMultiVolume::SafeDownCast(other)) {
       return true;
     }
     // Other volumes of this class end no rays, except those that write depth.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    auto* blocks = volume ? vtkStratusMultiBlockVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    mapper = blocks ? blocks->GetSettings() : mapper;
     return mapper && mapper->RenderMode == COMPOSITE_MODE;
   });
+  others.Any = others.Any || this->Mapper->FollowsBlock;
+  return others;
 }
 
 bool vtkStratusVolumeMapper::Internals::Cast(

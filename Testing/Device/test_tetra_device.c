@@ -79,6 +79,15 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     c->options.contours[0] = 0.6;
     c->options.contours[1] = 0.4;
   }
+  if (seed % 4 >= 2 && tetra_method == STRATUS_TETRA_METHOD_MARCH) { /* lit, thinned, or both; other modes are neither */
+    static const double thin[4] = { 0.1, 0.0, 0.6, 1.0 };
+    c->options.shade = seed % 5 != 0;
+    c->options.shading.specular = 0.4;
+    c->options.shading.one_sided = seed % 3 == 0;
+    c->transfer.gradient = thin;
+    c->transfer.gradient_count = seed % 4 == 3 ? 2 : 0;
+    c->options.gradient_distance = seed == 7 ? 0.5 : 0.0;
+  }
   if (seed % 7 == 3) { /* deep segments, in many pieces */
     c->transfer.unit_distance = 0.02;
   }

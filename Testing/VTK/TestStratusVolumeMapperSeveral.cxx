@@ -433,6 +433,11 @@ void Refusals()
     cells.Mapper->SetMethodToProject();
     scene.Multi->SetVolume(cells.Volume, 2);
   });
+  refuses("the volume at port 2: light on a mesh", [](Pair& scene) {
+    const Cells cells;
+    cells.Volume->GetProperty()->ShadeOn();
+    scene.Multi->SetVolume(cells.Volume, 2);
+  });
   refuses("the volume at port 2: the input is a", [](Pair& scene) {
     const Cells cells;
     cells.Mapper->SetInputData(static_cast<vtkDataSet*>(scene.OtherImage));

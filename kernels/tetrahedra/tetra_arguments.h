@@ -8,9 +8,14 @@
 #ifndef STRATUS_TETRA_ARGUMENTS_H
 #define STRATUS_TETRA_ARGUMENTS_H
 
+#include "light_arguments.h"
 #include "picture_arguments.h"
 #include "table_arguments.h"
 
+/* 1: the variant whose light and opacity depend on the gradient. */
+#ifndef TETRA_LIT
+#define TETRA_LIT 0
+#endif
 /* Pixels along a tile's edge. */
 #define TETRA_TILE 16
 #define TETRA_TILE_LOG2 4
@@ -49,9 +54,14 @@ typedef struct stratus_tetra_arguments {
   int contour_count;
   float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
   int plane_count;
-  float plane[TETRA_PLANES][6]; /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
-  int steps_most;               /* the most cells that a ray can pass from one border face to the next */
-  int has_ends;                 /* 1: rays end at opaque geometry, each pixel at a depth of its own */
+  float plane[TETRA_PLANES][6];  /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
+  int steps_most;                /* the most cells that a ray can pass from one border face to the next */
+  int has_ends;                  /* 1: rays end at opaque geometry, each pixel at a depth of its own */
+  stratus_light_arguments light; /* of the variant TETRA_LIT, as all that follows; places are (a, b, z) */
+  float bend[2]; /* by how much light changes at most where a normal turns by an angle, and how much it bends by the angle's square */
+  int thins;     /* 1: gradient opacity */
+  float factor_scale, factor_last; /* from gradients to steps of the gradient opacity, and its last step */
+  float factor_way;                /* > 0: gradient opacities multiply the opacity of a way of this world length; 0: the optical depth */
 } stratus_tetra_arguments;
 
 #endif

@@ -44,13 +44,21 @@ PACKET_KERNEL void tetra_count(__constant stratus_tetra_arguments* a, __global c
 }
 
 /* found: scratch memory, a number for each pixel of the tiles. counts: of each tile rays, entries, segments and stuck rays; 0 before. */
-PACKET_KERNEL void tetra_march(__constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values,
-  __global const int* sums, __global const float* colors, __global const float* points, __global const float* lines,
-  __global const float* ends, __global const int* faces, __global const uint* bin_begin, __global const int* bins,
-  __global const uint* first, __global int* entries, __global uint* found, __global float* rgba, __global uchar* rgba8,
-  __global float* depth, __global uint* samples, __global uint* counts)
+PACKET_KERNEL void tetra_march(
+  __constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values, __global const int* sums,
+  __global const float* colors, __global const float* points, __global const float* lines, __global const float* ends,
+  __global const int* faces, __global const uint* bin_begin, __global const int* bins, __global const uint* first, __global int* entries,
+  __global uint* found, __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts
+#if TETRA_LIT
+  ,
+  __global const float* gradients, __global const float* factors
+#endif
+)
 {
-  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values },
+#if !TETRA_LIT
+  __global const float *gradients = 0, *factors = 0;
+#endif
+  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values, gradients, factors },
     .lines = lines,
     .ends = ends,
     .faces = faces,

@@ -19,6 +19,8 @@ typedef struct stratus_tetra_scene {
   GLOBAL const float* points; /* x, y, z and value of each */
   GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
   GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
+  GLOBAL const float* gradients;   /* of points, four floats each, as the next read by the variant TETRA_LIT alone */
+  GLOBAL const float* factors;     /* the gradient opacity */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
@@ -38,6 +40,10 @@ typedef struct stratus_tetra_passage {
   vfloat to, last;
   vmask seen; /* lanes that found a face to leave by */
   vfloat from, first;
+#if TETRA_LIT
+  vfloat edge[3]; /* of the face by which the ray entered, as the next */
+  vint name[3];
+#endif
 } stratus_tetra_passage;
 
 /* px qy - py qx, with an exact sign: fma gives the rounding errors of both products (Kahan). */
@@ -161,6 +167,12 @@ INLINE stratus_tetra_passage tetra_pass(
   if (a->cell_values) {
     passage.first = gather_float(scene->cell_values, r->cell >> vi_set(3), live);
   }
+#if TETRA_LIT
+  for (int i = 0; i < 3; ++i) {
+    passage.edge[i] = r->edge[i];
+    passage.name[i] = r->name[i];
+  }
+#endif
   tetra_turn(r, drop, d, e);
   tetra_cross(r->edge, r->z, r->s, &passage.to, &passage.last);
   if (a->cell_values) {
@@ -185,6 +197,58 @@ INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, 
   light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
 }
 
+#if TETRA_LIT
+/* The gradient where a ray passes a face, as tetra_cross() has the value. */
+INLINE void tetra_face_gradient(const stratus_tetra_scene* scene, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[3])
+{
+  const vfloat zero = v_set(0.0f), hair = v_set(1e-30f);
+  vfloat weight[3], sum = zero;
+  g[0] = g[1] = g[2] = zero;
+  for (int i = 0; i < 3; ++i) {
+    weight[i] = v_max(edge[i], zero) + hair;
+    sum = sum + weight[i];
+  }
+  const vfloat share = v_reciprocal(sum);
+  for (int i = 0; i < 3; ++i) {
+    vfloat q[4];
+    gather_four(scene->gradients, name[i], mask, q);
+    for (int axis = 0; axis < 3; ++axis) {
+      g[axis] = v_fma(weight[i] * share, q[axis], g[axis]);
+    }
+  }
+}
+
+/* The part begin..end, in z, of a cell that was passed. */
+INLINE stratus_tetra_stretch tetra_stretch(
+  const stratus_tetra_scene* scene, const stratus_tetra_ray* r, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
+{
+  const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
+  const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
+  stratus_tetra_stretch s;
+  vfloat near[3], far[3];
+  tetra_face_gradient(scene, passage->name, passage->edge, mask, near);
+  tetra_face_gradient(scene, r->name, r->edge, mask, far);
+  for (int axis = 0; axis < 3; ++axis) {
+    s.gradient[axis] = v_fma(far[axis] - near[axis], from, near[axis]);
+    s.turn[axis] = (far[axis] - near[axis]) * (to - from);
+  }
+  s.us = r->us;
+  s.uw = r->uw;
+  s.vs = r->vs;
+  s.vw = r->vw;
+  s.begin = begin;
+  s.rise = end - begin;
+  s.length = (end - begin) * r->length;
+  return s;
+}
+
+/* The lanes whose stretch may show: its sums differ, or it lies within one entry. */
+INLINE vmask tetra_may_show(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_place* from, const stratus_tetra_place* to, vmask mask)
+{
+  return a->table.has_opaque ? mask : m_andnot(mask, m_andnot(vi_zero(to->sum[3] - from->sum[3]), vi_zero(to->entry - from->entry)));
+}
+#endif
+
 /* Adds the light of a cell that was passed, cut to the part that is seen. Returns the lanes whose way has ended: those that are outside,
  * hidden by what lies in front, or beyond what is seen. */
 INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r,
@@ -203,7 +267,15 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     const vfloat sign = v_set(a->sign);
     tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
   } else if (a->mode == TETRA_SURFACES) {
-    tetra_surfaces(a, light, mask, first, last, near, (end - begin) * r->length);
+#if TETRA_LIT
+    const vmask some = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));
+    if (m_any(some)) {
+      const stratus_tetra_stretch stretch = tetra_stretch(scene, r, passage, begin, end, some);
+      tetra_surfaces(a, &stretch, light, some, first, last, near, stretch.length);
+    }
+#else
+    tetra_surfaces(a, 0, light, mask, first, last, near, (end - begin) * r->length);
+#endif
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);
@@ -218,7 +290,15 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
     if (a->mode == TETRA_ADD) {
       tetra_add(a, scene->sums, light, mask, &from, &to, (end - begin) * r->length, near);
     } else {
+#if TETRA_LIT
+      const vmask some = tetra_may_show(a, &from, &to, mask);
+      if (m_any(some)) {
+        const stratus_tetra_stretch stretch = tetra_stretch(scene, r, passage, begin, end, some);
+        tetra_light_stretch(a, scene->sums, scene->factors, &stretch, light, some, first, last, &from, &to, near);
+      }
+#else
       tetra_integrate(a, scene->sums, light, mask, first, last, &from, &to, (end - begin) * r->length, near);
+#endif
     }
   }
   return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));

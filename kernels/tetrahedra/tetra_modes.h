@@ -3,7 +3,14 @@
 #ifndef STRATUS_TETRA_MODES_H
 #define STRATUS_TETRA_MODES_H
 
+#include "tetra_pixel.h"
 #include "tetra_shade.h"
+/* A device's kernel holds a file where it is included first: what other variants need, too, must stand above. */
+#if TETRA_LIT
+#include "tetra_light.h"
+#else
+typedef int stratus_tetra_stretch; /* of no use */
+#endif
 
 /* Adds the mean of a stretch times its length: red of opacity times value, green of what counts. The sums of a place are of opacity times
  * value, of opacity, and of what counts. */
@@ -32,9 +39,9 @@ INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
 }
 
 /* Composites the surfaces that a stretch passes, in their order along it. A surface lies where the field passes its value upwards or
- * downwards, so that one on the border of two cells counts once. */
-INLINE void tetra_surfaces(
-  CONSTANT stratus_tetra_arguments* a, stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
+ * downwards, so that one on the border of two cells counts once. stretch: what lights it, read by the variant TETRA_LIT alone. */
+INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_stretch* stretch, stratus_tetra_light* light,
+  vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
 {
   const vfloat zero = v_set(0.0f);
   const vmask rises = v_lt(first, last);
@@ -48,13 +55,19 @@ INLINE void tetra_surfaces(
     }
     const vfloat opacity = v_select(met, v_select(rises, v_set(up[4]), v_set(down[4])), zero),
                  scale = v_select(met, light->transparency, zero);
-    light->red = v_fma(scale, v_select(rises, v_set(up[1]), v_set(down[1])), light->red);
-    light->green = v_fma(scale, v_select(rises, v_set(up[2]), v_set(down[2])), light->green);
-    light->blue = v_fma(scale, v_select(rises, v_set(up[3]), v_set(down[3])), light->blue);
+    const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, v_set(1.0f)));
+    const vfloat color[4] = { v_select(rises, v_set(up[1]), v_set(down[1])), v_select(rises, v_set(up[2]), v_set(down[2])),
+      v_select(rises, v_set(up[3]), v_set(down[3])), opacity };
+#if TETRA_LIT
+    stratus_tetra_lit lit;
+    tetra_light_at(a, 0, stretch, part, zero, met, &lit);
+    tetra_gather(light, &lit, scale, color);
+#else
+    (void)stretch;
+    tetra_gather(light, 0, scale, color);
+#endif
     light->transparency = v_fma(zero - light->transparency, opacity, light->transparency);
     if (a->picture.want_depth) {
-      const vfloat rise = v_select(met, last - first, v_set(1.0f));
-      const vfloat part = (value - first) * v_reciprocal(rise);
       const vmask hit = met & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
       light->depth = v_select(hit, v_fma(part, length, near), light->depth);
     }

@@ -3,6 +3,7 @@
 #ifndef STRATUS_TETRA_PIXEL_H
 #define STRATUS_TETRA_PIXEL_H
 
+#include "packet_math.h"
 #include "tetra_arguments.h"
 #include "tetra_gather.h"
 

@@ -45,6 +45,23 @@ INLINE stratus_tetra_place tetra_place_select(vmask mask, const stratus_tetra_pl
   return place;
 }
 
+/* What light and gradient make of a place: a colour C of opacity A becomes C diffuse + A specular, and the optical depth is multiplied. */
+typedef struct stratus_tetra_lit {
+  vfloat diffuse[3], specular[3], factor;
+} stratus_tetra_lit;
+
+/* Adds `scale` of a medium's colour and opacity to what a ray has gathered. */
+INLINE void tetra_gather(stratus_tetra_light* light, const stratus_tetra_lit* lit, vfloat scale, const vfloat color[4])
+{
+  vfloat c[3] = { color[0], color[1], color[2] };
+  for (int i = 0; lit && i < 3; ++i) {
+    c[i] = v_fma(c[i], lit->diffuse[i], color[3] * lit->specular[i]);
+  }
+  light->red = v_fma(scale, c[0], light->red);
+  light->green = v_fma(scale, c[1], light->green);
+  light->blue = v_fma(scale, c[2], light->blue);
+}
+
 /* (1 - exp(-x)) / x for x >= 0, with a relative error of 4e-7: the mean transparency of a medium of optical depth x to light from its
  * front. */
 INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
@@ -66,9 +83,10 @@ INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
   return share;
 }
 
-/* Composites the light between two places of the table. weight: length times the optical depth of one unit of the sums. */
+/* Composites the light between two places of the table. weight: length times the optical depth of one unit of the sums. lit: NULL where
+ * nothing is lit or thinned. */
 INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
-  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near)
+  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near, const stratus_tetra_lit* lit)
 {
   const vint rise = to->entry - from->entry, one = vi_set(1);
   const vmask level = mask & vi_zero(rise);
@@ -88,12 +106,14 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   if (!m_any(mask)) {
     return;
   }
-  const vfloat per_entry = weight * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise))));
+  vfloat per_entry = weight * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise))));
+  if (lit) {
+    per_entry = per_entry * lit->factor;
+  }
   const vfloat depth = tau * per_entry, share = v_absorbed_share(depth, mask);
   const vfloat scale = v_select(mask, light->transparency * (per_entry * share), v_set(0.0f));
-  light->red = v_fma(scale, v_abs(v_from_int(span[0])), light->red);
-  light->green = v_fma(scale, v_abs(v_from_int(span[1])), light->green);
-  light->blue = v_fma(scale, v_abs(v_from_int(span[2])), light->blue);
+  const vfloat color[4] = { v_abs(v_from_int(span[0])), v_abs(v_from_int(span[1])), v_abs(v_from_int(span[2])), tau };
+  tetra_gather(light, lit, scale, color);
   const vfloat alpha = v_select(mask, v_min(depth * share, v_set(1.0f)), v_set(0.0f));
   light->transparency = v_fma(-light->transparency, alpha, light->transparency);
   if (a->picture.want_depth) {
@@ -102,17 +122,23 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
 }
 
-/* Into how many pieces a stretch is cut. depth: its optical depth times the entries that it spans, of which there are `entries`. A colour
- * changes by the table's steepest change an entry, and by no more than 1. */
-INLINE vfloat tetra_pieces(CONSTANT stratus_tetra_arguments* a, vfloat depth, vfloat entries)
+/* Into how many pieces a stretch is cut, by the square of their number. */
+INLINE vfloat tetra_pieces_of(vfloat q)
 {
-  const vfloat most = depth * v_reciprocal(v_max(entries, v_set(1.0f))) * v_set(a->pieces), zero = v_set(0.0f);
-  const vfloat q = v_min(depth * v_set(a->table.color_slope), most);
+  const vfloat zero = v_set(0.0f);
   vfloat pieces = v_set(1.0f) + v_select(v_lt(v_set(1.0f), q), v_set(1.0f), zero) + v_select(v_lt(v_set(4.0f), q), v_set(1.0f), zero);
   pieces = pieces + v_select(v_lt(v_set(9.0f), q), v_set(2.0f), zero) + v_select(v_lt(v_set(25.0f), q), v_set(3.0f), zero);
   pieces = pieces + v_select(v_lt(v_set(64.0f), q), v_set(8.0f), zero) + v_select(v_lt(v_set(256.0f), q), v_set(16.0f), zero);
   pieces = pieces + v_select(v_lt(v_set(1024.0f), q), v_set(32.0f), zero) + v_select(v_lt(v_set(4096.0f), q), v_set(64.0f), zero);
   return pieces + v_select(v_lt(v_set(16384.0f), q), v_set(128.0f), zero);
+}
+
+/* The square of the number of pieces. depth: a stretch's optical depth times the entries that it spans, of which there are `entries`. A
+ * colour changes by the table's steepest change an entry, and by no more than 1. */
+INLINE vfloat tetra_pieces(CONSTANT stratus_tetra_arguments* a, vfloat depth, vfloat entries)
+{
+  const vfloat most = depth * v_reciprocal(v_max(entries, v_set(1.0f))) * v_set(a->pieces);
+  return v_min(depth * v_set(a->table.color_slope), most);
 }
 
 /* A stretch that meets nothing opaque, from value `first` at place `from` to `last` at place `to`, cut into pieces where averaging its
@@ -124,11 +150,12 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
   const vfloat depth = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight; /* times the number of entries that the stretch spans */
   const vmask several = mask & v_lt(one, depth * v_set(a->table.color_slope));
   if (!m_any(several)) {
-    tetra_composite(a, sums, light, mask, from, to, weight, near);
+    tetra_composite(a, sums, light, mask, from, to, weight, near, 0);
     return;
   }
   const vfloat entries = v_abs(v_from_int(to->entry - from->entry));
-  const vfloat pieces = v_select(several, tetra_pieces(a, depth, entries), one), share = v_select(several, v_reciprocal(pieces), one);
+  const vfloat pieces = v_select(several, tetra_pieces_of(tetra_pieces(a, depth, entries)), one),
+               share = v_select(several, v_reciprocal(pieces), one);
   vfloat piece = v_set(0.0f);
   stratus_tetra_place begin = *from;
   do {
@@ -139,27 +166,46 @@ INLINE void tetra_integrate_clear(CONSTANT stratus_tetra_arguments* a, GLOBAL co
       const stratus_tetra_place middle = tetra_place(a, sums, v_fma(last - first, piece * share, first), more);
       end = tetra_place_select(more, &middle, to);
     }
-    tetra_composite(a, sums, light, mask, &begin, &end, weight * share, near);
+    tetra_composite(a, sums, light, mask, &begin, &end, weight * share, near, 0);
     begin = end;
     mask = more & v_lt(v_set(OPAQUE_TRANSPARENCY), light->transparency);
   } while (m_any(mask));
 }
 
-/* Composites entry `entry`, of opacity 1. */
-INLINE void tetra_end(
-  CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
+/* Composites entry `entry`, of opacity 1, which is thinned to alpha. lit: as of tetra_composite(). */
+INLINE void tetra_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask, vint entry,
+  vfloat alpha, vfloat near, const stratus_tetra_lit* lit)
 {
   vint own[4];
   gather_four_ints(sums, entry + vi_set((int)a->table.last + 1), mask, own);
   const vfloat zero = v_set(0.0f), per_tau = v_reciprocal(v_max(v_from_int(own[3]), v_set(1.0f)));
-  const vfloat scale = v_select(mask, light->transparency * per_tau, zero);
-  light->red = v_fma(scale, v_from_int(own[0]), light->red);
-  light->green = v_fma(scale, v_from_int(own[1]), light->green);
-  light->blue = v_fma(scale, v_from_int(own[2]), light->blue);
-  light->transparency = v_select(mask, zero, light->transparency);
+  const vfloat scale = v_select(mask, light->transparency * alpha * per_tau, zero);
+  const vfloat color[4] = { v_from_int(own[0]), v_from_int(own[1]), v_from_int(own[2]), v_from_int(own[3]) };
+  tetra_gather(light, lit, scale, color);
+  light->transparency = v_select(mask, light->transparency - light->transparency * alpha, light->transparency);
   if (a->picture.want_depth) {
     light->depth = v_select(mask & v_le(v_set(LARGEST_FLOAT), light->depth), near, light->depth);
   }
+}
+
+/* The part of a stretch before its first opaque entry. Returns the lanes that meet one, *entry; *end: the place where the part before ends;
+ * *part: its share of the stretch; *before: those of the lanes that have such a part. */
+INLINE vmask tetra_before_opaque(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, vmask mask, const stratus_tetra_place* from,
+  const stratus_tetra_place* to, vint* entry, stratus_tetra_place* end, vfloat* part, vmask* before)
+{
+  GLOBAL const int* rows = sums + 8 * ((int)a->table.last + 1);
+  const vmask opaque = opaque_on_the_way(&a->table, rows, from->entry, to->entry, mask, entry);
+  *before = m_none();
+  if (m_any(opaque)) {
+    const vint one = vi_set(1), steps = vi_max(*entry, from->entry) - vi_min(*entry, from->entry);
+    *before = opaque & vi_lt(one, steps);
+    const vint whole = vi_max(to->entry, from->entry) - vi_min(to->entry, from->entry);
+    *part = v_select(*before, v_from_int(steps - one) * v_reciprocal(v_from_int(vi_max(whole, one))), v_set(1.0f));
+    end->entry = vi_select(*before, vi_select(vi_ge(*entry, from->entry), *entry - one, *entry + one), to->entry);
+    gather_four_ints(sums, end->entry, *before, end->sum);
+    *end = tetra_place_select(*before, end, to);
+  }
+  return opaque;
 }
 
 /* Any stretch: the part before the first opaque entry, then that entry. */
@@ -170,16 +216,10 @@ INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   vint entry = to->entry;
   vmask opaque = m_none();
   if (a->table.has_opaque) {
-    GLOBAL const int* rows = sums + 8 * ((int)a->table.last + 1);
-    opaque = opaque_on_the_way(&a->table, rows, from->entry, to->entry, mask & v_lt(v_set(0.0f), length), &entry);
+    vmask before;
+    vfloat part = v_set(1.0f);
+    opaque = tetra_before_opaque(a, sums, mask & v_lt(v_set(0.0f), length), from, to, &entry, &end, &part, &before);
     if (m_any(opaque)) {
-      const vint one = vi_set(1), steps = vi_max(entry, from->entry) - vi_min(entry, from->entry);
-      const vmask before = opaque & vi_lt(one, steps);
-      const vint whole = vi_max(to->entry, from->entry) - vi_min(to->entry, from->entry);
-      const vfloat part = v_select(before, v_from_int(steps - one) * v_reciprocal(v_from_int(vi_max(whole, one))), v_set(1.0f));
-      end.entry = vi_select(before, vi_select(vi_ge(entry, from->entry), entry - one, entry + one), to->entry);
-      gather_four_ints(sums, end.entry, before, end.sum);
-      end = tetra_place_select(before, &end, to);
       last = v_select(before, v_fma(last - first, part, first), last);
       length = length * part;
       mask = m_andnot(mask, opaque) | before;
@@ -187,7 +227,7 @@ INLINE void tetra_integrate(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   }
   tetra_integrate_clear(a, sums, light, mask, first, last, from, &end, length, near);
   if (m_any(opaque)) {
-    tetra_end(a, sums, light, opaque, entry, near);
+    tetra_end(a, sums, light, opaque, entry, v_set(1.0f), near, 0);
   }
 }
 

@@ -23,9 +23,11 @@ const char* const help = R"(stratus-bench tetra [options]
   --function F,...          ramp, peaks, opaque (default: all): scenes are MESH/FUNCTION
   --method M,...            stratus:auto|march|project, stratus:march|project@device (the first OpenCL device), vtk:projected,
                             vtk:projected+stratus-sort (8 leaves) and -sort-1 (one), vtk:raycast (Bunyk), vtk:zsweep; ours with
-                            ~TOLERANCE behind it, the last two with :PIXELS from ray to ray (default 1);
+                            ~TOLERANCE behind it, the last two with :PIXELS from ray to ray (default 1); vtk:resample (vtkResampleToImage to
+                            128^3 points, drawn by FixedPoint) and vtk:resample+stratus (by vtkStratusVolumeMapper), with :POINTS
+                            along each axis;
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the
-                            paper's rule), vtk:depthsort (default: all but @device and
+                            paper's rule), vtk:depthsort (default: all but @device, resample and
                             vtk:zsweep, which takes tens of seconds a frame)
   --curves, --quick-curves  mappers over their settings
   --size N                  N x N pixels (default 512)
@@ -46,7 +48,9 @@ root mean square of RGBA in 0..255 over the pixels that either shows, against a 
 reference_rmse255: by how much that changes with steps of four times the length. sort_ms: median over the 8 views, signs and cut cells
 included, build_ms (neighbours; VTK: centres) apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over
 24 views: 6 directions (3 along axes) x parallel, perspective, near, inside. cycles are the sum over those. bytes: the core's own after
-the first picture or order, peak_bytes: at most until then. VTK's mappers of tetrahedra take opacity for attenuation: they are given
+the first picture or order, peak_bytes: at most until then; of images their values. resample_ms: what vtkResampleToImage took, which no
+frame counts; points beside the mesh are transparent, and errors there and of the resampling count.
+VTK's mappers of tetrahedra take opacity for attenuation: they are given
 functions that mean the same to them.
 )";
 
@@ -68,9 +72,10 @@ void check(options& o)
   known.insert(known.end(), tetra_sorters().begin(), tetra_sorters().end());
   o.meshes = o.meshes.empty() ? std::vector<std::string>{ "bluntfin", "post", "holes", "wavelet" } : o.meshes;
   o.functions = o.functions.empty() ? tetra_functions() : o.functions;
-  if (o.methods.empty()) { // methods on devices, and z-sweep, whose frames take tens of seconds, run only on request
-    std::copy_if(known.begin(), known.end(), std::back_inserter(o.methods),
-      [](const std::string& m) { return m.find('@') == std::string::npos && m != "vtk:zsweep"; });
+  if (o.methods.empty()) { // methods on devices, on images, and z-sweep, whose frames take tens of seconds, run only on request
+    std::copy_if(known.begin(), known.end(), std::back_inserter(o.methods), [](const std::string& m) {
+      return m.find('@') == std::string::npos && m != "vtk:zsweep" && m.find("resample") == std::string::npos;
+    });
   }
   for (const std::string& method : o.methods) {
     if (!has(known, method) && !is_tetra_mapper(method)) {
@@ -271,7 +276,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
 
 void print(const std::vector<row>& rows)
 {
-  static const char* const metrics[] = { "frame_ms", "rmse255", "rmse255_8bit", "sort_ms", "sort_1thread_ms", "build_ms",
+  static const char* const metrics[] = { "frame_ms", "rmse255", "rmse255_8bit", "resample_ms", "sort_ms", "sort_1thread_ms", "build_ms",
     "wrong_visible_pairs", "cycles", "layers", "cells", "peak_bytes_per_cell", "bytes_per_cell" };
   std::map<std::string, double> values;
   std::vector<std::pair<std::string, std::string>> lines;

@@ -4,6 +4,7 @@
 
 #include "bench.h"
 
+#include <vtkAbstractVolumeMapper.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <atomic>
@@ -78,6 +79,14 @@ struct order_options {
 // Runs all of `names` on one mesh, interleaved.
 std::map<std::string, sorter_metrics> run_sorters(
   stratus_context* context, const tetra_mesh& mesh, const std::vector<std::string>& names, const order_options& options);
+
+// ---- tetra_resample.cxx
+
+// Resamples a mesh to an image of along^3 points over its bounds and draws that, as Stratus or by VTK's FixedPoint in steps of half a
+// voxel. *ms: what the resampling took.
+vtkSmartPointer<vtkAbstractVolumeMapper> make_resampled(const tetra_mesh& mesh, bool ours, int along, double* ms);
+// The function for it: points beside the mesh have a value below all others, which is transparent.
+transfer transfer_of_image(const tetra_mesh& mesh, const transfer& t);
 
 // ---- tetra_frames.cxx
 

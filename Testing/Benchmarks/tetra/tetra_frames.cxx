@@ -5,6 +5,7 @@
 #include "vtkStratusPartitionFilter.h"
 #include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVisibilitySort.h"
+#include "vtkStratusVolumeMapper.h"
 
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
@@ -33,7 +34,9 @@ namespace {
 
 constexpr double slow_ms = 1500.0; // frames that take longer are drawn once per view
 
-using mapper_pointer = vtkSmartPointer<vtkUnstructuredGridVolumeMapper>;
+using mapper_pointer = vtkSmartPointer<vtkAbstractVolumeMapper>;
+
+constexpr double resampled_along = 128.0; // points along each axis of an image, where a method names no other number
 
 // tolerance 0: the default.
 mapper_pointer make_stratus(const tetra_mesh& mesh, stratus_tetra_method method, const char* device, double tolerance)
@@ -83,7 +86,7 @@ template <typename Mapper> mapper_pointer make_scanning(const tetra_mesh& mesh, 
   return mapper;
 }
 
-// One line per method.
+// One line per method. A name with "resample" draws an image of the mesh, make_resampled().
 const struct recipe {
   const char* name;
   mapper_pointer (*make)(const tetra_mesh& mesh, double setting); // nullptr: one of Stratus
@@ -100,10 +103,17 @@ const struct recipe {
   { "vtk:projected+stratus-sort", make_projected_sorted<3>, "stratus:sort", STRATUS_TETRA_METHOD_AUTO, "" },
   { "vtk:projected+stratus-sort-1", make_projected_sorted<0>, "stratus:sort-1", STRATUS_TETRA_METHOD_AUTO, "" },
   { "vtk:raycast", make_scanning<vtkUnstructuredGridVolumeRayCastMapper>, "", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:resample", nullptr, "", STRATUS_TETRA_METHOD_AUTO, "" },
+  { "vtk:resample+stratus", nullptr, "", STRATUS_TETRA_METHOD_AUTO, "" },
   { "vtk:zsweep", make_scanning<vtkUnstructuredGridVolumeZSweepMapper>, "", STRATUS_TETRA_METHOD_AUTO, "" },
 };
 
-// Finds NAME, stratus:NAME~TOLERANCE, vtk:raycast:PIXELS or vtk:zsweep:PIXELS, and its setting; 0: none is named.
+bool resamples(const std::string& method)
+{
+  return method.rfind("vtk:resample", 0) == 0;
+}
+
+// Finds NAME, stratus:NAME~TOLERANCE, vtk:raycast:PIXELS, vtk:zsweep:PIXELS or vtk:resample:POINTS, and its setting; 0: none is named.
 const recipe* find(const std::string& whole, double* setting = nullptr)
 {
   const bool ours = is_ours(whole);
@@ -113,7 +123,7 @@ const recipe* find(const std::string& whole, double* setting = nullptr)
   if (mark != std::string::npos && mark > 3) {
     char* end = nullptr;
     value = std::strtod(whole.c_str() + mark + 1, &end);
-    if (*end != '\0' || !(value > 0.0 && value <= (ours ? 1.0 : 16.0))) {
+    if (*end != '\0' || !(value > 0.0 && value <= (ours ? 1.0 : resamples(whole) ? 1024.0 : 16.0))) {
       return nullptr;
     }
     name.resize(mark);
@@ -125,10 +135,19 @@ const recipe* find(const std::string& whole, double* setting = nullptr)
   return found == std::end(recipes) ? nullptr : found;
 }
 
-mapper_pointer make_mapper(const tetra_mesh& mesh, const std::string& name)
+mapper_pointer make_mapper(const tetra_mesh& mesh, const std::string& name, sorter_metrics& more)
 {
   double setting = 0.0;
   const recipe& r = *find(name, &setting);
+  if (resamples(name)) {
+    double ms = 0.0;
+    const double along = setting > 0.0 ? setting : resampled_along;
+    const bool ours = std::string(r.name) == "vtk:resample+stratus";
+    mapper_pointer mapper = make_resampled(mesh, ours, std::max(static_cast<int>(along), 2), &ms);
+    more["resample_ms"] = { ms, "ms" };
+    more["bytes"] = { 4.0 * along * along * along, "B" };
+    return mapper;
+  }
   if (r.make) {
     return r.make(mesh, setting);
   }
@@ -204,6 +223,7 @@ public:
     this->Renderer->SetBackgroundAlpha(0.0);
     set_property(this->Property, t);
     set_property(this->VtkProperty, as_attenuation(t));
+    set_property(this->ImageProperty, transfer_of_image(mesh, t));
     this->Window->Render(); // the window's set-up counts for no method
   }
 
@@ -211,7 +231,10 @@ public:
   {
     vtkNew<vtkVolume> volume;
     volume->SetMapper(mapper);
-    volume->SetProperty(vtkStratusTetrahedraMapper::SafeDownCast(mapper) ? this->Property : this->VtkProperty);
+    const bool image = !vtkUnstructuredGridVolumeMapper::SafeDownCast(mapper);
+    volume->SetProperty(image                              ? this->ImageProperty
+        : vtkStratusTetrahedraMapper::SafeDownCast(mapper) ? this->Property
+                                                           : this->VtkProperty);
     volume->VisibilityOff();
     this->Renderer->AddVolume(volume);
     this->Volumes.emplace_back(volume);
@@ -241,14 +264,16 @@ public:
     return now_ms() - start;
   }
 
-  tetra_picture read(vtkUnstructuredGridVolumeMapper* mapper) const
+  tetra_picture read(vtkAbstractVolumeMapper* mapper) const
   {
     tetra_picture picture;
     vtkNew<vtkUnsignedCharArray> pixels;
     this->Window->GetRGBACharPixelData(0, 0, this->Size - 1, this->Size - 1, 0, pixels);
     picture.bytes.assign(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
-    if (auto* ours = vtkStratusTetrahedraMapper::SafeDownCast(mapper)) {
-      vtkImageData* image = ours->GetLastImage();
+    auto* cells = vtkStratusTetrahedraMapper::SafeDownCast(mapper);
+    auto* voxels = vtkStratusVolumeMapper::SafeDownCast(mapper);
+    if (cells || voxels) {
+      vtkImageData* image = cells ? cells->GetLastImage() : voxels->GetLastImage();
       auto* array = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA")) : nullptr;
       if (!array || array->GetNumberOfValues() != pixels->GetNumberOfValues()) {
         throw failure("the mapper drew nothing");
@@ -264,7 +289,7 @@ private:
   int Size;
   vtkNew<vtkRenderWindow> Window;
   vtkNew<vtkRenderer> Renderer;
-  vtkNew<vtkVolumeProperty> Property, VtkProperty;
+  vtkNew<vtkVolumeProperty> Property, VtkProperty, ImageProperty;
   std::vector<vtkSmartPointer<vtkVolume>> Volumes;
 };
 
@@ -354,8 +379,9 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
   std::vector<mapper_pointer> mappers;
   std::vector<frame_result> results;
   for (const std::string& method : methods) {
+    sorter_metrics more;
     try {
-      mappers.push_back(make_mapper(mesh, method));
+      mappers.push_back(make_mapper(mesh, method, more));
     } catch (const failure& e) {
       failures.push_back({ method, e.what() });
       continue;
@@ -363,6 +389,7 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
     s.add(mappers.back());
     results.emplace_back();
     results.back().method = method;
+    results.back().more = more;
   }
   for (size_t m = 0; m < mappers.size(); ++m) {
     results[m].first_ms = s.render(m, 0, 1.0);
@@ -388,7 +415,7 @@ std::vector<frame_result> run_mappers(stratus_context* context, const tetra_mesh
   for (size_t m = 0; m < mappers.size(); ++m) {
     results[m].frame_ms = median(results[m].frames);
     const recipe* r = find(results[m].method);
-    if (!r->make && std::string(r->device) == "host") {
+    if (std::string(r->device) == "host") {
       add_bytes(mesh, function, r->method, size, results[m].more);
     }
   }

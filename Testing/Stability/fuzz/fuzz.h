@@ -157,6 +157,7 @@ fuzz_field fuzz_volume(fuzz* f, int largest, int components);
 fuzz_field fuzz_row(fuzz* f, int64_t count);          /* a field of values only */
 void fuzz_volume_changes(fuzz* f, fuzz_field* field); /* writes other values at the same place and raises the revision */
 void fuzz_row_changes(fuzz* f, fuzz_field* row);
+void fuzz_shading(fuzz* f, const double bounds[6], double edge, stratus_shading* shading); /* lights about a box */
 stratus_transfer fuzz_transfer(fuzz* f, double low, double high, double edge);
 /* An array of `count` transfer functions at a guard page. */
 const stratus_transfer* fuzz_transfers(fuzz* f, int count, double low, double high, double edge);

@@ -18,23 +18,6 @@ typedef struct picture_case {
 
 /* ---- options */
 
-static void choose_shading(fuzz* f, stratus_shading* shading, const fuzz_field* field)
-{
-  shading->on = fuzz_flag(f);
-  shading->ambient = fuzz_real(f, 0.0, 1.0);
-  shading->diffuse = fuzz_real(f, 0.0, 1.0);
-  shading->specular = fuzz_real(f, 0.0, 1.0);
-  shading->specular_power = fuzz_chance(f, 0.5) ? fuzz_real(f, 0.0, 2.0) : fuzz_real(f, 1.0, 128.0);
-  shading->light_count = fuzz_integer(f, -1, STRATUS_LIGHTS_MAX);
-  for (int i = 0; i < STRATUS_LIGHTS_MAX; ++i) {
-    stratus_light* light = shading->lights + i;
-    fuzz_vector(f, field->bounds[0] - 5.0 * field->edge, field->bounds[1] + 5.0 * field->edge, light->vector);
-    fuzz_vector(f, 0.0, 1.0, light->color);
-    light->positional = fuzz_flag(f);
-  }
-  shading->one_sided = fuzz_flag(f);
-}
-
 static void choose_cuts(fuzz* f, stratus_ray_cast_options* o, const fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
@@ -86,7 +69,7 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   choose_cuts(f, &o, field);
   o.audit = fuzz_chance(f, 0.3);
   o.normals = (stratus_normals)fuzz_choice(f, 2);
-  choose_shading(f, &o.shading, field);
+  fuzz_shading(f, field->bounds, field->edge, &o.shading);
   o.shade = fuzz_chance(f, 0.25) ? fuzz_flag(f) : 0;
   o.dependent = (c->components == 2 || (c->components == 4 && field->view.type == STRATUS_UINT8)) && fuzz_chance(f, 0.5);
   if (fuzz_chance(f, 0.5)) {

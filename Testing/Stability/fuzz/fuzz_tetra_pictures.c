@@ -18,6 +18,12 @@ typedef struct tetra_case {
   stratus_leaves leaves;
 } tetra_case;
 
+/* Whether the gradient decides what is seen, which is marched alone. */
+static bool is_lit(const tetra_case* c)
+{
+  return c->options.shade || (c->transfer->gradient_count > 0 && c->options.mode == STRATUS_TETRA_COMPOSITE);
+}
+
 static void choose_view(fuzz* f, tetra_case* c)
 {
   stratus_tetra_options o = CALL(stratus_tetra_options_default());
@@ -35,10 +41,16 @@ static void choose_view(fuzz* f, tetra_case* c)
     o.crop_bounds[side] = c->mesh.bounds[side] + (side & 1 ? -0.2 : 0.2) * fuzz_real(f, 0.0, 1.0) * c->mesh.edge;
   }
   o.crop = o.crop && o.crop_bounds[0] <= o.crop_bounds[1] && o.crop_bounds[2] <= o.crop_bounds[3] && o.crop_bounds[4] <= o.crop_bounds[5];
+  o.shade = o.mode == STRATUS_TETRA_COMPOSITE && fuzz_chance(f, 0.2);
+  fuzz_shading(f, c->mesh.bounds, c->mesh.edge, &o.shading);
+  o.gradient_distance = fuzz_chance(f, 0.6) ? 0.0 : fuzz_real(f, -1.0, 1.0);
   c->no_options = fuzz_chance(f, 0.02);
   c->options = c->no_options ? stratus_tetra_options_default() : o;
   c->camera = fuzz_camera(f, c->mesh.bounds);
   c->transfer = fuzz_transfers(f, 1, c->mesh.low, c->mesh.high, c->mesh.edge);
+  if (fuzz_is_tame(f) && c->options.method == STRATUS_TETRA_METHOD_PROJECT && is_lit(c)) {
+    c->options.method = STRATUS_TETRA_METHOD_AUTO;
+  }
 }
 
 static stratus_status draw(fuzz* f, stratus_context* context, stratus_tetra_caster* caster, const tetra_case* c, const stratus_image* image,
@@ -69,7 +81,7 @@ static void check_report(fuzz* f, const tetra_case* c, const stratus_image* imag
 
 static fuzz_limits limits_of(const tetra_case* c)
 {
-  return (fuzz_limits){ .surfaces = true, .behind = c->camera.parallel };
+  return (fuzz_limits){ .surfaces = true, .behind = c->camera.parallel, .lit = c->options.shade };
 }
 
 /* True if points of `components` numbers rise and fall by no more than STEEPEST over the values' range. */
@@ -138,7 +150,9 @@ static void compare(fuzz* f, const tetra_case* c, const stratus_image* image, st
     EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s", stratus_context_message(context));
     fuzz_check_same(f, image, &picture, true, "on a new caster");
   }
-  compare_methods(f, context, caster, &other, image);
+  if (!is_lit(c)) {
+    compare_methods(f, context, caster, &other, image);
+  }
   CALL(stratus_tetra_caster_destroy(caster));
   fuzz_context_close(f, context, &memory);
 }

@@ -378,3 +378,20 @@ const stratus_transfer* fuzz_transfers(fuzz* f, int count, double low, double hi
   free(transfers);
   return result;
 }
+
+void fuzz_shading(fuzz* f, const double bounds[6], double edge, stratus_shading* shading)
+{
+  shading->on = fuzz_flag(f);
+  shading->ambient = fuzz_real(f, 0.0, 1.0);
+  shading->diffuse = fuzz_real(f, 0.0, 1.0);
+  shading->specular = fuzz_real(f, 0.0, 1.0);
+  shading->specular_power = fuzz_chance(f, 0.5) ? fuzz_real(f, 0.0, 2.0) : fuzz_real(f, 1.0, 128.0);
+  shading->light_count = fuzz_integer(f, -1, STRATUS_LIGHTS_MAX);
+  for (int i = 0; i < STRATUS_LIGHTS_MAX; ++i) {
+    stratus_light* light = shading->lights + i;
+    fuzz_vector(f, bounds[0] - 5.0 * edge, bounds[1] + 5.0 * edge, light->vector);
+    fuzz_vector(f, 0.0, 1.0, light->color);
+    light->positional = fuzz_flag(f);
+  }
+  shading->one_sided = fuzz_flag(f);
+}

@@ -1,27 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: what the representation draws is what `stratus render` draws, and filters and reader give what they should.
-pvbatch test_plugin.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder. Rounding to bytes alone
-gives 58.9 dB where all levels come alike."""
+pvbatch test_pictures.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder."""
 import os
-import re
-import subprocess
 import sys
 
 import numpy
 from paraview import simple
-from paraview.vtk import vtkIOImage, vtkIOXML, vtkCommonDataModel
+from paraview.vtk import vtkIOXML, vtkCommonDataModel
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-plugin, stratus, compare, folder = sys.argv[1:5]
-os.makedirs(folder, exist_ok=True)
-failures = 0
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from beside import check, draw, folder, leave, load, shot
 
 
 def write_cloud(path):
@@ -47,74 +36,8 @@ def write_cloud(path):
     return array.GetRange()[1]
 
 
-def camera_of(output):
-    """What `stratus render` tells of its camera."""
-    number = r"([-+.e\d]+)"
-    triple = " ".join(3 * [number])
-    found = re.search(rf"camera +eye {triple}, forward {triple}, up {triple}, angle {number}", output)
-    values = [float(group) for group in found.groups()]
-    return values[0:3], values[3:6], values[6:9], values[9]
-
-
-def look_like(view, output):
-    eye, forward, up, angle = camera_of(output)
-    view.CameraPosition = eye
-    view.CameraFocalPoint = [e + 100 * f for e, f in zip(eye, forward)]
-    view.CameraViewUp = up
-    view.CameraViewAngle = angle
-    view.CameraParallelProjection = 0
-
-
-def make_view(width, height):
-    view = simple.CreateView("RenderView")
-    view.ViewSize = [width, height]
-    view.UseColorPaletteForBackground = 0
-    view.Background = [0, 0, 0]
-    view.OrientationAxesVisibility = 0
-    view.UseFXAA = 0  # it blurs where colours change fast
-    return view
-
-
-def draw(path, array, opacity, color, unit, least, width=500, height=400):
-    """The same scene twice: `stratus render` in floats, ParaView in bytes."""
-    name = os.path.splitext(os.path.basename(path))[0]
-    floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
-    command = [stratus, "render", path, "--array", array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
-               "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
-    told = subprocess.run(command, capture_output=True, text=True)
-    check(told.returncode == 0, told.stderr)
-    source = simple.XMLImageDataReader(FileName=[path])
-    source.UpdatePipeline()
-    view = make_view(width, height)
-    shown = simple.Show(source, view, "UniformGridRepresentation")
-    simple.ColorBy(shown, ("POINTS", array))
-    look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
-    look.ColorSpace, look.UseLogScale = "RGB", 0
-    look.RGBPoints = [number for point in color for number in point]
-    fade.Points = [number for value, alpha in opacity for number in (value, alpha, 0.5, 0.0)]
-    shown.SetRepresentationType("Stratus Volume")
-    shown.ScalarOpacityUnitDistance = unit
-    shown.SetScalarBarVisibility(view, False)
-    look_like(view, told.stdout)
-    simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)
-    judged = subprocess.run([compare, bytes_, floats, str(least)], capture_output=True, text=True)
-    print(f"{name}: ParaView beside stratus render: {judged.stdout.strip()}")
-    check(judged.returncode == 0, f"{name} looks in ParaView as it does from the command line")
-    return source, shown, view, bytes_, floats
-
-
 def pixels(path):
     return open(path, "rb").read()
-
-
-def shot(view, name):
-    """What a view shows, in 0..1, rows from below."""
-    path = os.path.join(folder, name + ".png")
-    simple.SaveScreenshot(path, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
-    reader = vtkIOImage.vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3] / 255
 
 
 def translucent(shown, view):
@@ -208,8 +131,7 @@ def tetgen_files():
     check(mesh.GetNumberOfCells() == 2 and mesh.GetNumberOfPoints() == 5, "two tetrahedra over five points")
 
 
-simple.LoadPlugin(plugin, ns=vars(simple))
-simple._DisableFirstRenderCameraReset()
+load()
 cloud_path = os.path.join(folder, "cloud.vti")
 most = write_cloud(cloud_path)
 colors = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)]
@@ -223,5 +145,4 @@ if whole:
     draw(isabel, "velocityMag", [(10, 0), (70, 0.3)], [(0, 0.1, 0.2, 0.7), (35, 0.9, 0.9, 0.4), (75, 0.9, 0.1, 0.1)], 1.0, 55)
 else:
     print("SKIPPED: ../shared/data/isabel_02.vti is not here; the hurricane was not drawn")
-sys.stdout.flush()
-os._exit(1 if failures else 0 if whole else 77)  # pvbatch returns 0 whatever sys.exit is given
+leave(whole)

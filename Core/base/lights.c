@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Checks lights, and converts them to floats. */
+#include "lights.h"
+
+#include "vector.h"
+
+_Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
+
+/* A positional light at least this many units of length away counts as directional. */
+#define LIGHT_FAR 1e15
+#define DEGREE 0.017453292519943295
+
+stratus_shading stratus_shading_default(void)
+{
+  return (stratus_shading){ .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 };
+}
+
+static stratus_status check_light(stratus_context* context, const stratus_light* light, int number)
+{
+  for (int i = 0; i < 3; ++i) {
+    if (!isfinite(light->vector[i]) || !(light->color[i] >= 0.0 && light->color[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "light %d has vector (%g, %g, %g) and colour (%g, %g, %g), must be finite and colours 0..%g", number, light->vector[0],
+        light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2], STRATUS_LIGHT_MAX);
+    }
+  }
+  if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has the direction (0, 0, 0), must have a length", number);
+  }
+  if (!light->positional) {
+    return STRATUS_OK;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (!(light->attenuation[i] >= 0.0 && light->attenuation[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has attenuation (%g, %g, %g), must be 0..%g", number,
+        light->attenuation[0], light->attenuation[1], light->attenuation[2], STRATUS_LIGHT_MAX);
+    }
+  }
+  if (!(light->cone_angle >= 0.0) || !isfinite(light->cone_angle)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "light %d has a cone of %g degrees, must be 0 or more and finite", number, light->cone_angle);
+  }
+  if (light->cone_angle == 0.0 || light->cone_angle >= 90.0) {
+    return STRATUS_OK;
+  }
+  const double square = light->axis[0] * light->axis[0] + light->axis[1] * light->axis[1] + light->axis[2] * light->axis[2];
+  if (!(square > 0.0) || !isfinite(square) || !(light->cone_exponent >= 0.0 && light->cone_exponent <= STRATUS_LIGHT_MAX)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "light %d has a cone about (%g, %g, %g) of exponent %g, must have a length and be 0..%g", number, light->axis[0], light->axis[1],
+      light->axis[2], light->cone_exponent, STRATUS_LIGHT_MAX);
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading)
+{
+  const double factors[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
+  static const char* const names[4] = { "ambient", "diffuse", "specular", "specular power" };
+  for (int i = 0; i < 4; ++i) {
+    if (!(factors[i] >= 0.0 && factors[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
+    }
+  }
+  if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count, STRATUS_LIGHTS_MAX);
+  }
+  for (int i = 0; i < shading->light_count; ++i) {
+    TRY(check_light(context, &shading->lights[i], i));
+  }
+  return STRATUS_OK;
+}
+
+static double length_of(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* Converts a light to floats: a direction of length 1, or a position relative to the origin in units of `unit`. */
+static void set_light(const stratus_light* light, const double origin[3], double unit, int number, stratus_light_arguments* a)
+{
+  double vector[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    vector[axis] = light->vector[axis] - (light->positional ? origin[axis] : 0.0);
+  }
+  const double largest = fmax(fmax(fabs(vector[0]), fabs(vector[1])), fabs(vector[2]));
+  const bool near = light->positional && largest < LIGHT_FAR * unit;
+  for (int axis = 0; axis < 3; ++axis) {
+    vector[axis] /= near ? unit : largest;
+  }
+  const double length = near ? 1.0 : length_of(vector);
+  for (int axis = 0; axis < 3; ++axis) {
+    a->vector[number][axis] = (float)(vector[axis] / length);
+    a->color[number][axis] = (float)light->color[axis];
+  }
+  a->positional[number] = near;
+  const bool dimmed = near && (light->attenuation[0] != 0.0 || light->attenuation[1] != 0.0 || light->attenuation[2] != 0.0);
+  const double units[3] = { 1.0, unit, unit * unit };
+  for (int i = 0; i < 3; ++i) {
+    a->attenuation[number][i] = dimmed ? (float)fmin(light->attenuation[i] * units[i], 1e30) : i == 0;
+    a->cone[number][i] = 0.0f;
+  }
+  a->cone[number][3] = -1.0f;
+  a->cone[number][4] = (float)light->cone_exponent;
+  if (near && light->cone_angle > 0.0 && light->cone_angle < 90.0) {
+    double axis[3] = { light->axis[0], light->axis[1], light->axis[2] };
+    const double axis_length = stratus_vector_normalize(axis);
+    for (int i = 0; axis_length > 0.0 && i < 3; ++i) {
+      a->cone[number][i] = (float)axis[i];
+    }
+    a->cone[number][3] = (float)cos(light->cone_angle * DEGREE);
+  }
+}
+
+void stratus_lights_set(
+  const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a)
+{
+  a->two_sided = !shading->one_sided;
+  a->count = shading->light_count;
+  for (int i = 0; i < shading->light_count; ++i) {
+    set_light(&shading->lights[i], origin, unit, i, a);
+  }
+  if (shading->light_count < 0) {
+    stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
+    for (int axis = 0; axis < 3; ++axis) {
+      light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+    }
+    set_light(&light, origin, unit, 0, a);
+    a->count = 1;
+  }
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusTetrahedraRepresentation.h"
+
+#include "vtkStratusLODVolume.h"
+#include "vtkStratusScalarChoice.h"
+#include "vtkStratusTetrahedraMapper.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkContourValues.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutlineSource.h"
+#include "vtkPVRenderView.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkRenderer.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVolumeProperty.h"
+
+#include <string>
+
+namespace {
+
+void bounds_of(vtkDataObject* data, double bounds[6])
+{
+  vtkMath::UninitializeBounds(bounds);
+  if (auto* grid = vtkDataSet::SafeDownCast(data)) {
+    grid->GetBounds(bounds);
+  } else if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data)) {
+    blocks->GetBounds(bounds);
+  }
+}
+} // namespace
+
+vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
+
+vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation()
+{
+  this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
+  this->Actor->SetProperty(this->Property);
+  this->Actor->SetLODMapper(this->OutlineMapper);
+}
+
+vtkStratusTetrahedraRepresentation::~vtkStratusTetrahedraRepresentation() = default;
+
+int vtkStratusTetrahedraRepresentation::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkDataObject* data = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObject::GetData(input[0], 0) : nullptr;
+  vtkMath::UninitializeBounds(this->DataBounds);
+  this->DataSize = 0;
+  // A rank without data, a client for one, shows the outline of what the others draw.
+  this->Actor->SetEnableLOD(data ? 0 : 1);
+  if (data) {
+    this->Cache.TakeReference(data->NewInstance());
+    this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
+    if (this->UseSeparateOpacityArray) {
+      this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
+    }
+    bounds_of(data, this->DataBounds);
+    if (vtkMath::AreBoundsInitialized(this->DataBounds)) {
+      this->OutlineSource->SetBounds(this->DataBounds);
+      this->OutlineSource->Update();
+    }
+    this->DataSize = data->GetActualMemorySize();
+  } else {
+    this->Cache = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  return this->Superclass::RequestData(request, input, output);
+}
+
+int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out)
+{
+  if (!this->Superclass::ProcessViewRequest(request, in, out)) {
+    return 0;
+  }
+  if (request == vtkPVView::REQUEST_UPDATE()) {
+    vtkNew<vtkMatrix4x4> matrix;
+    this->Actor->GetMatrix(matrix);
+    out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+    vtkPVRenderView::SetPiece(in, this, this->Cache, this->DataSize, 0);
+    vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, 1);
+    vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(in, this, false, false, 0);
+    // Ranks draw convex parts, which ParaView can put in order: it cuts the cells' space by planes, and gives each cell to one rank.
+    vtkPVRenderView::SetOrderedCompositingConfiguration(
+      in, this, vtkPVRenderView::DATA_IS_REDISTRIBUTABLE | vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
+    vtkPVRenderView::SetRedistributionModeToUniquelyAssignBoundaryCells(in, this);
+    vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
+    vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, matrix);
+  } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
+  } else if (request == vtkPVView::REQUEST_RENDER()) {
+    this->UpdateMapper(vtkPVRenderView::GetPieceProducer(in, this, 0)->GetProducer()->GetOutputDataObject(0));
+    this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
+  }
+  return 1;
+}
+
+void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
+{
+  vtkInformation* info = this->GetInputArrayInformation(0);
+  const char* name = info && info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const bool on_cells = info && info->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+    info->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  bool any = name && name[0];
+  if (auto* grid = vtkDataSet::SafeDownCast(data)) {
+    any = any && grid->GetNumberOfCells() > 0; // a rank may be left without any
+  }
+  this->Actor->SetVisibility(this->GetVisibility() && any);
+  if (!any) {
+    return;
+  }
+  this->Property->SetIndependentComponents(this->MapScalars && !this->MultiComponentsMapping && !this->UseSeparateOpacityArray);
+  const std::string shown =
+    this->UseSeparateOpacityArray ? std::string(name) + "_and_opacity" : stratus::choose_scalars(data, name, on_cells, this->Property);
+  this->Mapper->SetScalarMode(on_cells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  this->Mapper->SelectScalarArray(shown.c_str());
+  this->Mapper->SetInputDataObject(data);
+  this->Actor->SetMapper(this->Mapper);
+}
+
+bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
+{
+  auto* render_view = vtkPVRenderView::SafeDownCast(view);
+  if (!render_view) {
+    return false;
+  }
+  render_view->GetRenderer()->AddActor(this->Actor);
+  return this->Superclass::AddToView(view);
+}
+
+bool vtkStratusTetrahedraRepresentation::RemoveFromView(vtkView* view)
+{
+  auto* render_view = vtkPVRenderView::SafeDownCast(view);
+  if (!render_view) {
+    return false;
+  }
+  render_view->GetRenderer()->RemoveActor(this->Actor);
+  return this->Superclass::RemoveFromView(view);
+}
+
+void vtkStratusTetrahedraRepresentation::SetBlendMode(int mode)
+{
+  // ParaView numbers the modes as vtkVolumeMapper does.
+  this->Mapper->SetBlendMode(mode);
+}
+
+void vtkStratusTetrahedraRepresentation::SetMethod(int method)
+{
+  this->Mapper->SetMethod(method);
+}
+
+void vtkStratusTetrahedraRepresentation::SetImageErrorTolerance(double tolerance)
+{
+  this->Mapper->SetImageErrorTolerance(tolerance);
+}
+
+void vtkStratusTetrahedraRepresentation::SetTermination(double opacity)
+{
+  this->Mapper->SetTermination(opacity);
+}
+
+void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
+{
+  this->Mapper->SetDevice(device);
+}
+
+void vtkStratusTetrahedraRepresentation::SetNumberOfIsosurfaces(int number)
+{
+  this->Property->GetIsoSurfaceValues()->SetNumberOfContours(number);
+}
+
+void vtkStratusTetrahedraRepresentation::SetIsosurfaceValue(int index, double value)
+{
+  this->Property->GetIsoSurfaceValues()->SetValue(index, value);
+}
+
+void vtkStratusTetrahedraRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Mapper:\n";
+  this->Mapper->PrintSelf(os, indent.GetNextIndent());
+}

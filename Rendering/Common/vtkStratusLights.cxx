@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusLights.h"
+
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
+#include "vtkRenderer.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+
+namespace {
+// Converts a light. The renderer has already moved lights that follow the camera.
+void SetLight(vtkLight* light, stratus_light& result)
+{
+  double position[3], focal[3];
+  light->GetTransformedPosition(position);
+  light->GetTransformedFocalPoint(focal);
+  result.positional = light->GetPositional() ? 1 : 0;
+  const double* attenuation = light->GetAttenuationValues();
+  // An angle of 0 has light on the axis alone; the core's 0 is no cone.
+  result.cone_angle = light->GetConeAngle() >= 90.0 ? 0.0 : std::max(light->GetConeAngle(), 1e-6);
+  result.cone_exponent = light->GetExponent();
+  for (int a = 0; a < 3; ++a) {
+    result.attenuation[a] = attenuation[a];
+    result.axis[a] = focal[a] - position[a];
+    result.vector[a] = result.positional ? position[a] : position[a] - focal[a];
+    result.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
+  }
+}
+} // namespace
+
+bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, int component, stratus_shading& shading, std::string& error)
+{
+  shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
+  shading.ambient = property->GetAmbient(component);
+  shading.diffuse = property->GetDiffuse(component);
+  shading.specular = property->GetSpecular(component);
+  shading.specular_power = property->GetSpecularPower(component);
+  shading.light_count = 0;
+  vtkLightCollection* lights = renderer->GetLights();
+  vtkCollectionSimpleIterator iterator;
+  lights->InitTraversal(iterator);
+  while (vtkLight* light = shading.on ? lights->GetNextLight(iterator) : nullptr) {
+    if (!light->GetSwitch()) {
+      continue;
+    }
+    if (shading.light_count == STRATUS_LIGHTS_MAX) {
+      error = "more than " + std::to_string(STRATUS_LIGHTS_MAX) + " lights that are on are not supported";
+      return false;
+    }
+    SetLight(light, shading.lights[shading.light_count++]);
+  }
+  return true;
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The light of a renderer and what a property makes of it, for every mapper that is lit.
+#ifndef vtkStratusLights_h
+#define vtkStratusLights_h
+
+#include "stratus.h"
+#include "vtkStratusPrivate.h"
+
+#include <string>
+
+class vtkRenderer;
+class vtkVolumeProperty;
+
+// Sets the material of a component, and the lights that are on, unless `shading` is off.
+VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
+  vtkRenderer* renderer, vtkVolumeProperty* property, int component, stratus_shading& shading, std::string& error);
+
+#endif

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the plugin's tests share: ParaView's picture of a scene beside that of `stratus render`. Rounding to bytes alone gives 58.9 dB where
+all levels come alike. Scripts are given PLUGIN STRATUS COMPARE-PICTURES FOLDER, and run in the repository's root; pictures go to the folder."""
+import os
+import re
+import subprocess
+import sys
+
+from paraview import simple
+from paraview.vtk import vtkIOImage
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+plugin, stratus, compare, folder = sys.argv[1:5]
+os.makedirs(folder, exist_ok=True)
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+def camera_of(output):
+    """What `stratus render` tells of its camera."""
+    number = r"([-+.e\d]+)"
+    triple = " ".join(3 * [number])
+    found = re.search(rf"camera +eye {triple}, forward {triple}, up {triple}, angle {number}", output)
+    values = [float(group) for group in found.groups()]
+    return values[0:3], values[3:6], values[6:9], values[9]
+
+
+def look_like(view, output):
+    eye, forward, up, angle = camera_of(output)
+    view.CameraPosition = eye
+    view.CameraFocalPoint = [e + 100 * f for e, f in zip(eye, forward)]
+    view.CameraViewUp = up
+    view.CameraViewAngle = angle
+    view.CameraParallelProjection = 0
+
+
+def make_view(width, height):
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [width, height]
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0, 0, 0]
+    view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0  # it blurs where colours change fast
+    return view
+
+
+READERS = {".vti": ("XMLImageDataReader", "UniformGridRepresentation"), ".vtr": ("XMLRectilinearGridReader", "UniformGridRepresentation"),
+           ".vtu": ("XMLUnstructuredGridReader", "UnstructuredGridRepresentation"),
+           ".vts": ("XMLStructuredGridReader", "StructuredGridRepresentation"),
+           ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation")}
+
+
+def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=(),
+         judge=None, representation=None):
+    """The same scene twice: `stratus render` in floats, ParaView in bytes. component: of a vector, by its name; `stratus render` then draws
+    the array `judged`, which holds that component alone, or the magnitude. settings: properties of the representation, which `options` are
+    on the command line. judge: a file of the same data that `stratus render` draws. representation: where the reader's is another."""
+    name = os.path.splitext(os.path.basename(path))[0] + (f"-{judged}" if judged else "")
+    name += options[0][1:] if options else ""
+    floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
+    command = [stratus, "render", judge or path, "--array", judged or array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
+               "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
+    command += list(options)
+    told = subprocess.run(command, capture_output=True, text=True)
+    check(told.returncode == 0, told.stderr)
+    reader, usual = READERS[os.path.splitext(path)[1]]
+    source = getattr(simple, reader)(FileName=[path])
+    source.UpdatePipeline()
+    view = make_view(width, height)
+    shown = simple.Show(source, view, representation or usual)
+    simple.ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array))
+    look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
+    look.ColorSpace, look.UseLogScale = "RGB", 0
+    look.RGBPoints = [number for point in color for number in point]
+    fade.Points = [number for value, alpha in opacity for number in (value, alpha, 0.5, 0.0)]
+    shown.SetRepresentationType("Stratus Volume")
+    shown.ScalarOpacityUnitDistance = unit
+    for key, value in (settings or {}).items():
+        setattr(shown, key, value)
+    shown.SetScalarBarVisibility(view, False)
+    look_like(view, told.stdout)
+    simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)
+    verdict = subprocess.run([compare, bytes_, floats, str(least)], capture_output=True, text=True)
+    print(f"{name}: ParaView beside stratus render: {verdict.stdout.strip()}")
+    check(verdict.returncode == 0, f"{name} looks in ParaView as it does from the command line")
+    return source, shown, view, bytes_, floats
+
+
+def shot(view, name):
+    """What a view shows, in 0..1, rows from below."""
+    path = os.path.join(folder, name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=view.ViewSize[:], TransparentBackground=0)
+    reader = vtkIOImage.vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3] / 255
+
+
+def load():
+    simple.LoadPlugin(plugin, ns=vars(simple))
+    simple._DisableFirstRenderCameraReset()
+
+
+def leave(whole=True):
+    """Ends the script: pvbatch returns 0 whatever sys.exit is given. whole: no part was skipped."""
+    sys.stdout.flush()
+    os._exit(1 if failures else 0 if whole else 77)
