@@ -87,8 +87,9 @@ How
   --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
   --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
-                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface (default composite)
+                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface; slice (default composite)
   --contours V,V,...      of isosurfaces: 1 to 16 values, each in the colour and opacity that the functions give it
+  --slice X,Y,Z,NX,NY,NZ  of slices: the plane through a point, and its normal, in the file's coordinates
   --average-range A,B     of averages: the values that count (default: all)
   --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
                           project (default auto: what should cost less)
@@ -192,7 +193,7 @@ stratus_tree_method method_named(const std::string& text)
 stratus_mode mode_named(const std::string& text)
 {
   std::string names;
-  for (int i = STRATUS_MODE_COMPOSITE; i <= STRATUS_MODE_ISOSURFACE; ++i) {
+  for (int i = STRATUS_MODE_COMPOSITE; i <= STRATUS_MODE_SLICE; ++i) {
     const stratus_mode mode = static_cast<stratus_mode>(i);
     if (text == stratus_mode_name(mode)) {
       return mode;
@@ -345,6 +346,7 @@ constexpr struct {
   { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },
   { "--mode", [](options& o, text, text value) { o.mode = mode_named(value); } },
   { "--contours", [](options& o, text word, text value) { o.contours = numbers(value, word, 1, STRATUS_CONTOURS_MAX); } },
+  { "--slice", [](options& o, text word, text value) { o.slice = numbers(value, word, 6, 6); } },
   { "--average-range", [](options& o, text word, text value) { o.average = numbers(value, word, 2, 2); } },
   { "--method", set_method },
   { "--normals", [](options& o, text, text value) { o.normals = normals_named(value); } },
@@ -427,6 +429,9 @@ void check_complete(const options& o)
     }
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");
+    }
+    if ((o.mode == STRATUS_MODE_SLICE) == o.slice.empty()) {
+      throw usage(o.slice.empty() ? "--mode slice: where? Give --slice X,Y,Z,NX,NY,NZ" : "--slice is for --mode slice");
     }
     if (o.crop_regions != STRATUS_CROP_INSIDE && o.crop.empty()) {
       throw usage("--crop-regions: between which planes? Give --crop X,X,Y,Y,Z,Z");

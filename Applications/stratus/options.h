@@ -62,6 +62,7 @@ struct options {
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface
+  std::vector<double> slice;    // slice: a point of the plane, and its normal
   std::vector<double> average;  // average: empty, or the range of values that count
   std::vector<double> crop;     // empty, or six planes across the grid's axes
   int crop_regions = STRATUS_CROP_INSIDE;

@@ -167,6 +167,11 @@ void volume_drawing::draw(const stratus_image& image)
   std::copy(o.average.begin(), o.average.end(), cast.average_range);
   cast.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
+    const double scale = static_cast<int>(a) == this->Up ? o.exaggeration : 1.0;
+    cast.slice.center[a] = o.slice[a] * scale;
+    cast.slice.linear[a] = o.slice[3 + a] / scale;
+  }
   this->choose_parts(cast);
   cast.jitter = o.jitter < 0 ? 0 : 1;
   cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
@@ -237,7 +242,7 @@ void volume_drawing::tell_report() const
   row(
     "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
   row("mode", stratus_mode_name(o.mode));
-  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE) {
+  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE && o.mode != STRATUS_MODE_SLICE) {
     row("sampling",
       stratus_sampling_name(r.sampling) +
         (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : cli::format(", every %.4g", r.sample_distance)));

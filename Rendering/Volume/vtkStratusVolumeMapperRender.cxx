@@ -55,7 +55,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND &&
+    const bool steps = !this->IsFirstHit() && mapper->BlendMode < vtkVolumeMapper::ISOSURFACE_BLEND && // nor have slices steps
       this->FullSampling != STRATUS_SAMPLING_CELLS &&
       this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step, local is not for asking
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
